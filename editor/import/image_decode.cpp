@@ -72,13 +72,15 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
     }
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
-        // Colours as the file has them: by default they come multiplied by the alpha.
+        // Colours as the file has them: by default they come multiplied by the alpha. The reader of DDS
+        // multiplies nothing, and takes no configuration together with memory.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
         // Together with a configuration the memory must come in it.
         OIIO::Filesystem::IOProxy* proxy = &memory;
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
-        auto input = OIIO::ImageInput::open(name, &config, &memory);
+        const bool isDds = std::string_view(name).ends_with(".dds");
+        auto input = OIIO::ImageInput::open(name, isDds ? nullptr : &config, &memory);
         if (!input) {
             error = "it cannot be decoded: " + OIIO::geterror();
             return false;

@@ -93,7 +93,7 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
                       ball);
     else
         std::snprintf(text.data(), text.size(),
-                      "%s reaches nothing: the nearest burnable mesh, %u, is %g m away. Move the ball there, "
+                      "%s reaches nothing: the nearest burnable mesh, %u, is %.3g m away. Move the ball there, "
                       "or give it a radius of that much.",
                       ball, nearest.object->id.index1, double(nearest.metres));
 }

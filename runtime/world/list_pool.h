@@ -57,6 +57,19 @@ class ListPool {
         list.first = first;
         list.room = room;
     }
+    // A list that has shrunk moves to a smaller place, so that the pool holds what lists have and not the
+    // most that each had. Throws std::bad_alloc, and then nothing has changed.
+    void fit(ListPlace& list) {
+        if (list.room == 0) return;
+        if (list.count == 0) return drop(list);
+        if (sizeOf(list.count) >= sizeOf(list.room)) return;
+        ListPlace smaller;
+        reserve(smaller, list.count);
+        std::copy_n(all_.begin() + list.first, list.count, all_.begin() + smaller.first);
+        smaller.count = list.count;
+        drop(list);
+        list = smaller;
+    }
     // The place goes, and the entries with it.
     void drop(ListPlace& list) noexcept {
         release(list);

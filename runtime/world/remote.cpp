@@ -414,6 +414,7 @@ void World::linkClose(Object& object, uint32_t now) {
         pair.ids[1] = b.id;
         pair.versions[0] = a.remoteVersion;
         pair.versions[1] = b.remoteVersion;
+        book.links.fit(book.linksOf[other]);
     };
     // Where all objects are latched as they stand now, the few that are so near are found among
     // all; else among its neighbours, which are many.
@@ -431,8 +432,12 @@ void World::linkClose(Object& object, uint32_t now) {
     }
     const ListPlace& close = book.closeOf[object.slot];
     for (uint32_t i = close.count; i-- > 0;)
-        if (const uint32_t pair = book.close.of(close)[i].pair; book.pairs[pair].stamp != stamp)
-            dropPair(pair);
+        if (const CloseObject gone = book.close.of(close)[i];
+            book.pairs[gone.pair].stamp != stamp) {
+            dropPair(gone.pair);
+            book.links.fit(book.linksOf[gone.slot]);
+        }
+    book.links.fit(book.linksOf[object.slot]);
 }
 
 namespace {

@@ -32,16 +32,18 @@ float depthOf(uint place) {
     return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
 }
 
-// Which of two quads of one depth is drawn first: their places are those of threads that happened to be
-// first, and would change the picture from run to run.
+// Whether quad a is drawn before b of the same depth: their places are those of threads that happened to be
+// first, and would change the picture from run to run. Equal quads keep the order of their places.
 bool before(uint a, uint b) {
     uint kindA = flameQuad[a].kind, kindB = flameQuad[b].kind;
     if (kindA != kindB) return kindA < kindB;
     uvec3 at = floatBitsToUint(flameQuad[a].baseHeight.xyz);
     uvec3 other = floatBitsToUint(flameQuad[b].baseHeight.xyz);
     if (at.x != other.x) return at.x < other.x;
-    return at.y != other.y ? at.y < other.y : at.z < other.z;
+    if (at.y != other.y) return at.y < other.y;
+    return at.z != other.z ? at.z < other.z : a < b;
 }
+const uint kMostTies = 64u;  // of one depth that are compared with each other; more keep their places
 
 void sortFew(uint me, uint count, uint tiles) {
     uint size = 2u;
@@ -71,9 +73,15 @@ void sortFew(uint me, uint count, uint tiles) {
         }
     }
     for (uint i = me; i < count; i += kThreads) {
-        uint depth = keys[i] >> 12u, place = placeOf(keys[i] & 0xFFFu, tiles), first = i, at = 0u;
-        while (first > 0u && keys[first - 1u] >> 12u == depth) --first;
-        for (uint k = first; k < count && keys[k] >> 12u == depth; ++k)
+        uint depth = keys[i] >> 12u, place = placeOf(keys[i] & 0xFFFu, tiles), at = 0u;
+        uint first = i, end = i + 1u;
+        while (first > 0u && keys[first - 1u] >> 12u == depth && i - first < kMostTies) --first;
+        while (end < count && keys[end] >> 12u == depth && end - first <= kMostTies) ++end;
+        if (end - first > kMostTies) {
+            drawArgs[kFlameOrder + i] = place;
+            continue;
+        }
+        for (uint k = first; k < end; ++k)
             at += k != i && before(placeOf(keys[k] & 0xFFFu, tiles), place) ? 1u : 0u;
         drawArgs[kFlameOrder + first + at] = place;
     }
@@ -151,9 +159,18 @@ void sortMany(uint me, uint count, uint tiles) {
     barrier();
     for (uint i = me; i < count; i += kThreads) {
         uint key = drawArgs[kFlameOrder + i], depth = key >> kDepthBits;
-        uint place = placeOf(key & 0xFFFFu, tiles), first = i, at = 0u;
-        while (first > 0u && drawArgs[kFlameOrder + first - 1u] >> kDepthBits == depth) --first;
-        for (uint k = first; k < count && drawArgs[kFlameOrder + k] >> kDepthBits == depth; ++k)
+        uint place = placeOf(key & 0xFFFFu, tiles), first = i, end = i + 1u, at = 0u;
+        while (first > 0u && drawArgs[kFlameOrder + first - 1u] >> kDepthBits == depth &&
+               i - first < kMostTies)
+            --first;
+        while (end < count && drawArgs[kFlameOrder + end] >> kDepthBits == depth &&
+               end - first <= kMostTies)
+            ++end;
+        if (end - first > kMostTies) {
+            drawArgs[kFlameOrder + other + i] = place;
+            continue;
+        }
+        for (uint k = first; k < end; ++k)
             at += k != i && before(placeOf(drawArgs[kFlameOrder + k] & 0xFFFFu, tiles), place)
                       ? 1u : 0u;
         drawArgs[kFlameOrder + other + first + at] = place;

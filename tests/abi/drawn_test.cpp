@@ -338,7 +338,7 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     match.position[2] = 0.25f;
     match.radius = 0.1f;
     uint32_t texels = 1;
-    ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));
+    ASSERT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, &texels));
     EXPECT_EQ(0u, texels) << "nothing is at the place of its rest";
     match.position[1] = 0.5f;
     ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));

@@ -70,7 +70,8 @@ void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
     for (const auto& client : session.clients) {
         const FwNetState state = Busy::stateOf(client->world->world);
         EXPECT_EQ(1u, state.states);
-        EXPECT_EQ(0u, state.strays);
+        EXPECT_EQ(0u, state.strays)
+            << (client->world->host.warnings.empty() ? "" : client->world->host.warnings[0]);
         EXPECT_GT(state.hashes, 10u);
         EXPECT_EQ(state.step, Busy::stateOf(session.server->world, client->peer).heardStep);
     }

@@ -92,7 +92,7 @@ class Fuzz {
     }
 
     void check(FwResult result) {
-        EXPECT_TRUE(result <= FW_NOT_READY && result >= FW_ERROR_WRONG_BACKEND)
+        EXPECT_TRUE(result <= FW_NOTHING_THERE && result >= FW_ERROR_WRONG_BACKEND)
             << result << " " << lastMessage(world_);
         if (result < 0) {
             const std::string text = lastMessage(world_);

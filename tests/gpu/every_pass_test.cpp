@@ -234,6 +234,7 @@ class EveryPass : public GpuTest {
         uint32_t steps = 2, switches = 0;
         bool latch = false, probes = false, draw = true, exchange = false;
         bool effects = true;  // flames, particles and fields
+        bool whole = false;   // one event more, of all texels of each object
     };
     // The box as its own neighbour: it shines on itself, touches itself and throws embers at
     // itself.
@@ -275,6 +276,8 @@ class EveryPass : public GpuTest {
         std::vector<gpu::StepPlan> steps(what.steps);
         std::vector<gpu::TexelEvent> events;
         if (what.every) texels(events, what.kind, what.every);
+        for (uint32_t object = 0; what.whole && object < scene_->objects.size(); ++object)
+            events.push_back({object, gpu::kNoneTexel, what.kind, now_ + 1});
         gpu::MaterialUpdate update{};
         update.window = scene_->objects[0].window;
         update.substepShift = scene_->objects[0].substepShift;
@@ -478,6 +481,7 @@ class EveryPass : public GpuTest {
         frame({gpu::kEventDry, 1});
         frame({gpu::kEventIgnite, 7});
         for (int i = 0; i < 3; ++i) frame({.steps = 6, .exchange = true});
+        frame({.kind = gpu::kEventIgnite, .whole = true});
         rig_->backend.destroyObject(0);
         rig_->backend.createObject(0, scene_->init(0));
         frame({gpu::kEventIgnite, 1, 2, 0, true, true});
