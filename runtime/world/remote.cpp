@@ -4,6 +4,7 @@
 #include "core/growth.h"
 #include "fire/heat.h"
 #include "mesh/remote_tiles.h"
+#include "world/save.h"
 #include "world/world.h"
 
 #include <algorithm>
