@@ -200,6 +200,8 @@ class Fuzz {
         def.multiplier = random_.once(3) ? multiplier.data() : nullptr;
         def.multiplierWidth = random_.once(20) ? 0 : 8;
         def.multiplierHeight = 8;
+        const FwPin pins[8]{};
+        def.pins = random_.once(2) ? pins : nullptr;
         def.structSize = sizeof def;
         FwBurnableMeshId id{};
         const FwResult result = fwWorld_CreateBurnableMesh(world_, &def, &id);
