@@ -255,7 +255,10 @@ class EveryPass : public GpuTest {
         blocker_.size = {10, 10, 10, 1};
         remote_.objects = {&placed_, 1};
         remote_.neighbours = {&self_, 1};
+        remote_.neighbourRanges = {&selfRange_, 1};
         remote_.links = links_;
+        linkRange_ = {0, uint32_t(links_.size())};
+        remote_.linkRanges = {&linkRange_, 1};
         remote_.blockers = {&blocker_, 1};
         // Its faces are in each other's way, and a wall of the host's is.
         components::HeatShield shield(std::pmr::get_default_resource());
@@ -534,6 +537,8 @@ class EveryPass : public GpuTest {
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;
+    const gpu::RemoteUpdate::Range selfRange_{0, 1};
+    gpu::RemoteUpdate::Range linkRange_;
     const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;
