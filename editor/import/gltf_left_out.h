@@ -1,4 +1,4 @@
-// What a glTF file holds besides what is read: extensions, animations, cameras.
+// Lists the parts of a glTF file that the importer does not read: extensions, animations, cameras.
 #pragma once
 
 #include "import/gltf_access.h"

@@ -1,5 +1,5 @@
 // Materials of a glTF file as ours: base colours, their pictures and how those lie on the surface.
-// What a material has besides goes to the notes.
+// Other properties of a material go to the notes.
 #pragma once
 
 #include <array>

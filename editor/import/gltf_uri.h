@@ -1,4 +1,4 @@
-// What a URI of a glTF file stands for: bytes in the URI itself, or a file beside the glTF file.
+// Resolves a URI of a glTF file: bytes in the URI itself, or a file beside the glTF file.
 #pragma once
 
 #include <cstdint>

@@ -72,8 +72,8 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
     }
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
-        // Colours as the file has them: by default they come multiplied by the alpha. The reader of DDS
-        // multiplies nothing, and takes no configuration together with memory.
+        // Colours as the file has them: by default they come multiplied by the alpha. The reader of
+        // DDS multiplies nothing, and takes no configuration together with memory.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
         // Together with a configuration the memory must come in it.

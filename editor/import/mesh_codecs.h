@@ -19,7 +19,7 @@ struct Values {
 bool readsDraco();
 bool readsMeshopt();
 
-// What to do with a file that holds compressed geometry which is not read.
+// Tells the user how to convert a file whose compressed geometry is not read.
 constexpr const char* kConvertMesh =
     "; export the file again without mesh compression (Blender: Compression off; gltfpack: "
     "without -c)";

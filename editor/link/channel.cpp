@@ -102,7 +102,7 @@ void Channel::pump() {
         sent_ = 0;
     }
     std::array<uint8_t, 65536> room;
-    // What is not read yet stays with the system, which then holds the other side back.
+    // Unread bytes stay in the socket, whose flow control then holds the other side back.
     for (size_t taken = 0; open() && taken < kMostAtOnce && !reader_.full();) {
         const ssize_t came = ::recv(socket_, room.data(), room.size(), 0);
         if (came < 0 && triesAgain()) return;

@@ -67,9 +67,10 @@ void SceneSender::follow(const fwedit::Document& document) {
         const std::string answer = body.text();
         if (message.kind != Kind::Taken || !body.whole() || number > sent_ ||
             answer.size() > kMostAnswer)
-            return channel_.fail("The link is closed: an answer that is none, is to a scene that was not "
-                                 "sent, or is longer than " +
-                                 std::to_string(kMostAnswer) + " bytes");
+            return channel_.fail(
+                "The link is closed: an answer that is none, is to a scene that was not "
+                "sent, or is longer than " +
+                std::to_string(kMostAnswer) + " bytes");
         shown_ = number;
         answer_ = answer;
     }
@@ -175,9 +176,8 @@ bool SceneReader::takeScene(BodyReader& body, std::string& error) {
     }
     std::vector<std::string> ignored;  // the editor's own scenes need none
     if (!fwedit::readScene(text, "The scene of the link", made.scene, ignored, error)) return false;
-    std::erase_if(paint_, [&](const auto& paint) {
-        return !fwedit::findIn(made.scene.layers, paint.first);
-    });
+    std::erase_if(
+        paint_, [&](const auto& paint) { return !fwedit::findIn(made.scene.layers, paint.first); });
     tiles_ = 0;
     for (const auto& [layer, paint] : paint_) {
         fwedit::PaintImage& image = made.images[layer];
@@ -198,9 +198,8 @@ void SceneReceiver::acceptCallers() {
         if (!channel.open()) break;
         // With no place left, the caller that has sent least goes.
         if (callers_.size() == kMostCallers)
-            callers_.erase(std::ranges::min_element(callers_, {}, [](const Caller& caller) {
-                return caller.channel.received();
-            }));
+            callers_.erase(std::ranges::min_element(
+                callers_, {}, [](const Caller& caller) { return caller.channel.received(); }));
         callers_.push_back({std::move(channel), {}});
     }
 }

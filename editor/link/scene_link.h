@@ -49,8 +49,9 @@ struct LinkedScene {
     std::filesystem::path folder;  // where its relative paths begin
 };
 
-// What the sample's side does with messages, without a socket. It holds what was sent and no more: tiles
-// are kept one by one, and a layer's table of tiles is made only for layers that a scene names.
+// The sample's side of the link, without a socket. It holds what was sent and no more:
+// tiles are kept one by one, and a layer's table of tiles is made only for layers that a scene
+// names.
 class SceneReader {
  public:
     static constexpr size_t kMostPaint = size_t{256} << 20;  // bytes of tiles held at a time
@@ -78,8 +79,8 @@ class SceneReader {
     size_t tiles_ = 0;                              // of all layers
 };
 
-// The sample's side. The editor whose scene came last is the one that is shown. Callers that have sent
-// no scene yet wait beside it, so that a silent one keeps nobody out.
+// The sample's side. The editor whose scene came last is the one that is shown. Callers that have
+// sent no scene yet wait beside it, so that a silent one keeps nobody out.
 class SceneReceiver {
  public:
     static constexpr size_t kMostCallers = 8;  // beside the editor that is shown
@@ -101,7 +102,8 @@ class SceneReceiver {
     };
 
     void acceptCallers();
-    // True: a scene came whole. What the caller did wrong closes its channel and is added to `report`.
+    // True: a scene came whole. What the caller did wrong closes its channel and is added to
+    // `report`.
     bool readCaller(Caller& caller, std::string& report);
 
     Listener listener_;

@@ -1,4 +1,4 @@
-// What an imported model shows and of which material slot each triangle is: a burnable mesh has
+// Appearance of an imported model, and of which material slot each triangle is: a burnable mesh has
 // eight slots, eight pictures, and a colour for each vertex; a file has as many as it likes.
 #pragma once
 
@@ -42,8 +42,8 @@ ModelSurfaces surfacesOf(const fwimport::ImportedModel& model);
 FwMeshDef meshDefOf(const fwimport::ImportedModel& model, const ModelSurfaces& surfaces);
 // A preset. Where the file has colours the base colour is 1: unburnt, the file's colours show.
 FwMaterialDef materialDefOf(uint32_t preset, bool ownColors);
-// What casts a shadow: the model's triangles, and of those with cut-outs parts that are there, as
-// fine as a soft shadow shows them.
+// Geometry that casts a shadow: the model's triangles, and of those with cut-outs parts that are
+// there, as fine as a soft shadow shows them.
 struct SolidTriangles {
     std::vector<float> positions;   // 3 per vertex, m
     std::vector<uint32_t> indices;  // 3 per triangle

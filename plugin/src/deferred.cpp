@@ -94,7 +94,8 @@ void defer(std::pmr::vector<edge::Deferred<What>>& list, const edge::Deferred<Wh
 
 // Takes one that is due off the list.
 template <class What>
-bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed, What& what) noexcept {
+bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed,
+             What& what) noexcept {
     const auto due = std::find_if(list.begin(), list.end(), [&](const edge::Deferred<What>& one) {
         return one.frameIndex <= completed;
     });

@@ -16,7 +16,7 @@ class Device {
     virtual gpu::Backend* createBackend(const FwWorldDef& def) = 0;
     virtual void destroyBackend(gpu::Backend* backend) noexcept = 0;
     virtual void fillInfo(FwContextInfo& info) const noexcept = 0;
-    // What all worlds share. [any]
+    // Memory that all worlds share. [any]
     virtual void memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const = 0;
     // Throws unless it is a registered target. [any]
     virtual void checkTarget(FwTargetId id) = 0;

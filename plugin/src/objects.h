@@ -11,7 +11,7 @@
 
 namespace fw::edge {
 
-// What fwWorld_Read... give to any thread: a copy that each frame leaves.
+// The copy that each frame leaves for fwWorld_Read..., which any thread may call.
 struct Snapshot {
     explicit Snapshot(std::pmr::memory_resource* memory) : lights(memory), objects(memory) {}
     std::atomic<bool> wanted{false};  // some thread reads
@@ -67,7 +67,7 @@ struct FwWorld {
     std::optional<fw::net::Server> server;
     std::optional<fw::net::Client> client;
 
-    // What other threads use while one steps or records the world.
+    // State that other threads use while one thread steps or records the world.
     std::atomic<uint64_t> newestFrame{0};  // that it has begun to step or record
     fw::edge::Snapshot snapshot;
     std::mutex doomedMutex;

@@ -1,4 +1,4 @@
-// What any thread may read of a world while another one steps or records it.
+// State of a world that any thread may read while another thread steps or records it.
 #include "objects.h"
 
 #include <algorithm>

@@ -24,10 +24,11 @@ void checkMatrices(const FwView& view, const char* name) {
     for (unsigned i = 0; i < 4; ++i) {
         const float wanted = i == 3 ? 1.0f : 0.0f, value = view.view[kLastRow[i]];
         if (std::fabs(value - wanted) > 1e-3f)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s.view[%u] is %g; the last row of a view matrix is 0 0 0 1, elements 3, 7, 11 "
-                       "and 15. Matrices are column-major.",
-                       name, kLastRow[i], double(value));
+            core::fail(
+                FW_ERROR_INVALID_ARGUMENT,
+                "%s.view[%u] is %g; the last row of a view matrix is 0 0 0 1, elements 3, 7, 11 "
+                "and 15. Matrices are column-major.",
+                name, kLastRow[i], double(value));
     }
     const auto at = [&](unsigned column, unsigned row) {
         return double(view.view[column * 4 + row]);
@@ -36,10 +37,11 @@ void checkMatrices(const FwView& view, const char* name) {
                                at(1, 0) * (at(0, 1) * at(2, 2) - at(2, 1) * at(0, 2)) +
                                at(2, 0) * (at(0, 1) * at(1, 2) - at(1, 1) * at(0, 2));
     if (std::fabs(determinant) < 1e-12)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s.view has determinant %g; a view turns and moves the world, it does not flatten "
-                   "it.",
-                   name, determinant);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "%s.view has determinant %g; a view turns and moves the world, it does not flatten "
+            "it.",
+            name, determinant);
     for (unsigned row : {0u, 1u, 3u}) {
         bool empty = true;
         for (unsigned column = 0; column < 4; ++column)

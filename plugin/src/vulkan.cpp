@@ -268,9 +268,10 @@ void checkEncoding(const FwVulkanTargetDef& def, const core::Log& log) {
                "FwVulkanTargetDef::encoding is %s and colorFormat is %d, %s; use %s or "
                "FW_OUTPUT_AUTO (3).",
                encodingName(def.encoding), int(def.colorFormat),
-               asked == FW_OUTPUT_LINEAR      ? "a float format"
-               : asked == FW_OUTPUT_SRGB_VIEW ? "an sRGB format, which encodes by itself"
-                                              : "a UNORM format, which ends at 1 and encodes nothing",
+               asked == FW_OUTPUT_LINEAR ? "a float format"
+               : asked == FW_OUTPUT_SRGB_VIEW
+                   ? "an sRGB format, which encodes by itself"
+                   : "a UNORM format, which ends at 1 and encodes nothing",
                encodingName(asked));
 }
 

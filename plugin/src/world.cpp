@@ -555,7 +555,8 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
         const uint32_t count = w.ignite(def, &acts);
         if (texels) *texels = count;
         if (acts) return FW_OK;
-        // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a surprise.
+        // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a
+        // surprise.
         if (def.kind == FW_IGNITE) {
             char reason[sizeof FwErrorInfo::message];
             w.explainNothingThere(def, count, reason);

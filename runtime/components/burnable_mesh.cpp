@@ -434,10 +434,10 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
 
 void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
     for (int r = 0; r < 3; ++r)
-        rows[r] =
-            gpu::vec4(pose.rotation[r][0] * pose.scale * pose.stretch[0],
-                      pose.rotation[r][1] * pose.scale * pose.stretch[1],
-                      pose.rotation[r][2] * pose.scale * pose.stretch[2], float(pose.translation[r]));
+        rows[r] = gpu::vec4(pose.rotation[r][0] * pose.scale * pose.stretch[0],
+                            pose.rotation[r][1] * pose.scale * pose.stretch[1],
+                            pose.rotation[r][2] * pose.scale * pose.stretch[2],
+                            float(pose.translation[r]));
 }
 
 gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {

@@ -113,7 +113,8 @@ EmitterLook emitterLook(const FwFireEmitterDef& def);
 // Particles that it needs at its power, and s that one of them lasts at most.
 uint32_t emitterNeeds(const FireEmitter& emitter);
 float emitterLasts(const FireEmitter& emitter);
-// Its next frame, of so many seconds, into `next` and the record. False: nothing of it is left to show.
+// Its next frame, of so many seconds, into `next` and the record. False: nothing of it is left to
+// show.
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept;
 inline void commitEmitter(FireEmitter& emitter) noexcept { emitter.births = emitter.next; }

@@ -17,8 +17,8 @@ struct FireFlame {
     VolumetricFire* fire = nullptr;
     uint32_t part = 0, split = 0;  // of its fire
     uint32_t trackVersion = 0;
-    uint32_t key = 0;      // no other flame's
-    bool leaving = false;  // its fire burns as others now
+    uint32_t key = 0;       // no other flame's
+    bool leaving = false;   // its fire burns as others now
     gpu::vec3 stood{0.0f};  // m, world: where its fire was when it was placed last
 };
 

@@ -114,7 +114,8 @@ void toWorld(const Pose& pose, const float point[3], double (&out)[3]) noexcept 
 
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
     float from[3];
-    for (int i = 0; i < 3; ++i) from[i] = float(double(point[i]) - pose.translation[i]) / pose.scale;
+    for (int i = 0; i < 3; ++i)
+        from[i] = float(double(point[i]) - pose.translation[i]) / pose.scale;
     directionToObject(pose, from, out);
     for (int i = 0; i < 3; ++i) out[i] /= pose.stretch[i];
 }

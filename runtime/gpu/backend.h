@@ -295,7 +295,7 @@ class Backend {
     virtual const Readback* nextReadback() = 0;
 
     virtual std::span<const PassTime> passTimes() = 0;
-    // What this world holds. [any]: also while it is stepped or recorded.
+    // Memory that this world holds. [any]: also while it is stepped or recorded.
     virtual void memoryRows(std::pmr::vector<MemoryRow>& out) const = 0;
     // Of device memory that follows a plan's Detail::memory.
     [[nodiscard]] virtual uint64_t detailBytes() const noexcept { return 0; }

@@ -35,8 +35,7 @@ struct TexelCells {  // texels by the cell of a grid that they lie in
 
     [[nodiscard]] Place cellOf(const Place& place) const noexcept {
         Place cell;
-        for (size_t i = 0; i < 3; ++i)
-            cell[i] = (place[i] - (place[i] < 0 ? side - 1 : 0)) / side;
+        for (size_t i = 0; i < 3; ++i) cell[i] = (place[i] - (place[i] < 0 ? side - 1 : 0)) / side;
         return cell;
     }
     [[nodiscard]] static uint64_t keyOf(const Place& cell) noexcept {
@@ -68,7 +67,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
         if (!to.real(i)) continue;
         const Place place = micrometresOf(to, i), cell = cells.cellOf(place);
         const gpu::ivec3 normal = gpu::decodeNormal(to.normals[i]);
-        // Who faces another way counts as a reach further off.
+        // A texel that faces another way counts as one reach further off.
         int64_t best = 2 * least + 1;
         const auto look = [&](const Place& at) {
             const uint64_t key = TexelCells::keyOf(at);
@@ -82,8 +81,8 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                     square += (there[k] - place[k]) * (there[k] - place[k]);
                 if (square > least) continue;
                 const gpu::ivec3 n = gpu::decodeNormal(from.normals[one->texel]);
-                const int64_t along = int64_t(n.x) * normal.x + int64_t(n.y) * normal.y +
-                                      int64_t(n.z) * normal.z;
+                const int64_t along =
+                    int64_t(n.x) * normal.x + int64_t(n.y) * normal.y + int64_t(n.z) * normal.z;
                 if (along < kFaces) square += least;
                 if (square >= best) continue;
                 best = square;

@@ -148,8 +148,8 @@ void checkTiles(const BurnDomain& d) {
     }
 }
 
-// What the integer products of shaders/shared/front.h bear: a link of at most kLongest units, and a normal
-// that is not longer than one of unit length is after rounding.
+// Limits of the integer products of shaders/shared/front.h: a link of at most kLongest units, and a
+// normal that is not longer than one of unit length is after rounding.
 void checkFront(const BurnDomain& d) {
     constexpr int64_t kLongest = 8191;
     constexpr double kUnit = 16384 * 1.01;  // Q14
@@ -158,10 +158,11 @@ void checkFront(const BurnDomain& d) {
         const int64_t x = int64_t(a.x) - b.x, y = int64_t(a.y) - b.y, z = int64_t(a.z) - b.z;
         const int64_t squared = x * x + y * y + z * z;
         if (squared > kLongest * kLongest)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "Positions of texels %u and %u of the cooked mesh, which are neighbours, are %.0f "
-                       "units apart; the limit is %lld. Cook the mesh again.",
-                       from, to, std::sqrt(double(squared)), static_cast<long long>(kLongest));
+            core::fail(
+                FW_ERROR_BAD_DATA,
+                "Positions of texels %u and %u of the cooked mesh, which are neighbours, are %.0f "
+                "units apart; the limit is %lld. Cook the mesh again.",
+                from, to, std::sqrt(double(squared)), static_cast<long long>(kLongest));
     };
     uint32_t real = 0;
     double area = 0;
@@ -176,22 +177,24 @@ void checkFront(const BurnDomain& d) {
             const gpu::ivec3 n = gpu::decodeNormal(d.normals[texel]);
             const double length = std::hypot(double(n.x), double(n.y), double(n.z));
             if (length > kUnit)
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
-                           texel, length / 16384);
+                core::fail(
+                    FW_ERROR_BAD_DATA,
+                    "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
+                    texel, length / 16384);
             const bool isRim = (d.texels[texel].materialFlags & kTexelRim) != 0;
             for (size_t k = 0; k < 8; ++k) {
-                const uint32_t to = isRim
-                                        ? d.links[size_t(record) * 8 + k]
-                                        : uint32_t(int(texel) + kRingY[k] * int(d.width) + kRingX[k]);
+                const uint32_t to =
+                    isRim ? d.links[size_t(record) * 8 + k]
+                          : uint32_t(int(texel) + kRingY[k] * int(d.width) + kRingX[k]);
                 if (to != kNone) checkLink(texel, to);
             }
             record += isRim ? 1 : 0;
         }
     }
     if (real != d.report.realTexels)
-        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh has %u texels of the surface; its report says %u.",
-                   real, d.report.realTexels);
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The cooked mesh has %u texels of the surface; its report says %u.", real,
+                   d.report.realTexels);
     if (!(std::abs(area - d.report.texelArea) <= 0.001 * area))
         core::fail(FW_ERROR_BAD_DATA,
                    "The texels of the cooked mesh have %g m^2 in all; its report says %g.", area,
@@ -225,7 +228,8 @@ void checkScalars(const BurnDomain& d) {
                        "[8, 4096].",
                        d.width, d.height);
     const auto size = [](float v) { return v > 0 && usable(v); };
-    require(size(d.quantum * 65535) && size(d.texelSide) && size(d.linkShort), "Size of a texel", 0);
+    require(size(d.quantum * 65535) && size(d.texelSide) && size(d.linkShort), "Size of a texel",
+            0);
     require(std::isfinite(d.linkMax) && d.linkMax >= 0 && d.linkMax <= 8191 * d.quantum,
             "Longest link", 0);
     require(d.materialCount >= 1 && d.materialCount <= 8, "Number of materials", d.materialCount);

@@ -18,7 +18,7 @@ struct Units {
 };
 
 constexpr double kMostDistance = 2305843009213693952.0;  // 2^61
-constexpr int64_t kMostUnits = int64_t(1) << 30;     // three squares of these fit into 63 bits
+constexpr int64_t kMostUnits = int64_t(1) << 30;         // three squares of these fit into 63 bits
 
 int64_t toUnits(double metres, double quantum) {
     const double units = metres / quantum;

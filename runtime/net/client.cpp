@@ -156,7 +156,7 @@ void Client::readStream(core::Reader& reader, bool newest) {
     if (newest) overloaded_ = (flags & kStreamOverloaded) != 0;
     // Until the state is there the world burns on without the changes that are left out.
     if (outdated != 0 && asked_ != Request::state) ask(Request::state);
-    // What was said before the state was saved may be of another past.
+    // Messages from before the state was saved may be of another past.
     if (mark.records < loadedAt_) return;
     heard_ = std::max(heard_, mark.step);
     if (mark.step <= reached_) return;

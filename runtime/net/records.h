@@ -1,6 +1,6 @@
-// What a server sends its clients in order: deeds, hashes of objects, the host's own messages,
-// where a state was saved; each with the step before which it belongs. To a client that gets a
-// whole state instead, runs of records are sent as skipped, but never a message.
+// Records that a server sends its clients in order: commands, hashes of objects, the host's own
+// messages, where a state was saved; each with the step before which it belongs. To a client that
+// gets a whole state instead, runs of records are sent as skipped, but never a message.
 #pragma once
 #include "core/stream.h"
 #include "world/journal.h"
@@ -96,8 +96,8 @@ class RecordLog {
         std::span<const std::byte> bytes;  // empty: `count` records are skipped
         uint32_t count = 1;
     };
-    // What to send at `record`, in [0, end): records before `skipsBefore` are skipped unless they
-    // are messages, and those that are gone are skipped in any case.
+    // The message to send at `record`, in [0, end): records before `skipsBefore` are skipped unless
+    // they are messages, and those that are gone are skipped in any case.
     [[nodiscard]] Entry entryAt(uint32_t record, uint32_t skipsBefore) const noexcept;
 
  private:

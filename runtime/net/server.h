@@ -43,8 +43,8 @@ class Server {
         uint32_t next = 0;      // it has all records before this one
         uint32_t step = 0;      // of its world
         uint32_t answered = 0;  // sequence of the newest packet that it has
-        // What it has of a state: the id, all pieces before `base`, and those of the bits behind
-        // it.
+        // The part of a state that the client has: the id, all pieces before `base`, and those of
+        // the bits behind it.
         uint32_t state = 0, base = 0;
         uint64_t came = 0;
         std::array<RecordRun, kRunsMost> runs;  // of records that it has behind `next`

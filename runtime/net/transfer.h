@@ -13,7 +13,7 @@ constexpr uint32_t kChunkWindow = 64;                // pieces on their way at m
 constexpr uint32_t kStateMost = 256u * 1024 * 1024;  // bytes of a state
 constexpr size_t kChunkLeast = 256;                  // bytes of a piece
 
-// What a client asks for.
+// The request of a client.
 enum class Request : uint16_t { nothing, state, tiles, count };
 
 struct StateHead {        // of a state

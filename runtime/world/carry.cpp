@@ -98,8 +98,8 @@ void World::waitForCarries() noexcept {
 bool World::gives(uint32_t slot) const noexcept {
     return clock_.tick < carriesUntil_ &&
            std::any_of(pending_.begin(), pending_.end(), [&](const PendingTexel& event) {
-        return isCarry(event) && carriedFrom(event) == slot;
-    });
+               return isCarry(event) && carriedFrom(event) == slot;
+           });
 }
 
 void World::settleCarries() noexcept {

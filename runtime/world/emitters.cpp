@@ -183,8 +183,8 @@ void World::planEmitters(float seconds) noexcept {
         record.heat.w = eddies(0), record.stuck.z = eddies(1), record.stuck.w = eddies(2);
         gpu::SparkSource source;
         // Another object may have the slot of a mesh that is gone.
-        const bool gone = emitter->def.shape == FW_EMITTER_MESH &&
-                          !objects_.find(emitter->def.object);
+        const bool gone =
+            emitter->def.shape == FW_EMITTER_MESH && !objects_.find(emitter->def.object);
         if (!gone && components::advanceSparks(*emitter, air, seconds, source)) {
             if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) layGround(source);
             sparkSources_.push_back(source);

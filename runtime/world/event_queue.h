@@ -20,7 +20,7 @@ class EventQueue {
     void push(const FwEvent& event) noexcept;
     uint32_t poll(std::span<FwEvent> out) noexcept;
     void clear() noexcept;
-    // Those with a place are raised so many m further on.
+    // Events with a place are raised so many m further on.
     void move(const double (&by)[3]) noexcept;
     // Events lost since the last call.
     uint64_t takeDropped() noexcept;

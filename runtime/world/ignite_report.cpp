@@ -29,8 +29,8 @@ float distanceToBox(const float point[3], const mesh::BurnDomain& domain) noexce
 
 }  // namespace
 
-// Of the events from `first` on, which a match just added: whether one is of a texel that can burn and to
-// which no water is on its way.
+// Of the events from `first` on, which a match just added: whether one is of a texel that can burn
+// and to which no water is on its way.
 bool World::lightsSomething(size_t first) const noexcept {
     const auto getsWet = [&](const PendingTexel& match) {
         bool wet = false;
@@ -64,11 +64,12 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
     std::snprintf(ball, sizeof ball, "The ball of %g m at (%g, %g, %g)", double(def.radius),
                   double(at[0]), double(at[1]), double(at[2]));
     if (texels > 0) {
-        std::snprintf(text.data(), text.size(),
-                      "%s lights nothing: none of the %u texels in it can burn. Their material is "
-                      "noncombustible or too moist, their multiplier is 0, or water is on its way to them. "
-                      "Give them a material with a spreadRate above 0, or dry them (FW_DRY).",
-                      ball, texels);
+        std::snprintf(
+            text.data(), text.size(),
+            "%s lights nothing: none of the %u texels in it can burn. Their material is "
+            "noncombustible or too moist, their multiplier is 0, or water is on its way to them. "
+            "Give them a material with a spreadRate above 0, or dry them (FW_DRY).",
+            ball, texels);
         return;
     }
     Nearest nearest;
@@ -89,11 +90,12 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
         if (!nearest.beats(std::sqrt(squared))) nearest = {&object, std::sqrt(squared)};
     }
     if (!nearest.object)
-        std::snprintf(text.data(), text.size(), "%s reaches nothing: the world has no burnable mesh.",
-                      ball);
+        std::snprintf(text.data(), text.size(),
+                      "%s reaches nothing: the world has no burnable mesh.", ball);
     else
         std::snprintf(text.data(), text.size(),
-                      "%s reaches nothing: the nearest burnable mesh, %u, is %.3g m away. Move the ball there, "
+                      "%s reaches nothing: the nearest burnable mesh, %u, is %.3g m away. Move the "
+                      "ball there, "
                       "or give it a radius of that much.",
                       ball, nearest.object->id.index1, double(nearest.metres));
 }

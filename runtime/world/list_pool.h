@@ -57,8 +57,8 @@ class ListPool {
         list.first = first;
         list.room = room;
     }
-    // A list that has shrunk moves to a smaller place, so that the pool holds what lists have and not the
-    // most that each had. Throws std::bad_alloc, and then nothing has changed.
+    // A list that has shrunk moves to a smaller place, so that the pool holds what lists have and
+    // not the most that each had. Throws std::bad_alloc, and then nothing has changed.
     void fit(ListPlace& list) {
         if (list.room == 0) return;
         if (list.count == 0) return drop(list);
@@ -106,7 +106,7 @@ class ListPool {
         }
     }
 
-    // What has changed since `settle`; who writes into a list says so.
+    // Marks entries as changed since `settle`. A caller that writes into a list calls it.
     void mark(uint32_t first, uint32_t count) noexcept {
         if (count == 0) return;
         for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)

@@ -1,6 +1,6 @@
-// Who is within whose reach: for each object the others whose boxes come within the reach of one of
-// the two, by slot. Kept object by object: what moves finds its neighbours again, the others gain
-// or lose that one. Not where fire goes between them.
+// Objects within reach of each other: for each object the others whose boxes come within the reach
+// of one of the two, by slot. Kept object by object: what moves finds its neighbours again, the
+// others gain or lose that one. Not where fire goes between them.
 #pragma once
 #include "world/box_grid.h"
 #include "world/list_pool.h"
@@ -31,7 +31,7 @@ class Neighbours {
     [[nodiscard]] std::span<const uint32_t> of(uint32_t slot) const noexcept {
         return pool_.of(listOf(slot));
     }
-    // What a fire of its neighbour `other` sees of `slot`, of 255.
+    // Sets the part of `slot` that a fire of its neighbour `other` sees, of 255.
     void see(uint32_t slot, uint32_t other, uint32_t part) noexcept;
 
     // Lists that have changed since `settle`, in no order.

@@ -79,9 +79,8 @@ void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag)
 
 void World::untagPoint(FwBurnableMeshId id, uint32_t tag) {
     (void)objects_.get(id);
-    std::erase_if(tags_, [&](const Tag& one) {
-        return one.object.index1 == id.index1 && one.tag == tag;
-    });
+    std::erase_if(tags_,
+                  [&](const Tag& one) { return one.object.index1 == id.index1 && one.tag == tag; });
 }
 
 float World::burningAreaOf(const Object& object) noexcept {

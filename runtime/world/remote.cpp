@@ -265,7 +265,7 @@ void World::rebuildRemote() {
     book.rebuild = false;
 }
 
-// What the host said of pairs before they were saved holds; of others it is asked now.
+// The host's answers of saved pairs hold; the host is asked about other pairs now.
 void World::seeAsLoaded() {
     RemoteBook& book = remote_;
     const auto before = [](const Seen& a, const Seen& b) {
@@ -276,8 +276,8 @@ void World::seeAsLoaded() {
         for (const uint32_t entry : book.neighbours.of(slot)) {
             const uint32_t other = entry & Neighbours::kSlot;
             const Seen wanted{{slot, other}};
-            const auto known = std::lower_bound(book.loadedSeen.begin(), book.loadedSeen.end(),
-                                                wanted, before);
+            const auto known =
+                std::lower_bound(book.loadedSeen.begin(), book.loadedSeen.end(), wanted, before);
             const bool holds = known != book.loadedSeen.end() && !before(wanted, *known);
             book.neighbours.see(slot, other,
                                 holds ? known->part : seenPart(**objects_.at(other), object));
@@ -310,8 +310,8 @@ void World::noteSeen(std::pmr::vector<SavedSeen>& to) const {
 
 // What a fire of `from` sees of `to`, of 255.
 uint32_t World::seenPart(const Object& from, const Object& to) const {
-    const float told = def_.visibility(def_.visibilityData, from.id, to.id);
-    return told > 0 ? uint32_t(std::lround(std::min(told, 1.0f) * 255)) : 0u;
+    const float answer = def_.visibility(def_.visibilityData, from.id, to.id);
+    return answer > 0 ? uint32_t(std::lround(std::min(answer, 1.0f) * 255)) : 0u;
 }
 
 // Both ways between objects that are elsewhere and all their neighbours.
@@ -396,7 +396,7 @@ void World::linkClose(Object& object, uint32_t now) {
         pair.stamp = stamp;
         if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) return;
         pair.versions[0] = pair.versions[1] = 0;  // until all of it is there
-        // Who only shifted while they touch has touched since then.
+        // Objects that only shifted while they touch keep the tick of their first touch.
         const bool same = pair.ids[0].index1 != 0 && pair.ids[0].generation == a.id.generation &&
                           pair.ids[1].generation == b.id.generation;
         const uint32_t since = same && pair.touches ? pair.since : now;
@@ -517,8 +517,8 @@ void World::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     book.links.assign(place, book.mergedLinks);
 }
 
-// Whoever has its slot next has no part in what it touched, and the backend hears of that before the next
-// exchange.
+// The next object in its slot has no part in its contacts, and the backend hears of that before
+// the next exchange.
 void World::forgetRemote(const Object& object) noexcept {
     RemoteBook& book = remote_;
     book.unsent |= object.remoteVersion != 0;

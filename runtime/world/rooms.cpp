@@ -45,7 +45,7 @@ uint32_t World::roomOf(const Object& object) const noexcept {
     return 0;
 }
 
-// Who is where a room was, or is now, may be in another one.
+// An object where a room was, or is now, may be in another room.
 void World::roomTurns(const components::Room& room) noexcept {
     for (const uint32_t slot : objectsNear(boxOf(room), 0)) {
         Object& object = **objects_.at(slot);

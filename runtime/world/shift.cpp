@@ -1,5 +1,5 @@
-// A world whose origin moves: everything that it holds goes along. Offsets are whole metres, so that
-// places counted in millimetres, and grids of a metre, move exactly.
+// A world whose origin moves: everything that it holds goes along. Offsets are whole metres, so
+// that places counted in millimetres, and grids of a metre, move exactly.
 #include "world/save.h"
 #include "world/world.h"
 
@@ -63,8 +63,7 @@ void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
 }
 
 template <class Place>
-void checkMoved(const Place& place, const double (&by)[3], const char* what,
-                uint32_t slot) {
+void checkMoved(const Place& place, const double (&by)[3], const char* what, uint32_t slot) {
     for (int i = 0; i < 3; ++i)
         if (const double moved = double(place[i]) + by[i]; !(std::abs(moved) <= kFar))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -135,7 +134,7 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     noteMove(Deed::Kind::shiftOrigin, 0, whole, 3);
 }
 
-// What a readback of a frame before `lastFrame_` + 1 says of places is of the origin before.
+// Places in a readback of a frame before `lastFrame_` + 1 are relative to the old origin.
 void World::noteShift(const double by[3]) noexcept {
     if (shiftCount_ == shifts_.size()) {  // rare: the two oldest count together
         for (int i = 0; i < 3; ++i) shifts_[1].by[i] += shifts_[0].by[i];
@@ -159,7 +158,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
     noteShift(by);
     moveBy(origin_, by);
     backend_.moveWorld(by);
-    // What burns, as it stands and as others saw it last.
+    // Burning objects: their poses, and their latched poses.
     for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
         auto* owned = objects_.at(i);
         if (!owned) continue;
@@ -184,7 +183,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
     }
     for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
         if (RoomEntry* room = rooms_.at(i)) moveMillimetres(room->room.middle, by);
-    // What blows.
+    // Wind.
     for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
         if (components::WindZone* zone = windPool_.at(i)) moveMillimetres(zone->middle, by);
     for (components::WindZone& zone : windZones_) moveMillimetres(zone.middle, by);
@@ -217,7 +216,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
             moveBy((*collider)->shape.extent, by);
         moveBy((*collider)->picture.eye, by);
     }
-    // What hosts have not heard yet.
+    // Events that hosts have not polled yet.
     for (auto* lights : {&lights_, &lightsBefore_, &shownLights_})
         for (FwLight& light : *lights) moveBy(light.position, by);
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)

@@ -103,7 +103,7 @@ void World::listWindZones() noexcept {
     ++driveChanges_;
 }
 
-// What is where a zone was, or is now, gets the wind that blows there now.
+// Objects where a zone was, or is now, get the wind that blows there now.
 void World::zoneTurns(const WindZone& zone) noexcept {
     if (windDue_ || gusty()) {  // all do, and at another time
         windTurns();

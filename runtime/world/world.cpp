@@ -349,7 +349,8 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
     components::checkDeform(def);
-    const bool named = std::ranges::any_of(def.materials, [](FwMaterialId id) { return id.index1 != 0; });
+    const bool named =
+        std::ranges::any_of(def.materials, [](FwMaterialId id) { return id.index1 != 0; });
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (!named)
             components::setMaterial(object.data, i, presetDef(FW_MATERIAL_PINE));
@@ -386,8 +387,7 @@ std::span<const uint8_t> World::goneOf(const FwBurnableMeshDef& def, MeshEntry& 
     const auto same = [](const FwImageId& a, const FwImageId& b) {
         return a.index1 == b.index1 && a.generation == b.generation;
     };
-    if (!mesh.gone ||
-        !std::equal(images.begin(), images.end(), mesh.gone->images.begin(), same)) {
+    if (!mesh.gone || !std::equal(images.begin(), images.end(), mesh.gone->images.begin(), same)) {
         auto gone = core::Owned<GoneTexels>::make(memory_, memory_);
         gone->images = images;
         gone->texels = components::makeGone(*mesh.domain, pictures, memory_);
@@ -575,10 +575,11 @@ mesh::ArpSettings World::arpSettings(const FwBurnableMeshDef& def, const mesh::A
 void World::destroyBurnableMesh(FwBurnableMeshId id) {
     Object& object = *objects_.get(id);
     if (gives(object.slot))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
-                   "that.",
-                   id.index1);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
+            "that.",
+            id.index1);
     ++geometry_;
     const uint32_t slot = object.slot;
     countImages(object.data, false);

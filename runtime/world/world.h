@@ -104,8 +104,8 @@ struct Breaks {
     uint32_t lookCount = 0;
 };
 
-// What a frame did to an object's fire. The object's Story takes it with the readback of that
-// frame, so that events and saves are alike however late readbacks come.
+// Effects of one frame on an object's fire. The object's record applies them with the readback of
+// that frame, so that events and saves are alike however late readbacks come.
 struct Stimulus {
     uint64_t frameIndex = 0;
     uint32_t slot = 0;
@@ -129,7 +129,7 @@ struct FrameNote {
     bool never = false;  // it may not sleep
 };
 
-// What happened to an object's fire, and what of it the host was told, as of a readback. In ticks.
+// The course of an object's fire, and the part reported to the host, as of a readback. In ticks.
 struct Story {
     bool active = false;   // its front or flames may still move
     bool sawFire = false;  // since the last IGNITED
@@ -617,7 +617,8 @@ class World {
     [[nodiscard]] uint64_t identity() noexcept;
     [[nodiscard]] const core::Log& log() const noexcept { return log_; }
 
-    // Appends what the world keeps of objects in this machine's memory, as the last step left it. [any]
+    // Appends what the world keeps of objects in this machine's memory, as the last step left it.
+    // [any]
     void memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const;
     // Boxes of objects that were compared to find neighbours, since the world was made.
     [[nodiscard]] uint64_t pairsExamined() const noexcept { return remote_.neighbours.examined(); }
@@ -1156,7 +1157,7 @@ class World {
     uint32_t loadedFront_ = 0, loadedHot_ = 0;  // of what was gone by then; until the next walk
     std::pmr::vector<FwLight> lights_, lightsBefore_;  // of burning meshes
     uint32_t nextLight_ = 1;
-    bool lightsDue_ = false;  // a load: the next that come show at once
+    bool lightsDue_ = false;                  // a load: the next that come show at once
     std::pmr::vector<FwLight> shownLights_;   // those, smooth from frame to frame
     std::pmr::vector<uint32_t> keptLights_;   // ids of those that the last frame chose
     std::pmr::vector<FwLight> lightSources_;  // scratch

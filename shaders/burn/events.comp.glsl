@@ -109,7 +109,7 @@ void applyRun(uint first, uint texel) {
     texelChanged(object, texel, p, isSource(now));
 }
 
-// What its fuel lost elsewhere counts as its own loss, of which its room has had its share.
+// Fuel that burnt on the other mesh counts as its own loss, of which its room has had its share.
 void bookCarried(uint object, uint had, uint has, uint energy) {
     uint high, low;
     umulExtended(had > has ? had - has : has - had, energy, high, low);

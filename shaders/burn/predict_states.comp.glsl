@@ -44,7 +44,7 @@ void passRow(uint worldTile, uint row) {
             marks = marks || forgets;
             continue;
         }
-        // What was put out keeps the look of the age it had: its gradient is that age. What was not
+        // An extinguished texel keeps the look of the age it had: its gradient is that age. What was not
         // seen to burn before had none to speak of; 0 would say nothing is known.
         if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
         else if (time < kLiveEnd) gradient[i] = time < push.now ? push.now - time : 1u;

@@ -1,4 +1,4 @@
-// What the passes of the shown arrival share: times and gradients, and whom a change concerns. With
+// Shared by the passes of the shown arrival: times, gradients, and the tiles that a change concerns. With
 // FW_USE_PREDICT_LISTS include after lists.glsl.
 #ifndef FW_LIB_PREDICT_GLSL
 #define FW_LIB_PREDICT_GLSL
@@ -37,7 +37,7 @@ uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
 
 // A round reads the times of the one before and nothing that it writes itself, so that a picture does
 // not depend on the order in which a device runs its threads. A changed texel's new time waits in its
-// gradient, which is found anew afterwards: 24 bits, ticks from `push.now` on.
+// gradient, which is found again afterwards: 24 bits, ticks from `push.now` on.
 const uint kNoTimeNext = 0x80000000u;
 uint packTimeNext(uint word, uint time) {
     int ticks = clamp(int(time - push.now), -0x7FFFFF, 0x7FFFFF);

@@ -44,7 +44,7 @@ FW_SHARED_FN float halfApart(float a, float b) {
 // Farther apart than this a pixel and a texel are on two sides of an edge.
 FW_SHARED_CONST float kHalfEdge = 0.03f;
 
-// What a texel weighs of which a bilinear filter would take `share`; `apart`: of the pixel, and `least` of the texel
+// Weight of a texel of which a bilinear filter would take `share`; `apart`: of the pixel, and `least` of the texel
 // that is nearest to it. A hundredth farther than that one is half of it: slopes are filtered, and what stands a step
 // behind does not shine onto the edge of what is before it.
 FW_SHARED_FN float halfWeight(float share, float apart, float least, float alike) {

@@ -1,4 +1,4 @@
-// What threads other than the one that steps may do: destroy later, and read what a step left.
+// Threads other than the one that steps may destroy later, and read what a step left.
 #include "abi/abi_support.h"
 
 #include "flamewright/flamewright.hpp"
@@ -179,7 +179,7 @@ TEST(Snapshot, HasStatesAndLightsOfTheLastStep) {
     ASSERT_EQ(count, fwWorld_GetLights(w.world, direct.data(), uint32_t(direct.size())));
     EXPECT_EQ(0, std::memcmp(lights.data(), direct.data(), count * sizeof(FwLight)));
 
-    // What comes and goes is seen with the next step.
+    // New and destroyed objects are seen with the next step.
     const FwBurnableMeshId fresh = w.add(10);
     EXPECT_EQ(FW_NOT_READY, fwWorld_ReadObjectState(w.world, fresh, &read));
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, gone));

@@ -148,7 +148,7 @@ void looksAsItDid(uint32_t backend) {
 TEST(FirstFrame, LooksAsItDidAtTheSave) { looksAsItDid(FW_BACKEND_CPU); }
 TEST(FirstFrame, LooksAsItDidAtTheSaveOnADevice) { looksAsItDid(FW_BACKEND_VULKAN); }
 
-// What FwWorldStats::flames counts, where the library makes the pictures.
+// FwWorldStats::flames, where the library makes the pictures.
 TEST(FirstFrame, StatsCountTheQuadsOfAPicture) {
     Camp w(FW_BACKEND_VULKAN);
     if (!w.world) GTEST_SKIP() << "there is no such backend here";

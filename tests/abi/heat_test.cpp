@@ -394,7 +394,7 @@ TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {
     }
 }
 
-// What water put out of it early is another matter than how its last flames ended.
+// A corner that water put out early does not decide how its last flames ended.
 TEST_P(AbiHeat, WhatBurnsOutAfterACornerWasPutOutIsBurntOut) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);

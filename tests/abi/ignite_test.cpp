@@ -1,4 +1,4 @@
-// What a host is told of a match: that it lit something, or why not.
+// fwWorld_Ignite reports that a match lit something, or why not.
 #include "abi/abi_support.h"
 
 #include <gmock/gmock.h>

@@ -211,8 +211,8 @@ TEST(AbiMemory, NothingLeftFromAnAllocationOn) {
         session.run();
         for (const FwResult result : session.results)
             EXPECT_TRUE(result == FW_OK || result == FW_NOTHING_THERE ||
-                        result == FW_ERROR_OUT_OF_MEMORY ||
-                        result == FW_ERROR_STALE_ID || result == FW_ERROR_INVALID_ARGUMENT)
+                        result == FW_ERROR_OUT_OF_MEMORY || result == FW_ERROR_STALE_ID ||
+                        result == FW_ERROR_INVALID_ARGUMENT)
                 << fwResultName(result) << ": " << session.host.lastError;
         (void)session.finish();
         if (HasFailure()) break;

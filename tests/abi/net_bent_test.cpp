@@ -397,7 +397,7 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
             EXPECT_EQ(FW_OK, fwNet_Tell(server->world, text.data(), 1000));
             passFrames(*server);
         }
-        // What is right is taken all the same.
+        // Correct packets are accepted all the same.
         EXPECT_EQ(FW_OK, client.say(client.right)) << lastMessage(server->world);
         client.drain();
         EXPECT_EQ(FW_OK, client.say(client.right)) << lastMessage(server->world);

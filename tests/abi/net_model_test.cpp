@@ -1,4 +1,4 @@
-// What a network of any delay, loss and rate does to a session: nothing that lasts. The corners of
+// A session survives a network of any delay, loss and rate. The corners of
 // the grid are tests of every change; the whole grid is a row of tests/run --long.
 #include "abi/net_model.h"
 

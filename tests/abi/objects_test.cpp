@@ -129,8 +129,7 @@ TEST(AbiObjects, EveryRequestCanBeCancelled) {
         EXPECT_EQ(FW_OK, fwWorld_CancelBurn(w.world, w.object));
         w.run(0.1);
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchSave(w.world, nullptr, &size));
-        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
-                  fwWorld_FetchBurn(w.world, w.object, nullptr, &size));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchBurn(w.world, w.object, nullptr, &size));
     }
     ASSERT_EQ(FW_OK, fwWorld_RequestSave(w.world));
     w.run(0.1);

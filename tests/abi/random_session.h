@@ -11,7 +11,7 @@ namespace host {
 
 struct Act {
     enum Kind : uint32_t {
-        // What builds a world.
+        // Calls that build a world.
         makeObject,
         dropObject,
         makeZone,
@@ -27,7 +27,7 @@ struct Act {
         makeField,
         dropField,
         lastOfBuilding = dropField,
-        // What a save holds.
+        // State that a save holds.
         ignite,
         moveObject,
         wind,
@@ -317,14 +317,14 @@ class SessionWorld {
             ok(fwWorld_Step(world, 1.0f / 16));
         }
     }
-    // What came since the last poll, without what depends on the frame's number.
+    // Events since the last poll, without what depends on the frame's number.
     std::vector<std::string> poll() {
         std::vector<std::string> reported;
         FwEvent events[64];
         for (uint32_t count; (count = fwWorld_PollEvents(world, events, 64)) != 0;)
             for (uint32_t i = 0; i < count; ++i) {
                 const FwEvent& e = events[i];
-                // What is reported of things that are gone is in no save.
+                // Events of destroyed objects are in no save.
                 if (e.object.index1 != 0 && nameOf(e.object) == 0) continue;
                 char text[200];
                 std::snprintf(text, sizeof text,
@@ -335,7 +335,7 @@ class SessionWorld {
             }
         return reported;
     }
-    // What a host reads of the world's state, in words.
+    // The world's state as a host reads it, in words.
     std::string figures() {
         char text[400];
         FwWorldStats s{};

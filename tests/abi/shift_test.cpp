@@ -10,7 +10,7 @@ namespace {
 using namespace host;
 using ::testing::HasSubstr;
 
-// What a host knows of places moves with it.
+// Places that a host reads move with the origin.
 struct ShiftedWorld {
     explicit ShiftedWorld(uint32_t backend) {
         FwContextDef contextDef = fwDefaultContextDef();
@@ -94,7 +94,8 @@ struct ShiftedWorld {
     }
     void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void run(int frames) {
-        for (int i = 0; i < frames; ++i) ok(fwWorld_Step(world, i % 3 == 0 ? 1.0f / 60 : 1.0f / 24));
+        for (int i = 0; i < frames; ++i)
+            ok(fwWorld_Step(world, i % 3 == 0 ? 1.0f / 60 : 1.0f / 24));
     }
     void shift(float x, float y, float z) {
         const float by[3] = {x, y, z};

@@ -106,7 +106,7 @@ TEST(AbiVolumetricFire, StandsAtOnceAsItDidWhenPutFarAway) {
             EXPECT_NEAR(here.lightIntensity, there.lightIntensity, 0.01f * here.lightIntensity);
         }
     }
-    // What moves as fast as something that flies trails behind.
+    // A fire slower than a teleport trails behind.
     FireWorld flies;
     const FwVolumetricFireId id = flies.make(presetDef(FW_FIRE_CAMP));
     flies.run(2);

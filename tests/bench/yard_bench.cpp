@@ -101,9 +101,8 @@ void show(benchmark::State& state, YardBench& bench) {
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
     // What a step does for the eye alone.
     double looks = 0;
-    for (const char* pass :
-         {"lights", "soot", "support", "predict_anew", "predict_states", "predict_gather",
-          "predict", "predict_rim", "predict_commit"})
+    for (const char* pass : {"lights", "soot", "support", "predict_anew", "predict_states",
+                             "predict_gather", "predict", "predict_rim", "predict_commit"})
         looks += bench.passes[pass];
     state.counters["looks"] = looks / double(bench.seconds.size());
 }

@@ -277,7 +277,8 @@ class HostDraw : public GpuTest {
         const FwView& view = shot.reversedDepth ? reversed_ : normal_;
         const float nearest = shot.reversedDepth ? 1.0f : 0.0f;
         const float farthest = 1.0f - nearest;
-        const VkViewport viewport{-shot.shift[0], -shot.shift[1], float(kWidth), float(kHeight), 0, 1};
+        const VkViewport viewport{
+            -shot.shift[0], -shot.shift[1], float(kWidth), float(kHeight), 0, 1};
         VulkanCounts inside;
         rig_->alsoRecord = [&](const FwVulkanFrame& frame) {
             const VkCommandBuffer commands = frame.commandBuffer;

@@ -323,8 +323,8 @@ TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
     EXPECT_EQ(shoot(late).rgb, shoot(all).rgb) << "it burns";
 }
 
-// What lies in the scissor is as without it; outside is the host's. In a pass of the host's, in a
-// composite, and where what is soft is drawn at half resolution first.
+// Pixels in the scissor are as without it; pixels outside are the host's. In a pass of the host's,
+// in a composite, and where what is soft is drawn at half resolution first.
 TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
     if (!device_) return;
     Shot inPass, composite, half;

@@ -5,7 +5,10 @@ namespace fw::test::host_draw {
 namespace {
 
 constexpr float kPlaces[4][2] = {  // of Vulkan's standard samples, px from a pixel's middle
-    {-0.125f, -0.375f}, {0.375f, -0.125f}, {-0.375f, 0.125f}, {0.125f, 0.375f}};
+    {-0.125f, -0.375f},
+    {0.375f, -0.125f},
+    {-0.375f, 0.125f},
+    {0.125f, 0.375f}};
 
 class Multisampled : public HostDraw {
  protected:
@@ -59,7 +62,8 @@ TEST_F(Rim, OfAHoleIsAsSmoothAsFourPictures) {
         shot.shift[0] = place[0];
         shot.shift[1] = place[1];
         const Picture picture = shoot(shot);
-        for (size_t i = 0; i < parts.size(); ++i) parts[i] += 0.25 * toLight(double(picture.rgb[i]));
+        for (size_t i = 0; i < parts.size(); ++i)
+            parts[i] += 0.25 * toLight(double(picture.rgb[i]));
     }
     const Picture single = shoot(surfaces(1)), several = shoot(surfaces(4));
     // Inside of the ball's outline, right of the host's own occluder.

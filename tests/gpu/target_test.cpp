@@ -93,16 +93,18 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
             if (encoding == uint32_t(format.fits))
                 EXPECT_EQ("", refusal(def)) << format.color;
             else
-                EXPECT_THAT(refusal(def), AllOf(HasSubstr("FwVulkanTargetDef::encoding is FW_OUTPUT_"),
-                                                HasSubstr(std::to_string(format.color)),
-                                                HasSubstr("or FW_OUTPUT_AUTO (3)")));
+                EXPECT_THAT(refusal(def),
+                            AllOf(HasSubstr("FwVulkanTargetDef::encoding is FW_OUTPUT_"),
+                                  HasSubstr(std::to_string(format.color)),
+                                  HasSubstr("or FW_OUTPUT_AUTO (3)")));
         }
     }
     EXPECT_EQ("", warnings_);
     // A format that is not known: named by the host, and said.
     FwVulkanTargetDef odd = surfacesOver(VK_FORMAT_R8G8B8A8_SNORM);
     if (!blends(odd.colorFormat)) return;
-    EXPECT_THAT(refusal(odd), HasSubstr("is not known to be float, sRGB or UNORM; name the encoding"));
+    EXPECT_THAT(refusal(odd),
+                HasSubstr("is not known to be float, sRGB or UNORM; name the encoding"));
     odd.encoding = FW_OUTPUT_LINEAR;
     EXPECT_EQ("", refusal(odd));
     EXPECT_THAT(warnings_, HasSubstr("FW_OUTPUT_LINEAR (0) is used as given"));
@@ -169,7 +171,8 @@ TEST_F(Targets, PassInfoFindsWrongFields) {
                 HasSubstr("FwVulkanTargetDef::colorFormat is 44"));
     EXPECT_THAT(wrong([](auto& d) { d.depthFormat = VK_FORMAT_D16_UNORM; }),
                 HasSubstr("FwVulkanTargetDef::depthFormat is 124"));
-    EXPECT_THAT(wrong([](auto& d) { d.subpass = 1; }), HasSubstr("FwVulkanTargetDef::subpass is 1"));
+    EXPECT_THAT(wrong([](auto& d) { d.subpass = 1; }),
+                HasSubstr("FwVulkanTargetDef::subpass is 1"));
     subpass.pDepthStencilAttachment = nullptr;
     EXPECT_THAT(wrong([](auto&) {}), HasSubstr("has no depth attachment"));
     subpass.pDepthStencilAttachment = &depth;

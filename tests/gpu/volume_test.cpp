@@ -2043,8 +2043,8 @@ TEST_F(Volume, SteadyFramesAskNothing) {
     EXPECT_EQ(after.work + after.barriers, 0u) << "no fire is left";
 }
 
-// A post whose edges are slanted and thin, before a flame with a wall close behind: of light that is
-// behind the post none shows on any of its pixels, as none does at full resolution.
+// A post whose edges are slanted and thin, before a flame with a wall close behind: of light that
+// is behind the post none shows on any of its pixels, as none does at full resolution.
 TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
     if (!device_) return;
     std::vector<Mean> pictures;
@@ -2083,8 +2083,9 @@ TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
             if (post[i]) leaks = std::max(leaks, off);
             missing = std::max(missing, -off);
         }
-        std::printf("[   FIGURE ] at most %.4f of the brightest leaks onto the post, %.4f is missing\n",
-                    double(leaks / brightest), double(missing / brightest));
+        std::printf(
+            "[   FIGURE ] at most %.4f of the brightest leaks onto the post, %.4f is missing\n",
+            double(leaks / brightest), double(missing / brightest));
         EXPECT_GT(brightest, 0.05f);
         EXPECT_LT(leaks, 0.05f * brightest) << k;
     }

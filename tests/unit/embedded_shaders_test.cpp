@@ -57,8 +57,8 @@ TEST(EmbeddedShaders, NeedNoDeviceFeature) {
 
 // Drivers warn of each when they make a pipeline, though the validator allows some of them.
 TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
-    // SpecId, Block, BufferBlock, ArrayStride, GLSLShared, GLSLPacked, CPacked, Invariant, Restrict,
-    // Aliased, Constant, Index, Binding, DescriptorSet, LinkageAttributes, NoContraction,
+    // SpecId, Block, BufferBlock, ArrayStride, GLSLShared, GLSLPacked, CPacked, Invariant,
+    // Restrict, Aliased, Constant, Index, Binding, DescriptorSet, LinkageAttributes, NoContraction,
     // InputAttachmentIndex
     const std::set<std::uint32_t> kOfWholes{1,  2,  3,  6,  8,  9,  10, 18, 19,
                                             20, 22, 32, 33, 34, 41, 42, 43};

@@ -1,4 +1,4 @@
-// What glTF 2.0 asks of a reader, rule by rule, on files made here: each comes out as the standard
+// Rules of glTF 2.0 for a reader, one by one, on files made here: each comes out as the standard
 // says, and what is not shown has a note.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -333,7 +333,7 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
         EXPECT_TRUE(loads(quad.bytes(), model));
         return model;
     };
-    // What a repeated picture shows at a place of the file's own, nearest texel.
+    // The nearest texel of a repeated picture at a place of the file's own.
     const auto redAt = [](const ImportedModel& model, double u, double from, double to) {
         const double share = (u - from) / (to - from);
         const double own = double(model.uvs[0]) + share * double(model.uvs[2] - model.uvs[0]);

@@ -154,8 +154,9 @@ TEST(MeshCooked, RefusesWhatTheFrontCannotCompute) {
     const auto saysOf = [](const std::string& message, const char* part) {
         EXPECT_NE(std::string::npos, message.find(part)) << message;
     };
-    saysOf(refused([&](BurnDomain& d) { d.texels[texel].x = d.texels[texel].x < 30000 ? 65535 : 0; }),
-           "units apart; the limit is 8191");
+    saysOf(
+        refused([&](BurnDomain& d) { d.texels[texel].x = d.texels[texel].x < 30000 ? 65535 : 0; }),
+        "units apart; the limit is 8191");
     saysOf(refused([&](BurnDomain& d) {
                for (mesh::TexelPosition& t : d.texels) t.z = uint16_t(t.z * 7919u);
            }),
@@ -163,7 +164,8 @@ TEST(MeshCooked, RefusesWhatTheFrontCannotCompute) {
     saysOf(refused([&](BurnDomain& d) { d.normals[texel] = 0x400u | 0x400u << 11 | 0x200u << 22; }),
            "has length 1.73");
     saysOf(refused([&](BurnDomain& d) { ++d.report.realTexels; }), "its report says");
-    saysOf(refused([&](BurnDomain& d) { d.report.texelArea = std::nan(""); }), "its report says nan");
+    saysOf(refused([&](BurnDomain& d) { d.report.texelArea = std::nan(""); }),
+           "its report says nan");
     saysOf(refused([&](BurnDomain& d) { d.areas[texel] = 1e30f; }), "Area of a texel");
     saysOf(refused([&](BurnDomain& d) { d.quantum = 1e9f; }), "Size of a texel");
     EXPECT_EQ("", refused([](BurnDomain&) {}));

@@ -397,7 +397,7 @@ TEST(BurnDomain, NearestTexelIsFoundFromAnyDistance) {
     }
 }
 
-// What lists were kept object by object is what a world finds that makes them in one go.
+// Lists kept object by object equal lists that a world makes in one go.
 TEST(World, BurnsOnAsALoadedWorldWhileCratesMoveComeAndGo) {
     for (const uint32_t flags : {kAllWays, uint32_t(FW_WORLD_RADIATION | FW_WORLD_CONTACT)}) {
         constexpr uint32_t kCount = 36;

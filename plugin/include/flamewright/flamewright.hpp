@@ -290,8 +290,8 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
     return {world.get(), id};
 }
 
-// Lights the texels within `radius` m of `place` (m, world) on every object. FW_OK: something was lit;
-// FW_NOTHING_THERE: nothing was, and lastMessage(world) says why; negative: refused.
+// Lights the texels within `radius` m of `place` (m, world) on every object. FW_OK: something was
+// lit; FW_NOTHING_THERE: nothing was, and lastMessage(world) says why; negative: refused.
 inline FwResult ignite(const World& world, const float (&place)[3], float radius) noexcept {
     FwIgnitionDef match = fwDefaultIgnitionDef();
     for (int i = 0; i < 3; ++i) match.position[i] = place[i];

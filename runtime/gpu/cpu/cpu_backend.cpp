@@ -159,7 +159,8 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
         after = wetState(after, heatClosed(has, m));
         const uvec2 had = object.heat[event.texel], packed = packHeat(has);
         if (packed == had && after == before) return;
-        // What its fuel lost elsewhere counts as its own loss, of which its room has had its share.
+        // Fuel that burnt on the other mesh counts as its own loss, of which its room has had its
+        // share.
         const uint64_t lost =
             uint64_t(int64_t(unpackHeat(had).fuel) - int64_t(has.fuel)) * m.energy;
         ObjectCounters& c = object.counters;
@@ -174,8 +175,7 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
     }
     if (after == before) return;
     state = after;
-    if (isSource(after) != isSource(before))
-        object.counters.ignited += isSource(after) ? 1u : ~0u;
+    if (isSource(after) != isSource(before)) object.counters.ignited += isSource(after) ? 1u : ~0u;
     if (isSource(after)) {
         object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
         burning(worldTile);
@@ -192,13 +192,12 @@ size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first
     size_t end = first;
     while (end < events.size() && events[end].object == events[first].object &&
            events[end].texel == events[first].texel && eventKind(events[end].kind) != kEventGate &&
-           eventKind(events[end].kind) != kEventPlays &&
-           eventKind(events[end].kind) != kEventCarry)
+           eventKind(events[end].kind) != kEventPlays && eventKind(events[end].kind) != kEventCarry)
         ++end;
     return end - first;
 }
 
-// What a run of events makes of a texel, in `heated` what of its heat.
+// Returns the texel state after a run of events; in `heated` what of its heat.
 uint32_t CpuBackend::State::afterEvents(const CpuObject& object, uint32_t texel,
                                         std::span<const TexelEvent> batch,
                                         std::span<const TexelEvent> run, uint32_t now,

@@ -36,7 +36,8 @@ BurnTile CpuBackend::State::burnTileOf(uint32_t worldTile, uint32_t now, bool no
     const CpuObject& object = *objects[tiles[worldTile].object];
     const mesh::BurnDomain& domain = *object.domain;
     const uint32_t local = worldTile - object.record.worldTileBase;
-    const uint32_t corner = (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+    const uint32_t corner =
+        (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
     uint32_t count = 0, age = 0, position[3] = {};
     int normal[3] = {};
     const bool heats = !object.heat.empty();

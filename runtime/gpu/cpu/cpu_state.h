@@ -92,10 +92,10 @@ enum Timer : uint32_t {
     kTimerCount
 };
 
-// What memoryRows says, which any thread calls.
+// Figures of memoryRows, which any thread calls.
 struct CpuCounts {
-    std::atomic<uint64_t> stateBytes{0}, stateCapacity{0};  // of all objects' texels
-    std::atomic<uint64_t> tiles{0}, tileCapacity{0};        // world tiles
+    std::atomic<uint64_t> stateBytes{0}, stateCapacity{0};        // of all objects' texels
+    std::atomic<uint64_t> tiles{0}, tileCapacity{0};              // world tiles
     std::atomic<uint64_t> objects{0}, exchange{0}, readbacks{0};  // bytes
     void add(const CpuObject& object) noexcept;
     void remove(const CpuObject& object) noexcept;

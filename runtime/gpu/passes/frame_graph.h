@@ -25,13 +25,13 @@ extern const ComputePass kResetPass, kRestorePass, kEventsPass, kEventsAllPass, 
     kWakePass, kSchedulePass, kGatherPass, kArrivalPass, kArrivalRimPass, kGrantPass, kCommitPass,
     kPublishedPass, kReduceClearPass, kReduceFrontPass, kReducePass, kFireCellsPass,
     kFireSourcesPass, kReceiversPass, kExchangePass, kExchangeShieldPass, kContactsPass, kPartsPass,
-    kEmberWaysPass, kEmbersPass, kPredictAnewPass, kPredictStatesPass, kPredictGatherPass, kPredictPass,
-    kPredictRimPass, kPredictCommitPass, kSupportPass, kProbePass, kLightsPass, kFlameQuadsPass, kFlameSortPass,
-    kRefineHeatPass, kRefineLevelsPass, kRefineScanPass, kRefineEmitPass, kRefinePlacePass,
-    kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass, kSoftPass, kSpringsPass,
-    kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass, kVolumeMarchPass,
-    kVolumeSmokePass, kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass, kFieldMaskPass,
-    kFieldShowPass, kRoomsPass;
+    kEmberWaysPass, kEmbersPass, kPredictAnewPass, kPredictStatesPass, kPredictGatherPass,
+    kPredictPass, kPredictRimPass, kPredictCommitPass, kSupportPass, kProbePass, kLightsPass,
+    kFlameQuadsPass, kFlameSortPass, kRefineHeatPass, kRefineLevelsPass, kRefineScanPass,
+    kRefineEmitPass, kRefinePlacePass, kRefineCutPass, kRefinePublishedPass, kRecedePass, kTiesPass,
+    kSoftPass, kSpringsPass, kDrapePass, kInnerPass, kSkinPass, kSootPass, kVolumeProbePass,
+    kVolumeMarchPass, kVolumeSmokePass, kParticlesPass, kParticleQuadsPass, kSparksPass, kFieldPass,
+    kFieldMaskPass, kFieldShowPass, kRoomsPass;
 
 // Their place in these tables is their number for pipelines and descriptor sets.
 std::span<const ComputePass* const> computePasses();

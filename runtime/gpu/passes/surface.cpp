@@ -22,17 +22,9 @@ constexpr Use kSurfaceUses[] = {
 
 constexpr DrawPass variant(uint32_t features, Cull cull) {
     const bool burns = (features & kSurfaceBurns) != 0;
-    DrawPass pass{"surface",
-                  "surface.vert",
-                  "surface.frag",
-                  kSurfaceUses,
-                  VertexInput::mesh,
-                  Blend::opaque,
-                  true,
-                  sizeof(SurfaceDraw),
-                  features,
-                  cull,
-                  burns};
+    DrawPass pass{"surface",         "surface.vert", "surface.frag", kSurfaceUses,
+                  VertexInput::mesh, Blend::opaque,  true,           sizeof(SurfaceDraw),
+                  features,          cull,           burns};
     pass.multisampledVertex = "surface_ms.vert";
     pass.multisampledFragment = burns ? "surface_ms_holes.frag" : "surface_ms.frag";
     return pass;

@@ -36,7 +36,7 @@ bool hasDepthAspect(VkFormat format) noexcept {
            format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
 }
 
-// What the host says of its pass against what the pass was made with.
+// Checks the host's target def against the info that made its render pass.
 template <class Info>
 void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
     const auto differs = [](const char* field, uint32_t given, const char* where, uint32_t has) {
@@ -52,8 +52,8 @@ void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
                    def.subpass, info.subpassCount);
     const auto& subpass = info.pSubpasses[def.subpass];
     if (def.colorAttachmentCount != subpass.colorAttachmentCount)
-        differs("colorAttachmentCount", def.colorAttachmentCount, "colour attachments in the subpass",
-                subpass.colorAttachmentCount);
+        differs("colorAttachmentCount", def.colorAttachmentCount,
+                "colour attachments in the subpass", subpass.colorAttachmentCount);
     const uint32_t color = subpass.pColorAttachments[0].attachment;
     if (color >= info.attachmentCount)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -72,10 +72,11 @@ void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
                                : VK_ATTACHMENT_UNUSED;
     if (def.depthMode == FW_DEPTH_NONE || def.depthMode == FW_DEPTH_SAMPLED) return;
     if (depth >= info.attachmentCount)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthMode is %u and subpass %u of renderPassInfo has no depth "
-                   "attachment; use FW_DEPTH_NONE (0) or FW_DEPTH_SAMPLED (3).",
-                   def.depthMode, def.subpass);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwVulkanTargetDef::depthMode is %u and subpass %u of renderPassInfo has no depth "
+            "attachment; use FW_DEPTH_NONE (0) or FW_DEPTH_SAMPLED (3).",
+            def.depthMode, def.subpass);
     if (def.depthFormat != info.pAttachments[depth].format)
         differs("depthFormat", uint32_t(def.depthFormat), "as its depth attachment's format",
                 uint32_t(info.pAttachments[depth].format));
@@ -83,9 +84,10 @@ void checkAgainst(const FwVulkanTargetDef& def, const Info& info) {
 
 void checkAgainstPass(const FwVulkanTargetDef& def) {
     if (def.flags & FW_TARGET_COMPOSITE)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::renderPassInfo is given with FW_TARGET_COMPOSITE; that pass is "
-                   "ours, it is null there.");
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwVulkanTargetDef::renderPassInfo is given with FW_TARGET_COMPOSITE; that pass is "
+            "ours, it is null there.");
     VkStructureType type{};
     std::memcpy(&type, def.renderPassInfo, sizeof type);
     if (type == VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO)
@@ -165,11 +167,12 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
                        samples ? "cannot sample it" : "has no such depth attachment");
     }
     if (key.encoding == FW_OUTPUT_AUTO)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::encoding is FW_OUTPUT_AUTO (3) and colorFormat is %d, which is "
-                   "not known to be float, sRGB or UNORM; name the encoding: FW_OUTPUT_LINEAR (0), "
-                   "FW_OUTPUT_SRGB_VIEW (1) or FW_OUTPUT_DISPLAY_UNORM (2).",
-                   int(def.colorFormat));
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwVulkanTargetDef::encoding is FW_OUTPUT_AUTO (3) and colorFormat is %d, which is "
+            "not known to be float, sRGB or UNORM; name the encoding: FW_OUTPUT_LINEAR (0), "
+            "FW_OUTPUT_SRGB_VIEW (1) or FW_OUTPUT_DISPLAY_UNORM (2).",
+            int(def.colorFormat));
     if (def.depthMode != FW_DEPTH_NONE && !hasDepthAspect(def.depthFormat))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::depthFormat is %d, which has no depth; give a format with a "
@@ -631,8 +634,7 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     stages[0].module = modules.get(several ? pass.multisampledVertex : pass.vertexShader);
     if (colors) {
         const char* const words[3] = {several ? pass.multisampledFragment : pass.fragmentShader,
-                                      pass.softShader,
-                                      pass.softShaderMultisampled};
+                                      pass.softShader, pass.softShaderMultisampled};
         const char* const* shaders =
             device_.texels && pass.texelShaders ? pass.texelShaders : words;
         stages[1].module = modules.get(shaders[!key.samplesDepth()    ? 0

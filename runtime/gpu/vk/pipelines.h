@@ -113,7 +113,7 @@ class Pipelines {
     std::mutex prepares_;  // of compute_, until ready_
     std::atomic<uint32_t> computeMade_{0};
     std::atomic<uint32_t> drawMade_{0}, drawTotal_{0};  // of all targets, those being made included
-    std::mutex makes_;                                  // taken before mutex_, by who makes targets or what they need
+    std::mutex makes_;  // taken before mutex_, by who makes targets or what they need
     std::atomic<PassSet> needed_{0};
     std::mutex mutex_;  // of what follows; held for no longer than a record call may wait
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;

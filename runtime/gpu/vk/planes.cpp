@@ -24,7 +24,8 @@ constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
 
 constexpr Plane kPlanes[] = {
     // resource, space, bytes of a unit, keep, component, name, usage
-    {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "object records", 0},
+    {FW_BIND_OBJECTS, kSpaceObjects, sizeof(BurnObject), true, kComponentObjects, "object records",
+     0},
     {FW_BIND_MATERIALS, kSpaceObjects, sizeof(BurnMaterial) * kMaterialsPerObject, true,
      kComponentObjects, "materials", 0},
     {FW_BIND_OBJECT_COUNTERS, kSpaceObjects, sizeof(ObjectCounters), true, kComponentObjects,
@@ -54,7 +55,8 @@ constexpr Plane kPlanes[] = {
     {FW_BIND_BURN_B, kSpaceObjectTiles, 4, true, kComponentLists, "burn list B", 0},
     {FW_BIND_BURN_TILES, kSpaceObjectTiles, sizeof(BurnTile), true, kComponentLists, "burn tiles",
      0},
-    {FW_BIND_PREDICT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "predicted arrivals", 0},
+    {FW_BIND_PREDICT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict,
+     "predicted arrivals", 0},
     {FW_BIND_GRADIENT, kSpaceObjectTiles, 4 * kTileTexels, true, kComponentPredict, "gradient", 0},
     {FW_BIND_PREDICT_LIST_A, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list A", 0},
     {FW_BIND_PREDICT_LIST_B, kSpaceObjectTiles, 4, true, kComponentPredict, "predict list B", 0},

@@ -479,15 +479,16 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
                    "would lose the depth that is to be tested or sampled.");
     const auto checkImage = [](const FwVulkanImage& image, const char* name) {
         const auto refuse = [&](const char* field, uint32_t value, const char* why) {
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::%s.%s is %u; %s.", name, field,
-                       value, why);
+            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanComposite::%s.%s is %u; %s.", name,
+                       field, value, why);
         };
         if (image.layoutAfter == VK_IMAGE_LAYOUT_UNDEFINED ||
             image.layoutAfter == VK_IMAGE_LAYOUT_PREINITIALIZED)
             refuse("layoutAfter", uint32_t(image.layoutAfter),
                    "no image can be brought to that layout; name the one of its next use");
         if (image.stageBefore == 0)
-            refuse("stageBefore", 0, "name the stages that used the image last, or TOP_OF_PIPE (1)");
+            refuse("stageBefore", 0,
+                   "name the stages that used the image last, or TOP_OF_PIPE (1)");
         if (image.stageAfter == 0)
             refuse("stageAfter", 0,
                    "name the stages that use the image next, or BOTTOM_OF_PIPE (8192)");
@@ -498,10 +499,10 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     if (images.width == 0 || images.height == 0) return true;
     const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
     if (images.width > limits.maxFramebufferWidth || images.height > limits.maxFramebufferHeight)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanComposite is %u x %u pixels; the device's largest framebuffer is %u x %u.",
-                   images.width, images.height, limits.maxFramebufferWidth,
-                   limits.maxFramebufferHeight);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwVulkanComposite is %u x %u pixels; the device's largest framebuffer is %u x %u.",
+            images.width, images.height, limits.maxFramebufferWidth, limits.maxFramebufferHeight);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
     const State::Lent lent = s.lentFor(slot, target, frame, images.depth.view,

@@ -41,7 +41,7 @@ void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_
     object.charred = charred;
 }
 
-// What a view told of itself.
+// Applies the counters that a view wrote.
 void VkBackend::State::takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept {
     if (layout.quads) {
         uint32_t arguments[2];  // of VkDrawIndirectCommand: vertices, instances

@@ -286,10 +286,9 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
-    const bool douses =
-        (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
-         kind == kEventCarry) &&
-        !object.doused;
+    const bool douses = (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
+                         kind == kEventCarry) &&
+                        !object.doused;
     const bool lights = kind == kEventIgnite || kind == kEventCarry;
     object.catches |= lights && !object.lit;
     object.lit |= lights;
