@@ -32,7 +32,7 @@ mesh::Box randomBox(Random& random) {
     mesh::Box box;
     for (int i = 0; i < 3; ++i) {
         const int size = 1 + int(random() % uint32_t(side));
-        const int middle = int(random() % uint32_t(around / 50)) * 100 - around;
+        const int middle = (int(random() % uint32_t(around / 50)) - around / 100) * 100;
         box.low[i] = middle - size / 2;
         box.high[i] = box.low[i] + size;
     }
