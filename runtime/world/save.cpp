@@ -526,9 +526,15 @@ void World::checkSaved(const SavedWorld& saved) {
                     core::fail(FW_ERROR_BAD_DATA, "The save's wind at burnable mesh %u is absurd.",
                                object.slot + 1);
     }
+    const auto checkObject = [&](uint32_t slot, const char* what) {
+        if (slot >= objects_.slotCount() || !objects_.at(slot))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has %s of burnable mesh %u, which is not there.", what, slot + 1);
+    };
     const auto checkTexel = [&](uint32_t slot, uint32_t texel, const char* what) {
-        if (slot >= objects_.slotCount() || !objects_.at(slot) ||
-            texel >= domainOf(**objects_.at(slot)).texelCount())
+        checkObject(slot, what);
+        const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
+        if (texel >= domain.texelCount() || !domain.real(texel))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s at texel %u of burnable mesh %u, which is not there.", what,
                        texel, slot + 1);
@@ -537,7 +543,10 @@ void World::checkSaved(const SavedWorld& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
                    saved.pending.size(), kMaxPending);
     for (const PendingTexel& event : saved.pending) {
-        checkTexel(event.object, event.texel == kAllTexels ? 0 : event.texel, "an event");
+        if (event.texel == kAllTexels)
+            checkObject(event.object, "an event");
+        else
+            checkTexel(event.object, event.texel, "an event");
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
             checkTexel((event.kind >> gpu::kEventKindBits) - 1, event.water, "a burn to carry");
         else if (event.kind > gpu::kEventHeat)
@@ -551,13 +560,13 @@ void World::checkSaved(const SavedWorld& saved) {
                    kMaxTags);
     for (const SavedTag& tag : saved.tags) checkTexel(tag.object, tag.texel, "a tag");
     for (const SavedPair& pair : saved.pairs) {
-        checkTexel(pair.slots[0], 0, "a contact");
-        checkTexel(pair.slots[1], 0, "a contact");
+        checkObject(pair.slots[0], "a contact");
+        checkObject(pair.slots[1], "a contact");
     }
     uint64_t before = 0;
     for (const SavedSeen& seen : saved.seen) {
-        checkTexel(seen.slots[0], 0, "what is seen");
-        checkTexel(seen.slots[1], 0, "what is seen");
+        checkObject(seen.slots[0], "what is seen");
+        checkObject(seen.slots[1], "what is seen");
         const uint64_t pair = (uint64_t(seen.slots[0]) << 32 | seen.slots[1]) + 1;
         if (pair <= before || seen.part > 255)
             core::fail(FW_ERROR_BAD_DATA, "The save has sights of objects that none can be.");
@@ -571,8 +580,8 @@ void World::checkSaved(const SavedWorld& saved) {
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has an event of type %u; the limits are [1, %u].", event.type,
                        uint32_t(FW_EVENT_STRUCTURE_BROKE));
-        if (event.object1 != 0) checkTexel(event.object1 - 1, 0, "an event");
-        if (event.other1 != 0) checkTexel(event.other1 - 1, 0, "an event");
+        if (event.object1 != 0) checkObject(event.object1 - 1, "an event");
+        if (event.other1 != 0) checkObject(event.other1 - 1, "an event");
         for (const float value : event.position)
             if (!std::isfinite(value) || !std::isfinite(event.value))
                 core::fail(FW_ERROR_BAD_DATA, "The save has an event at %g m of value %g.",
@@ -611,7 +620,7 @@ void World::checkSaved(const SavedWorld& saved) {
                        room.slot + 1);
     const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
         for (const SavedTouch& touch : touches)
-            if (touch.object1 != 0) checkTexel(touch.object1 - 1, 0, "a flame");
+            if (touch.object1 != 0) checkObject(touch.object1 - 1, "a flame");
     };
     const auto checkPlace = [](const float(&place)[3], const char* what, float most = 1e6f) {
         for (const float value : place)

@@ -877,12 +877,17 @@ uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
 void World::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels) {
     Object& object = *objects_.get(id);
     checkLimit(kind, "kind", 0, FW_EXTINGUISH);
-    const uint32_t count = domainOf(object).texelCount();
+    const mesh::BurnDomain& domain = domainOf(object);
+    const uint32_t count = domain.texelCount();
     for (size_t i = 0; i < texels.size(); ++i)
         if (texels[i] >= count)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "texels[%zu] is %u; the map has %u texels.", i,
                        texels[i], count);
-    addPending(object, kind, uint32_t(clock_.tick), gpu::kFilmMost, texels);
+    // Heat steps never look at a texel that no triangle covers: an event would change it for good.
+    found_.clear();
+    for (const uint32_t texel : texels)
+        if (domain.real(texel)) found_.push_back(texel);
+    addPending(object, kind, uint32_t(clock_.tick), gpu::kFilmMost, found_);
 }
 
 }  // namespace fw::world

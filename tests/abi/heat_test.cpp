@@ -71,8 +71,8 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, result) << lastMessage(world_);
         return made;
     }
-    // Positions of the map's real texels.
-    std::vector<std::array<float, 3>> texels() {
+    // Positions of the map's real texels; in `beside` the numbers of the others.
+    std::vector<std::array<float, 3>> texels(std::vector<uint32_t>* beside = nullptr) {
         uint64_t count = 0;
         EXPECT_EQ(FW_OK, fwDebug_GetTexelPositions(world_, mesh_, nullptr, nullptr, 0, &count));
         std::vector<float> positions(3 * count);
@@ -80,10 +80,25 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, fwDebug_GetTexelPositions(world_, mesh_, positions.data(), flags.data(),
                                                    count, &count));
         std::vector<std::array<float, 3>> real;
-        for (size_t i = 0; i < count; ++i)
+        for (uint32_t i = 0; i < count; ++i) {
             if (flags[i])
                 real.push_back({positions[3 * i], positions[3 * i + 1], positions[3 * i + 2]});
+            else if (beside)
+                beside->push_back(i);
+        }
         return real;
+    }
+    // Over states, heat and water of all of the map.
+    uint64_t mapHash() {
+        uint64_t hash = 0;
+        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world_, object_));
+        FwResult result = FW_NOT_READY;
+        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
+            result = fwDebug_FetchBurnMap(world_, object_, nullptr, 0, nullptr, &hash, nullptr);
+        }
+        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        return hash;
     }
     FwObjectState state() {
         FwObjectState made{};
@@ -379,6 +394,23 @@ TEST_P(AbiHeat, TooDampToCatch) {
     run(1);
     EXPECT_EQ(0u, state().ignited);
     EXPECT_EQ(FW_POINT_WET, int(point().kind));
+}
+
+// Water there would never dry, and would keep the tiles that it is in from going to sleep.
+TEST_P(AbiHeat, AnEventOfATexelThatNoTriangleCoversChangesNothing) {
+    make(preset(FW_MATERIAL_PAPER), 1);
+    std::vector<uint32_t> beside;
+    EXPECT_FALSE(texels(&beside).empty());
+    ASSERT_FALSE(beside.empty());
+    run(0.25);
+    const uint64_t before = mapHash();
+    for (const uint32_t kind : {FW_WET, FW_IGNITE, FW_EXTINGUISH, FW_DRY}) {
+        EXPECT_EQ(FW_OK, fwDebug_PushTexels(world_, object_, kind, beside.data(),
+                                            uint32_t(beside.size())));
+        run(0.5);
+        EXPECT_EQ(0u, stats().hotTiles) << kind;
+        EXPECT_EQ(before, mapHash()) << kind;
+    }
 }
 
 TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {

@@ -1,8 +1,15 @@
 // What saves are made of: planes that come back as they were, bytes that are refused where they are
 // damaged, and a file that no end of the process leaves half written.
+#include "world/save.h"
 #include "common/save_file.h"
+#include "core/error.h"
 #include "core/stream.h"
+#include "fire/presets.h"
+#include "gpu/cpu/cpu_backend.h"
 #include "save/plane.h"
+#include "support/meshes.h"
+#include "support/world_defs.h"
+#include "world/world.h"
 
 #include <gtest/gtest.h>
 
@@ -111,6 +118,39 @@ TEST(SavedBytes, AreCheckedAgainstWhatIsLeft) {
 }
 
 // A child replaces a file all the time; it is killed at any moment, and the file is whole.
+// No event of a texel that no triangle covers comes from a world: heat steps never look at such.
+TEST(SavedEvents, AreOfTexelsOfTheSurface) {
+    std::pmr::memory_resource* memory = std::pmr::get_default_resource();
+    core::Log log(FwCallbacks{});
+    gpu::cpu::CpuBackend backend(memory, 4);
+    world::World world(test::plainWorldDef(0), backend, log, memory);
+    const test::Mesh plane = test::makePlane(0.5, 0.3);
+    FwBurnableMeshDef object =
+        test::plainBurnableDef(world.createMesh(test::plainMeshDef(plane, 40)));
+    object.materials[0] = world.createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
+    object.transform[0] = object.transform[5] = object.transform[10] = object.transform[15] = 1;
+    const mesh::BurnDomain& domain = world.objectDomain(world.createBurnableMesh(object));
+    FwIgnitionDef ball{};
+    ball.kind = FW_WET;
+    ball.delay = 3;
+    EXPECT_LT(0u, world.ignite(ball));
+    world.requestSave();
+    world.advance(1, 0);
+    const Bytes* bytes = world.fetchSave();
+    ASSERT_TRUE(bytes);
+    EXPECT_NO_THROW(world.load(*bytes));
+    uint32_t beside = 0;
+    while (beside < domain.texelCount() && domain.real(beside)) ++beside;
+    ASSERT_LT(beside, domain.texelCount());
+    world::SavedWorld saved(memory);
+    world::readSaved(*bytes, saved);
+    ASSERT_FALSE(saved.pending.empty());
+    saved.pending[0].texel = beside;
+    Bytes bent;
+    world::writeSaved(saved, bent);
+    EXPECT_THROW(world.load(bent), core::Error);
+}
+
 TEST(SaveFile, AKillLeavesAWholeFile) {
     const auto path = std::filesystem::temp_directory_path() /
                       ("flamewright_save_" + std::to_string(getpid()) + ".fwsave");

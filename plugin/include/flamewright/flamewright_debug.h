@@ -34,7 +34,8 @@ typedef enum FwDebugSwitch {
     FW_DEBUG_SWITCH_FORCE32 = 0x7fffffff
 } FwDebugSwitch;
 FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* [world] */
-/* Adds exactly `count` events of one FwIgnitionKind at the next step, without a ball. [world] */
+/* Adds an event of one FwIgnitionKind at the next step to each of the `count` texels that are real (see
+ * fwDebug_GetTexelPositions), without a ball. [world] */
 FW_API FwResult FW_CALL fwDebug_PushTexels(FwWorld*, FwBurnableMeshId id, uint32_t kind, const uint32_t* texels, uint32_t count);
 /* Rest positions (3 floats each, m, object space) and flags (1 = real) of the burn map. [world] */
 FW_API FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld*, FwMeshId id, float* positions, uint32_t* flags, uint64_t capacityTexels, uint64_t* count);
