@@ -76,7 +76,7 @@ void checkView(const FwView& view, const char* name) {
     checkRange(&view.emissionScale, 1, name, "emissionScale", 0.0f, 1e6f);
     checkRange(&view.time, 1, name, "time", -1e9f, 1e9f);
     checkRange(&view.haze, 1, name, "haze", 0.0f, 8.0f);
-    checkRange(view.reserved, 2, name, "reserved", 0.0f, 0.0f);
+    checkRange(&view.reserved, 1, name, "reserved", 0.0f, 0.0f);
 }
 
 }  // namespace fw::edge

@@ -10,8 +10,12 @@
 #include "vulkan_defs.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <cstring>
 #include <mutex>
+#include <span>
 
 using namespace fw;
 using edge::checkPointer;
@@ -245,6 +249,56 @@ FwView checkedView(const FwView* given) {
     const FwView view = readDef(given, FW_DEF_VIEW, "FwView");
     checkView(view, "FwView");
     return view;
+}
+
+// Of a host that knows fewer of their fields, or more, they lie closer together or further apart.
+std::span<FwView> checkedViews(const FwView* given, uint32_t count,
+                               std::array<FwView, FW_MAX_VIEWS>& out) {
+    static_assert(FW_MAX_VIEWS == gpu::kMaxViews);
+    checkPointer(given, "views");
+    if (count == 0 || count > FW_MAX_VIEWS)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "viewCount is %u; the limits are [1, %u].", count,
+                   FW_MAX_VIEWS);
+    const uint32_t stride = given->structSize;
+    for (uint32_t i = 0; i < count; ++i) {
+        char name[16];
+        std::snprintf(name, sizeof name, "views[%u]", i);
+        const auto* bytes = reinterpret_cast<const std::byte*>(given) + size_t(i) * stride;
+        out[i] = readDef(reinterpret_cast<const FwView*>(bytes), FW_DEF_VIEW, "FwView");
+        uint32_t size = 0;
+        std::memcpy(&size, bytes, sizeof size);
+        if (size != stride)
+            core::fail(
+                FW_ERROR_INVALID_ARGUMENT,
+                "views[%u].structSize is %u and views[0].structSize is %u; they lie that far "
+                "apart, so it is the same in all.",
+                i, size, stride);
+        checkView(out[i], name);
+        for (uint32_t j = 0; j < i; ++j)
+            if (out[j].viewId == out[i].viewId)
+                core::fail(FW_ERROR_INVALID_ARGUMENT,
+                           "views[%u].viewId and views[%u].viewId are both %u; give each view of a "
+                           "frame a number of its own.",
+                           j, i, out[i].viewId);
+    }
+    return std::span(out).first(count);
+}
+
+FwResult recordOutside(FwWorld& world, world::World& w, gpu::vk::VkBackend& backend,
+                       const FwVulkanFrame& frame, std::span<const FwView> views) {
+    w.checkFrame(frame.frameIndex, frame.deltaTime);
+    noteFrame(world, frame);
+    destroyDoomed(world);
+    if (!backend.beginOutside(frame, views)) return FW_NOT_READY;
+    try {
+        w.advance(frame.frameIndex, frame.deltaTime);
+    } catch (...) {
+        backend.cancelOutside();
+        throw;
+    }
+    backend.endOutside();
+    publish(world);
+    return FW_OK;
 }
 
 const char* encodingName(uint32_t encoding) noexcept {
@@ -520,19 +574,19 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(givenView);
-        w.checkFrame(frame.frameIndex, frame.deltaTime);
-        edge::noteFrame(*world, frame);
-        edge::destroyDoomed(*world);
-        if (!backend.beginOutside(frame)) return FW_NOT_READY;
-        try {
-            w.advance(frame.frameIndex, frame.deltaTime);
-        } catch (...) {
-            backend.cancelOutside();
-            throw;
-        }
-        backend.endOutside(view);
-        edge::publish(*world);
-        return FW_OK;
+        return edge::recordOutside(*world, w, backend, frame, {&view, 1});
+    });
+}
+
+FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame* givenFrame,
+                                            const FwView* givenViews, uint32_t viewCount) {
+    return onWorld("fwWorld_RecordOutsideViews", world, [&](world::World& w) {
+        const edge::Stopwatch time(w);
+        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+        std::array<FwView, FW_MAX_VIEWS> views;
+        const std::span<FwView> checked = edge::checkedViews(givenViews, viewCount, views);
+        return edge::recordOutside(*world, w, backend, frame, checked);
     });
 }
 

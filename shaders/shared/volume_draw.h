@@ -215,12 +215,5 @@ FW_SHARED_FN float volumeFine(float pixel, uint perPixel) {
 FW_SHARED_FN float volumeSteps(float metres, float spacing, uint most) {
     return clamp(floor(metres / spacing) + 1.0f, 4.0f, float(most));
 }
-
-// [0, 1): where in its steps a pixel's samples lie; neighbours differ, and so do moments.
-FW_SHARED_FN float volumeJitter(float x, float y, float time) {
-    float a = 0.06711056f * x + 0.00583715f * y;
-    float b = 52.9829189f * (a - floor(a)) + 0.61803399f * floor(60.0f * time);
-    return b - floor(b);
-}
 FW_SHARED_END
 #endif

@@ -86,6 +86,17 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     return flameShown(ray, scattered, white * view.sunDirection.w, kEncoding);
 }
 
+// Of the four pixels that are shaded together: samples of each begin at another place, and one by one they would be
+// seen as a pattern.
+vec4 meanOfFour(vec4 value) {
+    vec2 to = 1.0 - 2.0 * vec2(uvec2(gl_FragCoord.xy) & 1u);  // the neighbours' side
+    value += 0.5 * to.x * dFdxFine(value);
+    return value + 0.5 * to.y * dFdyFine(value);
+}
+
+// Diameters of a flame by which the scene's depth at a pixel is from the mean of four on one surface.
+const float kOneSurface = 0.02;
+
 void main() {
     FlameRecord f = flame.record;
     // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
@@ -102,10 +113,16 @@ void main() {
         uvec2 cell = first + uvec2(k % side, k / side);
         vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? volumeShift(cell.x, cell.y) : vec2(0.0))) /
                        float(side) - 0.5;
-        float jitter = side > 1u ? volumePhase(cell.x, cell.y)
-                                 : volumeJitter(gl_FragCoord.x, gl_FragCoord.y, view.ambientSky.w);
-        sum += shownAlong(f, off, jitter);
+        sum += shownAlong(f, off, volumePhase(cell.x, cell.y));
         k += 1u;
     } while (k < side * side);
-    outColor = sum / float(side * side);
+    vec4 shown = sum / float(side * side);
+    vec4 mean = meanOfFour(shown);
+    bool alike = side == 1u;
+#ifdef FW_SOFT
+    // No light from behind an edge of the scene comes before it.
+    float there = min(depthOfScene(draw.clip), 1e6);
+    alike = alike && abs(there - meanOfFour(vec4(there)).x) < kOneSurface * draw.wide;
+#endif
+    outColor = alike ? mean : shown;
 }

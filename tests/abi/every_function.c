@@ -177,6 +177,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwContext_UnregisterTargetAfterFrame(NULL, target, 0));
     REFUSES(fwTarget_IsReady(NULL, target, NULL));
     REFUSES(fwWorld_RecordOutside(NULL, NULL, NULL));
+    REFUSES(fwWorld_RecordOutsideViews(NULL, NULL, NULL, 1));
     REFUSES(fwWorld_RecordInside(NULL, NULL, target, NULL, NULL));
     REFUSES(fwWorld_RecordComposite(NULL, NULL, target, NULL, NULL));
     REFUSES(fwWorld_SetVertexBuffer(NULL, object, NULL));

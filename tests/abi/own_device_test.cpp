@@ -240,8 +240,8 @@ TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
         refuse("FwOffscreenDef::view.haze is ", wrong);
     }
     wrong = def;
-    wrong.view.reserved[0] = 1;
-    refuse("FwOffscreenDef::view.reserved[0] is 1", wrong);
+    wrong.view.reserved = 1;
+    refuse("FwOffscreenDef::view.reserved is 1", wrong);
     wrong = def;
     wrong.background[1] = nan;
     refuse("background[1]", wrong);

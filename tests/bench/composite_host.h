@@ -76,12 +76,15 @@ class CompositeHost {
         projection[1][1] = -zoom;
         projection[2][2] = projection[2][3] = -1.0f;
         projection[3][2] = -0.05f;
-        view_ = fwDefaultView();
-        std::memcpy(view_.view, glm::value_ptr(view), sizeof view_.view);
-        std::memcpy(view_.projection, glm::value_ptr(projection), sizeof view_.projection);
+        FwView& to = views_[0];
+        to = fwDefaultView();
+        std::memcpy(to.view, glm::value_ptr(view), sizeof to.view);
+        std::memcpy(to.projection, glm::value_ptr(projection), sizeof to.projection);
     }
     [[nodiscard]] FwWorld* world() const { return world_; }
-    [[nodiscard]] FwView& view() { return view_; }
+    [[nodiscard]] FwView& view() { return views_[0]; }
+    [[nodiscard]] FwView& second() { return views_[1]; }
+    uint32_t drawnViews = 1, givenViews = 1;  // of the two: drawn one after the other, recorded for
 
     // A frame, `seconds` on: s, by the clock and of all threads. False: it was not drawn.
     bool frame(FwTargetId target, float seconds, double& wall, double& cpu) {
@@ -96,7 +99,8 @@ class CompositeHost {
         frame.frameIndex = index_;
         frame.completedFrameIndex = index_ - 1;
         frame.deltaTime = seconds;
-        const bool outside = fwWorld_RecordOutside(world_, &frame, &view_) == FW_OK;
+        const bool outside =
+            fwWorld_RecordOutsideViews(world_, &frame, views_, givenViews) == FW_OK;
         frame.sampledColor = behind_.view;
         frame.sampledColorLayout = VK_IMAGE_LAYOUT_GENERAL;
         FwVulkanComposite images = fwDefaultVulkanComposite();
@@ -115,8 +119,10 @@ class CompositeHost {
         };
         images.color = lend(color_);
         images.depth = lend(depth_);
-        const bool drawn =
-            fwWorld_RecordComposite(world_, &frame, target, &view_, &images) == FW_OK;
+        bool drawn = true;
+        for (uint32_t i = 0; i < drawnViews; ++i)
+            drawn = fwWorld_RecordComposite(world_, &frame, target, &views_[i], &images) == FW_OK &&
+                    drawn;
         vkEndCommandBuffer(device_.commands);
         VkSubmitInfo submit{};
         submit.sType = VK_STRUCTURE_TYPE_SUBMIT_INFO;
@@ -203,7 +209,7 @@ class CompositeHost {
     BenchImage color_, behind_, depth_;
     FwContext* context_ = nullptr;
     FwWorld* world_ = nullptr;
-    FwView view_{};
+    FwView views_[2] = {fwDefaultView(), fwDefaultView()};
     uint64_t index_ = 0;
 };
 

@@ -64,9 +64,9 @@ class WorldBench {
         frame.commandBuffer = d.commands;
         frame.frameIndex = ++index_;
         frame.completedFrameIndex = index_ - 1;
-        (void)backend_.beginOutside(frame);
+        (void)backend_.beginOutside(frame, view_);
         world.advance(index_, 0.125f);
-        backend_.endOutside(view_);
+        backend_.endOutside();
         vkEndCommandBuffer(d.commands);
         hostSeconds.push_back(secondsSince(start));
         VkSubmitInfo submit{};

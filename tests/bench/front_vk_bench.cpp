@@ -119,7 +119,7 @@ class Bench {
         frame.frameIndex = index_;
         frame.completedFrameIndex = index_ - 1;
         const Clock::time_point recordStart = Clock::now();
-        (void)backend_.beginOutside(frame);
+        (void)backend_.beginOutside(frame, view_);
         while (const gpu::Readback* readback = backend_.nextReadback()) {
             runTiles = readback->runTiles;
             frontTiles = readback->frontTiles;
@@ -132,7 +132,7 @@ class Bench {
             simulationMs.push_back(simulation);
         }
         backend_.run(plan);
-        backend_.endOutside(view_);
+        backend_.endOutside();
         recordSeconds = secondsSince(recordStart);
         vkEndCommandBuffer(d.commands);
         VkSubmitInfo submit{};

@@ -75,9 +75,9 @@ class ExchangeEquality : public GpuTest {
         }
         void step(float deltaTime) {
             const FwVulkanFrame frame = rig.frames.begin();
-            ASSERT_TRUE(rig.backend.beginOutside(frame));
+            ASSERT_TRUE(rig.backend.beginOutside(frame, rig.view));
             vk.advance(frame.frameIndex, deltaTime);
-            rig.backend.endOutside(rig.view);
+            rig.backend.endOutside();
             rig.frames.submit();
             cpu.advance(frame.frameIndex, deltaTime);
         }
@@ -407,9 +407,9 @@ TEST_F(ExchangeEquality, SteadyFramesAskNothing) {
         const float wind[3] = {far * 5, 0, 0};
         world.setWind(wind);
         const FwVulkanFrame begun = rig.frames.begin();
-        ASSERT_TRUE(rig.backend.beginOutside(begun));
+        ASSERT_TRUE(rig.backend.beginOutside(begun, rig.view));
         world.advance(begun.frameIndex, 1.0f / 32);
-        rig.backend.endOutside(rig.view);
+        rig.backend.endOutside();
         rig.frames.submit();
     };
     for (int f = 0; f < 96; ++f) frame(f);  // warm-up

@@ -64,9 +64,9 @@ class AWorld {
             return;
         }
         const FwVulkanFrame frame = rig_->frames.begin();
-        ASSERT_TRUE(rig_->backend.beginOutside(frame));
+        ASSERT_TRUE(rig_->backend.beginOutside(frame, rig_->view));
         world_->advance(frame.frameIndex, seconds);
-        rig_->backend.endOutside(rig_->view);
+        rig_->backend.endOutside();
         rig_->frames.submit();
     }
     void run(uint32_t from, uint32_t to) {

@@ -276,7 +276,7 @@ TEST_F(VkContract, PacingIsChecked) {
     if (!device_) return;
     VkRig rig(*device_);
     const auto refused = [&](const FwVulkanFrame& frame, const char* field) {
-        const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame); });
+        const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame, rig.view); });
         EXPECT_EQ(error.result, FW_ERROR_INVALID_ARGUMENT);
         EXPECT_THAT(error.message, HasSubstr(field));
     };
@@ -299,21 +299,22 @@ TEST_F(VkContract, PacingIsChecked) {
         frame.commandBuffer = VK_NULL_HANDLE;
         refused(frame, "commandBuffer");
         frame.commandBuffer = commands;
-        ASSERT_TRUE(rig.backend.beginOutside(frame));
+        ASSERT_TRUE(rig.backend.beginOutside(frame, rig.view));
         gpu::FramePlan plan;
         plan.frameIndex = 3;
         rig.backend.run(plan);
-        rig.backend.endOutside(rig.view);
+        rig.backend.endOutside();
         refused(frame, "frameIndex");  // once a frame
         frame.frameIndex = 2;
         refused(frame, "frameIndex");
         frame.frameIndex = 4;
         frame.completedFrameIndex = 2;
-        ASSERT_TRUE(rig.backend.beginOutside(frame));
+        ASSERT_TRUE(rig.backend.beginOutside(frame, rig.view));
         rig.backend.cancelOutside();
-        ASSERT_TRUE(rig.backend.beginOutside(frame)) << "a cancelled frame may come again";
+        ASSERT_TRUE(rig.backend.beginOutside(frame, rig.view))
+            << "a cancelled frame may come again";
         rig.backend.run(plan);
-        rig.backend.endOutside(rig.view);
+        rig.backend.endOutside();
         frame.frameIndex = 5;
         frame.completedFrameIndex = 1;
         refused(frame, "completedFrameIndex");
@@ -336,10 +337,10 @@ TEST_F(VkContract, SlotPacingLearnsWhatIsDone) {
             frame.frameIndex = f;
             frame.framesInFlight = 2;
             frame.frameSlot = uint32_t(f % 2);
-            ASSERT_TRUE(rig.backend.beginOutside(frame));
+            ASSERT_TRUE(rig.backend.beginOutside(frame, rig.view));
             while (rig.backend.nextReadback()) ++answers;
             rig.backend.run(plan.plan);
-            rig.backend.endOutside(rig.view);
+            rig.backend.endOutside();
         });
     }
     EXPECT_EQ(answers, 4u);  // the last two may still be in flight, for all we were told
@@ -357,7 +358,7 @@ TEST_F(VkContract, LostDeviceIsLatched) {
     EXPECT_TRUE(rig.context.deviceLost());
     FwVulkanFrame frame{};
     frame.frameIndex = 99;
-    const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame); });
+    const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame, rig.view); });
     EXPECT_EQ(error.result, FW_ERROR_DEVICE_LOST);
     rig.backend.destroyObject(0);  // and all the rest goes with the rig
 }
@@ -475,7 +476,7 @@ TEST_F(VkThreads, NotReadyBeforePrepare) {
         gpu::vk::VkBackend backend(context, {}, &memory, log);
         FwVulkanFrame frame{};
         frame.frameIndex = 1;
-        EXPECT_FALSE(backend.beginOutside(frame));
+        EXPECT_FALSE(backend.beginOutside(frame, fwDefaultView()));
         std::thread worker([&] { context.prepare(); });
         worker.join();
         EXPECT_TRUE(context.ready());

@@ -408,10 +408,10 @@ void VkRig::collect() {
 
 void VkRig::run(const gpu::FramePlan& plan) {
     const FwVulkanFrame frame = frames.begin();
-    ASSERT_TRUE(backend.beginOutside(frame));
+    ASSERT_TRUE(backend.beginOutside(frame, view));
     collect();
     backend.run(plan);
-    backend.endOutside(view);
+    backend.endOutside();
     if (alsoRecord) alsoRecord(frame);
     frames.submit();
 }

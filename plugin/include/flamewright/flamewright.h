@@ -1174,7 +1174,9 @@ typedef struct FwView { /* what a camera and its light are; all lengths m */
     float time;                       /* s, for flicker and breathing only */
     float haze;                       /* how far heat haze bends what is behind a fire, where a target has it
                                          (FW_TARGET_HAZE): [0, 8], default 1, 0 none */
-    float reserved[2];
+    uint32_t viewId;                  /* of the views of a frame, see fwWorld_RecordOutsideViews: any number that stays
+                                         with its camera from frame to frame, default 0. With one view a frame leave it */
+    float reserved;
 } FwView;
 static inline FwView fwDefaultView(void) {
     FwView d; fwInitDef(FW_DEF_VIEW, &d, (uint32_t)sizeof d); return d;

@@ -176,6 +176,20 @@ static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
  * our draws need. Never submits, waits, maps with a stall, allocates or builds pipelines after
  * warm-up; FW_NOT_READY (nothing recorded) before fwContext_Prepare is through. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordOutside(FwWorld*, const FwVulkanFrame* frame, const FwView* view);
+#define FW_MAX_VIEWS 4 /* of a frame */
+/* The same for several views of one frame, as for the two eyes of a headset or the players of a split screen: the
+ * world is simulated once, and for each view its volumetric fires are marched and its flames and particles ordered as
+ * for the only one. viewCount: [1, FW_MAX_VIEWS]; the views lie views[0].structSize bytes apart. Each has a viewId of
+ * its own, by which the library knows it again in the next frame (the march of a fire needs its last ones). Draws show
+ * the view of the frame that has their camera and light, else the one with their viewId, else the first: with another
+ * camera than any, volumetric fires are marched as they are drawn, at some six times the cost, and quads are in the
+ * order of that view. Surfaces are refined for the view in which they are largest; lights flicker by the first view's
+ * time, and FwWorldStats::flames counts its quads. A view has buffers of its own from its first frame on: as many bytes
+ * as the rows "flame quads", "draw arguments", "marched volumes" and "volumes' work" of the memory report, which has
+ * rows for them; after 60 frames without it they go, with what was known of it. A fifth viewId takes the place of the
+ * one that was not given for longest. [record] */
+FW_API FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld*, const FwVulkanFrame* frame, const FwView* views,
+                                                  uint32_t viewCount);
 /* Draws into the host's pass: no barrier, dispatch, copy or pass begins. Needs no same-frame
  * RecordOutside; then it shows the last one. Viewport in pixels. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordInside(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,

@@ -13,11 +13,24 @@ namespace fw::gpu {
 
 // Resources are numbered by their binding (FW_BIND_*), so one list says both. Beyond them, what no
 // shader binds:
+constexpr uint32_t kMaxViews = 4;  // that a frame is recorded for
+// Of these each view has its own.
+constexpr std::array<uint32_t, 4> kResourcesOfViews{FW_BIND_FLAMES, FW_BIND_DRAW_ARGS,
+                                                    FW_BIND_VOLUME_RAYS, FW_BIND_VOLUME_WORK};
 enum Resource : uint32_t {
     kResourceVertices = FW_BIND_VERTICES,
     kResourceIndices = FW_BIND_COUNT,  // uint[]
-    kResourceCount,
+    kResourceOfViews,                  // those of the second view, of the third, ...
+    kResourceCount = kResourceOfViews + (kMaxViews - 1) * uint32_t(kResourcesOfViews.size()),
 };
+
+// The resource that a pass uses as `resource` when it runs for view `view`.
+constexpr uint32_t resourceOf(uint32_t resource, uint32_t view) noexcept {
+    for (uint32_t i = 0; view > 0 && i < kResourcesOfViews.size(); ++i)
+        if (kResourcesOfViews[i] == resource)
+            return kResourceOfViews + (view - 1) * uint32_t(kResourcesOfViews.size()) + i;
+    return resource;
+}
 
 enum class Access : uint8_t {
     read,         // storage buffer, compute
@@ -50,6 +63,12 @@ constexpr std::array<Use, a + b> joined(const Use (&some)[a], const Use (&others
     std::array<Use, a + b> uses{};
     std::copy_n(others, b, std::copy_n(some, a, uses.begin()));
     return uses;
+}
+
+// Whether it does something else for each view.
+constexpr bool ofViews(std::span<const Use> uses) noexcept {
+    return std::any_of(uses.begin(), uses.end(),
+                       [](const Use& use) { return resourceOf(use.resource, 1) != use.resource; });
 }
 
 struct ComputePass {

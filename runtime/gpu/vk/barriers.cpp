@@ -69,12 +69,13 @@ void BarrierTracker::begin(const Table& table, VkCommandBuffer commands) {
                VK_ACCESS_TRANSFER_READ_BIT | kOurWrites);
 }
 
-void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span<const Use> uses) {
+void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span<const Use> uses,
+                         uint32_t view) {
     VkPipelineStageFlags srcStages = 0, dstStages = 0;
     VkAccessFlags srcAccess = 0, dstAccess = 0;
     for (const Use& one : uses) {
         const Scope scope = scopeOf(one.access);
-        const State& state = states_[one.resource];
+        const State& state = states_[resourceOf(one.resource, view)];
         const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
                           (state.visibleAccess & scope.access) == scope.access;
         if (state.writeStages && (scope.write || !seen)) {
@@ -88,7 +89,7 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
     if (srcStages) record(table, commands, srcStages, srcAccess, dstStages, dstAccess);
     for (const Use& one : uses) {
         const Scope scope = scopeOf(one.access);
-        State& state = states_[one.resource];
+        State& state = states_[resourceOf(one.resource, view)];
         if (scope.write) {
             state = {scope.stages, scope.access & kOurWrites, 0, 0, 0};
         } else {

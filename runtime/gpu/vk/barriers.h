@@ -13,8 +13,9 @@ class BarrierTracker {
  public:
     // Start of our part of a command buffer: everything before, of whatever frame, is waited for.
     void begin(const Table& table, VkCommandBuffer commands);
-    // Before a pass or copy. Records at most one barrier.
-    void use(const Table& table, VkCommandBuffer commands, std::span<const Use> uses);
+    // Before a pass or copy for view `view`. Records at most one barrier.
+    void use(const Table& table, VkCommandBuffer commands, std::span<const Use> uses,
+             uint32_t view = 0);
     // End of it: our writes become visible to draws, to later frames and to the host.
     void end(const Table& table, VkCommandBuffer commands);
 

@@ -7,12 +7,44 @@
 
 namespace fw::gpu::vk {
 
+PassSets::PassSets(Device& device, const Pipelines& pipelines, RetireQueue& retired,
+                   std::pmr::memory_resource* memory)
+    : device_(device), pipelines_(pipelines), retired_(retired), views_(memory) {
+    views_.reserve(kMaxViews);
+    for (uint32_t view = 0; view < kMaxViews; ++view) views_.emplace_back(memory);
+}
+
 PassSets::~PassSets() {
-    device_.table.DestroyDescriptorPool(device_.handle, pool_, device_.allocationCallbacks);
+    for (const OfView& one : views_)
+        device_.table.DestroyDescriptorPool(device_.handle, one.pool, device_.allocationCallbacks);
+}
+
+VkDescriptorSet PassSets::compute(size_t pass, uint32_t view) const {
+    const VkDescriptorSet own = views_[view].compute[pass];
+    return own ? own : views_[0].compute[pass];
+}
+
+VkDescriptorSet PassSets::draw(size_t pass, uint32_t view) const {
+    const auto setOf = [pass](const OfView& one) {
+        return pass < one.draw.size() ? one.draw[pass] : VkDescriptorSet(VK_NULL_HANDLE);
+    };
+    const VkDescriptorSet own = setOf(views_[view]);
+    return own ? own : setOf(views_[0]);
+}
+
+void PassSets::drop(uint32_t view, uint64_t lastFrame) {
+    OfView& of = views_[view];
+    if (!of.pool) return;
+    retired_.promise(1);
+    retired_.push(lastFrame, of.pool);
+    of.pool = VK_NULL_HANDLE;
+    of.generation = 0;
+    of.compute.clear();
+    of.draw.clear();
 }
 
 void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes,
-                     VkBuffer views, VkDeviceSize viewBytes) const {
+                     VkBuffer views, VkDeviceSize viewBytes, uint32_t of) const {
     std::array<VkDescriptorBufferInfo, 2 * FW_BIND_COUNT> infos{};
     std::array<VkWriteDescriptorSet, 2 * FW_BIND_COUNT> writes{};
     uint32_t count = 0;
@@ -27,8 +59,9 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
         seen[number] = true;
         const bool view = use.resource == FW_BIND_VIEW;
         const bool each = use.access == Access::drawEach || use.access == Access::each;
+        const Buffer& buffer = planes.buffer(resourceOf(use.resource, of));
         infos[count] = view ? VkDescriptorBufferInfo{views, 0, viewBytes}
-                            : VkDescriptorBufferInfo{planes.buffer(use.resource).handle, 0,
+                            : VkDescriptorBufferInfo{buffer.handle, 0,
                                                      each ? kVolumeFlameBytes : VK_WHOLE_SIZE};
         VkWriteDescriptorSet& one = writes[count];
         one.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
@@ -40,7 +73,7 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
                              : texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
                                       : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
         if (texels)
-            one.pTexelBufferView = &planes.buffer(use.resource).texels;
+            one.pTexelBufferView = &buffer.texels;
         else
             one.pBufferInfo = &infos[count];
         ++count;
@@ -49,28 +82,41 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
 }
 
 void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes,
-                      uint64_t lastFrame) {
-    if (generation_ == planes.generation()) return;
+                      uint64_t lastFrame, uint32_t view) {
+    OfView& of = views_[view];
+    if (of.generation == planes.generation()) return;
     const size_t computeCount = computePasses().size(), drawCount = drawPasses().size();
-    compute_.resize(computeCount);
-    draw_.resize(drawCount);
+    of.compute.resize(computeCount);
+    of.draw.resize(drawCount);
     retired_.promise(1);
-    uint32_t storage = 0, uniform = 0, view = 0, texels = 0;
-    const auto add = [&](std::span<const Use> uses) {
-        for (const Use& use : uses)
-            ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? view
+    std::array<VkDescriptorSetLayout, 128> layouts{};
+    std::array<VkDescriptorSet, 128> made{};
+    std::array<VkDescriptorSet*, 128> places{};
+    std::array<std::span<const Use>, 128> uses{};
+    uint32_t sets = 0;
+    const auto add = [&](VkDescriptorSet& place, std::span<const Use> used,
+                         VkDescriptorSetLayout layout) {
+        if (view > 0 && !ofViews(used)) return;
+        places[sets] = &place;
+        uses[sets] = used;
+        layouts[sets++] = layout;
+    };
+    for (size_t i = 0; i < computeCount; ++i)
+        add(of.compute[i], computePasses()[i]->uses, pipelines_.compute(i).setLayout);
+    for (size_t i = 0; i < drawCount; ++i)
+        add(of.draw[i], drawPasses()[i]->uses, pipelines_.draw(i).setLayout);
+    uint32_t storage = 0, uniform = 0, dynamic = 0, texels = 0;
+    for (uint32_t i = 0; i < sets; ++i)
+        for (const Use& use : uses[i])
+            ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? dynamic
                : use.access == Access::drawUniform                             ? uniform
                : device_.texels && byTexels(use.access)                        ? texels
                                                                                : storage);
-    };
-    for (const ComputePass* pass : computePasses()) add(pass->uses);
-    for (const DrawPass* pass : drawPasses()) add(pass->uses);
-    const auto sets = uint32_t(computeCount + drawCount);
     const std::array<VkDescriptorPoolSize, 4> sizes{
         {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage + 1},
          {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, texels + 1},
          {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniform + 1},
-         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, view + 1}}};
+         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, dynamic + 1}}};
     auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     info.maxSets = sets;
     info.poolSizeCount = uint32_t(sizes.size());
@@ -79,10 +125,6 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     device_.check(device_.table.CreateDescriptorPool(device_.handle, &info,
                                                      device_.allocationCallbacks, &pool),
                   "vkCreateDescriptorPool");
-    std::array<VkDescriptorSetLayout, 128> layouts{};
-    std::array<VkDescriptorSet, 128> made{};
-    for (size_t i = 0; i < computeCount; ++i) layouts[i] = pipelines_.compute(i).setLayout;
-    for (size_t i = 0; i < drawCount; ++i) layouts[computeCount + i] = pipelines_.draw(i).setLayout;
     auto allocate =
         typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
     allocate.descriptorPool = pool;
@@ -94,17 +136,13 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
         device_.table.DestroyDescriptorPool(device_.handle, pool, device_.allocationCallbacks);
         device_.check(result, "vkAllocateDescriptorSets");
     }
-    retired_.push(lastFrame, pool_);
-    pool_ = pool;
-    for (size_t i = 0; i < computeCount; ++i) {
-        compute_[i] = made[i];
-        write(compute_[i], computePasses()[i]->uses, planes, views, viewBytes);
+    retired_.push(lastFrame, of.pool);
+    of.pool = pool;
+    for (uint32_t i = 0; i < sets; ++i) {
+        *places[i] = made[i];
+        write(made[i], uses[i], planes, views, viewBytes, view);
     }
-    for (size_t i = 0; i < drawCount; ++i) {
-        draw_[i] = made[computeCount + i];
-        write(draw_[i], drawPasses()[i]->uses, planes, views, viewBytes);
-    }
-    generation_ = planes.generation();
+    of.generation = planes.generation();
 }
 
 ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view,

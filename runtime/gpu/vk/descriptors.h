@@ -9,34 +9,37 @@ namespace fw::gpu::vk {
 class PassSets {
  public:
     PassSets(Device& device, const Pipelines& pipelines, RetireQueue& retired,
-             std::pmr::memory_resource* memory)
-        : device_(device),
-          pipelines_(pipelines),
-          retired_(retired),
-          compute_(memory),
-          draw_(memory) {}
+             std::pmr::memory_resource* memory);
     ~PassSets();
     PassSets(const PassSets&) = delete;
     PassSets& operator=(const PassSets&) = delete;
 
-    // Makes new sets if the planes changed since; the old ones go when frame `lastFrame` is done.
-    void update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes, uint64_t lastFrame);
-    [[nodiscard]] VkDescriptorSet compute(size_t pass) const { return compute_[pass]; }
+    // Makes new sets for view `view` if the planes changed since; the old ones go when frame
+    // `lastFrame` is done. Of views beyond the first only passes of views have their own.
+    void update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes, uint64_t lastFrame,
+                uint32_t view = 0);
+    // The sets of a view beyond the first go when frame `lastFrame` is done. May throw, and then
+    // did nothing.
+    void drop(uint32_t view, uint64_t lastFrame);
+    [[nodiscard]] bool has(uint32_t view) const noexcept { return views_[view].generation != 0; }
+    [[nodiscard]] VkDescriptorSet compute(size_t pass, uint32_t view) const;
     // Null before the first update.
-    [[nodiscard]] VkDescriptorSet draw(size_t pass) const {
-        return pass < draw_.size() ? draw_[pass] : VK_NULL_HANDLE;
-    }
+    [[nodiscard]] VkDescriptorSet draw(size_t pass, uint32_t view) const;
 
  private:
+    struct OfView {
+        explicit OfView(std::pmr::memory_resource* memory) : compute(memory), draw(memory) {}
+        VkDescriptorPool pool = VK_NULL_HANDLE;
+        uint64_t generation = 0;                          // of the planes; 0: there are no sets
+        std::pmr::vector<VkDescriptorSet> compute, draw;  // null: the first view's
+    };
     void write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes, VkBuffer views,
-               VkDeviceSize viewBytes) const;
+               VkDeviceSize viewBytes, uint32_t view) const;
 
     Device& device_;
     const Pipelines& pipelines_;
     RetireQueue& retired_;
-    VkDescriptorPool pool_ = VK_NULL_HANDLE;
-    uint64_t generation_ = 0;
-    std::pmr::vector<VkDescriptorSet> compute_, draw_;
+    std::pmr::vector<OfView> views_;
 };
 
 // A set with one combined image sampler, in a pool of its own.

@@ -2,6 +2,7 @@
 // readback, queries). Decoupled from the host's slots. Never waits.
 #pragma once
 #include "flamewright/flamewright_vulkan.h"
+#include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
 #include "gpu/vk/timers.h"
 
@@ -45,7 +46,7 @@ struct FrameInFlight {
     uint32_t framebufferCount = 0;
     // Sets for the depth and the colour that hosts lend: made together when the first is needed,
     // rewritten for each use in a frame.
-    static constexpr uint32_t kLentDraws = 8;
+    static constexpr uint32_t kLentDraws = 16;
     static constexpr uint32_t kLentSets = 2 * kLentDraws;
     VkDescriptorPool lentPool = VK_NULL_HANDLE;
     std::array<VkDescriptorSet, kLentSets> lentSets{};
@@ -55,7 +56,8 @@ struct FrameInFlight {
 class FrameRing {
  public:
     static constexpr uint32_t kMaxInFlight = 16;
-    static constexpr uint32_t kMaxViews = 16;  // per frame
+    static constexpr uint32_t kMaxDrawn = 16;  // views a frame that are drawn
+    static constexpr uint32_t kMaxViews = kMaxDrawn + gpu::kMaxViews;  // and recorded for
 
     explicit FrameRing(Device& device) : device_(device) {}
 

@@ -163,6 +163,15 @@ constexpr Plane kPlanes[] = {
      VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
 
+// Of the resources that views have for themselves, in their order.
+constexpr const char* kNamesOfViews[kMaxViews - 1][kResourcesOfViews.size()] = {
+    {"flame quads, view 2", "draw arguments, view 2", "marched volumes, view 2",
+     "volumes' work, view 2"},
+    {"flame quads, view 3", "draw arguments, view 3", "marched volumes, view 3",
+     "volumes' work, view 3"},
+    {"flame quads, view 4", "draw arguments, view 4", "marched volumes, view 4",
+     "volumes' work, view 4"}};
+
 constexpr uint32_t kInitialUnits[kSpaceCount] = {
     64,   1024, 512,  512, 1024, 1024, 4096, 16384, kCounterRows,
     4096, 1024, 1024, 256, 256,  1024, 1024, 512,   256,
@@ -301,8 +310,16 @@ Planes::Planes(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
             slot.plane.unitBytes *= kLightCellHeader + kLightCells * kLightCellWords;
         if (plane.resource == FW_BIND_LOOKS) slot.plane.unitBytes *= kLookRows;
     }
+    for (uint32_t view = 1; view < kMaxViews; ++view)
+        for (size_t i = 0; i < kResourcesOfViews.size(); ++i) {
+            Plane plane = slots_[kResourcesOfViews[i]].plane;
+            plane.resource = resourceOf(plane.resource, view);
+            plane.space = spaceOf(plane.space, view);
+            plane.name = kNamesOfViews[view - 1][i];
+            slots_[plane.resource].plane = plane;
+        }
     try {
-        for (uint32_t space = 0; space < kSpaceCount; ++space)
+        for (uint32_t space = 0; space < kSpaceOfViews; ++space)
             resize(Space(space),
                    space == kSpaceFlames                 ? quadUnits(sizes.flames)
                    : exact_ && space != kSpaceIterations ? 1
@@ -436,6 +453,30 @@ void Planes::fit(Space space, uint32_t units, bool shrinks, uint64_t lastFrame) 
     resize(space, std::max(room, 1u), lastFrame);
 }
 
+void Planes::makeView(uint32_t view, uint64_t lastFrame) {
+    for (const Space space : {kSpaceFlames, kSpaceVolumeRays, kSpaceVolumes})
+        atLeast(spaceOf(space, view), exact_ ? 1 : std::max(kInitialUnits[space], 1u), lastFrame);
+}
+
+void Planes::dropView(uint32_t view, uint64_t lastFrame) {
+    size_t buffers = 0;
+    for (const uint32_t resource : kResourcesOfViews) {
+        const Slot& slot = slots_[resourceOf(resource, view)];
+        buffers += (slot.now.handle ? 1 : 0) + (slot.before.handle ? 1 : 0);
+    }
+    retired_.promise(buffers);
+    for (const uint32_t resource : kResourcesOfViews) {
+        Slot& slot = slots_[resourceOf(resource, view)];
+        retired_.push(lastFrame, slot.now);
+        retired_.push(lastFrame, slot.before);
+        bytes_[resourceOf(resource, view)] = 0;
+        slot.recorded = false;
+    }
+    for (const Space space : {kSpaceFlames, kSpaceVolumeRays, kSpaceVolumes})
+        if (const uint32_t units = capacity(spaceOf(space, view)))
+            spaces_[spaceOf(space, view)].dropCapacity(units);
+}
+
 uint64_t Planes::bytes(Space space) const noexcept {
     uint64_t all = 0;
     for (const Slot& slot : slots_)
@@ -460,8 +501,8 @@ bool Planes::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t 
 void Planes::rows(std::pmr::vector<MemoryRow>& out) const {
     for (uint32_t i = 0; i < kResourceCount; ++i) {
         const Plane& plane = slots_[i].plane;  // written by the constructor alone
-        if (!plane.unitBytes) continue;
         const uint64_t units = usedUnits_[plane.space], capacity = bytes_[i];
+        if (!plane.unitBytes || capacity == 0) continue;
         out.push_back({plane.name, units ? units * plane.unitBytes : capacity, capacity});
     }
 }

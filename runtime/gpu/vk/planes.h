@@ -68,8 +68,15 @@ enum Space : uint32_t {
     kSpaceFieldDraws,       // per frame
     kSpaceShield,           // words, as of the last update
     kSpaceFixed,            // one unit
-    kSpaceCount,
+    kSpaceOfViews,          // those of the second view, of the third, ...; none until it is given
+    kSpaceCount = kSpaceOfViews + (kMaxViews - 1) * 3,
 };
+// Flames, VolumeRays and Volumes (of which a further view has the work alone) of view `view`.
+constexpr Space spaceOf(Space space, uint32_t view) noexcept {
+    if (view == 0) return space;
+    const uint32_t i = space == kSpaceFlames ? 0 : space == kSpaceVolumeRays ? 1 : 2;
+    return Space(kSpaceOfViews + (view - 1) * 3 + i);
+}
 
 // Units of kSpaceFlames that hold so many quads: draw arguments begin with eight words, a unit of
 // theirs has two.
@@ -167,6 +174,11 @@ class Planes {
     // Likewise, with little to spare; `shrinks`: with none, and fewer where it has many more. For
     // spaces that follow detail.
     void fit(Space space, uint32_t units, bool shrinks, uint64_t lastFrame);
+
+    // All that a view beyond the first needs at least. Throws as atLeast does.
+    void makeView(uint32_t view, uint64_t lastFrame);
+    // Frees what such a view has once frame `lastFrame` is done. May throw, and then did nothing.
+    void dropView(uint32_t view, uint64_t lastFrame);
 
     [[nodiscard]] const Buffer& buffer(uint32_t resource) const { return slots_[resource].now; }
     [[nodiscard]] uint32_t capacity(Space space) const { return spaces_[space].capacity(); }

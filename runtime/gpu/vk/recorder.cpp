@@ -7,15 +7,23 @@
 
 namespace fw::gpu::vk {
 
+void FrameRecorder::barrier(std::span<const Use> uses) {
+    t_.barriers->use(t_.device->table, t_.commands, uses, t_.view);
+}
+
+VkBuffer FrameRecorder::buffer(uint32_t resource) const {
+    return t_.planes->buffer(resourceOf(resource, t_.view)).handle;
+}
+
 void FrameRecorder::bind(const ComputePass& pass, const void* push) {
     const Table& vk = t_.device->table;
     const size_t number = passNumber(pass);
     const PassObjects& objects = t_.pipelines->compute(number);
-    t_.barriers->use(vk, t_.commands, pass.uses);
+    barrier(pass.uses);
     t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
     bool view = false;
     for (const Use& use : pass.uses) view |= use.access == Access::uniformView;
-    const VkDescriptorSet set = t_.sets->compute(number);
+    const VkDescriptorSet set = t_.sets->compute(number, t_.view);
     vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
                              &set, view ? 1 : 0, &t_.viewOffset);
@@ -36,13 +44,13 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const Mar
     const Table& vk = t_.device->table;
     const size_t number = passNumber(pass);
     const PassObjects& objects = t_.pipelines->compute(number);
-    t_.barriers->use(vk, t_.commands, pass.uses);
+    barrier(pass.uses);
     t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
-    const VkBuffer work = t_.planes->buffer(FW_BIND_VOLUME_WORK).handle;
+    const VkBuffer work = buffer(FW_BIND_VOLUME_WORK);
     vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
                              &t_.profiles, 0, nullptr);
-    const VkDescriptorSet set = t_.sets->compute(number);
+    const VkDescriptorSet set = t_.sets->compute(number, t_.view);
     const bool listed = which != VolumesOf::all;
     for (const MarchedVolume& one : volumes) {
         if (listed && one.smokes != (which == VolumesOf::smoke)) continue;
@@ -67,15 +75,14 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const Mar
 
 void FrameRecorder::dispatchAt(const ComputePass& pass, const void* push, uint64_t at) {
     bind(pass, push);
-    t_.device->table.CmdDispatchIndirect(t_.commands, t_.planes->buffer(FW_BIND_COUNTERS).handle,
-                                         at);
+    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(FW_BIND_COUNTERS), at);
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 
 void FrameRecorder::dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
                                      uint64_t at) {
     bind(pass, push);
-    t_.device->table.CmdDispatchIndirect(t_.commands, t_.planes->buffer(resource).handle, at);
+    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(resource), at);
     t_.slot->timers.end(*t_.device, t_.commands);
 }
 
@@ -97,40 +104,39 @@ void FrameRecorder::dispatchList(const ComputePass& pass, const void* push, uint
 
 void FrameRecorder::copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyWrite}};
-    t_.barriers->use(t_.device->table, t_.commands, uses);
+    barrier(uses);
     const VkBufferCopy region{uploadAt, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, t_.slot->upload.handle,
-                                   t_.planes->buffer(resource).handle, 1, &region);
+    t_.device->table.CmdCopyBuffer(t_.commands, t_.slot->upload.handle, buffer(resource), 1,
+                                   &region);
 }
 
 void FrameRecorder::copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyRead}, {resource, Access::copyWrite}};
-    t_.barriers->use(t_.device->table, t_.commands, uses);
-    const VkBuffer buffer = t_.planes->buffer(resource).handle;
+    barrier(uses);
+    const VkBuffer handle = buffer(resource);
     const VkBufferCopy region{from, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, buffer, buffer, 1, &region);
+    t_.device->table.CmdCopyBuffer(t_.commands, handle, handle, 1, &region);
 }
 
 void FrameRecorder::copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{from, Access::copyRead}, {to, Access::copyWrite}};
-    t_.barriers->use(t_.device->table, t_.commands, uses);
+    barrier(uses);
     const VkBufferCopy region{at, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, t_.planes->buffer(from).handle,
-                                   t_.planes->buffer(to).handle, 1, &region);
+    t_.device->table.CmdCopyBuffer(t_.commands, buffer(from), buffer(to), 1, &region);
 }
 
 void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyRead}};
-    t_.barriers->use(t_.device->table, t_.commands, uses);
+    barrier(uses);
     const VkBufferCopy region{from, readbackAt, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, t_.planes->buffer(resource).handle,
-                                   t_.slot->readback.handle, 1, &region);
+    t_.device->table.CmdCopyBuffer(t_.commands, buffer(resource), t_.slot->readback.handle, 1,
+                                   &region);
 }
 
 void FrameRecorder::fillZero(uint32_t resource, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyWrite}};
-    t_.barriers->use(t_.device->table, t_.commands, uses);
-    t_.device->table.CmdFillBuffer(t_.commands, t_.planes->buffer(resource).handle, at, bytes, 0);
+    barrier(uses);
+    t_.device->table.CmdFillBuffer(t_.commands, buffer(resource), at, bytes, 0);
 }
 
 }  // namespace fw::gpu::vk

@@ -17,6 +17,7 @@ struct RecordTarget {  // what a recorder works on; all of it outlives the recor
     FrameInFlight* slot = nullptr;
     VkCommandBuffer commands = VK_NULL_HANDLE;
     uint32_t viewOffset = 0;                    // of the passes that use the view
+    uint32_t view = 0;                          // whose resources they use
     VkDescriptorSet profiles = VK_NULL_HANDLE;  // of those that use the fire profiles
 };
 
@@ -51,6 +52,8 @@ class FrameRecorder {
     void fillZero(uint32_t resource, uint64_t at, uint64_t bytes);
 
  private:
+    void barrier(std::span<const Use> uses);
+    [[nodiscard]] VkBuffer buffer(uint32_t resource) const;
     void bind(const ComputePass& pass, const void* push);
     void dispatchAt(const ComputePass& pass, const void* push, uint64_t at);
 

@@ -54,6 +54,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       givenFields(pmr),
       times(pmr) {
     times.reserve(computePasses().size() + drawPasses().size());
+    outsideViews[0] = core::Owned<OutsideView>::make(memory, 0u);
     const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
     viewStride = uint32_t((sizeof(ViewParams) + alignment - 1) / alignment * alignment);
     views = deviceMemory.createBuffer(
@@ -184,18 +185,24 @@ VkBackend::VkBackend(Context& context, const WorldLimits& limits, std::pmr::memo
 
 VkBackend::~VkBackend() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
 
-bool VkBackend::beginOutside(const FwVulkanFrame& frame) {
+bool VkBackend::beginOutside(const FwVulkanFrame& frame, std::span<const FwView> views) {
     State& s = *state_;
     s.failIfLost();
     if (!s.context.pipelines.ready()) return false;
     s.ring.pace(frame, true);
     s.retired.collect(s.ring.completed());
     s.openFrame(frame.commandBuffer, frame.frameIndex);
+    try {
+        s.openViews(views);
+    } catch (...) {
+        cancelOutside();
+        throw;
+    }
     return true;
 }
 
 void VkBackend::run(const FramePlan& plan) { state_->run(plan); }
-void VkBackend::endOutside(const FwView& view) { state_->closeFrame(&view); }
+void VkBackend::endOutside() { state_->closeFrame(); }
 void VkBackend::cancelOutside() noexcept {
     if (!state_->open.open) return;
     state_->open = {};
@@ -207,7 +214,7 @@ void VkBackend::beginOwn() {
     state_->open.unseen = true;  // pictures are frames of their own
 }
 void VkBackend::endOwn() {
-    state_->closeFrame(nullptr);
+    state_->closeFrame();
     state_->submitOwn();
 }
 

@@ -66,9 +66,9 @@ struct WorldLimits {
 
 // One per FwWorld.
 //
-// Lent device:  if (!beginOutside(frame)) return FW_NOT_READY;   may throw: bad frame
+// Lent device:  if (!beginOutside(frame, views)) return FW_NOT_READY;   may throw: bad frame
 //               run(plan);                                       exactly once, may be without steps
-//               endOutside(view);
+//               endOutside();
 //               recordInside(...) / recordComposite(...)         any number of times, or none
 // Own device:   beginOwn(); run(plan); endOwn();                 submits and waits
 //               renderOffscreen(def);                            what the world looks like now
@@ -120,9 +120,13 @@ class VkBackend final : public Backend {
 
     // Checks pacing and opens the frame. False: pipelines are not built yet. Throws core::Error:
     // FW_ERROR_INVALID_ARGUMENT for pacing, FW_ERROR_DEVICE_LOST once latched.
-    bool beginOutside(const FwVulkanFrame& frame);
+    // views: 1 to kMaxViews, each with a viewId of its own; copied.
+    bool beginOutside(const FwVulkanFrame& frame, std::span<const FwView> views);
+    bool beginOutside(const FwVulkanFrame& frame, const FwView& view) {
+        return beginOutside(frame, {&view, 1});
+    }
     void run(const FramePlan& plan) override;
-    void endOutside(const FwView& view);
+    void endOutside();
     void cancelOutside() noexcept;
     // False: nothing to draw with yet (pipelines missing); nothing recorded.
     bool recordInside(const FwVulkanFrame& frame, FwTargetId target, const FwView& view,

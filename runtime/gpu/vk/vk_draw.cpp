@@ -93,14 +93,15 @@ class PassRecorder : public DrawRecorder {
         shown_ = shown;
     }
     void drawIndirect(uint32_t resource, uint64_t offset) override {
-        s_.device.table.CmdDrawIndirect(commands_, s_.planes.buffer(resource).handle, offset, 1, 0);
+        const Buffer& buffer = s_.planes.buffer(resourceOf(resource, s_.drawnView));
+        s_.device.table.CmdDrawIndirect(commands_, buffer.handle, offset, 1, 0);
     }
     void drawVolume(uint32_t flame, const void* push, uint32_t vertices,
                     uint32_t instances) override {
         const Table& vk = s_.device.table;
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
-        const VkDescriptorSet set = s_.sets.draw(number_);
+        const VkDescriptorSet set = s_.sets.draw(number_, s_.drawnView);
         vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set,
                                  uint32_t(offsets.size()), offsets.data());
         vk.CmdPushConstants(commands_, layout_,
@@ -201,10 +202,13 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                    const HalfImages* half) {
     if (!showsAnything()) return;
     const Table& vk = device.table;
+    OutsideView& of = viewFor(view);
+    drawnView = of.number;
     const uint32_t viewOffset = pushView(slot, view, viewport);
     if (part != DrawPart::half) {
-        refine.height = std::fabs(viewport.height);
-        look(view, refine.height, slot.frameIndex);
+        const float height = std::fabs(viewport.height);
+        if (view.viewId == of.view.viewId || sameView(view, of.view)) of.height = height;
+        look(view, height, slot.frameIndex);
     }
     setViewport(commands, viewport);
     std::array<VolumeItem, kMaxVolumeFlames> items;
@@ -225,8 +229,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         const float share = part == DrawPart::over ? 0.5f : 1.0f;
         const VolumeScreen screen =
             screenOf(target.key, {share * viewport.width, share * std::fabs(viewport.height)});
-        noteScreen(view, screen, slot.frameIndex);
-        const bool made = marchedFor(view, screen);
+        noteScreen(of, view, screen, slot.frameIndex);
+        const bool made = marchedFor(of, view, screen);
+        const March& march = of.march;
         if (made) {
             list.marched = {march.items.data(), march.count};
             list.cards = {march.cards.data(), march.cardCount};
@@ -234,7 +239,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.volumeRuns = {march.order.runs.data(), march.order.count};
         } else {
             const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-            const uint32_t count = orderVolumes(slabs, items), least = leastRays(view, screen);
+            const uint32_t count = orderVolumes(slabs, items);
             uint32_t whole = 0, cut = 0;
             for (uint32_t i = 0; i < count; ++i) {
                 if (volumes[items[i].flame].tier == FW_FIRE_TIER_SLICES &&
@@ -243,9 +248,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                     order.add(kVolumeSlicesPass, cut++);
                 } else {
                     items[whole] = items[i];
-                    VolumeDraw& draw = items[whole].draw;
-                    volumeRays(screen, draw);
-                    draw.perPixel = std::max(draw.perPixel, least);
+                    volumeRays(screen, items[whole].draw);
                     order.add(kVolumePass, whole++);
                 }
             }
@@ -253,7 +256,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.sliced = {sliced.data(), cut};
             list.volumeRuns = {order.runs.data(), order.count};
         }
-        if (lent.color) list.hazes = {hazes.data(), orderHazes(made, view.haze, hazes)};
+        if (lent.color)
+            list.hazes = {hazes.data(), orderHazes(made ? &march : nullptr, view.haze, hazes)};
     }
     for (const DrawStep& step : drawSteps()) {
         const uint32_t i = step.pass;
@@ -288,7 +292,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
         bool usesView = false;
         for (const Use& use : pass.uses) usesView |= use.access == Access::uniformView;
-        const VkDescriptorSet set = sets.draw(i);
+        const VkDescriptorSet set = sets.draw(i, drawnView);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
                                  usesView ? 1 : 0, &viewOffset);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
@@ -329,7 +333,7 @@ void VkBackend::State::recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer co
     // Who sees one flame at a time binds its set 0 for each.
     const bool haze = run.pass == &kVolumeHazePass;
     const bool each = haze || run.pass == &kVolumePass || run.pass == &kVolumeSlicesPass;
-    if (!each) bind(0, sets.draw(number));
+    if (!each) bind(0, sets.draw(number, drawnView));
     if (haze) bind(1, lent.color);
     bind(2, each ? profiles.set.set : lookTextures.set.set);
     if (lent.depth) bind(3, lent.depth);

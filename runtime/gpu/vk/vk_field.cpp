@@ -170,7 +170,7 @@ void VkBackend::State::recordFieldDraws(VkCommandBuffer commands, const Target& 
             const uint32_t pass = firstPass + bound;
             const VkPipelineLayout layout = context.pipelines.draw(pass).layout;
             vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[pass]);
-            const VkDescriptorSet planesSet = sets.draw(pass);
+            const VkDescriptorSet planesSet = sets.draw(pass, 0);
             vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
                                      &planesSet, 1, &viewOffset);
             const VkDescriptorSet textures[2] = {profiles.set.set, lookTextures.set.set};

@@ -218,7 +218,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
     const uint32_t volumes = plan.volumes ? plan.volumes->count : uint32_t(s.volumes.size());
     const bool follows = !s.open.unseen || s.detail.memory < 1;  // a limit holds unseen, too
-    if (follows && volumes > 0) s.makeMarchRoom(volumes, last);
+    s.makeViewRoom(volumes, follows, last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
     uint64_t readbackBytes = 0;
     const ReadbackLayout layout = layoutOf(s, plan, needs, readbackBytes);
@@ -231,6 +231,8 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
         ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                MemoryKind::readback, kComponentReadback, "frame readback");
     s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);
+    for (const OutsideView* of : s.seenFrom())
+        s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last, of->number);
     slot.layout = layout;
     return slot;
 }

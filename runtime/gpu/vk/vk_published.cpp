@@ -88,9 +88,9 @@ void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
 
 }  // namespace
 
-void VkBackend::State::recordArp(FrameInFlight& slot, const FwView& view) {
+void VkBackend::State::recordArp(FrameInFlight& slot) {
     if (arp.placeGroups == 0) return;
-    lookFrom(view);
+    lookFromViews();
     FrameRecorder recorder(recordTarget(slot, open.commands));
     UploadWriter writer(slot);
     const double now = double(shownTick) + double(tickFraction) * kStepTicks;

@@ -388,7 +388,7 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     if (slot.views == FrameRing::kMaxViews)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "A frame is drawn with more than %u views; that is the limit.",
-                   FrameRing::kMaxViews);
+                   FrameRing::kMaxDrawn);
     ViewInput input;
     input.view = &view;
     input.viewport[0] = viewport.x;
@@ -432,9 +432,9 @@ void VkBackend::State::run(const FramePlan& plan) {
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
     detail = plan.detail;
-    march.steps = march.steps > detail.volumeSteps
-                      ? std::max(march.steps - kStepsTurn, detail.volumeSteps)
-                      : std::min(march.steps + kStepsTurn, detail.volumeSteps);
+    volumeStepsNow = volumeStepsNow > detail.volumeSteps
+                         ? std::max(volumeStepsNow - kStepsTurn, detail.volumeSteps)
+                         : std::min(volumeStepsNow + kStepsTurn, detail.volumeSteps);
     quadShare = quadShare > detail.quads ? std::max(quadShare - kQuadsTurn, detail.quads)
                                          : std::min(quadShare + kQuadsTurn, detail.quads);
     const auto lights = float(lightsOf(detail, limits.maxLights));
@@ -574,74 +574,82 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 
-void VkBackend::State::closeFrame(const FwView* view) {
-    if (view) {
-        outside = *view;
-        look(*view, refine.height, open.ringFrame);
-        if (burnEmpty && !showsEmitters()) quadsShown = 0;
+// What the frame's views show of fire, or where nobody looks its lights alone.
+void VkBackend::State::recordAppearance(FrameInFlight& slot) {
+    const std::span<OutsideView* const> from = seenFrom();
+    const bool looked = !from.empty(), particles = showsEmitters();
+    const bool fieldsShow = looked && !fieldDraws.empty(), marches = looked && !volumes.empty();
+    if ((burnEmpty && !marches && !particles && !fieldsShow) || !limits.looks.viewParams) return;
+    const VkViewport whole{0, 0, 1, 1, 0, 1};
+    RecordTarget target = recordTarget(slot, open.commands);
+    target.profiles = profiles.set.set;
+    // A step of an own device has no view: lights alone, which flicker with simulated time.
+    FwView none{};
+    none.time = float(double(open.endTick) / kTicksPerSecond);
+    target.viewOffset = pushView(slot, looked ? from[0]->view : none, whole);
+    FrameRecorder ofAll(target);
+    if (!burnEmpty) {
+        recordLights(ofAll, lists, open.endTick);
+        recordSooting(*this, looked, ofAll);
     }
+    const SortPush room = quadRoom();
+    ParticlePush push{};
+    push.quads = room.particles;
+    push.firstQuad = room.tiles;
+    push.lights = room.lights;
+    push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
+    push.moved = vec4(particlesMove, 0.0f);
+    if (particles && emittersMove && emitterGroups > 0) {
+        recordParticles(ofAll, push, emitterGroups);
+        particlesMove = vec3(0.0f);
+    }
+    for (OutsideView* const of : from) {
+        if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
+        target.view = of->number;
+        FrameRecorder looks(target);
+        // The lights begin the first view's quads.
+        if ((particles && burnEmpty) || (!burnEmpty && of->number != 0)) recordNoQuads(looks);
+        if (!burnEmpty) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
+        if (emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
+        if (sparkSources > 0)
+            recordSparks(looks, {room.lights, room.tiles + room.particles, push.burnRow, 0},
+                         sparkSources);
+        if (!burnEmpty || particles) recordFlameSort(looks, room);
+        if (marches) marchVolumes(*of, looks);
+    }
+    if (fieldsShow) recordFieldShow(ofAll, uint32_t(fieldDraws.size()));
+}
+
+void VkBackend::State::closeFrame() {
+    const std::span<OutsideView* const> from = seenFrom();
+    for (const OutsideView* const of : from) look(of->view, of->height, open.ringFrame);
+    if (!from.empty() && burnEmpty && !showsEmitters()) quadsShown = 0;
     if (!open.recording) {
         open = {};
         return;
     }
     const Table& vk = device.table;
     FrameInFlight& slot = *open.slot;
-    RecordTarget target = recordTarget(slot, open.commands);
-    const bool marches = view && !volumes.empty();
-    const bool particles = showsEmitters();
-    const bool fieldsShow = view && !fieldDraws.empty();
-    if ((!burnEmpty || marches || particles || fieldsShow) && limits.looks.viewParams) {
-        // A step of an own device has no view: lights alone, which flicker with simulated time.
-        FwView none{};
-        none.time = float(double(open.endTick) / kTicksPerSecond);
-        const VkViewport whole{0, 0, 1, 1, 0, 1};
-        target.viewOffset = pushView(slot, view ? *view : none, whole);
-        target.profiles = profiles.set.set;
-        FrameRecorder looks(target);
-        if (!burnEmpty) {
-            recordLights(looks, lists, open.endTick);
-            recordSooting(*this, view != nullptr, looks);
-            if (view) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
-        }
-        const SortPush room = quadRoom();
-        if (particles) {
-            ParticlePush push{};
-            push.quads = room.particles;
-            push.firstQuad = room.tiles;
-            push.lights = room.lights;
-            push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-            push.moved = vec4(particlesMove, 0.0f);
-            if (emittersMove && emitterGroups > 0) {
-                recordParticles(looks, push, emitterGroups);
-                particlesMove = vec3(0.0f);
-            }
-            if (view && burnEmpty) recordNoQuads(looks);
-            if (view && emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
-            if (view && sparkSources > 0)
-                recordSparks(looks, {room.lights, room.tiles + room.particles, push.burnRow, 0},
-                             sparkSources);
-        }
-        if (view && (!burnEmpty || particles)) recordFlameSort(looks, room);
-        if (marches) marchVolumes(looks);
-        if (fieldsShow) recordFieldShow(looks, uint32_t(fieldDraws.size()));
-    }
-    if (view) {
-        recordRefinement(slot, *view);
-        recordArp(slot, *view);
+    recordAppearance(slot);
+    if (!from.empty()) {
+        recordRefinement(slot);
+        recordArp(slot);
     }
     for (DrawItem& item : drawItems)
         if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
+    RecordTarget target = recordTarget(slot, open.commands);
+    if (!from.empty()) target.view = from[0]->number;  // whose quads are counted
     FrameRecorder recorder(target);
     const ReadbackLayout& layout = slot.layout;
     const auto copyShown = [&] {
-        slot.layout.quads = view && (!burnEmpty || particles);
+        slot.layout.quads = !from.empty() && (!burnEmpty || showsEmitters());
         slot.layout.bias = open.refined;
         if (layout.quads) recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
         if (layout.bias)
             recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
     };
     if (open.planFrame == 0) {
-        if (view) copyShown();  // a picture of an own device's
+        if (!from.empty()) copyShown();  // a picture of an own device's
     } else if (open.readback) {
         // Counters before the lists: rows that this frame used, and the one its list ended in.
         recorder.copyOut(FW_BIND_COUNTERS, 0, layout.countersAt,

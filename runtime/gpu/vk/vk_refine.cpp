@@ -284,11 +284,11 @@ bool VkBackend::State::chooseDue(double now) noexcept {
     return true;
 }
 
-// `view`: its eye and the last picture's height limit levels.
-void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view) {
+// The views' eyes and the heights of their last pictures limit levels.
+void VkBackend::State::recordRefinement(FrameInFlight& slot) {
     RefinePush& push = refine.push;
     if (push.objects == 0) return;
-    lookFrom(view);
+    lookFromViews();
     const double now = double(shownTick) + double(tickFraction);
     const bool turn = chooseDue(now);
     if (!turn && !refine.full) return;
@@ -355,16 +355,22 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot, const FwView& view)
     recordRefine(recorder, lists, push, turn, cuts, fresh);
 }
 
-void VkBackend::State::lookFrom(const FwView& view) noexcept {
+void VkBackend::State::lookFromViews() noexcept {
     if (!limits.looks.viewParams) return;
-    ViewInput input;
-    input.view = &view;
-    input.viewport[2] = input.viewport[3] = refine.height > 0 ? refine.height : kDefaultHeight;
-    ViewParams params{};
-    limits.looks.viewParams(input, params);
-    refine.eye = params.eye;
-    refine.pixels = 1 / params.eye.w;
-    refine.eye.w = params.forward.w > 0.5f ? refine.pixels : 0;
+    refine.eyeCount = 0;
+    refine.pixels = 0;
+    for (const OutsideView* const of : seenFrom()) {
+        ViewInput input;
+        input.view = &of->view;
+        input.viewport[2] = input.viewport[3] = of->height > 0 ? of->height : kDefaultHeight;
+        ViewParams params{};
+        limits.looks.viewParams(input, params);
+        const float pixels = 1 / params.eye.w;
+        refine.pixels = std::max(refine.pixels, pixels);
+        vec4& eye = refine.eyes[refine.eyeCount++];
+        eye = params.eye;
+        eye.w = params.forward.w > 0.5f ? pixels : 0;
+    }
 }
 
 void showRefined(const RefineUse& use, DrawItem& item) noexcept {
@@ -383,7 +389,7 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
     if ((object.record.flags & kObjectNoHoles) != 0 && !object.refine.border) return 0;
     if (record.eye.w == 0) return kCutNear;
     const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
-    return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record), 1e-6f);
+    return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record.eye), 1e-6f);
 }
 
 // Whether the budget leaves it so few levels that corners do not know its holes; while that is not
@@ -395,17 +401,38 @@ bool VkBackend::State::tellsByTexels(const ObjectEntry& object) const noexcept {
 }
 
 // m, object space, from the eye to the mesh's bounds.
-float VkBackend::State::eyeDistance(const ObjectEntry& object,
-                                    const RefineObject& record) const noexcept {
+float VkBackend::State::eyeDistance(const ObjectEntry& object, const vec4& eye) const noexcept {
     const MeshEntry& entry = meshes[object.mesh];
     float square = 0;
-    const float eye[3] = {record.eye.x, record.eye.y, record.eye.z};
     for (int k = 0; k < 3; ++k) {
         const float out = std::max(
             {entry.domain->boundsLow[k] - eye[k], eye[k] - entry.domain->boundsHigh[k], 0.0f});
         square += out * out;
     }
     return std::sqrt(square);
+}
+
+// m, object space; w: as refine.eyes. Of the views' eyes that to which it is largest.
+vec4 VkBackend::State::eyeFor(const ObjectEntry& object) const noexcept {
+    // Rows are s * R: the eye in object space is (R^T / s) (eye - t).
+    const vec4 &x = object.record.worldRow0, &y = object.record.worldRow1,
+               &z = object.record.worldRow2;
+    const float square = std::max(x.x * x.x + x.y * x.y + x.z * x.z, 1e-12f);
+    vec4 best(0.0f);
+    float most = -1;
+    for (uint32_t i = 0; i < refine.eyeCount; ++i) {
+        const vec4& eye = refine.eyes[i];
+        const float d[3] = {eye.x - x.w, eye.y - y.w, eye.z - z.w};
+        const vec4 at{(x.x * d[0] + y.x * d[1] + z.x * d[2]) / square,
+                      (x.y * d[0] + y.y * d[1] + z.y * d[2]) / square,
+                      (x.z * d[0] + y.z * d[1] + z.z * d[2]) / square, eye.w};
+        if (at.w == 0) return at;
+        const float pixels = at.w / std::max(eyeDistance(object, at), 1e-6f);
+        if (pixels <= most) continue;
+        most = pixels;
+        best = at;
+    }
+    return best;
 }
 
 // Whether what it shows may have changed by so much that it shows, since it was last refined.
@@ -415,7 +442,7 @@ bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& reco
     if (!use.started || record.eye.w != use.turnEye.w) return true;
     mesh::RefineTurn turn;
     turn.since = std::abs(now - use.turnTick);
-    turn.away = eyeDistance(object, record);
+    turn.away = eyeDistance(object, record.eye);
     turn.moved = std::hypot(record.eye.x - use.turnEye.x, record.eye.y - use.turnEye.y,
                             record.eye.z - use.turnEye.z);
     turn.perspective = record.eye.w > 0;
@@ -453,14 +480,8 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.pixelsPerEdge = use.pixelsPerEdge;
     r.now =
         float((double(shownTick) - double(use.epochTick) + double(tickFraction)) / kTicksPerSecond);
-    // Rows are s * R: the eye in object space is (R^T / s) (eye - t).
-    const vec4 &x = object.record.worldRow0, &y = object.record.worldRow1,
-               &z = object.record.worldRow2;
-    const float square = std::max(x.x * x.x + x.y * x.y + x.z * x.z, 1e-12f);
-    const float d[3] = {refine.eye.x - x.w, refine.eye.y - y.w, refine.eye.z - z.w};
-    r.eye = {(x.x * d[0] + y.x * d[1] + z.x * d[2]) / square,
-             (x.y * d[0] + y.y * d[1] + z.y * d[2]) / square,
-             (x.z * d[0] + y.z * d[1] + z.z * d[2]) / square, full ? 0.0f : refine.eye.w};
+    r.eye = eyeFor(object);
+    if (full) r.eye.w = 0;
     r.inner = use.inner;
     r.cuts = use.cuts.first;
     r.cutTriangles = use.cuts.units / 3;

@@ -12,8 +12,6 @@ namespace fw::gpu::vk {
 constexpr uint32_t kLeastCards = 32;     // that there is room for
 constexpr uint32_t kCardsPerFrame = 12;  // are marched anew, or all that must be
 constexpr uint32_t kPairWords = 2 * kCardWords;
-// A side of a pixel: all four places at which samples begin, or it is grain.
-constexpr uint32_t kUnknownRays = 2;
 constexpr float kCardTurn = 0.985f;  // cosine of what a card is seen from aside: 10 degrees
 
 static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
@@ -94,9 +92,6 @@ uint32_t VkBackend::State::orderVolumes(
     return count;
 }
 
-namespace {
-
-// Whether what was marched for one view is what another shows.
 bool sameView(const FwView& a, const FwView& b) noexcept {
     const auto same = [](const auto& x, const auto& y) {
         return std::memcmp(&x, &y, sizeof x) == 0;
@@ -107,8 +102,6 @@ bool sameView(const FwView& a, const FwView& b) noexcept {
            same(a.emissionScale, b.emissionScale);
 }
 
-}  // namespace
-
 VolumeScreen VkBackend::State::screenOf(const TargetKey& target, vec2 size) const noexcept {
     // Cells are so many pixels of the picture.
     const uint32_t cell = target.half ? std::max(limits.volumeCell / 2, 1u) : limits.volumeCell;
@@ -116,25 +109,27 @@ VolumeScreen VkBackend::State::screenOf(const TargetKey& target, vec2 size) cons
             uint32_t(target.encoding)};
 }
 
-void VkBackend::State::noteScreen(const FwView& view, const VolumeScreen& screen,
+void VkBackend::State::noteScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
                                   uint64_t frame) noexcept {
-    if (!sameView(view, outside)) return;
+    March& march = of.march;
+    if (!sameView(view, of.view)) return;
     const auto area = [](const VolumeScreen& s) { return s.size.x * s.size.y; };
     if (march.frame == frame && area(screen) <= area(march.screen)) return;
     march.screen = screen;
     march.frame = frame;
 }
 
-uint32_t VkBackend::State::rayWords() const noexcept {
+uint32_t VkBackend::State::rayWords(const March& march) const noexcept {
     return uint32_t(double(detail.memory) * volumeRayWords(march.screen));
 }
 
-void VkBackend::State::makeMarchRoom(uint32_t flames, uint64_t last) {
+void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last) {
     if (!profiles.live) return;
+    March& march = of.march;
     while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.fit(kSpaceVolumeRays,
-                   march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(),
+        planes.fit(spaceOf(kSpaceVolumeRays, of.number),
+                   march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
                    detail.memory < 1 || march.bookSpare, last);
         march.bookSpare = false;
     } catch (const core::Error& error) {
@@ -165,12 +160,13 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 }  // namespace
 
 uint32_t VkBackend::State::orderHazes(
-    bool marched, float strength, std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept {
+    const March* march, float strength,
+    std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept {
     if (!profiles.live) return 0;
     uint32_t count = 0;
     for (uint32_t i = 0; i < volumes.size(); ++i) {
         const VolumeBox& box = volumes[i];
-        const float share = marched ? march.haze[i] : hazeAlone(box.tier);
+        const float share = march ? march->haze[i] : hazeAlone(box.tier);
         HazedVolume& one = out[count];
         if (!layVolumeHaze(seen, box.hazeLow, box.hazeHigh, share * strength, one.draw)) continue;
         one.flame = i;
@@ -183,7 +179,8 @@ uint32_t VkBackend::State::orderHazes(
     return count;
 }
 
-void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
+void VkBackend::State::marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept {
+    March& march = of.march;
     march.count = march.cardCount = march.slicedCount = march.order.count = 0;
     march.there = false;
     march.screen.steps = volumeSteps();
@@ -191,10 +188,11 @@ void VkBackend::State::marchVolumes(FrameRecorder& recorder) noexcept {
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t count = orderVolumes(march.screen.slabs, items);
     if (count == 0) return;
-    layMarch({items.data(), count}, recorder);
+    layMarch(of, {items.data(), count}, recorder);
 }
 
-void VkBackend::State::showPair(const VolumeItem& item, uint32_t place) noexcept {
+void VkBackend::State::showPair(March& march, const VolumeItem& item,
+                                uint32_t place) const noexcept {
     const TierLife& life = march.lives[place];
     const VolumeCardPair& pair = march.pairs[place];
     float from = 0.0f, to = 1.0f;
@@ -214,8 +212,8 @@ void VkBackend::State::showPair(const VolumeItem& item, uint32_t place) noexcept
     show(older, border, to);
 }
 
-void VkBackend::State::shareBooks(std::span<const VolumeItem> items, uint32_t room,
-                                  std::span<uint32_t> numbers) noexcept {
+void VkBackend::State::shareBooks(March& march, std::span<const VolumeItem> items, uint32_t room,
+                                  std::span<uint32_t> numbers) const noexcept {
     std::array<BookItem, kMaxVolumeFlames> asked;
     std::array<uint32_t, kMaxVolumeFlames> had;
     bool wanted = false;
@@ -249,7 +247,8 @@ void VkBackend::State::shareBooks(std::span<const VolumeItem> items, uint32_t ro
     march.bookSpare = true;
 }
 
-void VkBackend::State::showBook(const VolumeItem& item, uint32_t place, uint32_t number) noexcept {
+void VkBackend::State::showBook(March& march, const VolumeItem& item, uint32_t place,
+                                uint32_t number) const noexcept {
     BookReader& reader = march.readers[place];
     const TierLife& life = march.lives[place];
     reader.key = life.key;
@@ -274,14 +273,15 @@ void VkBackend::State::showBook(const VolumeItem& item, uint32_t place, uint32_t
     if (border < to) show(reader.bookBefore, reader.before, reader.mirroredBefore, border, to);
 }
 
-void VkBackend::State::layMarch(std::span<const VolumeItem> items,
+void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> items,
                                 FrameRecorder& recorder) noexcept {
-    const uint32_t capacity = planes.capacity(kSpaceVolumeRays);
+    March& march = of.march;
+    const uint32_t capacity = planes.capacity(spaceOf(kSpaceVolumeRays, of.number));
     if (capacity != march.capacity)
         for (VolumeCardPair& pair : march.pairs)
             for (VolumeCardShape& shape : pair.shapes) shape.there = false;
     // Where memory is short there are none.
-    const uint32_t rays = rayWords();
+    const uint32_t rays = rayWords(march);
     const uint32_t slots =
         uint64_t{march.slots} * kPairWords + rays / 4 <= capacity ? march.slots : 0;
     const uint64_t beside = uint64_t{slots} * kPairWords + rays / 4;
@@ -296,7 +296,7 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
     ++march.passed;
     std::array<TierItem, kMaxVolumeFlames> asked;
     std::array<uint32_t, kMaxVolumeFlames> places{}, numbers;
-    shareBooks(items, bookRoom, {numbers.data(), items.size()});
+    shareBooks(march, items, bookRoom, {numbers.data(), items.size()});
     for (size_t i = 0; i < items.size(); ++i) {
         const VolumeBox& box = volumes[items[i].flame];
         const vec4& r = items[i].draw.rect;
@@ -421,37 +421,39 @@ void VkBackend::State::layMarch(std::span<const VolumeItem> items,
             march.order.add(kVolumeSlicesPass, march.slicedCount++);
         }
         if (life.shows(FW_FIRE_TIER_FLIPBOOK))
-            showBook(items[i], places[i], numbers[i]);
+            showBook(march, items[i], places[i], numbers[i]);
         else
             march.readers[places[i]] = {};
-        if (life.shows(FW_FIRE_TIER_IMPOSTOR)) showPair(items[i], places[i]);
+        if (life.shows(FW_FIRE_TIER_IMPOSTOR)) showPair(march, items[i], places[i]);
     }
     march.made = march.screen;
-    march.view = outside;
+    march.view = of.view;
     march.count = laid.count;
     march.there = true;
     recordVolumeMarch(recorder, {march.items.data(), laid.count + cards}, first, laid.end, cards);
 }
 
-bool VkBackend::State::marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept {
-    return march.there && screen == march.made && sameView(view, march.view);
-}
-
-uint32_t VkBackend::State::leastRays(const FwView& view, const VolumeScreen& screen) noexcept {
-    if (!sameView(view, outside) || screen == march.unknown) return 1;
-    march.unknown = screen;
-    return kUnknownRays;
+bool VkBackend::State::marchedFor(const OutsideView& of, const FwView& view,
+                                  const VolumeScreen& screen) noexcept {
+    const March& march = of.march;
+    return of.given && march.there && screen == march.made && sameView(view, march.view);
 }
 
 uint32_t VkBackend::quadsShown() const noexcept { return state_->quadsShown; }
 
 uint64_t VkBackend::detailBytes() const noexcept {
-    const State& s = *state_;  // cards and books lie before the rays; those are by flames
-    const uint64_t cards =
-        (uint64_t(s.march.slots) * kPairWords + s.march.bookRoom * kVolumeBookWords) *
-        sizeof(uint32_t);
-    const uint64_t rays = s.planes.bytes(kSpaceVolumeRays);
-    return rays - std::min(rays, cards) + s.planes.bytes(kSpaceFlames);
+    const State& s = *state_;
+    uint64_t all = 0;
+    for (const core::Owned<OutsideView>& of : s.outsideViews) {
+        if (!of) continue;
+        // Cards and books lie before the rays; those are by flames.
+        const uint64_t cards =
+            (uint64_t(of->march.slots) * kPairWords + of->march.bookRoom * kVolumeBookWords) *
+            sizeof(uint32_t);
+        const uint64_t rays = s.planes.bytes(spaceOf(kSpaceVolumeRays, of->number));
+        all += rays - std::min(rays, cards) + s.planes.bytes(spaceOf(kSpaceFlames, of->number));
+    }
+    return all;
 }
 
 }  // namespace fw::gpu::vk

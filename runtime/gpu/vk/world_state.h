@@ -3,8 +3,7 @@
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/frame_graph.h"
-#include "gpu/passes/volume_books.h"
-#include "gpu/passes/volume_tiers.h"
+#include "gpu/vk/outside_view.h"
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
 
@@ -345,6 +344,8 @@ struct VkBackend::State {
         uint64_t ringFrame = 0, planFrame = 0;
         uint32_t endTick = 0;
         FrameInFlight* slot = nullptr;
+        std::array<OutsideView*, kMaxViews> views{};  // that it is recorded for
+        uint32_t viewCount = 0;
     } open;
     std::pmr::vector<PublishedStep> published;  // scratch of run
     std::pmr::vector<DrawItem> drawItems;       // objects that draws show
@@ -376,39 +377,9 @@ struct VkBackend::State {
     std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
     bool fieldsDirty = false;                // one of them has something for the next frame
     ViewParams seen{};                       // of the last pushView
-    FwView outside{};                        // of the last frame's outside part
-    // What is marched before it is drawn: the view of the outside part, on the screen that a draw
-    // with it was last seen to have. Other views, and the first picture, march as they draw.
-    struct March {
-        VolumeScreen screen;   // no size: none was seen
-        uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts
-        VolumeScreen made;     // of what is in the plane
-        VolumeScreen unknown;  // that was last drawn before anything was marched for it
-        FwView view{};         // and its view; in the plane nothing: count is 0
-        bool there = false;
-        uint32_t count = 0;
-        std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames>
-            items;  // cards that are marched behind them
-        uint32_t cardCount = 0;
-        std::array<VolumeCard, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
-        uint32_t slicedCount = 0;
-        std::array<SlicedVolume, kMaxVolumeFlames> sliced;
-        VolumeOrder order;  // of all of them
-        TierLives lives;
-        std::array<VolumeCardPair, kMaxVolumeFlames> pairs;  // by life
-        VolumeBookShelf books;
-        std::array<BookReader, kMaxVolumeFlames> readers;  // by life
-        uint32_t bookRoom = 0;      // books that there is to be room for, behind pairs
-        uint32_t bookIdle = 0;      // frames in which none was wanted
-        bool bookSpare = false;     // there is room for books that are gone
-        uint32_t bookSlot = 0;      // of cards: the first of theirs
-        uint32_t bookEncoding = 0;  // of their pages
-        uint32_t slots = 0;         // pairs that there is room for, before all else
-        uint32_t capacity = 0;      // of the plane when they were made
-        uint64_t passed = 0;        // frames
-        std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
-        uint32_t steps = Detail{}.volumeSteps;     // on their way to detail's
-    } march;
+    // Of RecordOutside, by number; null: not there. The first is always there.
+    std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
+    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
         std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
@@ -416,11 +387,12 @@ struct VkBackend::State {
         RefinePush push{};                 // of the frame; no objects: nothing is refined
         RefinePush last{};                 // of the last frame that refined
         uint32_t users = 0;                // objects that refine
-        vec4 eye{};                        // m, world; w: pixels of 1 m at 1 m, 0: no limit by size
-        float height = 0;                  // px, of what was last drawn; 0: nothing was
-        float pixels = 0;                  // of 1 m at clip w = 1
-        float bias = -1;                   // levels that the budget takes; below 0: not known yet
-        bool full = false;                 // everything at its deepest, and placed in every frame
+        // Of the open frame's views. m, world; w: pixels of 1 m at 1 m, 0: no limit by size.
+        std::array<vec4, kMaxViews> eyes{};
+        uint32_t eyeCount = 0;
+        float pixels = 0;   // of 1 m at clip w = 1, where it has most
+        float bias = -1;    // levels that the budget takes; below 0: not known yet
+        bool full = false;  // everything at its deepest, and placed in every frame
     } refine;
     struct Arp {             // of the frame, refined by the published scheme
         uint32_t users = 0;  // objects
@@ -464,9 +436,21 @@ struct VkBackend::State {
     // vk_record.cpp
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);
-    void closeFrame(const FwView* view);
+    void closeFrame();
+    void recordAppearance(FrameInFlight& slot);
     RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
+    // vk_views.cpp
+    // The open frame is recorded for these. May throw.
+    void openViews(std::span<const FwView> from);
+    [[nodiscard]] OutsideView& takeView(std::span<OutsideView* const> taken);
+    // Buffers of the open frame's views; `marches`: they march so many flames.
+    void makeViewRoom(uint32_t flames, bool marches, uint64_t last);
+    [[nodiscard]] std::span<OutsideView* const> seenFrom() const noexcept {
+        return {open.views.data(), open.viewCount};
+    }
+    // Of the newest frame's views the one that a draw of `view` shows.
+    [[nodiscard]] OutsideView& viewFor(const FwView& view) const noexcept;
     // vk_seen.cpp
     // In ring frame `frame` a view of `height` px shows what it shows.
     void look(const FwView& view, float height, uint64_t frame) noexcept;
@@ -476,22 +460,22 @@ struct VkBackend::State {
     [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
     void listRefined(bool all);
-    void recordRefinement(FrameInFlight& slot, const FwView& view);
+    void recordRefinement(FrameInFlight& slot);
     bool chooseDue(double now) noexcept;
     [[nodiscard]] bool isDue(const ObjectEntry& object, const RefineObject& record,
                              double now) const noexcept;
-    [[nodiscard]] float eyeDistance(const ObjectEntry& object,
-                                    const RefineObject& record) const noexcept;
+    [[nodiscard]] float eyeDistance(const ObjectEntry& object, const vec4& eye) const noexcept;
+    [[nodiscard]] vec4 eyeFor(const ObjectEntry& object) const noexcept;
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
     bool tellsByTexels(const ObjectEntry& object) const noexcept;
-    void lookFrom(const FwView& view) noexcept;
+    void lookFromViews() noexcept;
     // vk_published.cpp
     [[nodiscard]] bool refinesAsPublished(const ObjectEntry& object) const noexcept;
     void takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh, uint64_t last);
     void dropArp(RefineUse& use) noexcept;
     uint64_t planArp();
-    void recordArp(FrameInFlight& slot, const FwView& view);
+    void recordArp(FrameInFlight& slot);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     void takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
@@ -501,32 +485,35 @@ struct VkBackend::State {
     // What the view that was last pushed shows of them, farthest first; how many.
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
-    // How a target of `size` px shows what is marched for it.
     [[nodiscard]] uint32_t volumeSteps() const noexcept {
-        return std::min(limits.volumeSteps, march.steps);
+        return std::min(limits.volumeSteps, volumeStepsNow);
     }
+    // How a target of `size` px shows what is marched for it.
     [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
     // A draw in `frame` shows `view` so.
-    void noteScreen(const FwView& view, const VolumeScreen& screen, uint64_t frame) noexcept;
+    static void noteScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
+                           uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
-    void makeMarchRoom(uint32_t flames, uint64_t last);
-    [[nodiscard]] uint32_t rayWords() const noexcept;  // at the frame's detail
-    void marchVolumes(FrameRecorder& recorder) noexcept;
-    void layMarch(std::span<const VolumeItem> items, FrameRecorder& recorder) noexcept;
+    void makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last);
+    [[nodiscard]] uint32_t rayWords(const March& march) const noexcept;  // at the frame's detail
+    // For the view that was last pushed, which is `of`'s.
+    void marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept;
+    void layMarch(OutsideView& of, std::span<const VolumeItem> items,
+                  FrameRecorder& recorder) noexcept;
     // What a flame's card shows, of the last two marches of it.
-    void showPair(const VolumeItem& item, uint32_t place) noexcept;
+    void showPair(March& march, const VolumeItem& item, uint32_t place) const noexcept;
     // Which of `room` books each item may show.
-    void shareBooks(std::span<const VolumeItem> items, uint32_t room,
-                    std::span<uint32_t> numbers) noexcept;
-    void showBook(const VolumeItem& item, uint32_t place, uint32_t number) noexcept;
+    void shareBooks(March& march, std::span<const VolumeItem> items, uint32_t room,
+                    std::span<uint32_t> numbers) const noexcept;
+    void showBook(March& march, const VolumeItem& item, uint32_t place,
+                  uint32_t number) const noexcept;
     // Whether what is marched is for a view on a screen; else they are to be marched as they are
     // drawn.
-    [[nodiscard]] bool marchedFor(const FwView& view, const VolumeScreen& screen) const noexcept;
-    // A side of a pixel, of the view as it is drawn: more where nobody could know its screen, in
-    // the first picture and after a resize. A second screen of each frame takes them once.
-    uint32_t leastRays(const FwView& view, const VolumeScreen& screen) noexcept;
+    [[nodiscard]] static bool marchedFor(const OutsideView& of, const FwView& view,
+                                         const VolumeScreen& screen) noexcept;
     // What bends what is behind it in the view that was last pushed, farthest first; how many.
-    uint32_t orderHazes(bool marched, float strength,
+    // `march`: that shows the flames, or null.
+    uint32_t orderHazes(const March* march, float strength,
                         std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
@@ -558,6 +545,7 @@ struct VkBackend::State {
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport, const Lent& lent,
                      DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
+    uint32_t drawnView = 0;  // of the call that is recorded: OutsideView::number
     VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
     Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,

@@ -1,0 +1,58 @@
+// What the backend keeps of a view of RecordOutside from frame to frame: how its volumetric flames
+// are marched and shown. Each view has its own quads and marches on the device, see resourceOf;
+// all share the simulation, lights and meshes.
+#pragma once
+#include "gpu/passes/draw.h"
+#include "gpu/passes/volume_books.h"
+#include "gpu/passes/volume_tiers.h"
+
+#include <array>
+
+namespace fw::gpu::vk {
+
+// What is marched before it is drawn, on the screen that a draw of the view was last seen to have.
+// Views that were not given to RecordOutside, and the first picture, march as they draw.
+struct March {
+    VolumeScreen screen;  // no size: none was seen
+    uint64_t frame = 0;   // that saw it: of several screens in a frame the largest counts
+    VolumeScreen made;    // of what is in the plane
+    FwView view{};        // and its view; in the plane nothing: count is 0
+    bool there = false;
+    uint32_t count = 0;
+    // Cards that are marched behind them.
+    std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames> items;
+    uint32_t cardCount = 0;
+    std::array<VolumeCard, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
+    uint32_t slicedCount = 0;
+    std::array<SlicedVolume, kMaxVolumeFlames> sliced;
+    VolumeOrder order;  // of all of them
+    TierLives lives;
+    std::array<VolumeCardPair, kMaxVolumeFlames> pairs;  // by life
+    VolumeBookShelf books;
+    std::array<BookReader, kMaxVolumeFlames> readers;  // by life
+    uint32_t bookRoom = 0;                     // books that there is to be room for, behind pairs
+    uint32_t bookIdle = 0;                     // frames in which none was wanted
+    bool bookSpare = false;                    // there is room for books that are gone
+    uint32_t bookSlot = 0;                     // of cards: the first of theirs
+    uint32_t bookEncoding = 0;                 // of their pages
+    uint32_t slots = 0;                        // pairs that there is room for, before all else
+    uint32_t capacity = 0;                     // of the plane when they were made
+    uint64_t passed = 0;                       // frames
+    std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
+};
+
+struct OutsideView {
+    explicit OutsideView(uint32_t of) : number(of) {}
+    uint32_t number;     // of its resources and sets, [0, kMaxViews)
+    uint64_t frame = 0;  // ring frame that was last recorded for it; 0: none
+    bool given = false;  // the newest frame was recorded for it
+    uint32_t place = 0;  // as which of that frame's views
+    FwView view{};       // as that frame had it
+    float height = 0;    // px, of its last draw; 0: it was never drawn
+    March march;
+};
+
+// Whether what was marched for one view is what another shows.
+[[nodiscard]] bool sameView(const FwView& a, const FwView& b) noexcept;
+
+}  // namespace fw::gpu::vk
