@@ -1,7 +1,9 @@
 #!/bin/bash
 # Installs the Debian 12 packages this project needs, and only those that are missing. Says what it
 # installs. With nothing missing it returns at once and needs no network.
-# Usage: third_party/install.sh [--samples]     (--samples: leave out what only the tests need)
+# Usage: third_party/install.sh [--samples | --clang]
+#   --samples    leave out the packages that only the tests need
+#   --clang      and the second compiler, which only tests/run --clang needs
 set -euo pipefail
 
 packages=(
@@ -26,9 +28,10 @@ test_packages=(
 
 case "${1:-}" in
     --samples) ;;
+    --clang) packages+=("${test_packages[@]}" clang) ;;
     "") packages+=("${test_packages[@]}") ;;
     *)
-        echo "usage: $0 [--samples]" >&2
+        echo "usage: $0 [--samples | --clang]" >&2
         exit 2
         ;;
 esac

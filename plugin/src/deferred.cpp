@@ -1,4 +1,5 @@
 // Destruction that any thread may ask for while another one steps or records.
+#include "flamewright/flamewright_vulkan.h"
 #include "objects.h"
 
 #include <algorithm>

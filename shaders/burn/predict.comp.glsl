@@ -4,23 +4,19 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
 #define FW_USE_MATERIAL_QUADS
 #define FW_USE_TEXELS readonly
 #define FW_USE_NORMALS readonly
 #define FW_USE_SLOWNESS readonly
 #define FW_USE_READERS readonly
 #define FW_USE_TILES readonly
-#define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_SCRATCH writeonly
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_PREDICT readonly
-#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#include "lib/predict_uses.glsl"
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -53,7 +49,7 @@ void predictRow(uint work) {
     if (chosen == 0u) return;
     uvec4 bases = objectBases(item.w);
     uint latest = push.now + objectTimes(item.w).z;
-    bool anew = (objectPlaces(item.w).w & kObjectAnew) != 0u;
+    bool shownAgain = (objectPlaces(item.w).w & kObjectShownAgain) != 0u;
     uint materialBase = item.w * kMaterialsPerObject;
     uint x = uint(findLSB(chosen));
     uint last = uint(findMSB(chosen));
@@ -89,11 +85,11 @@ void predictRow(uint work) {
                     now = kNever;
                 }
             }
-            if (now != before || anew) {
+            if (now != before || shownAgain) {
                 uint at = bases.y + texel;
                 gradient[at] = packTimeNext(gradient[at], now);
                 changed |= 1u << x;
-                if (concernsOthers(before, now) || (anew && hasTime(now))) spread |= 1u << x;
+                if (concernsOthers(before, now) || (shownAgain && hasTime(now))) spread |= 1u << x;
             }
         }
         left = middle;

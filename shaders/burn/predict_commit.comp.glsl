@@ -3,14 +3,10 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_STATE readonly
 #define FW_USE_COUNTERS readonly
 #define FW_USE_SCRATCH_QUADS readonly
 #define FW_USE_PREDICT FW_READ_WRITE
-#define FW_USE_GRADIENT FW_READ_WRITE
+#include "lib/predict_uses.glsl"
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/predict.glsl"

@@ -6,13 +6,9 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
 #define FW_USE_READERS readonly
 #define FW_USE_TILES readonly
 #define FW_USE_TILE_WORDS
-#define FW_USE_STATE readonly
 #define FW_USE_STATE_QUADS
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
@@ -20,8 +16,8 @@ layout(local_size_x = 64) in;
 #define FW_USE_SCRATCH_QUADS writeonly
 #define FW_USE_PREDICT readonly
 #define FW_USE_PREDICT_QUADS
-#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#include "lib/predict_uses.glsl"
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -100,7 +96,7 @@ void gatherRow(uint slot, uint row) {
         wet |= t[i] == kWet ? bit : 0u;
     }
     bool unseen = (places.w & kObjectUnseen) != 0u;
-    bool anew = (places.w & kObjectAnew) != 0u;
+    bool shownAgain = (places.w & kObjectShownAgain) != 0u;
     bool marks = (lit | known) != 0u;
     if (unseen) return;
     // About every fourth frame: water does not hurry.
@@ -124,7 +120,7 @@ void gatherRow(uint slot, uint row) {
     } else if (soon) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }
-    uint chosen = anew ? lit | burns : lit;
+    uint chosen = shownAgain ? lit | burns : lit;
     bool again = (hash32((push.now >> 7u) + worldTile) & 7u) == 0u;
     if (again) chosen |= known;
     else if (known != 0u) predictTouch(push.predictParity ^ 1u, worldTile);

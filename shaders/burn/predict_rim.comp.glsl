@@ -2,9 +2,6 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
 #define FW_USE_MATERIAL_QUADS
 #define FW_USE_TEXELS readonly
 #define FW_USE_NORMALS readonly
@@ -12,13 +9,12 @@ layout(local_size_x = 64) in;
 #define FW_USE_LINKS readonly
 #define FW_USE_READERS readonly
 #define FW_USE_TILES readonly
-#define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_SCRATCH FW_READ_WRITE
 #define FW_USE_PREDICT readonly
-#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
+#include "lib/predict_uses.glsl"
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -68,11 +64,11 @@ void predictTexel(uint rimWork) {
     bool spread = false;
     uint y = divide(texel, bases.w);
     uint x = texel - y * bases.w;
-    bool anew = (objectPlaces(object).w & kObjectAnew) != 0u;
-    if (now != before || anew) {
+    bool shownAgain = (objectPlaces(object).w & kObjectShownAgain) != 0u;
+    if (now != before || shownAgain) {
         gradient[at] = packTimeNext(gradient[at], now);
         atomicOr(scratch[item + 1u], 0x100u << (packedTexel & 7u));
-        spread = concernsOthers(before, now) || (anew && hasTime(now));
+        spread = concernsOthers(before, now) || (shownAgain && hasTime(now));
     }
     if (spread) {
         uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));

@@ -4,16 +4,12 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_STATE readonly
 #define FW_USE_STATE_QUADS
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS readonly
 #define FW_USE_PREDICT FW_READ_WRITE
-#define FW_USE_GRADIENT FW_READ_WRITE
 #define FW_USE_PREDICT_LISTS readonly
+#include "lib/predict_uses.glsl"
 #include "lib/buffers.glsl"
 #include "lib/gradient.glsl"
 #include "shared/front.h"
@@ -31,7 +27,7 @@ void passRow(uint worldTile, uint row) {
     uint at = bases.y + (tileY * bases.w + local - tileY * sizes.z) * 8u + row * bases.w;
     uvec4 a = stateQuads[at >> 2u], b = stateQuads[(at >> 2u) + 1u];
     uint codes[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
-    bool unseen = (places.w & kObjectUnseen) != 0u, anew = (places.w & kObjectAnew) != 0u;
+    bool unseen = (places.w & kObjectUnseen) != 0u, shownAgain = (places.w & kObjectShownAgain) != 0u;
     bool marks = false;
     for (uint x = 0u; x < 8u; ++x) {
         uint i = at + x, code = codes[x], time = predict[i];
@@ -39,7 +35,7 @@ void passRow(uint worldTile, uint row) {
         bool open = code == kNever, source = isSource(code);
         if (open || source) {
             // Of what is seen `predict` decides.
-            bool forgets = anew ? open && time < kLiveEnd : unseen && source;
+            bool forgets = shownAgain ? open && time < kLiveEnd : unseen && source;
             if (forgets) predict[i] = code;
             marks = marks || forgets;
             continue;

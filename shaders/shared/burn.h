@@ -137,7 +137,7 @@ FW_SHARED_CONST uint kObjectNoDamage = 128u; // flames, and looks as before
 FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire stands on its shown vertices
 FW_SHARED_CONST uint kObjectZPass = 0x2000u;   // see passes/z_pass.cpp
 FW_SHARED_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: nothing is predicted of it
-FW_SHARED_CONST uint kObjectAnew = 0x8000u;    // one does again: its prediction begins anew
+FW_SHARED_CONST uint kObjectShownAgain = 0x8000u; // one does again: its prediction starts from what burns
 FW_SHARED_CONST uint kObjectRoomShift = 16u;   // 8 bits: the room that it is in, plus 1
 
 // TileState::flag

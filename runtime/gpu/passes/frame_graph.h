@@ -100,7 +100,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
 // One ring further. `seen`: some view may show what is predicted; else only what burns and what was
 // put out is passed on.
 void recordPredict(vk::FrameRecorder& recorder, FrameLists& lists, uint32_t endTick, bool seen);
-// The next ring finds anew what is known of this object; its kObjectAnew is set.
+// The next ring predicts this object from its simulated state; its kObjectShownAgain is set.
 void recordPredictAnew(vk::FrameRecorder& recorder, const FrameLists& lists, uint32_t object,
                        uint32_t tiles);
 // Tiles `first` .. + `count` of all; `ticks` since they last came to it.

@@ -42,7 +42,7 @@ constexpr uint32_t kObjectsOwn = (1u << kObjectRoomShift) - 1;
 static_assert(((kDrawVertexLight | kDrawPlaced | kDrawHeat | kDrawWet | kDrawThick | kDrawCut |
                 kDrawTold | kDrawInner) &
                kObjectsOwn) == 0);
-static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectAnew) <= kObjectsOwn);
+static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectShownAgain) <= kObjectsOwn);
 
 constexpr uint32_t kPaint = kSurfaceWood | kSurfacePaint;
 constexpr uint32_t kHide = kSurfaceSheet | kSurfaceHide;

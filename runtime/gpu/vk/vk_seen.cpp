@@ -146,7 +146,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
         if (object.turns) {
             flags ^= kObjectUnseen;
             const bool comes = (flags & kObjectUnseen) == 0;
-            tell(i, comes ? flags | kObjectAnew : flags);
+            tell(i, comes ? flags | kObjectShownAgain : flags);
             if (comes) {
                 recordPredictAnew(recorder, s.lists, i, object.record.tileCount);
                 rings = std::max(rings, std::min(ringsOf(object), most));
