@@ -49,6 +49,11 @@ Bytes paintBody(fwedit::ObjectId layer, const fwedit::PaintImage& image,
     return std::move(body.body);
 }
 
+void addLine(std::string& report, const std::string& line) {
+    if (!report.empty() && !line.empty()) report += '\n';
+    report += line;
+}
+
 }  // namespace
 
 bool SceneSender::connect(uint16_t port, std::string& error) {
@@ -82,6 +87,11 @@ void SceneSender::follow(const fwedit::Document& document) {
         channel_.send(Kind::Paint,
                       paintBody(layer, image, before == images_.end() ? nullptr : &before->second));
     }
+    // A layer whose first paint was undone is sent without tiles.
+    for (const auto& [layer, image] : images_)
+        if (!document.images.contains(layer) && fwedit::findIn(document.scene.layers, layer))
+            channel_.send(Kind::Paint,
+                          paintBody(layer, {image.width, image.height, image.empty, {}}, nullptr));
     images_ = document.images;
     BodyWriter body;
     body.number(++sent_);
@@ -180,6 +190,8 @@ bool SceneReader::takeScene(BodyReader& body, std::string& error) {
         paint_, [&](const auto& paint) { return !fwedit::findIn(made.scene.layers, paint.first); });
     tiles_ = 0;
     for (const auto& [layer, paint] : paint_) {
+        // A table of 4096 x 4096 px takes 64 KiB: without a tile a layer is as good as unpainted.
+        if (paint.tiles.empty()) continue;
         fwedit::PaintImage& image = made.images[layer];
         image.width = paint.width;
         image.height = paint.height;
@@ -219,7 +231,7 @@ bool SceneReceiver::readCaller(Caller& caller, std::string& report) {
         whole |= isScene;
         scenes += isScene ? 1 : 0;
     }
-    if (!caller.channel.open()) report += caller.channel.takeProblem();
+    if (!caller.channel.open()) addLine(report, caller.channel.takeProblem());
     return whole;
 }
 
@@ -229,7 +241,7 @@ bool SceneReceiver::poll(LinkedScene& scene, std::string& report) {
     bool isNew = readCaller(editor_, report);
     for (Caller& caller : callers_) {
         if (!readCaller(caller, report)) continue;
-        if (editor_.channel.open()) report += "Another editor has taken over the link.";
+        if (editor_.channel.open()) addLine(report, "Another editor has taken over the link.");
         editor_ = std::move(caller);  // leaves a closed channel, which goes below
         isNew = true;
     }

@@ -102,8 +102,7 @@ class SceneReceiver {
     };
 
     void acceptCallers();
-    // True: a scene came whole. What the caller did wrong closes its channel and is added to
-    // `report`.
+    // True: a scene came whole. A fault of the caller closes its channel and is added to `report`.
     bool readCaller(Caller& caller, std::string& report);
 
     Listener listener_;

@@ -140,6 +140,9 @@ TEST(EditorLink, OnlyTilesThatChangedAreSent) {
     take(third);
     yard.run("undo 2\n");
     take(messagesOf(document, sender, listener, channel));
+    yard.run("undo\n");  // the fill: the layer is there, and nothing is painted on it
+    EXPECT_TRUE(document.images.empty());
+    take(messagesOf(document, sender, listener, channel));
     yard.run("remove Belt\n");
     take(messagesOf(document, sender, listener, channel));
     EXPECT_TRUE(reader.scene().images.empty());
@@ -264,6 +267,19 @@ TEST(EditorLink, PaintForLayersOfNoSceneTakesMemoryOfWhatWasSentAndIsLimited) {
     EXPECT_THAT(error, HasSubstr("paint for more than 4000 layers"));
     // Again for a layer that is here is no new one.
     EXPECT_TRUE(reader.take({Kind::Paint, emptyPaint(1000)}, whole, error)) << error;
+    // Nor has it a table of tiles once a scene names it.
+    Yard yard;
+    yard.run(kPainted);
+    reader = {};
+    const auto layer = yard.host->document.scene.layers.at(0).id;
+    ASSERT_TRUE(reader.take({Kind::Paint, emptyPaint(layer)}, whole, error)) << error;
+    fwlink::BodyWriter scene;
+    scene.number(uint64_t{1});
+    scene.text("");
+    scene.text(fwedit::printScene(yard.host->document.scene));
+    ASSERT_TRUE(reader.take({Kind::Scene, scene.body}, whole, error)) << error;
+    EXPECT_EQ(1u, reader.layers());
+    EXPECT_TRUE(reader.scene().images.empty());
 }
 
 TEST(EditorLink, TilesBeyondTheLimitAreRefusedAndTilesThatGoCountNoLonger) {
