@@ -10,6 +10,7 @@ namespace fw::mesh {
 namespace {
 
 constexpr int64_t kFaces = int64_t(1) << 27;  // of two unit normals in Q14: within 60 degrees
+constexpr double kFarthest = 2e9;             // micrometres, of a reach: squares fit
 
 // Micrometres: whole numbers, so that every machine picks the same texels.
 using Place = std::array<int64_t, 3>;
@@ -24,24 +25,57 @@ Place micrometresOf(const BurnDomain& domain, uint32_t texel) noexcept {
     return place;
 }
 
-struct TexelCells {  // texels by the cell of a grid that they lie in
-    explicit TexelCells(std::pmr::memory_resource* memory) : entries(memory) {}
-    struct Entry {
-        uint64_t key = 0;
-        uint32_t texel = 0;
-    };
-    std::pmr::vector<Entry> entries;
-    int64_t side = 1;
+struct PlacedTile {  // of 8 x 8 texels, some of which are real
+    uint32_t corner = 0;
+    Place low{}, high{};
+};
 
-    [[nodiscard]] Place cellOf(const Place& place) const noexcept {
-        Place cell;
-        for (size_t i = 0; i < 3; ++i) cell[i] = (place[i] - (place[i] < 0 ? side - 1 : 0)) / side;
-        return cell;
+// Calls visit(texel) for the real texels of a tile.
+template <class Visit>
+void eachTexel(const BurnDomain& domain, uint32_t corner, Visit&& visit) {
+    for (uint32_t lane = 0; lane < kTileSide * kTileSide; ++lane) {
+        const uint32_t texel = corner + lane / kTileSide * domain.width + lane % kTileSide;
+        if (domain.real(texel)) visit(texel);
     }
-    [[nodiscard]] static uint64_t keyOf(const Place& cell) noexcept {
-        uint64_t key = 0;
-        for (const int64_t part : cell) key = key << 21 | (uint64_t(part) & 0x1FFFFF);
-        return key;
+}
+
+// `places`: by texel.
+std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<Place>& places) {
+    places.resize(domain.texelCount());
+    std::pmr::vector<PlacedTile> tiles(places.get_allocator().resource());
+    for (uint32_t t = 0; t < domain.tileCount(); ++t) {
+        PlacedTile tile;
+        tile.corner = t / domain.tilesX * kTileSide * domain.width + t % domain.tilesX * kTileSide;
+        bool any = false;
+        eachTexel(domain, tile.corner, [&](uint32_t texel) {
+            const Place& place = places[texel] = micrometresOf(domain, texel);
+            for (size_t i = 0; i < 3; ++i) {
+                tile.low[i] = any ? std::min(tile.low[i], place[i]) : place[i];
+                tile.high[i] = any ? std::max(tile.high[i], place[i]) : place[i];
+            }
+            any = true;
+        });
+        if (any) tiles.push_back(tile);
+    }
+    return tiles;
+}
+
+// Square of the distance between two boxes; more than `most` squared is as good as that and one.
+int64_t gapOf(const Place& lowA, const Place& highA, const PlacedTile& b, int64_t most) noexcept {
+    int64_t sum = 0;
+    for (size_t i = 0; i < 3; ++i) {
+        const int64_t gap = std::max({lowA[i] - b.high[i], b.low[i] - highA[i], int64_t(0)});
+        if (gap > most) return most * most + 1;
+        sum += gap * gap;
+    }
+    return sum;
+}
+
+struct NearTile {
+    int64_t gap = 0;  // square
+    uint32_t tile = 0;
+    bool operator<(const NearTile& other) const noexcept {
+        return gap != other.gap ? gap < other.gap : tile < other.tile;
     }
 };
 
@@ -49,59 +83,48 @@ struct TexelCells {  // texels by the cell of a grid that they lie in
 
 uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                      std::pmr::vector<uint32_t>& out) {
-    TexelCells cells(out.get_allocator().resource());
-    const double side = std::max({double(from.texelSide), double(to.texelSide), 1e-5});
-    cells.side = std::llround(side * 1.5e6);
-    for (uint32_t i = 0; i < from.texelCount(); ++i)
-        if (from.real(i))
-            cells.entries.push_back({TexelCells::keyOf(cells.cellOf(micrometresOf(from, i))), i});
-    std::sort(cells.entries.begin(), cells.entries.end(), [](const auto& a, const auto& b) {
-        return a.key != b.key ? a.key < b.key : a.texel < b.texel;
-    });
+    std::pmr::memory_resource* memory = out.get_allocator().resource();
+    std::pmr::vector<Place> fromPlaces(memory), toPlaces(memory);
+    const std::pmr::vector<PlacedTile> sources = tilesOf(from, fromPlaces),
+                                       tiles = tilesOf(to, toPlaces);
+    std::pmr::vector<NearTile> near(memory);
     out.assign(to.texelCount(), kNone);
-    const auto farthest = int64_t(double(reach) * 1e6);
-    const int64_t rings = std::max<int64_t>((farthest + cells.side - 1) / cells.side, 1);
+    const auto farthest = int64_t(std::min(double(reach) * 1e6, kFarthest));
     const int64_t least = farthest * farthest;
     uint32_t matched = 0;
-    for (uint32_t i = 0; i < to.texelCount(); ++i) {
-        if (!to.real(i)) continue;
-        const Place place = micrometresOf(to, i), cell = cells.cellOf(place);
-        const gpu::ivec3 normal = gpu::decodeNormal(to.normals[i]);
-        // A texel that faces another way counts as one reach further off.
-        int64_t best = 2 * least + 1;
-        const auto look = [&](const Place& at) {
-            const uint64_t key = TexelCells::keyOf(at);
-            auto one = std::lower_bound(
-                cells.entries.begin(), cells.entries.end(), key,
-                [](const TexelCells::Entry& entry, uint64_t wanted) { return entry.key < wanted; });
-            for (; one != cells.entries.end() && one->key == key; ++one) {
-                const Place there = micrometresOf(from, one->texel);
-                int64_t square = 0;
-                for (size_t k = 0; k < 3; ++k)
-                    square += (there[k] - place[k]) * (there[k] - place[k]);
-                if (square > least) continue;
-                const gpu::ivec3 n = gpu::decodeNormal(from.normals[one->texel]);
-                const int64_t along =
-                    int64_t(n.x) * normal.x + int64_t(n.y) * normal.y + int64_t(n.z) * normal.z;
-                if (along < kFaces) square += least;
-                if (square >= best) continue;
-                best = square;
-                out[i] = one->texel;
+    for (const PlacedTile& tile : tiles) {
+        near.clear();
+        for (uint32_t k = 0; k < sources.size(); ++k)
+            if (const int64_t gap = gapOf(tile.low, tile.high, sources[k], farthest); gap <= least)
+                near.push_back({gap, k});
+        std::sort(near.begin(), near.end());
+        eachTexel(to, tile.corner, [&](uint32_t texel) {
+            const Place& place = toPlaces[texel];
+            const gpu::ivec3 normal = gpu::decodeNormal(to.normals[texel]);
+            uint32_t& taken = out[texel];
+            // A texel that faces another way counts as one reach further off.
+            int64_t best = 2 * least + 1;
+            for (const NearTile& one : near) {
+                if (one.gap > best) break;
+                const PlacedTile& source = sources[one.tile];
+                if (gapOf(place, place, source, farthest) > std::min(best, least)) continue;
+                eachTexel(from, source.corner, [&](uint32_t other) {
+                    const Place& there = fromPlaces[other];
+                    int64_t square = 0;
+                    for (size_t i = 0; i < 3; ++i)
+                        square += (there[i] - place[i]) * (there[i] - place[i]);
+                    if (square > std::min(best, least)) return;
+                    const gpu::ivec3 n = gpu::decodeNormal(from.normals[other]);
+                    const int64_t along =
+                        int64_t(n.x) * normal.x + int64_t(n.y) * normal.y + int64_t(n.z) * normal.z;
+                    if (along < kFaces) square += least;
+                    if (square > best || (square == best && other > taken)) return;
+                    best = square;
+                    taken = other;
+                });
             }
-        };
-        // Outwards, ring by ring, until no further one can hold a nearer texel.
-        for (int64_t ring = 0; ring <= rings; ++ring) {
-            const int64_t nearest = std::max<int64_t>(ring - 1, 0) * cells.side;
-            if (out[i] != kNone && nearest * nearest > best) break;
-            for (int64_t x = -ring; x <= ring; ++x)
-                for (int64_t y = -ring; y <= ring; ++y) {
-                    const bool face = std::abs(x) == ring || std::abs(y) == ring;
-                    const int64_t step = face || ring == 0 ? 1 : 2 * ring;
-                    for (int64_t z = -ring; z <= ring; z += step)
-                        look({cell[0] + x, cell[1] + y, cell[2] + z});
-                }
-        }
-        matched += out[i] != kNone ? 1u : 0u;
+            matched += taken != kNone ? 1u : 0u;
+        });
     }
     return matched;
 }
