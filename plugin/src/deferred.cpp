@@ -93,6 +93,14 @@ void defer(std::pmr::vector<edge::Deferred<What>>& list, const edge::Deferred<Wh
         known->frameIndex = one.frameIndex;
 }
 
+void unregister(edge::Device& device, FwTargetId target) {
+    try {
+        device.unregisterTarget(target);
+    } catch (const core::Error& error) {
+        if (error.result != FW_ERROR_STALE_ID) throw;  // the host has done so meanwhile
+    }
+}
+
 // Takes one that is due off the list.
 template <class What>
 bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed,
@@ -111,27 +119,24 @@ bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed,
 namespace fw::edge {
 
 void destroyDoomed(FwWorld& handle) {
-    const std::lock_guard lock(handle.doomedMutex);
-    for (bool again = !handle.doomed.empty(); again;) {
-        again = false;
-        for (size_t i = 0; i < handle.doomed.size();) {
-            const FwObjectRef object = handle.doomed[i];
-            try {
-                if (!destroyNow(*handle.world, object)) {
-                    ++i;
-                    continue;
-                }
-            } catch (const core::Error& error) {
-                handle.context->log.write(FW_LOG_WARNING, "fwWorld_DestroyLater: %s",
-                                          error.message);
-                if (error.result != FW_ERROR_STALE_ID) {  // the next step tries again
-                    ++i;
-                    continue;
-                }
-            }
-            handle.doomed.erase(handle.doomed.begin() + std::ptrdiff_t(i));
-            again = true;  // what it used may go now
+    std::pmr::vector<FwObjectRef>& due = handle.dooming;
+    {
+        const std::lock_guard lock(handle.doomedMutex);
+        due.insert(due.end(), handle.doomed.begin(), handle.doomed.end());
+        handle.doomed.clear();
+    }
+    const auto goes = [&](const FwObjectRef& object) {
+        try {
+            return destroyNow(*handle.world, object);
+        } catch (const core::Error& error) {
+            handle.context->log.write(FW_LOG_WARNING, "fwWorld_DestroyLater: %s", error.message);
+            return error.result == FW_ERROR_STALE_ID;  // else the next step tries again
+        } catch (...) {
+            return false;  // no memory: so it does
         }
+    };
+    // Until nothing goes: an object's going may free what it used.
+    while (std::erase_if(due, goes) != 0) {
     }
 }
 
@@ -187,7 +192,7 @@ uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIn
             if (world)
                 fwDestroyWorld(world);
             else
-                c.device->unregisterTarget(target);
+                unregister(*c.device, target);
         }
     });
     return waiting;

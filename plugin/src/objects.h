@@ -57,7 +57,10 @@ struct FwContext {
 
 struct FwWorld {
     explicit FwWorld(FwContext* owner)
-        : context(owner), snapshot(&owner->memory), doomed(&owner->memory) {}
+        : context(owner),
+          snapshot(&owner->memory),
+          doomed(&owner->memory),
+          dooming(&owner->memory) {}
 
     FwContext* context;
     fw::edge::LastMessage message;
@@ -71,7 +74,9 @@ struct FwWorld {
     std::atomic<uint64_t> newestFrame{0};  // that it has begun to step or record
     fw::edge::Snapshot snapshot;
     std::mutex doomedMutex;
-    std::pmr::vector<FwObjectRef> doomed;  // fwWorld_DestroyLater, in the order of the calls
+    std::pmr::vector<FwObjectRef> doomed;  // fwWorld_DestroyLater, since the last step
+    // Of the thread that steps: what earlier calls named and something still uses, in their order.
+    std::pmr::vector<FwObjectRef> dooming;
 };
 
 namespace fw::edge {
