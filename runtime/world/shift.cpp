@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace fw::world {
 namespace {
@@ -21,9 +22,15 @@ void moveBy(double (&place)[3], const double (&by)[3]) noexcept {
 void moveBy(gpu::vec3& place, const double (&by)[3]) noexcept {
     for (int i = 0; i < 3; ++i) place[i] = float(double(place[i]) + by[i]);
 }
+// mm by m. Wraps where a load goes to an origin so far off that only its save has places there.
+template <class Whole>
+void moveMillimetres(Whole& place, double by) noexcept {
+    using Wraps = std::make_unsigned_t<Whole>;
+    place = Whole(Wraps(place) + Wraps(int64_t(by * 1000)));
+}
 template <class Whole>
 void moveMillimetres(std::array<Whole, 3>& place, const double (&by)[3]) noexcept {
-    for (size_t i = 0; i < 3; ++i) place[i] += Whole(by[i] * 1000);
+    for (size_t i = 0; i < 3; ++i) moveMillimetres(place[i], by[i]);
 }
 void moveJet(components::JetStream& stream, const double (&by)[3]) noexcept {
     for (components::JetPatches* patches : {&stream.patches, &stream.before})
@@ -55,10 +62,9 @@ void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
     gpu::ivec4* rows[] = {&record.row0, &record.row1, &record.row2};
     gpu::ivec4* lows[] = {&record.turn0, &record.turn1, &record.turn2};
     for (int i = 0; i < 3; ++i) {
-        const int mm = int(by[i] * 1000);
-        rows[i]->w += mm;
-        lows[i]->w += mm;
-        record.high[i] += mm;
+        moveMillimetres(rows[i]->w, by[i]);
+        moveMillimetres(lows[i]->w, by[i]);
+        moveMillimetres(record.high[i], by[i]);
     }
 }
 
@@ -174,7 +180,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
         if (BlockerEntry* blocker = blockers_.at(i)) moveBy(blocker->pose.translation, by);
     for (gpu::Blocker& blocker : remote_.blockers) {
         gpu::ivec4* turns[] = {&blocker.turn0, &blocker.turn1, &blocker.turn2};
-        for (int i = 0; i < 3; ++i) turns[i]->w += int(by[i] * 1000);
+        for (int i = 0; i < 3; ++i) moveMillimetres(turns[i]->w, by[i]);
     }
     remote_.unsent |= !remote_.blockers.empty();
     if (shield_.grid.shape.cells() != 0) {

@@ -189,22 +189,6 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Load(w.world, nullptr, 0));
 }
 
-// The sum that a save's header has, so that what is behind it is looked at.
-void signSave(Bytes& bytes) {
-    uint64_t hash = 1469598103934665603ull;
-    size_t at = 24;
-    for (; at + 8 <= bytes.size(); at += 8) {
-        uint64_t word = 0;
-        std::memcpy(&word, &bytes[at], 8);
-        hash = (hash ^ word) * 1099511628211ull;
-        hash ^= hash >> 29;
-    }
-    for (; at < bytes.size(); ++at) hash = (hash ^ bytes[at]) * 1099511628211ull;
-    const uint64_t size = bytes.size() - 24;
-    std::memcpy(&bytes[8], &size, 8);
-    std::memcpy(&bytes[16], &hash, 8);
-}
-
 // With a right checksum: it is loaded or refused with a message, and the world lives on.
 TEST(Save, DamagedOnesNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);

@@ -259,6 +259,30 @@ TEST(ShiftOrigin, SavesAndTimelinesGoBackToTheirOrigin) {
 }
 
 // A log with a shift in it plays.
+// From one end of space to the other: no place of the loading world overflows on the way.
+TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
+    ShiftedWorld w(FW_BACKEND_CPU);
+    w.shift(512, 0, 64);
+    w.run(40);
+    Bytes bytes = saveOf(w.world);
+    const double origin[3] = {512, 0, 64}, far[3] = {1e9, 0, -1e9};
+    const auto* begin = reinterpret_cast<const unsigned char*>(origin);
+    const auto at = std::find_end(bytes.begin(), bytes.end(), begin, begin + sizeof origin);
+    ASSERT_NE(bytes.end(), at);
+    std::memcpy(&*at, far, sizeof far);
+    signSave(bytes);
+    ShiftedWorld other(FW_BACKEND_CPU);
+    other.shift(-900000, 0, 0);
+    other.ok(fwWorld_Load(other.world, bytes.data(), bytes.size()));
+    double now[3] = {};
+    other.ok(fwWorld_GetOrigin(other.world, now));
+    EXPECT_EQ(1e9, now[0]);
+    EXPECT_EQ(w.hash(), other.hash());
+    w.run(20);
+    other.run(20);
+    EXPECT_EQ(w.hash(), other.hash());
+}
+
 TEST(ShiftOrigin, IsInLogs) {
     ShiftedWorld w(FW_BACKEND_CPU), other(FW_BACKEND_CPU);
     const Bytes start = saveOf(w.world);
