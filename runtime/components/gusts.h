@@ -24,10 +24,11 @@ struct Gusts {
 // From `tick` on another wind will blow than `wind`, which did until then.
 void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noexcept;
 
-// `here`, as gusts have it at a place; `wind`: with which they drift. The same for a quarter of a
-// second, as fronts hear of wind no more often.
 // They go along with a world whose places all move by whole metres.
 void moveGusts(Gusts& gusts, const double by[3]) noexcept;
+
+// `here`, as gusts have it at a place; `wind`: with which they drift. The same for a quarter of a
+// second, as fronts hear of wind no more often.
 [[nodiscard]] fire::WindVector gustOf(const Gusts& gusts, uint32_t seed,
                                       const fire::WindVector& wind, const fire::WindVector& here,
                                       const WindPlace& place, uint64_t tick) noexcept;

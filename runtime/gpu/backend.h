@@ -57,7 +57,7 @@ struct RemoteUpdate {
         uint32_t first = 0, count = 0;
     };
     std::span<const Placed> objects;  // that changed
-    // All lists, in one array that never gets shorter: slot | what is seen of it, of 255, << 24.
+    // All lists in one array: slot | what is seen of it, of 255, << 24.
     std::span<const uint32_t> neighbours;
     std::span<const Range> neighbourRanges;  // of it, that changed
     // The same of links. Those of one (object, texel) are side by side; kNoneTexel: of no object.

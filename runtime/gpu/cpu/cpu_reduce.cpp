@@ -30,7 +30,8 @@ uint64_t cellKey(const BurnTile& tile) {
 
 }  // namespace
 
-// What burns of a tile; of thick fuel its power is `fire` W. Its place, normal and age with it.
+// Sums the burning texels of a tile: place, normal, age and power. `fire`: W that its thick fuel
+// gives off; `nominal`: each burning texel gives off its material's power instead.
 BurnTile CpuBackend::State::burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                        float fire) const noexcept {
     const CpuObject& object = *objects[tiles[worldTile].object];
