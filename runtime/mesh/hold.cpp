@@ -27,20 +27,21 @@ void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
 
 }  // namespace
 
-void findPieces(const BurnDomain& domain, Pieces& pieces) {
+void findPieces(const BurnDomain& domain, std::span<const uint8_t> gone, Pieces& pieces) {
     pieces.of.assign(domain.texelCount(), kNone);
     pieces.count = 0;
     std::pmr::vector<uint32_t> stack(pieces.of.get_allocator());
+    const auto joins = [&](uint32_t texel) {
+        if (!domain.real(texel) || pieces.of[texel] != kNone || (!gone.empty() && gone[texel]))
+            return false;
+        pieces.of[texel] = pieces.count;
+        return true;
+    };
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
-        if (!domain.real(i) || pieces.of[i] != kNone) continue;
-        const uint32_t piece = pieces.count++;
-        const auto joins = [&](uint32_t texel) {
-            if (!domain.real(texel) || pieces.of[texel] != kNone) return false;
-            pieces.of[texel] = piece;
-            return true;
-        };
-        if (joins(i)) stack.push_back(i);
+        if (!joins(i)) continue;
+        stack.push_back(i);
         spread(domain, stack, joins);
+        ++pieces.count;
     }
 }
 

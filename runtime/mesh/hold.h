@@ -6,14 +6,14 @@
 
 namespace fw::mesh {
 
-// The parts that a mesh consists of as it was made: by texel, and how many.
+// The parts that an object consists of as it was made: by texel, and how many.
 struct Pieces {
     explicit Pieces(std::pmr::memory_resource* memory) : of(memory) {}
-    std::pmr::vector<uint32_t> of;  // kNone: the texel is none
+    std::pmr::vector<uint32_t> of;  // kNone: the texel is none, or cut out
     uint32_t count = 0;
 };
-// Throws std::bad_alloc.
-void findPieces(const BurnDomain& domain, Pieces& pieces);
+// `gone`: by texel, 1 where the object is cut out; empty: nowhere. Throws std::bad_alloc.
+void findPieces(const BurnDomain& domain, std::span<const uint8_t> gone, Pieces& pieces);
 
 enum HoldMark : uint8_t {  // of a texel
     kHoldStands = 1,       // it is real, and there: neither gone nor lost

@@ -129,7 +129,7 @@ PartWay partWay(const BurnDomain& domain, std::span<const gpu::BurnMaterial> mat
 void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
     domain.partLinks.clear();
     Pieces pieces(memory);
-    findPieces(domain, pieces);
+    findPieces(domain, {}, pieces);
     if (pieces.count < 2) return;
     const double units = 1 / std::max(double(domain.quantum), 1e-12);
     const int gap = int(std::min(gpu::kContactGap / 1000.0 * units, double(kFarthest)));

@@ -27,18 +27,20 @@ uint64_t areaOf(const mesh::BurnDomain& domain, uint32_t texel) noexcept {
 }  // namespace
 
 // Null where the host does not ask.
-core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry) {
+core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
+                                      std::span<const uint8_t> gone) {
     components::checkValue(def.breakShare, "FwBurnableMeshDef::breakShare", 0, 1);
     components::checkValue(def.breakArea, "FwBurnableMeshDef::breakArea", 0, 1e6f);
     if (def.breakShare == 0 && def.breakArea == 0) return {};
     const mesh::BurnDomain& domain = *entry.domain;
-    if (!entry.pieces) {
-        auto pieces = core::Owned<mesh::Pieces>::make(memory_, memory_);
-        mesh::findPieces(domain, *pieces);
-        entry.pieces = std::move(pieces);
-    }
-    mesh::reserveHold(domain, *entry.pieces, holds_);
     auto breaks = core::Owned<Breaks>::make(memory_, memory_);
+    core::Owned<mesh::Pieces>& pieces = gone.empty() ? entry.pieces : breaks->pieces;
+    if (!pieces) {
+        auto made = core::Owned<mesh::Pieces>::make(memory_, memory_);
+        mesh::findPieces(domain, gone, *made);
+        pieces = std::move(made);
+    }
+    mesh::reserveHold(domain, *pieces, holds_);
     breaks->share = def.breakShare;
     breaks->area = def.breakArea;
     if ((def.flags & FW_BURNABLE_SHELL) != 0) {
@@ -75,6 +77,11 @@ void World::commitBreaks(uint64_t frameIndex) noexcept {
     }
 }
 
+const mesh::Pieces& World::piecesOf(const Object& object) noexcept {
+    return object.breaks->pieces ? *object.breaks->pieces
+                                 : *meshes_.at(object.data.meshSlot)->pieces;
+}
+
 // Texels that bear the rest: where it is pinned, or what it stands on.
 void World::markBearers(const Object& object) noexcept {
     const mesh::BurnDomain& domain = domainOf(object);
@@ -94,8 +101,7 @@ void World::markBearers(const Object& object) noexcept {
         int32_t up[3];
         for (size_t i = 0; i < 3; ++i) up[i] = int32_t(std::lround(rises[i] / most * 1024));
         const float reach = kFeetReach * 1024 * domain.texelSide / domain.quantum;
-        mesh::markFeet(domain, *meshes_.at(object.data.meshSlot)->pieces, up, int64_t(reach),
-                       holds_);
+        mesh::markFeet(domain, piecesOf(object), up, int64_t(reach), holds_);
         return;
     }
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
@@ -135,8 +141,9 @@ void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
     uint64_t all = 0, gone = 0;
     breaks.waits = false;
     holds_.marks.assign(domain.texelCount(), 0);
+    const mesh::Pieces& pieces = piecesOf(object);
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
-        if (!domain.real(i)) continue;
+        if (pieces.of[i] == mesh::kNone) continue;
         const uint64_t area = areaOf(domain, i);
         all += area;
         const uint32_t t = ticks[i], opens = holes[texelMaterial(object, i)];

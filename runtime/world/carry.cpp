@@ -11,12 +11,6 @@ namespace {
 
 constexpr float kReachOfBox = 0.05f, kReachOfTexel = 2;  // of its diagonal, and of a texel's side
 
-bool isCarry(const PendingTexel& event) noexcept {
-    return gpu::eventKind(event.kind) == gpu::kEventCarry;
-}
-uint32_t carriedFrom(const PendingTexel& event) noexcept {
-    return (event.kind >> gpu::kEventKindBits) - 1;
-}
 uint32_t endOfStep(uint32_t tick) noexcept {
     return (tick / gpu::kStepTicks + 1) * gpu::kStepTicks;
 }
@@ -72,27 +66,57 @@ void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     to.firstEvent = std::min(to.firstEvent, now);
     from.carryEnd = to.carryEnd = endOfStep(now);
     carriesUntil_ = std::max<uint64_t>(carriesUntil_, to.carryEnd);
-    to.carried = true;
-    // Its fire is the other's.
+    note({Deed::Kind::transferBurn, to.slot, 0, from.slot + 1, {}});
+}
+
+// With the readback of the frame that carried it: its fire is the other's, its own counts stay.
+void World::continueBurn(Object& to, const Story& from) noexcept {
     Story& story = to.story;
     const Story before = story;
-    story = from.story;
+    story = from;
     story.mostIgnited = before.mostIgnited;
     story.clampsTold = before.clampsTold;
     story.spotsTold = before.spotsTold;
     story.energy = before.energy;
     story.heatSteps = before.heatSteps;
     story.flames = story.wentOut = 0;
-    note({Deed::Kind::transferBurn, to.slot, 0, from.slot + 1, {}});
+    to.carried = true;
 }
 
-// Within a step no other event may be of a texel that is copied.
+void World::keepGiven(const Object& from) {
+    for (Stimulus& one : stimuli_)
+        if (one.from1 == from.slot + 1) one.given = core::Owned<Story>::make(memory_, from.story);
+}
+
+// Of a save. Throws FW_ERROR_BAD_DATA.
+void World::checkCarry(const PendingTexel& event, const Clock& clock) {
+    const uint32_t slot = carriedFrom(event);
+    const auto* owned = slot < objects_.slotCount() ? objects_.at(slot) : nullptr;
+    const Object& to = **objects_.at(event.object);
+    if (!owned || slot == event.object || event.tick > clock.tick ||
+        event.water >= domainOf(**owned).texelCount() || !domainOf(**owned).real(event.water) ||
+        (((*owned)->data.flags | to.data.flags) & FW_BURNABLE_PUBLISHED) != 0 ||
+        components::hasHeat((*owned)->data) != components::hasHeat(to.data))
+        core::fail(
+            FW_ERROR_BAD_DATA,
+            "The save carries the burn of burnable mesh %u, texel %u, to burnable mesh %u at "
+            "tick %u, and is of tick %llu. That cannot be.",
+            slot + 1, event.water, event.object + 1, event.tick,
+            static_cast<unsigned long long>(clock.tick));
+}
+
+// Within a step no other event may be of a texel that is copied, nor pass through one as a hole.
 void World::waitForCarries() noexcept {
     if (clock_.tick >= carriesUntil_) return;
-    for (PendingTexel& event : pending_)
-        if (const auto* object = objects_.at(event.object);
-            object && (*object)->carryEnd > event.tick && !isCarry(event))
-            event.tick = (*object)->carryEnd;
+    for (PendingTexel& event : pending_) {
+        if (isCarry(event)) continue;
+        const auto waitFor = [&](uint32_t slot) {
+            if (const auto* object = objects_.at(slot))
+                event.tick = std::max(event.tick, (*object)->carryEnd);
+        };
+        waitFor(event.object);
+        for (uint32_t k = 0; k < event.gateCount; ++k) waitFor(event.gates[k].object);
+    }
 }
 
 bool World::gives(uint32_t slot) const noexcept {
@@ -102,13 +126,17 @@ bool World::gives(uint32_t slot) const noexcept {
            });
 }
 
-void World::settleCarries() noexcept {
-    for (const PendingTexel& event : pending_)
+void World::settlePending() noexcept {
+    carriesUntil_ = wetUntil_ = 0;
+    for (const PendingTexel& event : pending_) {
+        if (event.kind == FW_WET)
+            wetUntil_ = std::max<uint64_t>(wetUntil_, event.tick + uint64_t(gpu::kStepTicks));
         if (isCarry(event))
             for (const uint32_t slot : {event.object, carriedFrom(event)}) {
                 (*objects_.at(slot))->carryEnd = endOfStep(event.tick);
                 carriesUntil_ = std::max<uint64_t>(carriesUntil_, endOfStep(event.tick));
             }
+    }
 }
 
 }  // namespace fw::world

@@ -2,12 +2,14 @@
 // burning clusters become lights with ids that stay. Allocates nothing itself.
 #include "world/world.h"
 
+#include "core/growth.h"
 #include "core/hash.h"
 #include "world/save.h"
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
 namespace fw::world {
 namespace {
@@ -109,10 +111,8 @@ void World::collectReadbacks() {
 void World::reserveStimuli() {
     const size_t most = std::min<size_t>(
         frame_.due.size() + frame_.latches.size() + frame_.plays.size(), objects_.live());
-    if (const size_t all = stimuli_.size() + most; stimuli_.capacity() < all)
-        stimuli_.reserve(std::max(all, stimuli_.capacity() * 2));
-    if (frameNotes_.capacity() == frameNotes_.size())
-        frameNotes_.reserve(std::max<size_t>(frameNotes_.size() * 2, kFramesInFlight));
+    core::growTo(stimuli_, stimuli_.size() + most);
+    core::growTo(frameNotes_, frameNotes_.size() + 1);
 }
 
 // The one of the frame that is being committed.
@@ -171,6 +171,8 @@ void World::takeStimuli(uint64_t frameIndex) noexcept {
         Object& object = **objects_.at(one.slot);
         Story& story = object.story;
         if (--object.stimuli == 0) object.ignites = false;
+        if (one.from1 != 0)
+            continueBurn(object, one.given ? *one.given : (*objects_.at(one.from1 - 1))->story);
         if (one.first) story.heatSteps = one.heatSteps;
         if (one.starts) {
             story.active = true;
@@ -303,9 +305,7 @@ void World::takeEnergy(Object& object, uint32_t endTick) noexcept {
     const uint64_t steps = heatStepsBefore(endTick);
     if (steps == object.story.heatSteps) return;
     const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
-    if (object.carried && endTick >= object.carryEnd)
-        object.carried = false;
-    else
+    if (!std::exchange(object.carried, false))
         object.story.power = now.burning == 0 ? 0.0f
                                               : float(double(energy - object.story.energy) /
                                                       1048576 / seconds / double(def_.paceFactor));

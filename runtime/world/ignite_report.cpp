@@ -9,6 +9,8 @@ namespace fw::world {
 
 namespace {
 
+constexpr float kWholeWorld = 4 * 4e6f;  // m: a search of a quarter of it finds every object
+
 // m, between a point and an object's surface: first to its box, which is cheap, then to its texels.
 struct Nearest {
     const Object* object = nullptr;
@@ -34,7 +36,7 @@ float distanceToBox(const float point[3], const mesh::BurnDomain& domain) noexce
 bool World::lightsSomething(size_t first) const noexcept {
     const auto getsWet = [&](const PendingTexel& match) {
         bool wet = false;
-        for (size_t i = 0; i < first; ++i) {
+        for (size_t i = 0; i < first && clock_.tick <= wetUntil_; ++i) {
             const PendingTexel& one = pending_[i];
             if (one.object != match.object || one.tick > match.tick ||
                 (one.texel != match.texel && one.texel != kAllTexels))
@@ -48,9 +50,7 @@ bool World::lightsSomething(size_t first) const noexcept {
     for (size_t i = first; i < pending_.size(); ++i) {
         const PendingTexel& match = pending_[i];
         const Object& object = **objects_.at(match.object);
-        if (match.texel == kAllTexels
-                ? object.texels == 0
-                : !components::burns(object.data, texelMaterial(object, match.texel)))
+        if (match.texel == kAllTexels ? object.texels == 0 : !canBurn(object, match.texel))
             continue;
         if (++asked > kMostAsked || !getsWet(match)) return true;
     }
@@ -58,7 +58,7 @@ bool World::lightsSomething(size_t first) const noexcept {
 }
 
 void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
-                                std::span<char> text) const noexcept {
+                                std::span<char> text) noexcept {
     const float* at = def.position;
     char ball[96];
     std::snprintf(ball, sizeof ball, "The ball of %g m at (%g, %g, %g)", double(def.radius),
@@ -67,27 +67,38 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
         std::snprintf(
             text.data(), text.size(),
             "%s lights nothing: none of the %u texels in it can burn. Their material is "
-            "noncombustible or too moist, their multiplier is 0, or water is on its way to them. "
-            "Give them a material with a spreadRate above 0, or dry them (FW_DRY).",
+            "noncombustible or too moist, their multiplier is 0, their picture is cut out there, "
+            "or "
+            "water is on its way to them. Give them a material with a spreadRate above 0, or dry "
+            "them (FW_DRY).",
             ball, texels);
         return;
     }
     Nearest nearest;
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        const core::Owned<Object>* owned = objects_.at(slot);
-        if (!owned || (def.object.index1 != 0 && def.object.index1 != slot + 1)) continue;
-        const Object& object = **owned;
+    const auto meet = [&](const Object& object) {
         float point[3];
         components::toObject(object.data.pose, at, point);
-        if (!object.skinMoved &&
-            nearest.beats(distanceToBox(point, domainOf(object)) * object.data.pose.scale))
-            continue;
+        const components::Pose& pose = object.data.pose;
+        const float shortest =
+            pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
+        if (!object.skinMoved && nearest.beats(distanceToBox(point, domainOf(object)) * shortest))
+            return;
         const uint32_t texel = nearestTexel(object, point, 1e18f);
-        if (texel == mesh::kNone) continue;
+        if (texel == mesh::kNone) return;
         float place[3], squared = 0;
         texelPosition(object, texel, place);
         for (int i = 0; i < 3; ++i) squared += (place[i] - at[i]) * (place[i] - at[i]);
         if (!nearest.beats(std::sqrt(squared))) nearest = {&object, std::sqrt(squared)};
+    };
+    if (def.object.index1 != 0) meet(**objects_.find(def.object));
+    // Searches that grow until one reaches as far as the nearest: a miss costs no look at all
+    // objects. An object whose vertices the host moved is in each search.
+    const float first = std::max(def.radius, 1.0f);
+    for (float reach = first; def.object.index1 == 0 && reach < kWholeWorld; reach *= 4) {
+        for (const uint32_t slot : objectsNear(at, reach))
+            if (const Object& object = **objects_.at(slot); !object.skinMoved || reach == first)
+                meet(object);
+        if (nearest.beats(reach)) break;
     }
     if (!nearest.object)
         std::snprintf(text.data(), text.size(),
@@ -95,8 +106,7 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
     else
         std::snprintf(text.data(), text.size(),
                       "%s reaches nothing: the nearest burnable mesh, %u, is %.3g m away. Move the "
-                      "ball there, "
-                      "or give it a radius of that much.",
+                      "ball there, or give it a radius of that much.",
                       ball, nearest.object->id.index1, double(nearest.metres));
 }
 

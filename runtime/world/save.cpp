@@ -385,8 +385,6 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     noteEvents(save);
     size_t next = 0, from = 0;
     for (SavedObject& object : saved.objects) {
-        object.carried = (*objects_.at(object.slot))->carried;
-        object.story = (*objects_.at(object.slot))->story;
         if (!object.touched) {
             if (object.slot < readback.objects.size())
                 object.air = readback.objects[object.slot].air;
@@ -403,6 +401,8 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         object.breaks = end.breaks;
         object.breaks.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
         from = end.all;
+        object.carried = (*objects_.at(object.slot))->carried;
+        object.story = (*objects_.at(object.slot))->story;
         object.counters = image.counters;
         object.counters.refined = 0;
         // Of what the backend alone knew at that frame.
@@ -543,12 +543,12 @@ void World::checkSaved(const SavedWorld& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
                    saved.pending.size(), kMaxPending);
     for (const PendingTexel& event : saved.pending) {
-        if (event.texel == kAllTexels)
+        if (event.texel == kAllTexels && event.kind <= gpu::kEventExtinguish)
             checkObject(event.object, "an event");
         else
             checkTexel(event.object, event.texel, "an event");
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
-            checkTexel((event.kind >> gpu::kEventKindBits) - 1, event.water, "a burn to carry");
+            checkCarry(event, clock);
         else if (event.kind > gpu::kEventHeat)
             core::fail(FW_ERROR_BAD_DATA, "The save has an event of kind %u; the limit is %u.",
                        event.kind, gpu::kEventHeat);
@@ -824,8 +824,7 @@ void World::load(std::span<const std::byte> bytes) {
     }
     tags_.swap(tags);
     pending_.swap(saved.pending);
-    carriesUntil_ = 0;
-    settleCarries();
+    settlePending();
     for (SavedField& field : saved.fields)
         if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
 }

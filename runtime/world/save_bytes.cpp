@@ -353,7 +353,6 @@ void put(S& s, T& o) {
     all(s, o.touched, o.carried);
     if (!o.touched) {
         put(s, o.air);
-        if (o.carried) put(s, o.story);  // of the burn that it gets with the next step
         return;
     }
     all(s, o.filters, o.latched, o.story);

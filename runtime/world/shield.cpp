@@ -167,6 +167,10 @@ void World::takeShieldObject(const Deed& deed) {
     if (deed.slot != 0 && (deed.slot > objects_.slotCount() || !objects_.at(deed.slot - 1)))
         core::fail(FW_ERROR_BAD_DATA, "A deed shields by object %u, which is not there.",
                    deed.slot);
+    if (deed.slot != 0 && shield_.told.size() >= objects_.live())
+        core::fail(FW_ERROR_BAD_DATA,
+                   "Commands name more objects for one shield than the %u that there are.",
+                   objects_.live());
     if (deed.slot != 0) shield_.told.push_back(deed.slot - 1);
     if (deed.word != 0) {
         std::pmr::vector<uint32_t> slots(memory_);

@@ -315,6 +315,7 @@ void World::commitFrame(uint64_t frameIndex, const ClockAdvance& time) noexcept 
         Stimulus& stimulus = stimulusOf(object, frameIndex);
         stimulus.starts = true;
         stimulus.latest = std::max<uint64_t>(stimulus.latest, due.event.tick);
+        if (isCarry(due.event)) stimulus.from1 = carriedFrom(due.event) + 1;
         if (due.event.kind == FW_IGNITE) {
             const uint32_t texel =
                 due.event.texel == kAllTexels ? firstReal(domainOf(object)) : due.event.texel;

@@ -404,11 +404,9 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.data.meshSlot = meshSlot;
     const mesh::BurnDomain& domain = *mesh.domain;
     const std::span<const uint8_t> gone = goneOf(def, mesh);
-    std::pmr::vector<uint16_t> slowness = components::makeSlowness(def, domain, gone, memory_);
+    object.slowness = components::makeSlowness(def, domain, gone, memory_);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
-        if (domain.real(i) && (slowness.empty() ? domain.slowness[i] : slowness[i]) != 0 &&
-            components::burns(object.data, domain.texels[i].materialFlags & 0xFF))
-            ++object.texels;
+        object.texels += canBurn(object, i) ? 1u : 0u;
 
     const components::DriveInput drive = driveInput(object, clock_.tick);
     components::resetLatch(object.data, drive, object.latch);
@@ -422,7 +420,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.room1 = roomOf(object);
     init.record.flags |= object.room1 << gpu::kObjectRoomShift;
     init.materials = records.materials;
-    init.slowness = slowness;
+    init.slowness = object.slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
     std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
     if (components::keepsBook(object.data)) {
@@ -466,9 +464,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
     object.remoteDue = true;
     object.firstFrame = lastFrame_ + 1;
-    object.breaks = makeBreaks(def, mesh);
-    object.slowness = std::move(slowness);
-    init.slowness = object.slowness;
+    object.breaks = makeBreaks(def, mesh, gone);
     const uint32_t burnable = object.texels;
     const FwBurnableMeshId id = objects_.create(std::move(owned));
     object.id = id;
@@ -580,6 +576,7 @@ void World::destroyBurnableMesh(FwBurnableMeshId id) {
             "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
             "that.",
             id.index1);
+    keepGiven(object);
     ++geometry_;
     const uint32_t slot = object.slot;
     countImages(object.data, false);
@@ -755,7 +752,8 @@ void World::placeNow(const Object& object) {
             high[i] = std::max(high[i], 1000.0 * double(at[i]) + around);
         }
     }
-    // Balls are as wide as along the shortest axis, in object space.
+    // Balls are as wide as along the shortest axis, in object space. Rare: a scale per axis that an
+    // object was made with is its shape's.
     if (longest > 1.001f * shortest)
         for (int i = 0; i < 3; ++i) low[i] = -(high[i] = kFarthest);
     places_.place(object.slot, boxAround(low, high), 0);
@@ -780,6 +778,7 @@ void World::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t wa
                        std::span<const uint32_t> texels) {
     findPendingRoom(texels.size());
     object.firstEvent = std::min(object.firstEvent, tick);
+    if (kind == FW_WET) wetUntil_ = std::max<uint64_t>(wetUntil_, tick + gpu::kStepTicks);
     for (uint32_t texel : texels)
         pending_.push_back({object.slot, texel, kind, tick, water, order_++});
 }
@@ -787,6 +786,12 @@ void World::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t wa
 uint32_t World::nearTexel(const Object& object, const float point[3], float reach) const noexcept {
     if (!object.skinMoved && !nearBounds(point, domainOf(object), reach)) return mesh::kNone;
     return nearestTexel(object, point, reach);
+}
+
+bool World::canBurn(const Object& object, uint32_t texel) const noexcept {
+    const mesh::BurnDomain& domain = domainOf(object);
+    return (object.slowness.empty() ? domain.slowness : object.slowness)[texel] != 0 &&
+           components::burns(object.data, texelMaterial(object, texel));
 }
 
 uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick) {

@@ -97,27 +97,12 @@ struct Breaks {
     bool hangs = false;           // from its pins; else it stands
     std::array<FwPin, 8> pins{};  // object space
     uint32_t pinCount = 0;
-    std::pmr::vector<bool> lost;  // by texel: it hung on nothing when it was last looked for
+    std::pmr::vector<bool> lost;       // by texel: it hung on nothing when it was last looked for
+    core::Owned<mesh::Pieces> pieces;  // of an object with cut-outs; null: its mesh's
     bool shareTold = false;
     bool waits = false;               // some of what caught is not gone yet
     std::array<uint64_t, 8> looks{};  // frames whose state of it is on its way, oldest first
     uint32_t lookCount = 0;
-};
-
-// Effects of one frame on an object's fire. The object's record applies them with the readback of
-// that frame, so that events and saves are alike however late readbacks come.
-struct Stimulus {
-    uint64_t frameIndex = 0;
-    uint32_t slot = 0;
-    bool first = false;   // the first that ever addressed the object
-    bool starts = false;  // its front or flames may move
-    bool ignites = false, douses = false;
-    uint64_t heatSteps = 0;  // of `first`: steps of heat before it
-    uint64_t latest = 0;     // of `starts`: tick of the last event
-    uint64_t ignition = 0;   // of `ignites`: tick, and m in object space
-    float ignitionPoint[3] = {};
-    uint64_t douse = 0;       // of `douses`: tick
-    uint32_t douseCause = 0;  // FwExtinguishCause of that
 };
 
 // A frame whose readback is on its way, as the count of steps and sleep follow from it.
@@ -151,6 +136,24 @@ struct Story {
     uint32_t clampsTold = 0;             // late clamps that an event has told
     uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
     float power = 0;                     // W, at pace 1; of objects with heat
+};
+
+// Effects of one frame on an object's fire. The object's record applies them with the readback of
+// that frame, so that events and saves are alike however late readbacks come.
+struct Stimulus {
+    uint64_t frameIndex = 0;
+    uint32_t slot = 0;
+    bool first = false;   // the first that ever addressed the object
+    bool starts = false;  // its front or flames may move
+    bool ignites = false, douses = false;
+    uint64_t heatSteps = 0;  // of `first`: steps of heat before it
+    uint64_t latest = 0;     // of `starts`: tick of the last event
+    uint64_t ignition = 0;   // of `ignites`: tick, and m in object space
+    float ignitionPoint[3] = {};
+    uint64_t douse = 0;       // of `douses`: tick
+    uint32_t douseCause = 0;  // FwExtinguishCause of that
+    uint32_t from1 = 0;       // slot + 1 of the object whose burn is carried to this one; 0: none
+    core::Owned<Story> given{};  // of that other one, if it is gone before the readback comes
 };
 
 struct Object {
@@ -193,11 +196,10 @@ struct Object {
     core::Owned<Forecast> forecast;  // null: never asked for
     core::Owned<Breaks> breaks;      // null: not asked for
     uint64_t changes = 0;            // of what its fire will do, that we know of
-    // A burn is carried from or to it: its other events wait until the end of that step; then what
-    // it was given counts as no power of its own.
+    // A burn is carried from or to it: its other events wait until the end of that step.
     uint32_t carryEnd = 0;  // tick
-    bool carried = false;
-    Play play;  // the baked burn that it plays
+    bool carried = false;   // from another: what it got so far counts as no power of its own
+    Play play;              // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
     std::pmr::vector<float> skin, skinNormals;
@@ -412,6 +414,12 @@ struct PendingTexel {  // an event that waits for its step; texel kAllTexels: of
     uint32_t gateCount = 0;
     bool shut = false;
 };
+inline bool isCarry(const PendingTexel& event) noexcept {
+    return gpu::eventKind(event.kind) == gpu::kEventCarry;
+}
+inline uint32_t carriedFrom(const PendingTexel& event) noexcept {  // slot
+    return (event.kind >> gpu::kEventKindBits) - 1;
+}
 
 // All that blows.
 struct Winds {
@@ -493,7 +501,7 @@ class World {
     uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
     // Why a match that addressed so many texels lights nothing, for people.
     void explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
-                             std::span<char> text) const noexcept;
+                             std::span<char> text) noexcept;
     void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
 
     FwVolumetricFireId createVolumetricFire(const FwVolumetricFireDef& def);
@@ -620,8 +628,10 @@ class World {
     // Appends what the world keeps of objects in this machine's memory, as the last step left it.
     // [any]
     void memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const;
-    // Boxes of objects that were compared to find neighbours, since the world was made.
+    // Boxes of objects that were compared to find neighbours, since the world was made; and to find
+    // those near a place.
     [[nodiscard]] uint64_t pairsExamined() const noexcept { return remote_.neighbours.examined(); }
+    [[nodiscard]] uint64_t placesExamined() const noexcept { return places_.examined(); }
 
     // flamewright_debug.h
     void requestBurnMap(FwBurnableMeshId id);
@@ -914,8 +924,11 @@ class World {
                const float position[3], float value, FwBurnableMeshId other = {}) noexcept;
     // carry.cpp
     void waitForCarries() noexcept;
+    void continueBurn(Object& to, const Story& from) noexcept;
+    void keepGiven(const Object& from);                      // before it is destroyed; throws
     [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
-    void settleCarries() noexcept;                           // after a load
+    void checkCarry(const PendingTexel& event, const Clock& clock);  // of a save; throws
+    void settlePending() noexcept;                                   // after a load
     // arrivals.cpp
     [[nodiscard]] uint64_t changesOf(const Object& object) const noexcept {
         return object.changes + driveChanges_;
@@ -925,7 +938,9 @@ class World {
                       const gpu::Readback& readback) noexcept;
     void runForecasts() noexcept;
     // breaks.cpp
-    core::Owned<Breaks> makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry);
+    core::Owned<Breaks> makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
+                                   std::span<const uint8_t> gone);
+    [[nodiscard]] const mesh::Pieces& piecesOf(const Object& object) noexcept;  // it has breaks
     void planBreaks(uint64_t end) noexcept;
     void commitBreaks(uint64_t frameIndex) noexcept;
     void markBearers(const Object& object) noexcept;
@@ -1004,6 +1019,7 @@ class World {
     std::span<const uint8_t> goneOf(const FwBurnableMeshDef& def, MeshEntry& mesh);
     FwBurnableMeshId createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
                               core::Owned<Object> owned);
+    [[nodiscard]] bool canBurn(const Object& object, uint32_t texel) const noexcept;
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
     void findPendingRoom(size_t more);  // throws
     // Boxes of objects as their poses are now, for what asks who is somewhere.
@@ -1043,6 +1059,7 @@ class World {
     std::array<Shift, 8> shifts_{};  // of which readbacks are still on their way, oldest first
     uint32_t shiftCount_ = 0;
     uint64_t carriesUntil_ = 0;  // tick: until then burns are carried
+    uint64_t wetUntil_ = 0;      // tick: from then on no FW_WET event waits
     FrameCost budget_, spent_;   // gpu: as of the last readback
     Governor governor_;
     bool budgetMeasured_ = false;  // the host tells spent_.gpu

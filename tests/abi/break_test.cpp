@@ -15,7 +15,8 @@ constexpr int kRows = 16;
 // quarter of its height and at three.
 struct Board {
     explicit Board(uint32_t backend, uint32_t flags = 0, float share = 0, float area = 0.01f,
-                   bool pinned = false)
+                   bool pinned = false,
+                   uint32_t cutOut = 0)  // rows that its picture cuts out, bits
         : sheet(kWide, kHigh, kRows) {
         FwContextDef contextDef = fwDefaultContextDef();
         contextDef.backend = backend;
@@ -25,6 +26,8 @@ struct Board {
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = 10;
         ok(fwCreateWorld(context, &def, &world));
+        for (size_t i = 1; i < sheet.uvs.size() && cutOut != 0; i += 2)
+            sheet.uvs[i] *= kWide / kHigh;
         FwMeshDef meshDef = sheet.def(64);
         std::vector<uint8_t> of;
         for (int row = 0; row < kRows; ++row)
@@ -35,6 +38,14 @@ struct Board {
         FwMaterialDef material = fwDefaultMaterialDef();
         ok(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER));
         ok(fwWorld_CreateMaterial(world, &material, &made.materials[0]));
+        std::vector<uint32_t> pixels;
+        for (uint32_t i = 0; i < kRows * kRows; ++i)
+            pixels.push_back(cutOut >> i / kRows & 1 ? 0x00FFFFFFu : 0xFFFFFFFFu);
+        FwImageDef image = fwDefaultImageDef();
+        image.width = image.height = kRows;
+        image.pixels = pixels.data();
+        image.alphaCutoff = 0.5f;
+        if (cutOut != 0) ok(fwWorld_CreateImage(world, &image, &made.baseColor));
         made.flags |= flags;
         made.userData = 77;
         made.breakShare = share;
@@ -156,6 +167,21 @@ TEST(AbiBreak, TellsWhatIsAskedAlone) {
     EXPECT_EQ(uint32_t(FW_BREAK_SHARE), share.broke[0].tag);
     EXPECT_GT(share.broke[0].value, 0.09f * kWide * kHigh * 0.98f);
     EXPECT_NEAR(kHigh / 2, share.broke[0].position[1], 1e-5f);
+}
+
+// A band that is cut out bears nothing, is no part of the whole, and parts the board in two.
+TEST(AbiBreak, CutOutsHoldNothingAndDoNotCount) {
+    Board part(FW_BACKEND_CPU, 0, 0, 0.01f, false, 3u << 7),
+        share(FW_BACKEND_CPU, 0, 0.07f, 0, false, 63u << 5);  // a tenth is more
+    for (Board* board : {&part, &share}) {
+        board->light(4, kWide / 2, 0.02f);
+        board->run(kBurns);
+        ASSERT_EQ(1u, board->broke.size());
+    }
+    EXPECT_NEAR(2 * kRowArea, part.broke[0].value, 0.3f * kRowArea);
+    EXPECT_NEAR(6 * kHigh / kRows, part.broke[0].position[1], 0.03f);
+    EXPECT_EQ(uint32_t(FW_BREAK_SHARE), share.broke[0].tag);
+    EXPECT_LT(share.broke[0].value, kRowArea);
 }
 
 // Of the same frames, and on from a save as if it had not been loaded.

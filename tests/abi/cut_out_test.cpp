@@ -78,6 +78,26 @@ TEST(AbiCutOut, FireStopsWhereThePictureIsNot) {
     EXPECT_NEAR(0.5, cut.fraction, 0.02) << "half of what is there";
 }
 
+TEST(AbiCutOut, AMatchWhereThePictureIsNotLightsNothing) {
+    SheetWorld w(host::evenMaterial(0.05f, 5));
+    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+    def.mesh = w.mesh;
+    def.materials[0] = w.materialId;
+    def.baseColor = stripes(w.world, 0.5f, [](int x) { return x < 28 || x >= 36; });
+    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &w.object)) << lastMessage(w.world);
+    FwIgnitionDef match = fwDefaultIgnitionDef();
+    match.object = w.object;
+    match.position[0] = 0.5f;
+    match.position[2] = 0.1f;
+    match.radius = 0.02f;
+    uint32_t texels = 0;
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, &texels));
+    EXPECT_GT(texels, 0u);
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("cut out")) << lastMessage(w.world);
+    match.position[0] = 0.3f;
+    EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels)) << lastMessage(w.world);
+}
+
 TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsThere) {
     // Lines one pixel wide: every texel has one of them.
     SheetWorld w(host::evenMaterial(0.05f, 5), 1.0f, 0.25f, 16);

@@ -59,6 +59,20 @@ TEST(Ignite, AMatchBesideEverythingNamesTheNearestObjectAndItsDistance) {
     EXPECT_STREQ("FW_NOTHING_THERE", fwResultName(FW_NOTHING_THERE));
 }
 
+TEST(Ignite, TheNearestObjectIsNamedHoweverFarItIs) {
+    SheetWorld w(fwDefaultMaterialDef());
+    const FwBurnableMeshId other = w.add(8);
+    const float above[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 8, 0, 1};
+    ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, other, above));
+    const FwIgnitionDef far = matchAt(0.5f, 9e5f, 0.125f, 0.05f),
+                        between = matchAt(0.5f, 6, 0.125f, 0.05f);
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &far, nullptr));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("is 9e+05 m away"));
+    EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &between, nullptr));
+    EXPECT_THAT(lastMessage(w.world),
+                HasSubstr("mesh, " + std::to_string(other.index1) + ", is 2 m away"));
+}
+
 TEST(Ignite, AWorldWithoutObjectsSaysSo) {
     SheetWorld w(fwDefaultMaterialDef());
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));

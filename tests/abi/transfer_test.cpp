@@ -179,6 +179,48 @@ TEST(TransferBurn, IsInSavesAndLogs) {
     EXPECT_EQ(end, played.hash(played.to));
 }
 
+// A save whose numbers were bent, with a right checksum: each texel that waits for a burn, and
+// where that comes from, is checked before anything is read through it.
+TEST(TransferBurn, LoadsNoBurnThatCannotBeCarried) {
+    Boards w(FW_BACKEND_CPU);
+    const FwMeshDef meshDef = w.fine.def(96);
+    FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
+    w.ok(fwWorld_CreateMesh(w.world, &meshDef, &made.mesh));
+    made.flags = FW_BURNABLE_LITE;
+    FwBurnableMeshId lite{};
+    w.ok(fwWorld_CreateBurnableMesh(w.world, &made, &lite));
+    w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
+    w.run(2);
+    w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
+    const Bytes bytes = saveOf(w.world);
+    // The words of its first event: object, texel, kind, tick, texel of the other object.
+    constexpr uint32_t kCarry = 8;  // and slot + 1 above bit 8
+    const auto word = [&](size_t at) {
+        uint32_t value = 0;
+        std::memcpy(&value, &bytes[at], 4);
+        return value;
+    };
+    size_t at = 24;
+    while (at + 20 <= bytes.size() && (word(at) != 1 || word(at + 8) != (kCarry | 1u << 8))) ++at;
+    ASSERT_LE(at + 20, bytes.size());
+    ASSERT_EQ(2u * 4096, word(at + 12));
+    const auto refused = [&](size_t field, uint32_t value) {
+        Bytes wrong = bytes;
+        std::memcpy(&wrong[at + field], &value, 4);
+        signSave(wrong);
+        EXPECT_EQ(FW_ERROR_BAD_DATA, fwWorld_Load(w.world, wrong.data(), wrong.size()))
+            << field << " " << value;
+    };
+    refused(4, 0xFFFFFFFFu);       // all texels
+    refused(8, kCarry);            // of no object
+    refused(8, kCarry | 2u << 8);  // of itself
+    refused(8, kCarry | 3u << 8);  // of one that has no heat
+    refused(8, kCarry | 4u << 8);  // of one that is not there
+    refused(12, 3u * 4096);        // later than the next step
+    refused(16, 0xFFFFFFF0u);      // from no texel
+    EXPECT_EQ(FW_OK, fwWorld_Load(w.world, bytes.data(), bytes.size())) << lastMessage(w.world);
+}
+
 TEST(TransferBurn, NamesWhatCannotBe) {
     Boards w(FW_BACKEND_CPU);
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TransferBurn(w.world, w.from, w.from));

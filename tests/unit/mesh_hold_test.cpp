@@ -15,7 +15,7 @@ namespace {
 struct Held {
     explicit Held(const Mesh& mesh, double texels = 64)
         : domain(mesh::bake(mesh.input(texels), std::pmr::get_default_resource())) {
-        mesh::findPieces(domain, pieces);
+        mesh::findPieces(domain, {}, pieces);
         mesh::reserveHold(domain, pieces, scratch);
     }
     [[nodiscard]] std::array<double, 3> place(uint32_t i) const {

@@ -287,6 +287,24 @@ TEST(World, ComparesNothingWhileNothingMoves) {
     EXPECT_EQ(before, square.world->pairsExamined());
 }
 
+TEST(World, ExplainsAMissByTheCratesAroundItAlone) {
+    Square square(1600);
+    const uint64_t before = square.world->placesExamined();
+    FwIgnitionDef match{};
+    match.position[0] = 10 * square.apart + 0.35f;
+    match.position[1] = 1.5f;
+    match.position[2] = 10 * square.apart;
+    match.radius = 0.1f;
+    char text[256];
+    square.world->explainNothingThere(match, 0, text);
+    EXPECT_NE(std::string::npos, std::string(text).find("the nearest burnable mesh")) << text;
+    const uint64_t compared = square.world->placesExamined() - before;
+    std::printf("[   FIGURE ] %llu boxes of 1600 crates\n",
+                static_cast<unsigned long long>(compared));
+    EXPECT_GT(compared, 0u);
+    EXPECT_LT(compared, 800u);
+}
+
 TEST(World, RainOverTwiceAsManyCratesTakesTwiceTheMemory) {
     uint64_t bytes[2];
     for (const bool twice : {false, true}) {
@@ -376,6 +394,7 @@ TEST(World, PointQueryFindsTheNearestTexelOfAFarObject) {
     for (const float away : {20.0f, 5000.0f, 900000.0f}) {
         Square square(1, 0);
         const float point[3] = {away, 0.1f, 0};
+        EXPECT_NO_THROW(square.world->tagPoint(square.ids[0], point, 1)) << away;
         const FwQueryId query = square.world->requestPoint(square.ids[0], point);
         square.step(2);
         FwPointState state{};

@@ -196,7 +196,6 @@ class PlannedWorld : public ::testing::Test {
         mesh.noiseFeature = 0.01f;
         meshId = world->createMesh(mesh);
         FwMaterialDef material = fire::presetDef(FW_MATERIAL_PAPER);
-        FwBurnableMeshDef object{};
         object.structSize = sizeof object;
         object.mesh = meshId;
         object.materials[0] = world->createMaterial(material);
@@ -229,6 +228,7 @@ class PlannedWorld : public ::testing::Test {
     Recorder backend;
     std::optional<world::World> world;
     FwMeshId meshId{};
+    FwBurnableMeshDef object{};
     FwBurnableMeshId id{};
 };
 
@@ -356,6 +356,55 @@ TEST_F(PlannedWorld, LateReadbacksBecomeEventsAndIdleness) {
     EXPECT_EQ(1u, backend.frames.back().steps.size());
 }
 
+// Whatever a device has not reported yet when a burn is transferred: only the object that was lit
+// reports that, also if it is gone by then, and the other object's fire goes on as its.
+TEST_F(PlannedWorld, TransferredBurnsIgniteOnceHoweverLateReadbacksCome) {
+    for (const bool destroys : {false, true}) {
+        const FwBurnableMeshId from = world->createBurnableMesh(object);
+        const FwBurnableMeshId to = world->createBurnableMesh(object);
+        id = from;
+        ignite(0.5f);
+        const size_t first = backend.frames.size();
+        step(1.0f / 32);
+        world->transferBurn(from, to);
+        step(1.0f / 32);
+        step(1.0f / 32);
+        gpu::ObjectCounters burning{};
+        burning.ignited = burning.burning = 12;
+        burning.frontTiles = 4;
+        std::vector<FwEvent> heard;
+        for (size_t frame = first; frame < first + 3; ++frame) {
+            if (frame == first + 1 && destroys) world->destroyBurnableMesh(from);
+            backend.answer(frame, {}, 4, 1);
+            backend.ready.back().counters.resize(to.index1);
+            backend.ready.back().counters[from.index1 - 1] = burning;
+            if (frame > first) backend.ready.back().counters[to.index1 - 1] = burning;
+            step(1.0f / 32);
+            for (const FwEvent& event : events()) heard.push_back(event);
+        }
+        ASSERT_EQ(1u, heard.size()) << destroys;
+        EXPECT_EQ(uint32_t(FW_EVENT_IGNITED), heard[0].type);
+        EXPECT_EQ(from.index1, heard[0].object.index1);
+        FwObjectState state{};
+        world->objectState(to, state);
+        EXPECT_EQ(12u, state.burning);
+        if (!destroys) world->destroyBurnableMesh(from);
+        world->destroyBurnableMesh(to);
+    }
+}
+
+// Commands of a log or of a server: one shield names each object once.
+TEST_F(PlannedWorld, ShieldCommandsNameNoMoreObjectsThanThereAre) {
+    world::Deed command;
+    command.kind = world::Deed::Kind::shieldObject;
+    command.slot = id.index1;
+    world->perform(command);
+    EXPECT_THROW(world->perform(command), core::Error);
+    command.slot = 0;
+    command.word = 1;
+    world->perform(command);
+}
+
 TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirOwnFrame) {
     const float point[3] = {0.7f, 0, 0.1f};
     world->tagPoint(id, point, 5);
@@ -390,11 +439,6 @@ TEST_F(PlannedWorld, ReadbacksOfAnOlderObjectInTheSameSlotAreNotBelieved) {
     ignite(0.5f);
     step(1.0f / 32);
     world->destroyBurnableMesh(id);
-    FwBurnableMeshDef object{};
-    object.refinePixelsPerEdge = 8;
-    object.structSize = sizeof object;
-    object.mesh = meshId;
-    for (int i = 0; i < 4; ++i) object.transform[i * 5] = 1;
     id = world->createBurnableMesh(object);
     ASSERT_EQ(1u, id.index1);
     gpu::ObjectCounters burning{};

@@ -162,7 +162,7 @@ FW_API size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, s
  * FW_OK when all is ready. Calling it is optional only on an own device. [any] */
 FW_API FwResult FW_CALL fwContext_Prepare(FwContext* context);
 
-typedef struct FwMemoryRow {  /* memory of one component or of one buffer */
+typedef struct FwMemoryRow {  /* memory of one component, buffer or pool */
     char name[48];            /* unique in a report */
     uint64_t bytes, capacity; /* in use, and reserved for it */
 } FwMemoryRow;
@@ -170,7 +170,8 @@ typedef struct FwMemoryRow {  /* memory of one component or of one buffer */
  * component comes first ("meshes" to "targets"), whatever the number of worlds. Row "blocks" follows:
  * `bytes` is the sum of the components, `capacity` is FwContextInfo::gpuMemoryUsed. Then a row for
  * each buffer of the worlds, summed over them; the components hold these bytes already.
- * On the cpu backend: texel states, and tiles and lists, summed over the worlds.
+ * On the cpu backend the rows of its pools ("cpu texel states", ...) come instead of all these. On both, rows
+ * "world objects" to "world contacts" follow: memory of the CPU, of all worlds.
  * Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows, uint32_t capacity);
 
@@ -517,7 +518,8 @@ typedef struct FwImageDef {
     const void* pixels;         /* RGBA8, rows top first, tightly packed; sRGB colour, linear alpha */
     float alphaCutoff;          /* [0, 1], default 0: alpha is ignored. Above 0 the image is a cut-out: where its
                                    alpha is below this, objects that show it are not there. They are not drawn
-                                   there, and hold no fuel that burns: fire goes around. A texel of the burn map
+                                   there, hold no fuel that burns (fire goes around) and bear nothing (see
+                                   FW_EVENT_STRUCTURE_BROKE). A texel of the burn map
                                    burns if any part of it is there. Costs such objects 2 bytes a texel */
     float reserved;             /* 0 */
 } FwImageDef;
@@ -691,7 +693,7 @@ static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
 }
 /* Queued; takes effect in the simulation step whose window holds its time. *texels (may be null) gets how
  * many texels it addresses. FW_NOTHING_THERE: it addresses none, or as FW_IGNITE none that can burn
- * (noncombustible, or water that was queued before it waits for them). Then the log (FW_LOG_INFO) and
+ * (noncombustible, cut out, a multiplier of 0, or water that was queued before it). Then the log (FW_LOG_INFO) and
  * fwWorld_GetLastMessage say why FW_IGNITE lights nothing: the nearest object and its distance, or the
  * material. What earlier steps made wet is not known here: see FW_POINT_WET of fwWorld_RequestPoint. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
