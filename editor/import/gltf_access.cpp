@@ -56,7 +56,7 @@ Bytes rangeBytes(const Bytes& view, uint64_t offset, uint64_t count, uint64_t el
     if (stride < element) {
         refuse(who, ": the view's byteStride is ", stride, "; one element has ", element, " bytes");
     }
-    // count is below 2^25 and stride below 2^8 here, so nothing overflows.
+    // count is at most 2^26 and stride below 2^8 here, so nothing overflows.
     const uint64_t needed = count ? stride * (count - 1) + element : 0;
     if (offset > view.size || needed > view.size - offset) {
         refuse(who, " reads ", needed, " bytes from ", offset, "; its buffer view has ", view.size);
@@ -153,7 +153,7 @@ GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder,
     const std::string version =
         number ? text(std::fixed, std::setprecision(1), asset.number("version", 0))
                : asset.string("version");
-    if (version.rfind("2.", 0) != 0)
+    if (version != "2" && !version.starts_with("2."))
         refuse("asset.version is \"", version.substr(0, 40),
                "\"; 2.x is read (Blender, for one, reads glTF 1.0 and writes 2.0)");
     const std::string least = asset.string("minVersion", "2.0");
@@ -196,7 +196,7 @@ void GltfFile::readContainer(std::span<const uint8_t> bytes) {
     }
 }
 
-Field GltfFile::item(const char* name, int index) const {
+Field GltfFile::item(const char* name, int64_t index) const {
     return root().list(name).at(static_cast<size_t>(index));
 }
 
@@ -238,12 +238,12 @@ Bytes GltfFile::range(const Field& field, const char* name) {
     return {bytes.data() + offset, size, 0};
 }
 
-Bytes GltfFile::view(int index, const std::string& who) {
+Bytes GltfFile::view(int64_t index, const std::string& who) {
     if (index < 0 || static_cast<size_t>(index) >= count("bufferViews"))
         refuse(who, ".bufferView is ", index, "; there are ", count("bufferViews"));
     const Field view = item("bufferViews", index);
     const uint64_t stride = sizeOf(view, "byteStride", 0);
-    if (stride > 255) refuse(view.path(), ".byteStride is ", stride, "; 252 is the most");
+    if (stride > 252) refuse(view.path(), ".byteStride is ", stride, "; 252 is the most");
     Field packed;
     for (const char* name : {"KHR_meshopt_compression", "EXT_meshopt_compression"})
         if (!packed.present()) packed = view.extension(name);
@@ -278,11 +278,16 @@ bool GltfFile::accessorHasData(int index) const {
     return accessor.has("bufferView") || accessor.has("sparse");
 }
 
+bool GltfFile::isEmpty(int64_t index) const {
+    return index >= 0 && static_cast<size_t>(index) < count("accessors") &&
+           item("accessors", index).integer("count", 0) == 0;
+}
+
 Values GltfFile::accessor(int64_t index, const std::string& who) {
     if (index < 0 || static_cast<size_t>(index) >= count("accessors")) {
         refuse(who, " is accessor ", index, "; there are ", count("accessors"));
     }
-    const Field accessor = item("accessors", static_cast<int>(index));
+    const Field accessor = item("accessors", index);
     const std::string name = text(accessor.path(), " (", who, ")");
     const int64_t type = accessor.integer("componentType", 0);
     const uint64_t size = componentSize(type);
@@ -302,14 +307,14 @@ Values GltfFile::accessor(int64_t index, const std::string& who) {
     const uint64_t element = size * values.components;
     const bool normalized = accessor.flag("normalized", false);
     const Field sparse = accessor.object("sparse");
-    const int viewIndex = static_cast<int>(accessor.integer("bufferView", -1));
     auto readInto = [&](double* to, const uint8_t* from) {
         for (uint64_t c = 0; c < values.components; ++c)
             to[c] = readComponent(from + c * size, type, normalized);
     };
     if (accessor.has("bufferView")) {
-        const Bytes bytes = rangeBytes(view(viewIndex, name), sizeOf(accessor, "byteOffset", 0),
-                                       values.count, element, name);
+        const Bytes bytes =
+            rangeBytes(view(accessor.integer("bufferView", -1), name),
+                       sizeOf(accessor, "byteOffset", 0), values.count, element, name);
         values.data.resize(values.count * values.components);
         for (uint64_t i = 0; i < values.count; ++i) {
             readInto(&values.data[i * values.components], bytes.data + i * bytes.stride);
@@ -333,7 +338,7 @@ Values GltfFile::accessor(int64_t index, const std::string& who) {
     }
     const auto part = [&](const Field& field, uint64_t each) {
         const std::string whole = text(name, ".sparse.", &field == &indices ? "indices" : "values");
-        return rangeBytes(view(static_cast<int>(field.integer("bufferView", -1)), whole),
+        return rangeBytes(view(field.integer("bufferView", -1), whole),
                           sizeOf(field, "byteOffset", 0), count, each, whole);
     };
     const Bytes places = part(indices, componentSize(indexType));

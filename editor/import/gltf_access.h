@@ -50,16 +50,19 @@ class GltfFile {
     [[nodiscard]] const nlohmann::json& json() const { return json_; }
     [[nodiscard]] Field root() const { return {json_, ""}; }
     // root().list(name).at(index)
-    [[nodiscard]] Field item(const char* name, int index) const;
+    [[nodiscard]] Field item(const char* name, int64_t index) const;
     [[nodiscard]] size_t count(const char* name) const { return root().list(name).size(); }
 
     // A buffer view's bytes, proved to lie within its buffer; uncompressed if need be.
-    Bytes view(int index, const std::string& who);
+    // `index` is what the file says, in range or not.
+    Bytes view(int64_t index, const std::string& who);
     // Reads an accessor whole, sparse substitution included. `who` is the attribute, for messages.
     // `index` is what the file says, in range or not.
     Values accessor(int64_t index, const std::string& who);
     // True: it has values that are not all zero by definition.
     [[nodiscard]] bool accessorHasData(int index) const;
+    // True: it is there and its count is 0, which the standard forbids.
+    [[nodiscard]] bool isEmpty(int64_t index) const;
     // With a note if it lies outside the folder.
     std::vector<uint8_t> uri(const std::string& uri, const std::string& field);
 
@@ -74,7 +77,7 @@ class GltfFile {
     std::span<const uint8_t> binary_;  // the GLB's
     bool hasBinary_ = false;
     uint64_t valuesRead_ = 0;
-    std::map<int, std::vector<uint8_t>> buffers_, unpacked_;  // of URIs; of compressed views
+    std::map<int64_t, std::vector<uint8_t>> buffers_, unpacked_;  // of URIs; of compressed views
 };
 
 }  // namespace fwimport

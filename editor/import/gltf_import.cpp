@@ -160,8 +160,6 @@ class Importer {
         for (const int root : roots(children)) walk(root, true);
         for (size_t i = 0; i < nodes.size(); ++i) {
             if (visited[i] || hasParent[i]) continue;
-            if (file_.root().list("scenes").size() == 1 && nodes.at(i).has("mesh"))
-                notes_.leaveOut("node", nodes.at(i).path(), "is left out: no scene holds it");
             walk(static_cast<int>(i), false);
         }
     }
@@ -174,9 +172,20 @@ class Importer {
         const int32_t top = part.empty() ? -1 : findNode(model_.nodes, part, problem);
         if (!part.empty() && top < 0) refuse(problem);
         const Field nodes = file_.root().list("nodes");
-        std::map<int, size_t> users;
-        for (const size_t index : order_)
-            ++users[nodes.at(index).index("mesh", file_.count("meshes"))];
+        const size_t meshes = file_.count("meshes");
+        std::map<int, size_t> users;                       // of each mesh, nodes of the scene
+        const bool oneScene = file_.count("scenes") == 1;  // of several, a note says so
+        for (size_t i = 0; i < nodes.size(); ++i) {
+            const Field node = nodes.at(i);
+            if (!node.has("mesh")) continue;
+            const bool inScene = model_.nodes[i].inScene;
+            users[node.index("mesh", meshes)] += inScene ? 1 : 0;
+            if (!inScene && oneScene)
+                notes_.leaveOut("node", node.path(), "is left out: no scene holds it");
+        }
+        for (size_t i = 0; i < meshes; ++i)
+            if (!users.contains(static_cast<int>(i)))
+                notes_.leaveOut("mesh", text("meshes[", i, "]"), "is left out: no node shows it");
         std::vector<bool> taken(model_.nodes.size(), top < 0);
         for (const size_t index : order_) {  // parents come before their children
             const int32_t parent = model_.nodes[index].parent;
@@ -184,7 +193,7 @@ class Importer {
                 (parent >= 0 && taken[static_cast<size_t>(parent)]))
                 taken[index] = true;
             const Field node = nodes.at(index);
-            const int which = node.index("mesh", file_.count("meshes"));
+            const int which = node.index("mesh", meshes);
             if (which < 0 || !taken[index]) continue;
             if (hidden_[index]) {
                 notes_.leaveOut("node", node.path(), "is left out: KHR_node_visibility hides it");
@@ -392,6 +401,11 @@ class Importer {
         }
         if (!from.draco) {
             const int64_t accessor = from.names.integer("POSITION", -1);
+            if (file_.isEmpty(accessor) || file_.isEmpty(primitive.integer("indices", -1))) {
+                notes_.leaveOut("primitive", shape.name,
+                                "is left out: its POSITION or its indices have a .count of 0");
+                return shape;
+            }
             if (accessor >= 0 && static_cast<size_t>(accessor) < file_.count("accessors") &&
                 !file_.accessorHasData(static_cast<int>(accessor)))
                 refuse("accessors[", accessor, "] (", shape.name,
@@ -410,14 +424,62 @@ class Importer {
         readInfluences(from, shape);
         noteAttributes(from, shape);
         readCorners(from, shape, mode);
-        const ImportedMaterial& made = model_.materials[shape.material];
-        if (made.alphaMode == AlphaMode::Mask && made.image < 0 &&
-            made.baseColor[3] < made.alphaCutoff) {
-            notes_.leaveOut("primitive", shape.name,
-                            "is left out: its material's alpha is below its alphaCutoff");
-            shape.corners.clear();
-        }
+        dropCutOutTriangles(shape);
+        dropUnusedVertices(shape);
         return shape;
+    }
+
+    // A picture cuts out by its own alpha alone: the alpha of vertices counts by whole triangles.
+    void dropCutOutTriangles(Shape& shape) {
+        const ImportedMaterial& material = model_.materials[shape.material];
+        if (material.alphaMode != AlphaMode::Mask || shape.corners.empty()) return;
+        std::vector<uint32_t> kept;
+        uint32_t least = 255;  // of what is kept
+        for (size_t i = 0; i < shape.corners.size(); i += 3) {
+            uint32_t low = 255, high = shape.colors.empty() ? 255 : 0;
+            for (size_t k = i; k < i + 3 && !shape.colors.empty(); ++k) {
+                const uint32_t alpha = shape.colors[shape.corners[k]] >> 24;
+                low = std::min(low, alpha);
+                high = std::max(high, alpha);
+            }
+            if (material.baseColor[3] * static_cast<float>(high) / 255 < material.alphaCutoff)
+                continue;
+            least = std::min(least, low);
+            kept.insert(kept.end(), &shape.corners[i], &shape.corners[i] + 3);
+        }
+        shape.corners = std::move(kept);
+        if (shape.corners.empty())
+            notes_.leaveOut("primitive", shape.name,
+                            "is left out: its alpha is below its alphaCutoff");
+        else if (least < 255)
+            notes_.leaveOut("alpha of COLOR_0", shape.name,
+                            "is left out, but for triangles that are below the alphaCutoff");
+    }
+
+    // Primitives may share one list of vertices, of which each uses a part.
+    static void dropUnusedVertices(Shape& shape) {
+        constexpr uint32_t kUnused = UINT32_MAX;
+        std::vector<uint32_t> places(shape.vertices, kUnused);
+        for (const uint32_t corner : shape.corners) places[corner] = 0;
+        uint32_t count = 0;
+        for (uint32_t& place : places)
+            if (place != kUnused) place = count++;
+        if (count == shape.vertices) return;
+        const auto keep = [&](auto& values, size_t each) {
+            if (values.empty()) return;
+            for (size_t i = 0; i < places.size(); ++i)
+                if (places[i] != kUnused)
+                    std::copy_n(&values[i * each], each, &values[places[i] * each]);
+            values.resize(count * each);
+        };
+        keep(shape.positions, 3);
+        keep(shape.normals, 3);
+        keep(shape.uvs, 2);
+        keep(shape.colors, 1);
+        keep(shape.joints, shape.influences);
+        keep(shape.weights, shape.influences);
+        for (uint32_t& corner : shape.corners) corner = places[corner];
+        shape.vertices = count;
     }
 
     void readUvs(const Attributes& from, Shape& shape, const std::vector<double>& weights) {
@@ -607,7 +669,8 @@ class Importer {
             for (int c = 0; c < 3; ++c) {
                 if (!std::isfinite(p[c]) || std::abs(p[c]) > 1e9) {
                     refuse(shape.name, ".POSITION[", i, "] is ", local.x, ", ", local.y, ", ",
-                           local.z, "; a position is finite and within 1e9 m");
+                           local.z, ", which its node puts at ", p.x, ", ", p.y, ", ", p.z,
+                           "; a position is finite and within 1e9 m");
                 }
                 model_.positions.push_back(static_cast<float>(p[c]));
             }
@@ -643,21 +706,18 @@ class Importer {
         const auto at = [&](const std::vector<float>& values, size_t i) {
             return glm::dvec3(glm::make_vec3(&values[i * 3]));
         };
-        std::map<uint32_t, glm::dvec3> sums;
-        for (uint32_t i = 0; i < model_.vertexCount(); ++i)
-            if (at(model_.normals, i) == glm::dvec3(0)) sums[i] = glm::dvec3(0);
+        std::vector<glm::dvec3> sums(model_.vertexCount(), glm::dvec3(0));
         for (size_t i = 0; i < model_.indices.size(); i += 3) {
             const uint32_t* corner = &model_.indices[i];
             const glm::dvec3 a = at(model_.positions, corner[0]);
             const glm::dvec3 area = glm::cross(at(model_.positions, corner[1]) - a,
                                                at(model_.positions, corner[2]) - a);
-            for (int k = 0; k < 3; ++k)
-                if (const auto found = sums.find(corner[k]); found != sums.end())
-                    found->second += area;
+            for (int k = 0; k < 3; ++k) sums[corner[k]] += area;
         }
-        for (const auto& [i, sum] : sums) {
-            const double length = glm::length(sum);
-            const glm::dvec3 n = length > 0 ? sum / length : glm::dvec3(0, 1, 0);
+        for (size_t i = 0; i < sums.size(); ++i) {
+            if (at(model_.normals, i) != glm::dvec3(0)) continue;
+            const double length = glm::length(sums[i]);
+            const glm::dvec3 n = length > 0 ? sums[i] / length : glm::dvec3(0, 1, 0);
             for (int c = 0; c < 3; ++c) model_.normals[i * 3 + size_t(c)] = float(n[c]);
         }
     }

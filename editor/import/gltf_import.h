@@ -26,10 +26,11 @@ struct ImportedMaterial {
     std::array<float, 4> baseColor{1, 1, 1, 1};  // linear factor
     float roughness = 1.0f;                      // [0, 1]
     int32_t image = -1;                          // into ImportedModel::images; -1: none
-    // glTF's BLEND is read as Mask at 0.5 where its picture has holes, else as Opaque; a note says
-    // so. A point's alpha: baseColor[3] x the picture's alpha x the vertex colour's alpha.
+    // glTF's BLEND is read as Mask where its picture has holes (at 0.5 of the picture's alpha),
+    // else as Opaque; a note says so. A point's alpha is baseColor[3] x the picture's alpha.
+    // Triangles whose vertex colours bring it below the cut-off are left out.
     AlphaMode alphaMode = AlphaMode::Opaque;
-    float alphaCutoff = 0.5f;  // Mask only; [0, 1]
+    float alphaCutoff = 0.5f;  // Mask only; [0, baseColor[3]] of materials that triangles use
     bool doubleSided = false;
 };
 

@@ -46,7 +46,7 @@ void collect(const json& value, const std::string& path, std::vector<Found>& fou
         const std::string below = path.empty() ? item.key() : path + "." + item.key();
         if (item.key() == "extensions" && item->is_object())
             for (auto one = item->begin(); one != item->end(); ++one)
-                found.push_back({one.key(), path});
+                found.push_back({one.key(), path.empty() ? "the root" : path});
         if (item->is_structured()) collect(*item, below, found);
     }
 }

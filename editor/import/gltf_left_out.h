@@ -5,8 +5,8 @@
 
 namespace fwimport {
 
-// Refuses a file whose shapes cannot be read without an extension that is not read. What only
-// changes how a surface looks or what a scene does besides is no reason to refuse.
+// Refuses a file whose shapes cannot be read without an extension that is not read. An
+// extension that changes only the look of a surface, or other parts of a scene, is no reason.
 void checkRequired(const GltfFile& file);
 
 // Notes every extension that is in the file and is not read, and whole kinds of things.

@@ -128,16 +128,24 @@ void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& mate
         return;
     }
     if (!map.present()) return;
-    TextureUse mapUse;
     std::string error;
     const int texture = map.index("index", file_.count("textures"));
     if (texture < 0) return;
     const int image = file_.item("textures", texture).index("source", file_.count("images"));
     DecodedImage reflected;
-    if (image < 0 || !decode(image, reflected, error)) return;
+    if (image < 0) return;
+    reflections_.insert(image);
+    if (!decode(image, reflected, error)) {
+        notes_.add(text("images[", image, "] is left out: ", error));
+        return;
+    }
     DecodedImage mixed = model_.images[static_cast<size_t>(material.image)];
     addMetal(mixed, material.baseColor, reflected, metal);
     if (mixed.rgba == model_.images[static_cast<size_t>(material.image)].rgba) return;
+    if (!reserveBytes(mixed.rgba.size(), error)) {
+        notes_.leaveOut("colour of metals in specularGlossinessTexture", from.path());
+        return;
+    }
     material.image = static_cast<int32_t>(model_.images.size());
     model_.images.push_back(std::move(mixed));
 }
@@ -147,11 +155,15 @@ void Materials::readAlpha(const Field& from, ImportedMaterial& material) {
     const std::string mode = from.string("alphaMode", "OPAQUE");
     if (mode == "MASK") {
         material.alphaMode = AlphaMode::Mask;
-        material.alphaCutoff = static_cast<float>(unit(from.number("alphaCutoff", 0.5), 0.5));
+        // Beyond 1 nothing is there.
+        material.alphaCutoff =
+            static_cast<float>(std::clamp(from.number("alphaCutoff", 0.5), 0.0, 2.0));
     } else if (mode == "BLEND") {
         const bool holes =
             material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
         if (holes) material.alphaMode = AlphaMode::Mask;
+        // The holes are those of the picture, however clear the whole is.
+        material.alphaCutoff = 0.5f * std::max(material.baseColor[3], 1e-3f);
         notes_.leaveOut("alphaMode BLEND", from.path(),
                         holes ? "is shown as a cut-out at alpha 0.5" : "is shown opaque");
     } else if (mode != "OPAQUE") {
@@ -196,7 +208,7 @@ void Materials::readTransform(const Field& info, TextureUse& use) const {
     use.scale = pair("scale", glm::dvec2(1));
     use.rotation = transform.number("rotation", 0);
     if (!std::isfinite(use.rotation)) use.rotation = 0;
-    use.texCoord = static_cast<int>(transform.integer("texCoord", use.texCoord));
+    use.texCoord = transform.integer("texCoord", use.texCoord);
 }
 
 void Materials::readSampler(const Field& texture, TextureUse& use) {
@@ -213,8 +225,12 @@ void Materials::readSampler(const Field& texture, TextureUse& use) {
             use.wrap[c] = kRepeat;
         }
     }
-    if (sampler.integer("magFilter", 9729) == 9728)
-        notes_.leaveOut("magFilter NEAREST", sampler.path(), "is shown as LINEAR");
+    for (const char* name : {"magFilter", "minFilter"}) {
+        // NEAREST, and NEAREST of one level or between two.
+        const int64_t filter = sampler.integer(name, 9729);
+        if (filter == 9728 || filter == 9984 || filter == 9986)
+            notes_.leaveOut(text(name, " NEAREST"), sampler.path(), "is shown as LINEAR");
+    }
 }
 
 int32_t Materials::textureImage(const Field& info, TextureUse& use) {
@@ -224,7 +240,7 @@ int32_t Materials::textureImage(const Field& info, TextureUse& use) {
         notes_.leaveOut("picture without an index", info.path());
         return -1;
     }
-    use.texCoord = static_cast<int>(info.integer("texCoord", 0));
+    use.texCoord = info.integer("texCoord", 0);
     readTransform(info, use);
     const Field texture = file_.item("textures", index);
     readSampler(texture, use);
@@ -258,11 +274,7 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     }
     int32_t result = -1;
     DecodedImage decoded;
-    constexpr uint64_t kMostBytes = 4ull << 30;
-    if (decode(image, decoded, error) && (pictureBytes_ += decoded.rgba.size()) > kMostBytes) {
-        error =
-            text("with it the pictures have ", pictureBytes_, " bytes; the limit is ", kMostBytes);
-    } else if (!decoded.rgba.empty()) {
+    if (decode(image, decoded, error) && reserveBytes(decoded.rgba.size(), error)) {
         result = static_cast<int32_t>(model_.images.size());
         model_.images.push_back(std::move(decoded));
     }
@@ -270,12 +282,22 @@ int32_t Materials::imageIndex(int image, std::string& error) {
     return images_[image] = result;
 }
 
+bool Materials::reserveBytes(uint64_t bytes, std::string& error) {
+    constexpr uint64_t kMostBytes = 4ull << 30;
+    if (pictureBytes_ + bytes > kMostBytes) {
+        error = text("with it the pictures have ", pictureBytes_ + bytes, " bytes; the limit is ",
+                     kMostBytes);
+        return false;
+    }
+    pictureBytes_ += bytes;
+    return true;
+}
+
 bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
     const Field image = file_.item("images", index);
     try {
         if (image.has("bufferView")) {
-            const Bytes view =
-                file_.view(static_cast<int>(image.integer("bufferView", -1)), image.path());
+            const Bytes view = file_.view(image.integer("bufferView", -1), image.path());
             return decodeImage(view.span(), decoded, error);
         }
         if (!image.has("uri")) {
@@ -343,10 +365,13 @@ void Materials::unwrapPictures() {
             layout.offset[c] = -double(axis.from) / double(axis.length);
         }
         if (!layout.changed) continue;
-        constexpr uint64_t kMostBytes = 256ull << 20;
+        // A small picture, however far it reaches, stays in proportion.
+        constexpr uint64_t kMostBytes = 256ull << 20, kSmall = 4ull << 20;
+        const uint64_t most = std::clamp(64 * uint64_t{image.rgba.size()}, kSmall, kMostBytes);
         const uint64_t bytes = 4 * static_cast<uint64_t>(axes[0].length * axes[1].length);
+        std::string error;
         if (axes[0].length > int64_t{kMaxImageSide} || axes[1].length > int64_t{kMaxImageSide} ||
-            bytes > kMostBytes) {
+            bytes > most || !reserveBytes(bytes, error)) {
             notes_.leaveOut(text("wrapS and wrapT of ", uses_[m].sampler), material.name,
                             "are shown as REPEAT: the UVs reach too far beyond the picture");
             continue;
@@ -388,7 +413,7 @@ void Materials::unwrapPictures() {
 void Materials::noteUnusedImages() {
     const Field images = file_.root().list("images");
     for (size_t i = 0; i < images.size(); ++i)
-        if (!images_.contains(static_cast<int>(i)))
+        if (!images_.contains(static_cast<int>(i)) && !reflections_.contains(static_cast<int>(i)))
             notes_.leaveOut("image", images.at(i).path(),
                             "is left out: no base colour that is shown uses it");
 }

@@ -5,6 +5,7 @@
 #include <array>
 #include <glm/glm.hpp>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@ constexpr int64_t kRepeat = 10497, kClamp = 33071, kMirror = 33648;
 
 // How a material's picture is laid on.
 struct TextureUse {
-    int texCoord = 0;
+    int64_t texCoord = 0;
     glm::dvec2 offset{0}, scale{1};
     double rotation = 0;  // rad
     bool transformed = false;
@@ -37,8 +38,8 @@ class Materials {
     // the first time.
     uint32_t indexOf(int material);
     [[nodiscard]] const TextureUse& use(uint32_t index) const { return uses_[index]; }
-    // All pictures repeat here. Those that the file does not repeat beyond their edge are laid out
-    // as far as the surfaces reach, and the model's UVs with them.
+    // All pictures repeat here. Pictures that the file clamps or mirrors beyond their edge are laid
+    // out as far as the surfaces reach, and the model's UVs with them.
     void unwrapPictures();
     // Notes what is wrong with pictures that nothing above used.
     void noteUnusedImages();
@@ -54,6 +55,8 @@ class Materials {
     int32_t textureImage(const Field& info, TextureUse& use);
     int32_t imageIndex(int image, std::string& error);
     bool decode(int image, DecodedImage& decoded, std::string& error);
+    // False: all pictures together would be too large; `error` says so.
+    bool reserveBytes(uint64_t bytes, std::string& error);
 
     GltfFile& file_;
     ImportedModel& model_;
@@ -61,6 +64,7 @@ class Materials {
     std::map<int, uint32_t> materials_;
     std::map<int, int32_t> images_;
     std::map<int, std::string> imageErrors_;
+    std::set<int> reflections_;  // images that are read for the colour of metals alone
     std::vector<TextureUse> uses_;
     uint64_t pictureBytes_ = 0;
 };

@@ -58,19 +58,23 @@ size_t schemeLength(const std::string& uri) {
     return 0;
 }
 
-bool isData(const std::string& uri) {
-    static constexpr std::string_view kScheme = "data:";
-    return uri.size() >= kScheme.size() &&
-           std::equal(kScheme.begin(), kScheme.end(), uri.begin(),
-                      [](char a, char b) { return a == std::tolower(b); });
+// In any case of letters; `lower` has small ones.
+bool isSame(std::string_view words, std::string_view lower) {
+    return std::equal(words.begin(), words.end(), lower.begin(), lower.end(), [](char a, char b) {
+        return std::tolower(static_cast<unsigned char>(a)) == b;
+    });
 }
+
+bool isData(const std::string& uri) { return isSame(std::string_view(uri).substr(0, 5), "data:"); }
 
 std::vector<uint8_t> readData(const std::string& uri, const std::string& field) {
     const size_t comma = uri.find(',');
     if (comma == std::string::npos) refuse(field, " is a data URI without a comma");
     const std::string_view kind(uri.data(), comma);
     const std::string words = decodePercent(uri.substr(comma + 1));
-    if (kind.ends_with(";base64")) return decodeBase64(words, field);
+    static constexpr std::string_view kBase64 = ";base64";
+    if (kind.size() >= kBase64.size() && isSame(kind.substr(kind.size() - kBase64.size()), kBase64))
+        return decodeBase64(words, field);
     return {words.begin(), words.end()};
 }
 

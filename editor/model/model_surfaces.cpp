@@ -2,6 +2,7 @@
 #include "model/model_surfaces.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/glm.hpp>
 #include <numeric>
@@ -137,22 +138,57 @@ std::vector<uint32_t> colorsOf(const ImportedModel& model, const std::vector<App
     return colors;
 }
 
+// True: the surfaces that the file shows from both sides are no outsides of something closed: they
+// have long rims for their area. Edges of one triangle alone are rims; corners at one place are
+// one.
+bool areOpenSheets(const ImportedModel& model) {
+    const auto isDoubleSided = [&](uint32_t i) { return model.materials[i].doubleSided; };
+    if (std::ranges::none_of(model.triangleMaterials, isDoubleSided)) return false;
+    const auto at = [&](uint32_t vertex) {
+        const float* place = &model.positions[size_t{vertex} * 3];
+        return glm::dvec3(place[0], place[1], place[2]);
+    };
+    std::vector<uint32_t> order(model.vertexCount()), corners(order.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::ranges::sort(order, {}, [&](uint32_t vertex) {
+        const glm::dvec3 place = at(vertex);
+        return std::array{place.x, place.y, place.z};
+    });
+    for (size_t i = 0; i < order.size(); ++i)
+        corners[order[i]] =
+            i > 0 && at(order[i]) == at(order[i - 1]) ? corners[order[i - 1]] : order[i];
+    std::vector<uint64_t> edges;
+    double area = 0, rim = 0;
+    for (size_t i = 0; i < model.indices.size(); i += 3) {
+        if (!isDoubleSided(model.triangleMaterials[i / 3])) continue;
+        const uint32_t* triangle = &model.indices[i];
+        const glm::dvec3 first = at(triangle[0]);
+        area += 0.5 * glm::length(glm::cross(at(triangle[1]) - first, at(triangle[2]) - first));
+        for (size_t k = 0; k < 3; ++k) {
+            const uint64_t a = corners[triangle[k]], b = corners[triangle[(k + 1) % 3]];
+            edges.push_back(std::min(a, b) << 32 | std::max(a, b));
+        }
+    }
+    std::ranges::sort(edges);
+    for (size_t i = 0; i < edges.size(); ++i)
+        if ((i == 0 || edges[i - 1] != edges[i]) &&
+            (i + 1 == edges.size() || edges[i + 1] != edges[i]))
+            rim += glm::distance(at(uint32_t(edges[i] >> 32)), at(uint32_t(edges[i])));
+    return rim * rim > area;
+}
+
 }  // namespace
 
 ModelSurfaces surfacesOf(const ImportedModel& model) {
     ModelSurfaces result;
     std::vector<Appearance> looks;
     bool gray = true;
+    result.twoSided = areOpenSheets(model);
     for (size_t i = 0; i < model.materials.size(); ++i) {
         const ImportedMaterial& material = model.materials[i];
         looks.push_back(appearanceOf(material));
         const bool cutOut = looks.back().picture.alphaCutoff > 0;
         result.twoSided = result.twoSided || (cutOut && material.doubleSided);
-        if (!cutOut && material.alphaMode == fwimport::AlphaMode::Mask &&
-            material.baseColor[3] < material.alphaCutoff)
-            result.notes.push_back(nameOf(model, i) + " is wholly cut out (its alpha, " +
-                                   std::to_string(material.baseColor[3]) +
-                                   ", is below its cut-off), and is shown whole");
         const glm::vec3& factor = looks.back().factor;
         gray = gray && factor[0] == factor[1] && factor[1] == factor[2];
     }

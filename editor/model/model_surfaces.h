@@ -27,7 +27,7 @@ struct ModelSurfaces {
     uint32_t slotCount = 1;          // slots that triangles use: [0, slotCount)
     std::vector<uint32_t> colors;    // RGBA8 linear by vertex; empty: the file says no colour, and
                                      // the material's own base colour shows
-    bool twoSided = false;           // it has cut-outs that are seen from both sides
+    bool twoSided = false;           // cut-outs or open sheets are to be seen from both sides
     std::vector<std::string> notes;  // what is shown otherwise than the file says, and why
 
     [[nodiscard]] bool ownColors() const { return !colors.empty(); }

@@ -1,5 +1,6 @@
 // Shows a thing as it is: the same even light from everywhere and a flat grey behind it; no floor,
-// no shadow, no film curve. Who has one model and one camera has one picture, whatever draws it.
+// no shadow, no film curve. The same model and camera give the same picture, whichever
+// program draws it.
 #pragma once
 
 #include <array>

@@ -45,7 +45,7 @@ struct PlannedMesh {
     uint32_t width = 0, height = 0;   // of the paint
     std::array<int32_t, 8> images{};  // of OutputPlan, by material; -1: none
     bool ownColors = false;           // its file's, in the burn map's vertices and in pictures
-    bool twoSided = false;            // its file has cut-outs that are seen from both sides
+    bool twoSided = false;            // as ModelSurfaces::twoSided
 };
 // What there is to write, and what it is called there and in code.
 struct OutputPlan {

@@ -134,6 +134,23 @@ TEST(ModelSurfaces, MasksCutOutAndAFactorsAlphaMovesTheirCutOff) {
     EXPECT_TRUE(surfaces.twoSided);
 }
 
+TEST(ModelSurfaces, OpenSheetsAreSeenFromBothSidesAndSolidsAreNot) {
+    const Yard yard;
+    fwimport::ImportedModel model =
+        modelOfRow(yard, {{{1, 1, 1}, {}, "", "a"}, {{1, 1, 1}, {}, "", "b"}});
+    EXPECT_FALSE(fwmodel::surfacesOf(model).twoSided);
+    for (auto& material : model.materials) material.doubleSided = true;
+    EXPECT_TRUE(fwmodel::surfacesOf(model).twoSided);
+    for (size_t i = 6; i < 12; i += 3) std::swap(model.indices[i + 1], model.indices[i + 2]);
+    EXPECT_TRUE(fwmodel::surfacesOf(model).twoSided) << "the second board turns its back";
+    // A tetrahedron.
+    model.positions = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
+    model.indices = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
+    model.triangleMaterials.assign(4, 0);
+    model.colors.assign(4, 0xffffffffu);
+    EXPECT_FALSE(fwmodel::surfacesOf(model).twoSided);
+}
+
 TEST(ModelSurfaces, ShadowsAreThoseOfWhatIsThere) {
     const Yard yard;
     const auto model = modelOfRow(yard, {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\"", ""},

@@ -148,6 +148,37 @@ TEST(ImportAlpha, MaskAndBlendReachTheMaterial) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("BLEND is shown opaque")));
 }
 
+TEST(ImportAlpha, FactorsAndVerticesBelowTheCutOffLeaveNothing) {
+    std::vector<float> leaf = repeated({0, 1, 0, 1}, 16);
+    for (size_t i = 0; i < 8; ++i) leaf[i * 4 + 3] = 0;
+    const auto holes = pictureOf("leaf.png", leaf, 4, 4);
+    const std::string faint =
+        R"("pbrMetallicRoughness":{"metallicFactor":0,"baseColorFactor":[1,1,1,0.4],)"
+        R"("baseColorTexture":{"index":0}},"alphaMode":")";
+    EXPECT_THAT(importRefusal(pictured(holes, faint + R"(MASK")").bytes()),
+                HasSubstr("below its alphaCutoff"));
+    EXPECT_THAT(importRefusal(pictured(holes, std::string(kTextured) +
+                                                  R"(,"alphaMode":"MASK","alphaCutoff":1.5)")
+                                  .bytes()),
+                HasSubstr("below its alphaCutoff"));
+    ImportedModel model;
+    ASSERT_TRUE(loads(pictured(holes, faint + R"(BLEND")").bytes(), model));
+    EXPECT_FLOAT_EQ(0.2f, model.materials[0].alphaCutoff) << "0.5 of the picture's alpha";
+    // Three corners of the first triangle have no alpha, of the second one has some.
+    Quad quad;
+    const int colors =
+        quad.add(std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 255},
+                 5121, "VEC4", 4, R"(,"normalized":true)");
+    quad.primitive = R"("attributes":{"POSITION":0,"COLOR_0":)" + std::to_string(colors) +
+                     R"(},"indices":1,"material":0)";
+    quad.extra =
+        R"(,"materials":[{"alphaMode":"MASK","pbrMetallicRoughness":{"metallicFactor":0}}])";
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(1u, model.triangleCount());
+    EXPECT_EQ(3u, model.vertexCount());
+    EXPECT_THAT(model.notes, Contains(HasSubstr("alpha of COLOR_0 is left out")));
+}
+
 TEST(ImportAlpha, WhatIsWhollyCutOutIsLeftOut) {
     Quad quad;
     quad.primitive += R"(,"material":0},{"attributes":{"POSITION":0},"indices":1)";
@@ -309,13 +340,13 @@ TEST(ImportMaterial, EveryChannelThatIsNotShownHasOneNote) {
                  R"("extensions":{"KHR_lights_punctual":{"lights":[]}})";
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
-    EXPECT_THAT(
-        model.notes,
-        ::testing::UnorderedElementsAre(
-            "normalTexture is left out (materials[0] and 1 more)",
-            "emissiveFactor is left out (materials[0])",
-            "KHR_materials_clearcoat is left out (materials[1])", "KHR_lights_punctual is left out",
-            "animations (2) are left out: the rest pose is shown", "cameras (1) are left out"));
+    EXPECT_THAT(model.notes, ::testing::UnorderedElementsAre(
+                                 "normalTexture is left out (materials[0] and 1 more)",
+                                 "emissiveFactor is left out (materials[0])",
+                                 "KHR_materials_clearcoat is left out (materials[1])",
+                                 "KHR_lights_punctual is left out (the root)",
+                                 "animations (2) are left out: the rest pose is shown",
+                                 "cameras (1) are left out"));
 }
 
 TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
@@ -357,9 +388,10 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
     EXPECT_THAT(model.notes, IsEmpty());
     model = read(R"("wrapS":33071)", 0, 1e5f);
     EXPECT_THAT(model.notes, Contains(HasSubstr("are shown as REPEAT")));
-    model = read(R"("magFilter":9728)", 0, 1);
-    EXPECT_THAT(model.notes, ::testing::ElementsAre("magFilter NEAREST is shown as LINEAR "
-                                                    "(samplers[0])"));
+    model = read(R"("magFilter":9728,"minFilter":9986)", 0, 1);
+    EXPECT_THAT(model.notes,
+                ::testing::ElementsAre("magFilter NEAREST is shown as LINEAR (samplers[0])",
+                                       "minFilter NEAREST is shown as LINEAR (samplers[0])"));
     model = read(R"("wrapS":7)", 0, 1);
     EXPECT_THAT(model.notes, Contains(HasSubstr("samplers[0].wrapS is 7")));
 }
@@ -396,6 +428,18 @@ TEST(ImportMaterial, TheImageThatCanBeDecodedIsShown) {
     EXPECT_EQ(-1, model.materials[0].image);
     EXPECT_THAT(model.notes,
                 Contains("images[1] is left out: it is KTX; convert it to PNG or JPEG"));
+}
+
+TEST(ImportMaterial, SmallPicturesDoNotGrowBeyondProportion) {
+    Quad quad = pictured(pictureOf("dot.png", {1, 0, 0, 1}, 1, 1), kTextured,
+                         R"({"source":0,"sampler":0})");
+    quad.extra += R"(,"samplers":[{"wrapS":33071,"wrapT":33071}])";
+    const float uvs[] = {0, 0, 8000, 0, 8000, 8000, 0, 8000};
+    std::memcpy(quad.glb.binary.data() + 60, uvs, sizeof uvs);
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(1u, model.images.at(0).width) << "256 MiB for one pixel";
+    EXPECT_THAT(model.notes, Contains(HasSubstr("reach too far beyond the picture")));
 }
 
 // ---- extensions ---------------------------------------------------------------------------------
@@ -467,6 +511,55 @@ TEST(ImportNumbers, QuantizedPositionsAndNormalsAreScaled) {
     EXPECT_FLOAT_EQ(-1, model.low[0]) << "-32768 is -1, too";
     EXPECT_FLOAT_EQ(1, model.high[1]);
     EXPECT_FLOAT_EQ(1, model.normals[2]);
+}
+
+TEST(ImportNumbers, IndicesBeyond32BitsDoNotWrapAround) {
+    Quad quad;
+    quad.positionAccessor =
+        R"({"bufferView":4294967296,"componentType":5126,"count":4,"type":"VEC3"})";
+    EXPECT_THAT(importRefusal(quad.bytes()), HasSubstr("bufferView is 4294967296; there are 2"));
+    const auto picture = pictureOf("w.png", repeated({1, 0, 0, 1}, 4), 2, 2);
+    quad = pictured(picture, R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,)"
+                             R"("texCoord":4294967296}})");
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_THAT(model.notes, Contains(HasSubstr("there is no TEXCOORD_4294967296")));
+    quad = pictured(picture, kTextured);
+    quad.extra =
+        quad.extra.substr(0, quad.extra.find(R"("bufferView")")) + R"("bufferView":4294967299}])";
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_TRUE(model.images.empty());
+    EXPECT_THAT(model.notes, Contains(HasSubstr("bufferView is 4294967299")));
+}
+
+TEST(ImportNumbers, VerticesThatNoTriangleUsesAreDropped) {
+    Quad quad({0, 1, 2, 0, 1, 2});
+    const float far[] = {std::nanf(""), 900, 0};
+    std::memcpy(quad.glb.binary.data() + 36, far, sizeof far);  // the fourth
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(3u, model.vertexCount());
+    EXPECT_EQ(1, model.high[1]);
+    EXPECT_THAT(model.indices, ::testing::ElementsAre(0, 1, 2, 0, 1, 2));
+}
+
+TEST(ImportNumbers, EmptyPrimitivesAndMeshesWithoutANodeAreNoted) {
+    Quad quad;
+    const int empty = quad.add(std::vector<float>(3), 5126, "VEC3", 0);
+    quad.primitive += R"(},{"attributes":{"POSITION":)" + std::to_string(empty) + "}";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(2u, model.triangleCount());
+    EXPECT_THAT(model.notes, Contains(HasSubstr(".count of 0 (meshes[0].primitives[1])")));
+    quad = Quad();
+    quad.primitive += R"(}]},{"primitives":[{"attributes":{"POSITION":0},"indices":1)";
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(2u, model.triangleCount());
+    EXPECT_THAT(model.notes, Contains("mesh is left out: no node shows it (meshes[1])"));
+    quad = Quad();
+    quad.node += R"(,{"children":[2]},{"mesh":0})";
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_THAT(model.notes, Contains("node is left out: no scene holds it (nodes[2])"));
 }
 
 TEST(ImportNumbers, AttributesWithoutValuesAreZero) {
@@ -596,7 +689,7 @@ TEST_F(ImportUri, NamesAreDecodedAsTheStandardSays) {
 
 TEST_F(ImportUri, DataUrisOfEveryKindAreRead) {
     EXPECT_EQ("Hi!", read("data:application/octet-stream;base64,SGkh"));
-    EXPECT_EQ("Hi!", read("DATA:;base64,SGkh"));
+    EXPECT_EQ("Hi!", read("DATA:;Base64,SGkh"));
     EXPECT_EQ("Hi", read("data:image/png;name=x;base64,SGk="));
     EXPECT_EQ("Hi", read("data:image/png;base64,SG%6B%3D"));
     EXPECT_EQ("a b", read("data:,a%20b"));
