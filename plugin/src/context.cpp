@@ -165,9 +165,13 @@ uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows
 
 FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* buffer,
                             uint64_t* size) {
-    return onContext("fwCookMesh", context, [&](FwContext& c) {
-        const FwMeshDef def = edge::readDef(given, FW_DEF_MESH, "FwMeshDef");
+    edge::Unit unit;
+    const auto cookMesh = [&](FwContext& c) {
+        FwMeshDef def = edge::readDef(given, FW_DEF_MESH, "FwMeshDef");
         checkPointer(size, "size");
+        unit = edge::checkedUnit(def.metersPerUnit, "FwMeshDef::metersPerUnit", {});
+        edge::MetreArrays arrays(unit, &c.memory);
+        edge::visitArrays(def, arrays);
         if (def.cooked)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwMeshDef::cooked is given; only arrays can be cooked.");
@@ -192,7 +196,8 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
                 static_cast<unsigned long long>(*size), static_cast<unsigned long long>(needed));
         *size = needed;
         return FW_OK;
-    });
+    };
+    return onContext("fwCookMesh", context, cookMesh, unit);
 }
 
 FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* given, void* buffer,

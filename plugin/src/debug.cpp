@@ -74,14 +74,17 @@ FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* p
                                            uint64_t* count) {
     return onWorld("fwDebug_GetTexelPositions", world, [&](world::World& w) {
         const mesh::BurnDomain& domain = w.domain(id);
+        const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityTexels, domain.texelCount());
         for (uint64_t i = 0; i < given; ++i) {
             const mesh::TexelPosition& p = domain.texels[i];
             const uint16_t xyz[3] = {p.x, p.y, p.z};
             if (positions)
-                for (int k = 0; k < 3; ++k)
-                    positions[3 * i + uint64_t(k)] =
-                        domain.origin[k] + domain.quantum * float(xyz[k]);
+                for (int k = 0; k < 3; ++k) {
+                    float& place = positions[3 * i + uint64_t(k)];
+                    place = domain.origin[k] + domain.quantum * float(xyz[k]);
+                    host(place);
+                }
             if (flags) flags[i] = domain.real(uint32_t(i)) ? 1u : 0u;
         }
         if (count) *count = domain.texelCount();
@@ -93,10 +96,12 @@ FwResult FW_CALL fwDebug_GetUnwrap(FwWorld* world, FwMeshId id, float* corners,
                                    uint64_t capacityCorners, uint64_t* count) {
     return onWorld("fwDebug_GetUnwrap", world, [&](world::World& w) {
         const mesh::BurnDomain& domain = w.domain(id);
+        const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityCorners, domain.indices.size());
         for (uint64_t i = 0; corners && i < given; ++i) {
             const mesh::RenderVertex& vertex = domain.vertices[domain.indices[i]];
             std::copy_n(vertex.position, 3, corners + 5 * i);
+            for (int k = 0; k < 3; ++k) host(corners[5 * i + uint64_t(k)]);
             std::copy_n(vertex.atlasUv, 2, corners + 5 * i + 3);
         }
         if (count) *count = domain.indices.size();

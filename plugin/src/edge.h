@@ -4,6 +4,7 @@
 #include "core/error.h"
 #include "core/log.h"
 #include "core/memory.h"
+#include "units.h"
 
 #include <cstdint>
 #include <cstdio>
@@ -38,9 +39,12 @@ class LastMessage {
     char text_[sizeof FwErrorInfo::message] = {};
 };
 
-// "Message\n - While calling fwX." in `out`, cut so that the last line always fits.
-inline void composeMessage(char (&out)[sizeof FwErrorInfo::message], const char* message,
-                           const char* function) noexcept {
+// "Message\n - While calling fwX." in `out`, cut so that the last line always fits; its lengths in
+// the host's unit.
+inline void composeMessage(char (&out)[sizeof FwErrorInfo::message], const char* marked,
+                           const char* function, const Unit& unit) noexcept {
+    char message[sizeof out];
+    core::writeLengths(marked, unit.perMetre(), message, sizeof message);
     char tail[96];
     const int tailLength = std::snprintf(tail, sizeof tail, "\n - While calling %s.", function);
     const int room = int(sizeof out) - 1 - tailLength;
@@ -50,24 +54,26 @@ inline void composeMessage(char (&out)[sizeof FwErrorInfo::message], const char*
 inline constexpr char kNoMemoryText[] =
     "Memory is exhausted: the allocator refused a request. Nothing was changed.";
 
-// Runs `body` (which may return FwResult) and hands any failure to report(result, text).
+// Runs `body` (which may return FwResult) and hands any failure to report(result, text), whose
+// lengths are in the unit that `unit` then is.
 template <class Body, class Report>
-FwResult guard(const char* function, const Report& report, Body&& body) noexcept {
+FwResult guard(const char* function, const Report& report, Body&& body,
+               const Unit& unit = {}) noexcept {
     FwResult result = FW_ERROR_INTERNAL;
     char text[sizeof FwErrorInfo::message];
     try {
         return body();
     } catch (const core::Error& error) {
         result = error.result;
-        composeMessage(text, error.message, function);
+        composeMessage(text, error.marked, function, unit);
     } catch (const std::bad_alloc&) {
         result = FW_ERROR_OUT_OF_MEMORY;
-        composeMessage(text, kNoMemoryText, function);
+        composeMessage(text, kNoMemoryText, function, unit);
     } catch (const std::length_error&) {
         result = FW_ERROR_OUT_OF_MEMORY;
-        composeMessage(text, kNoMemoryText, function);
+        composeMessage(text, kNoMemoryText, function, unit);
     } catch (...) {
-        composeMessage(text, "The library fails for a reason it does not know.", function);
+        composeMessage(text, "The library fails for a reason it does not know.", function, unit);
     }
     report(result, text);
     return result;
@@ -80,6 +86,8 @@ inline constexpr uint32_t kLargestStruct = 64 * 1024;  // bytes: beyond it struc
 // Implemented in init_def.cpp; false when the type is unknown. `def` is of the library's own size.
 bool writeDefaults(uint32_t type, void* def) noexcept;
 size_t defSize(uint32_t type) noexcept;  // 0: unknown
+// Turns the lengths of a host's def from metres into its unit. Throws for an unknown type.
+void defFromMetres(uint32_t type, const Unit& unit, void* def);
 
 // A def of zeros but for its size and what `fill` sets, to where there is room for one.
 template <class Def, class Fill>
@@ -91,9 +99,10 @@ void writeDef(void* out, Fill fill) noexcept {
     std::memcpy(out, &def, sizeof def);
 }
 
-// Copies a def whose first word is structSize; what the host does not know keeps its default.
+// Copies a def whose first word is structSize over one of defaults, which keeps what the host does
+// not know.
 template <class Def>
-Def readDef(const Def* given, uint32_t type, const char* name) {
+void overlayDef(Def& def, const Def* given, const char* name) {
     if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
     uint32_t size = 0;
     std::memcpy(&size, given, sizeof size);
@@ -111,11 +120,32 @@ Def readDef(const Def* given, uint32_t type, const char* name) {
                            "and the rest must be zero.",
                            name, size, at, bytes[at], sizeof(Def));
     }
+    std::memcpy(&def, given, size < sizeof def ? size : sizeof def);
+    def.structSize = sizeof def;
+}
+
+template <class Def>
+Def defaultDef(uint32_t type) noexcept {
     Def def;
     std::memset(&def, 0, sizeof def);
     (void)writeDefaults(type, &def);
-    std::memcpy(&def, given, size < sizeof def ? size : sizeof def);
-    def.structSize = sizeof def;
+    return def;
+}
+
+template <class Def>
+Def readDef(const Def* given, uint32_t type, const char* name) {
+    Def def = defaultDef<Def>(type);
+    overlayDef(def, given, name);
+    return def;
+}
+
+// The same of a host whose lengths are in `unit`; those that are left out are the defaults' metres.
+template <class Def>
+Def readDef(const Unit& unit, const Def* given, uint32_t type, const char* name) {
+    Def def = defaultDef<Def>(type);
+    fromMetres(unit, def);
+    overlayDef(def, given, name);
+    toMetres(unit, def);
     return def;
 }
 
@@ -141,7 +171,7 @@ void writeInfo(Info* out, uint32_t size, Info filled) {
     if (size > known) std::memset(reinterpret_cast<char*>(out) + known, 0, size - known);
 }
 
-// view.cpp. Throws unless every number of a camera can be used.
-void checkView(const FwView& view, const char* name);
+// view.cpp. Throws unless every number of a camera can be used; turns its lengths into metres.
+void takeView(const Unit& unit, FwView& view, const char* name);
 
 }  // namespace fw::edge

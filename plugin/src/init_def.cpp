@@ -3,6 +3,7 @@
 #include "components/volumetric_fire.h"
 #include "edge.h"
 #include "flamewright/flamewright.h"
+#include "units.h"
 #include "vulkan_defs.h"
 #include "world/material.h"
 
@@ -40,6 +41,7 @@ void defaults(FwWorldDef& def) noexcept {
     def.maxParticles = 16384;
     def.arrivalTiles = 1024;
     def.volumeOctaves = 4;
+    def.metersPerUnit = 1;
 }
 
 void defaults(FwMaterialDef& def) noexcept { def = world::presetDef(FW_MATERIAL_PINE); }
@@ -185,150 +187,123 @@ void defaults(FwOffscreenDef& def) noexcept {
     def.background[3] = 1;
 }
 
-template <class Def>
-void write(void* out) noexcept {
-    writeDef<Def>(out, [](Def& def) { defaults(def); });
+// Calls body.template operator()<Def>() for the def of that type; false: it is none of these.
+template <class Body>
+bool visitDef(uint32_t type, Body body) {
+    switch (type) {
+        case FW_DEF_CONTEXT:
+            body.template operator()<FwContextDef>();
+            return true;
+        case FW_DEF_WORLD:
+            body.template operator()<FwWorldDef>();
+            return true;
+        case FW_DEF_MATERIAL:
+            body.template operator()<FwMaterialDef>();
+            return true;
+        case FW_DEF_IMAGE:
+            body.template operator()<FwImageDef>();
+            return true;
+        case FW_DEF_MESH:
+            body.template operator()<FwMeshDef>();
+            return true;
+        case FW_DEF_BURNABLE_MESH:
+            body.template operator()<FwBurnableMeshDef>();
+            return true;
+        case FW_DEF_IGNITION:
+            body.template operator()<FwIgnitionDef>();
+            return true;
+        case FW_DEF_VIEW:
+            body.template operator()<FwView>();
+            return true;
+        case FW_DEF_OFFSCREEN:
+            body.template operator()<FwOffscreenDef>();
+            return true;
+        case FW_DEF_BLOCKER:
+            body.template operator()<FwBlockerDef>();
+            return true;
+        case FW_DEF_VOLUMETRIC_FIRE:
+            body.template operator()<FwVolumetricFireDef>();
+            return true;
+        case FW_DEF_FIRE_PROFILE:
+            body.template operator()<FwFireProfileDef>();
+            return true;
+        case FW_DEF_FLIPBOOK:
+            body.template operator()<FwFlipbookDef>();
+            return true;
+        case FW_DEF_BUDGET:
+            body.template operator()<FwBudgetDef>();
+            return true;
+        case FW_DEF_NET:
+            body.template operator()<FwNetDef>();
+            return true;
+        case FW_DEF_WIND_ZONE:
+            body.template operator()<FwWindZoneDef>();
+            return true;
+        case FW_DEF_HEAT_SHIELD:
+            body.template operator()<FwHeatShieldDef>();
+            return true;
+        case FW_DEF_WIND_GRID:
+            body.template operator()<FwWindGridDef>();
+            return true;
+        case FW_DEF_GUSTS:
+            body.template operator()<FwGustDef>();
+            return true;
+        case FW_DEF_TIMELINE:
+            body.template operator()<FwTimelineDef>();
+            return true;
+        case FW_DEF_ROOM:
+            body.template operator()<FwRoomDef>();
+            return true;
+        case FW_DEF_FIRE_COLLIDER:
+            body.template operator()<FwFireColliderDef>();
+            return true;
+        case FW_DEF_FIRE_TRACK:
+            body.template operator()<FwFireTrackDef>();
+            return true;
+        case FW_DEF_FIRE_EMITTER:
+            body.template operator()<FwFireEmitterDef>();
+            return true;
+        case FW_DEF_PARTICLE_FIELD:
+            body.template operator()<FwParticleFieldDef>();
+            return true;
+        default:
+            return false;
+    }
 }
 
 }  // namespace
 
 size_t defSize(uint32_t type) noexcept {
-    switch (type) {
-        case FW_DEF_CONTEXT:
-            return sizeof(FwContextDef);
-        case FW_DEF_WORLD:
-            return sizeof(FwWorldDef);
-        case FW_DEF_MATERIAL:
-            return sizeof(FwMaterialDef);
-        case FW_DEF_IMAGE:
-            return sizeof(FwImageDef);
-        case FW_DEF_MESH:
-            return sizeof(FwMeshDef);
-        case FW_DEF_BURNABLE_MESH:
-            return sizeof(FwBurnableMeshDef);
-        case FW_DEF_IGNITION:
-            return sizeof(FwIgnitionDef);
-        case FW_DEF_VIEW:
-            return sizeof(FwView);
-        case FW_DEF_OFFSCREEN:
-            return sizeof(FwOffscreenDef);
-        case FW_DEF_BLOCKER:
-            return sizeof(FwBlockerDef);
-        case FW_DEF_VOLUMETRIC_FIRE:
-            return sizeof(FwVolumetricFireDef);
-        case FW_DEF_FIRE_PROFILE:
-            return sizeof(FwFireProfileDef);
-        case FW_DEF_FLIPBOOK:
-            return sizeof(FwFlipbookDef);
-        case FW_DEF_BUDGET:
-            return sizeof(FwBudgetDef);
-        case FW_DEF_NET:
-            return sizeof(FwNetDef);
-        case FW_DEF_WIND_ZONE:
-            return sizeof(FwWindZoneDef);
-        case FW_DEF_HEAT_SHIELD:
-            return sizeof(FwHeatShieldDef);
-        case FW_DEF_WIND_GRID:
-            return sizeof(FwWindGridDef);
-        case FW_DEF_GUSTS:
-            return sizeof(FwGustDef);
-        case FW_DEF_TIMELINE:
-            return sizeof(FwTimelineDef);
-        case FW_DEF_ROOM:
-            return sizeof(FwRoomDef);
-        case FW_DEF_FIRE_COLLIDER:
-            return sizeof(FwFireColliderDef);
-        case FW_DEF_FIRE_TRACK:
-            return sizeof(FwFireTrackDef);
-        case FW_DEF_FIRE_EMITTER:
-            return sizeof(FwFireEmitterDef);
-        case FW_DEF_PARTICLE_FIELD:
-            return sizeof(FwParticleFieldDef);
-        default:
-            return vulkanDefSize(type);
-    }
+    size_t size = 0;
+    const bool known = visitDef(type, [&]<class Def>() { size = sizeof(Def); });
+    return known ? size : vulkanDefSize(type);
 }
 
 bool writeDefaults(uint32_t type, void* def) noexcept {
-    switch (type) {
-        case FW_DEF_CONTEXT:
-            write<FwContextDef>(def);
-            return true;
-        case FW_DEF_WORLD:
-            write<FwWorldDef>(def);
-            return true;
-        case FW_DEF_MATERIAL:
-            write<FwMaterialDef>(def);
-            return true;
-        case FW_DEF_IMAGE:
-            write<FwImageDef>(def);
-            return true;
-        case FW_DEF_MESH:
-            write<FwMeshDef>(def);
-            return true;
-        case FW_DEF_BURNABLE_MESH:
-            write<FwBurnableMeshDef>(def);
-            return true;
-        case FW_DEF_IGNITION:
-            write<FwIgnitionDef>(def);
-            return true;
-        case FW_DEF_VIEW:
-            write<FwView>(def);
-            return true;
-        case FW_DEF_OFFSCREEN:
-            write<FwOffscreenDef>(def);
-            return true;
-        case FW_DEF_BLOCKER:
-            write<FwBlockerDef>(def);
-            return true;
-        case FW_DEF_VOLUMETRIC_FIRE:
-            write<FwVolumetricFireDef>(def);
-            return true;
-        case FW_DEF_FIRE_PROFILE:
-            write<FwFireProfileDef>(def);
-            return true;
-        case FW_DEF_FLIPBOOK:
-            write<FwFlipbookDef>(def);
-            return true;
-        case FW_DEF_BUDGET:
-            write<FwBudgetDef>(def);
-            return true;
-        case FW_DEF_NET:
-            write<FwNetDef>(def);
-            return true;
-        case FW_DEF_WIND_ZONE:
-            write<FwWindZoneDef>(def);
-            return true;
-        case FW_DEF_HEAT_SHIELD:
-            write<FwHeatShieldDef>(def);
-            return true;
-        case FW_DEF_WIND_GRID:
-            write<FwWindGridDef>(def);
-            return true;
-        case FW_DEF_GUSTS:
-            write<FwGustDef>(def);
-            return true;
-        case FW_DEF_TIMELINE:
-            write<FwTimelineDef>(def);
-            return true;
-        case FW_DEF_ROOM:
-            write<FwRoomDef>(def);
-            return true;
-        case FW_DEF_FIRE_COLLIDER:
-            write<FwFireColliderDef>(def);
-            return true;
-        case FW_DEF_FIRE_TRACK:
-            write<FwFireTrackDef>(def);
-            return true;
-        case FW_DEF_FIRE_EMITTER:
-            write<FwFireEmitterDef>(def);
-            return true;
-        case FW_DEF_PARTICLE_FIELD:
-            write<FwParticleFieldDef>(def);
-            return true;
-        default:
-            return writeVulkanDefaults(type, def);
-    }
+    return visitDef(type,
+                    [&]<class Def>() { writeDef<Def>(def, [](Def& one) { defaults(one); }); }) ||
+           writeVulkanDefaults(type, def);
+}
+
+Unit checkedUnit(float metersPerUnit, const char* field, const Unit& otherwise) {
+    if (metersPerUnit == 0) return otherwise;
+    if (!(metersPerUnit >= 1e-4f && metersPerUnit <= 1e3f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s is %g; the limits are [0.0001, 1000] m. Centimetres are 0.01.", field,
+                   double(metersPerUnit));
+    return Unit::of(metersPerUnit);
+}
+
+void defFromMetres(uint32_t type, const Unit& unit, void* def) {
+    const bool known = visitDef(type, [&]<class Def>() {
+        Def filled = readDef<Def>(static_cast<Def*>(def), type, "def");
+        uint32_t size = 0;
+        std::memcpy(&size, def, sizeof size);
+        fromMetres(unit, filled);
+        writeInfo(static_cast<Def*>(def), size, filled);
+    });
+    if (!known && vulkanDefSize(type) == 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "defType is %u, which is no FwDefType.", type);
 }
 
 }  // namespace fw::edge

@@ -56,13 +56,19 @@ struct FwContext {
 };
 
 struct FwWorld {
-    explicit FwWorld(FwContext* owner)
+    FwWorld(FwContext* owner, const fw::edge::Unit& given)
         : context(owner),
+          unit(given),
+          meshUnits(&owner->memory),
+          objectUnits(&owner->memory),
           snapshot(&owner->memory),
           doomed(&owner->memory),
           dooming(&owner->memory) {}
 
     FwContext* context;
+    const fw::edge::Unit unit;  // of the host's lengths
+    // Of object space, by slot of the mesh and of the burnable mesh.
+    std::pmr::vector<fw::edge::Unit> meshUnits, objectUnits;
     fw::edge::LastMessage message;
     fw::gpu::Backend* backend = nullptr;
     std::optional<fw::world::World> world;
@@ -83,7 +89,8 @@ namespace fw::edge {
 
 // Runs `body(context)`; a null context has nowhere to write a message.
 template <class Body>
-FwResult onContext(const char* function, FwContext* context, Body&& body) noexcept {
+FwResult onContext(const char* function, FwContext* context, Body&& body,
+                   const Unit& unit = {}) noexcept {
     if (!context) return FW_ERROR_INVALID_ARGUMENT;
     return guard(
         function,
@@ -91,11 +98,13 @@ FwResult onContext(const char* function, FwContext* context, Body&& body) noexce
             context->message.set(text);
             context->log.write(FW_LOG_ERROR, "%s", text);
         },
-        [&] { return body(*context); });
+        [&] { return body(*context); }, unit);
 }
 
+// `unit`: of the lengths that a failure names; null: the world's.
 template <class Body>
-FwResult onWorld(const char* function, FwWorld* world, Body&& body) noexcept {
+FwResult onWorld(const char* function, FwWorld* world, Body&& body,
+                 const Unit* unit = nullptr) noexcept {
     if (!world) return FW_ERROR_INVALID_ARGUMENT;
     return guard(
         function,
@@ -103,7 +112,74 @@ FwResult onWorld(const char* function, FwWorld* world, Body&& body) noexcept {
             world->message.set(text);
             world->context->log.write(FW_LOG_ERROR, "%s", text);
         },
-        [&] { return body(*world->world); });
+        [&] { return body(*world->world); }, unit ? *unit : world->unit);
+}
+
+// A def of the host's, in metres while the call lasts.
+template <class Def>
+class InMetres {
+ public:
+    InMetres(FwWorld& world, const Def* given, uint32_t type, const char* name)
+        : InMetres(world, given, type, name, world.unit) {}
+    InMetres(FwWorld& world, const Def* given, uint32_t type, const char* name, const Unit& arrays)
+        : arrays_(arrays, &world.context->memory), def_(readDef(world.unit, given, type, name)) {
+        visitArrays(def_, arrays_);
+    }
+    operator const Def&() const noexcept { return def_; }
+    Def* operator->() noexcept { return &def_; }
+
+ private:
+    MetreArrays arrays_;
+    Def def_;
+};
+
+// The same of a shield, whose function asks the host in the host's unit.
+class ShieldInMetres {
+ public:
+    ShieldInMetres(FwWorld& world, const FwHeatShieldDef* given)
+        : unitsPerMetre_(float(world.unit.perMetre())),
+          def_(readDef(world.unit, given, FW_DEF_HEAT_SHIELD, "FwHeatShieldDef")),
+          ask_(def_.distance),
+          data_(def_.distanceData) {
+        if (!def_.distance || world.unit.isMetre()) return;
+        def_.distance = &distance;
+        def_.distanceData = this;
+    }
+    ShieldInMetres(const ShieldInMetres&) = delete;
+    ShieldInMetres& operator=(const ShieldInMetres&) = delete;
+    operator const FwHeatShieldDef&() const noexcept { return def_; }
+
+ private:
+    static float FW_CALL distance(void* data, const float place[3]) {
+        const auto& self = *static_cast<const ShieldInMetres*>(data);
+        const float per = self.unitsPerMetre_;
+        const float asked[3] = {place[0] * per, place[1] * per, place[2] * per};
+        return self.ask_(self.data_, asked) / per;
+    }
+
+    float unitsPerMetre_;
+    FwHeatShieldDef def_;
+    float(FW_CALL* ask_)(void*, const float*);
+    void* data_;
+};
+
+// Units of object spaces, for those that differ from the world's. A stale id has any unit: the
+// world refuses it.
+inline const Unit& unitOf(const FwWorld& world, const std::pmr::vector<Unit>& units,
+                          uint32_t index1) noexcept {
+    return index1 - 1 < units.size() ? units[index1 - 1] : world.unit;
+}
+inline const Unit& meshUnit(const FwWorld& world, FwMeshId id) noexcept {
+    return unitOf(world, world.meshUnits, id.index1);
+}
+inline const Unit& objectUnit(const FwWorld& world, FwBurnableMeshId id) noexcept {
+    return unitOf(world, world.objectUnits, id.index1);
+}
+inline void setUnit(const FwWorld& world, std::pmr::vector<Unit>& units, uint32_t index1,
+                    const Unit& unit) {
+    if (index1 > units.size() && unit == world.unit) return;
+    if (index1 > units.size()) units.resize(index1, world.unit);
+    units[index1 - 1] = unit;
 }
 
 // Where answers need no frame of the host's, they are there when the call returns.

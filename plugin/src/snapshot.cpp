@@ -54,7 +54,9 @@ FwResult FW_CALL fwWorld_ReadObjectState(FwWorld* world, FwBurnableMeshId id,
             core::fail(FW_ERROR_STALE_ID, "Burnable mesh %u (generation %u) is already destroyed.",
                        id.index1, id.generation);
         if (id.generation > copy.generation || !copy.live) return FW_NOT_READY;
-        edge::writeInfo(state, size, copy.state);
+        FwObjectState filled = copy.state;
+        edge::fromMetres(world->unit, filled);
+        edge::writeInfo(state, size, filled);
         return FW_OK;
     });
 }
@@ -68,6 +70,7 @@ FwResult FW_CALL fwWorld_ReadLights(FwWorld* world, FwLight* lights, uint32_t* c
         if (!lock) return FW_NOT_READY;
         *count = uint32_t(std::min<size_t>(room, world->snapshot.lights.size()));
         if (room > 0) std::copy_n(world->snapshot.lights.begin(), *count, lights);
+        for (uint32_t i = 0; i < *count; ++i) edge::fromMetres(world->unit, lights[i]);
         return FW_OK;
     });
 }

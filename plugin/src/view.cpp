@@ -56,7 +56,7 @@ void checkMatrices(const FwView& view, const char* name) {
 
 }  // namespace
 
-void checkView(const FwView& view, const char* name) {
+void takeView(const Unit& unit, FwView& view, const char* name) {
     if (view.flags != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.flags is 0x%x; it is zero.", name, view.flags);
     checkRange(view.view, 16, name, "view", -1e9f, 1e9f);
@@ -77,6 +77,7 @@ void checkView(const FwView& view, const char* name) {
     checkRange(&view.time, 1, name, "time", -1e9f, 1e9f);
     checkRange(&view.haze, 1, name, "haze", 0.0f, 8.0f);
     checkRange(&view.reserved, 1, name, "reserved", 0.0f, 0.0f);
+    toMetres(unit, view);
 }
 
 }  // namespace fw::edge

@@ -245,14 +245,14 @@ void noteFrame(FwWorld& world, const FwVulkanFrame& frame) noexcept {
     if (frame.frameIndex > world.newestFrame) world.newestFrame = frame.frameIndex;
 }
 
-FwView checkedView(const FwView* given) {
-    const FwView view = readDef(given, FW_DEF_VIEW, "FwView");
-    checkView(view, "FwView");
+FwView checkedView(const FwWorld& world, const FwView* given) {
+    FwView view = readDef(given, FW_DEF_VIEW, "FwView");
+    takeView(world.unit, view, "FwView");
     return view;
 }
 
 // Of a host that knows fewer of their fields, or more, they lie closer together or further apart.
-std::span<FwView> checkedViews(const FwView* given, uint32_t count,
+std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32_t count,
                                std::array<FwView, FW_MAX_VIEWS>& out) {
     static_assert(FW_MAX_VIEWS == gpu::kMaxViews);
     checkPointer(given, "views");
@@ -273,7 +273,7 @@ std::span<FwView> checkedViews(const FwView* given, uint32_t count,
                 "views[%u].structSize is %u and views[0].structSize is %u; they lie that far "
                 "apart, so it is the same in all.",
                 i, size, stride);
-        checkView(out[i], name);
+        takeView(world.unit, out[i], name);
         for (uint32_t j = 0; j < i; ++j)
             if (out[j].viewId == out[i].viewId)
                 core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -573,7 +573,7 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
-        const FwView view = edge::checkedView(givenView);
+        const FwView view = edge::checkedView(*world, givenView);
         return edge::recordOutside(*world, w, backend, frame, {&view, 1});
     });
 }
@@ -585,7 +585,7 @@ FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame*
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         std::array<FwView, FW_MAX_VIEWS> views;
-        const std::span<FwView> checked = edge::checkedViews(givenViews, viewCount, views);
+        const std::span<FwView> checked = edge::checkedViews(*world, givenViews, viewCount, views);
         return edge::recordOutside(*world, w, backend, frame, checked);
     });
 }
@@ -597,7 +597,7 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
-        const FwView view = edge::checkedView(givenView);
+        const FwView view = edge::checkedView(*world, givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
         edge::noteFrame(*world, frame);
         return backend.recordInside(frame, target, view, *viewport) ? FW_OK : FW_NOT_READY;
@@ -611,7 +611,8 @@ FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
         const FwVulkanVertices def =
             edge::readDef(given, FW_DEF_VULKAN_VERTICES, "FwVulkanVertices");
         edge::checkVertices(def);
-        backend.setVertexBuffer(w.skinnedSlot(id, def.vertexCount), def);
+        backend.setVertexBuffer(w.skinnedSlot(id, def.vertexCount), def,
+                                float(edge::objectUnit(*world, id).inverse().perMetre()));
         return FW_OK;
     });
 }
@@ -623,7 +624,7 @@ FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* gi
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
-        const FwView view = edge::checkedView(givenView);
+        const FwView view = edge::checkedView(*world, givenView);
         const FwVulkanComposite images =
             edge::readDef(givenImages, FW_DEF_VULKAN_COMPOSITE, "FwVulkanComposite");
         if (images.flags & ~uint32_t(FW_COMPOSITE_KEEP))

@@ -6,6 +6,8 @@
 using namespace fw;
 using edge::answerAtOnce;
 using edge::checkPointer;
+using edge::InMetres;
+using edge::Metres;
 using edge::onContext;
 using edge::onWorld;
 
@@ -18,7 +20,7 @@ FwResult ask(const char* function, FwWorld* world,
         checkPointer(position, "position");
         checkPointer(query, "query");
         *query = {};
-        const FwQueryId made = (w.*request)(id, position);
+        const FwQueryId made = (w.*request)(id, Metres(world->unit, position));
         try {
             answerAtOnce(world);
         } catch (...) {
@@ -39,6 +41,7 @@ FwResult fill(const char* function, FwWorld* world, Info* info, const char* name
         const uint32_t size = edge::checkInfo(info, name);
         Info filled{};
         (w.*member)(what..., filled);
+        edge::fromMetres(world->unit, filled);
         edge::writeInfo(info, size, filled);
         return FW_OK;
     });
@@ -52,6 +55,7 @@ FwResult answer(const char* function, FwWorld* world,
         const uint32_t size = edge::checkInfo(state, name);
         State filled{};
         if (!(w.*fetch)(query, filled)) return FW_NOT_READY;
+        edge::fromMetres(world->unit, filled);
         edge::writeInfo(state, size, filled);
         return FW_OK;
     });
@@ -83,7 +87,7 @@ FwResult createOf(const char* function, FwWorld* world, Id (world::World::*creat
     return onWorld(function, world, [&](world::World& w) {
         checkPointer(id, "id");
         *id = {};
-        *id = (w.*create)(edge::readDef(given, type, name));
+        *id = (w.*create)(InMetres<Def>(*world, given, type, name));
         return FW_OK;
     });
 }
@@ -102,11 +106,15 @@ extern "C" {
 
 FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* given, FwWorld** out) {
     if (out) *out = nullptr;
-    return onContext("fwCreateWorld", context, [&](FwContext& c) {
+    edge::Unit unit;
+    const auto create = [&](FwContext& c) {
         checkPointer(out, "world");
-        const FwWorldDef def = edge::readDef(given, FW_DEF_WORLD, "FwWorldDef");
+        FwWorldDef def = edge::readDef(given, FW_DEF_WORLD, "FwWorldDef");
+        unit = edge::checkedUnit(def.metersPerUnit, "FwWorldDef::metersPerUnit", {});
+        edge::toMetres(unit, def);
         world::checkWorldDef(def);
-        FwWorld* handle = std::pmr::polymorphic_allocator<>(&c.memory).new_object<FwWorld>(context);
+        FwWorld* handle =
+            std::pmr::polymorphic_allocator<>(&c.memory).new_object<FwWorld>(context, unit);
         try {
             handle->backend = c.device->createBackend(def);
             handle->world.emplace(def, *handle->backend, c.log, &c.memory);
@@ -117,6 +125,15 @@ FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* given, FwWo
             throw;
         }
         *out = handle;
+        return FW_OK;
+    };
+    return onContext("fwCreateWorld", context, create, unit);
+}
+
+FwResult FW_CALL fwWorld_ConvertDef(FwWorld* world, uint32_t defType, void* def) {
+    return onWorld("fwWorld_ConvertDef", world, [&](world::World&) {
+        checkPointer(def, "def");
+        edge::defFromMetres(defType, world->unit, def);
         return FW_OK;
     });
 }
@@ -139,7 +156,7 @@ size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacit
 FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
     return onWorld("fwWorld_SetWind", world, [&](world::World& w) {
         checkPointer(wind, "wind");
-        w.setWind(wind);
+        w.setWind(Metres(world->unit, wind));
         return FW_OK;
     });
 }
@@ -155,7 +172,7 @@ FwResult FW_CALL fwWorld_AddBlocker(FwWorld* world, const FwBlockerDef* given, F
     return onWorld("fwWorld_AddBlocker", world, [&](world::World& w) {
         checkPointer(id, "id");
         *id = {};
-        *id = w.addBlocker(edge::readDef(given, FW_DEF_BLOCKER, "FwBlockerDef"));
+        *id = w.addBlocker(InMetres(*world, given, FW_DEF_BLOCKER, "FwBlockerDef"));
         return FW_OK;
     });
 }
@@ -163,7 +180,8 @@ FwResult FW_CALL fwWorld_AddBlocker(FwWorld* world, const FwBlockerDef* given, F
 FwResult FW_CALL fwWorld_MoveBlocker(FwWorld* world, FwBlockerId id, const float transform[16]) {
     return onWorld("fwWorld_MoveBlocker", world, [&](world::World& w) {
         checkPointer(transform, "transform");
-        w.moveBlocker(id, transform);
+        const edge::TransformInMetres pose(world->unit, world->unit, transform);
+        w.moveBlocker(id, pose.matrix);
         return FW_OK;
     });
 }
@@ -175,7 +193,7 @@ FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
 FwResult FW_CALL fwWorld_SetHeatShield(FwWorld* world, const FwHeatShieldDef* given) {
     return onWorld("fwWorld_SetHeatShield", world, [&](world::World& w) {
         if (given)
-            w.setHeatShield(edge::readDef(given, FW_DEF_HEAT_SHIELD, "FwHeatShieldDef"));
+            w.setHeatShield(edge::ShieldInMetres(*world, given));
         else
             w.setHeatShield({});
         return FW_OK;
@@ -190,7 +208,7 @@ FwResult FW_CALL fwWorld_CreateWindZone(FwWorld* world, const FwWindZoneDef* giv
 
 FwResult FW_CALL fwWorld_SetWindZone(FwWorld* world, FwWindZoneId id, const FwWindZoneDef* given) {
     return onWorld("fwWorld_SetWindZone", world, [&](world::World& w) {
-        w.setWindZone(id, edge::readDef(given, FW_DEF_WIND_ZONE, "FwWindZoneDef"));
+        w.setWindZone(id, InMetres(*world, given, FW_DEF_WIND_ZONE, "FwWindZoneDef"));
         return FW_OK;
     });
 }
@@ -202,7 +220,7 @@ FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld* world, FwWindZoneId id) {
 FwResult FW_CALL fwWorld_SetWindGrid(FwWorld* world, const FwWindGridDef* given) {
     return onWorld("fwWorld_SetWindGrid", world, [&](world::World& w) {
         if (given)
-            w.setWindGrid(edge::readDef(given, FW_DEF_WIND_GRID, "FwWindGridDef"));
+            w.setWindGrid(InMetres(*world, given, FW_DEF_WIND_GRID, "FwWindGridDef"));
         else
             w.setWindGrid({});
         return FW_OK;
@@ -211,7 +229,7 @@ FwResult FW_CALL fwWorld_SetWindGrid(FwWorld* world, const FwWindGridDef* given)
 
 FwResult FW_CALL fwWorld_SetGusts(FwWorld* world, const FwGustDef* given) {
     return onWorld("fwWorld_SetGusts", world, [&](world::World& w) {
-        w.setGusts(edge::readDef(given, FW_DEF_GUSTS, "FwGustDef"));
+        w.setGusts(InMetres(*world, given, FW_DEF_GUSTS, "FwGustDef"));
         return FW_OK;
     });
 }
@@ -220,7 +238,8 @@ FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float w
     return onWorld("fwWorld_GetWindAt", world, [&](world::World& w) {
         checkPointer(point, "point");
         checkPointer(wind, "wind");
-        w.windAtPoint(point, wind);
+        w.windAtPoint(Metres(world->unit, point), wind);
+        edge::fromMetres3(world->unit, wind);
         return FW_OK;
     });
 }
@@ -232,7 +251,7 @@ FwResult FW_CALL fwWorld_CreateRoom(FwWorld* world, const FwRoomDef* given, FwRo
 
 FwResult FW_CALL fwWorld_SetRoom(FwWorld* world, FwRoomId id, const FwRoomDef* given) {
     return onWorld("fwWorld_SetRoom", world, [&](world::World& w) {
-        w.setRoom(id, edge::readDef(given, FW_DEF_ROOM, "FwRoomDef"));
+        w.setRoom(id, InMetres(*world, given, FW_DEF_ROOM, "FwRoomDef"));
         return FW_OK;
     });
 }
@@ -267,8 +286,24 @@ FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
 }
 
 FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
-    return createOf("fwWorld_CreateMesh", world, &world::World::createMesh, given, FW_DEF_MESH,
-                    "FwMeshDef", id);
+    if (!world) return FW_ERROR_INVALID_ARGUMENT;
+    edge::Unit unit = world->unit;
+    const auto create = [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        unit = edge::checkedUnit(edge::readDef(given, FW_DEF_MESH, "FwMeshDef").metersPerUnit,
+                                 "FwMeshDef::metersPerUnit", world->unit);
+        const FwMeshId made = w.createMesh(InMetres(*world, given, FW_DEF_MESH, "FwMeshDef", unit));
+        try {
+            edge::setUnit(*world, world->meshUnits, made.index1, unit);
+        } catch (...) {
+            w.destroyMesh(made);
+            throw;
+        }
+        *id = made;
+        return FW_OK;
+    };
+    return onWorld("fwWorld_CreateMesh", world, create, &unit);
 }
 
 FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
@@ -276,15 +311,38 @@ FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
 }
 
 FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
-    return fill("fwWorld_GetMeshInfo", world, info, "FwMeshInfo", &world::World::meshInfo, id);
+    return onWorld("fwWorld_GetMeshInfo", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(info, "FwMeshInfo");
+        FwMeshInfo filled{};
+        w.meshInfo(id, filled);
+        edge::fromMetres(edge::meshUnit(*world, id), filled);
+        edge::writeInfo(info, size, filled);
+        return FW_OK;
+    });
 }
 
 // ---- burnable meshes --------------------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld* world, const FwBurnableMeshDef* given,
                                             FwBurnableMeshId* id) {
-    return createOf("fwWorld_CreateBurnableMesh", world, &world::World::createBurnableMesh, given,
-                    FW_DEF_BURNABLE_MESH, "FwBurnableMeshDef", id);
+    return onWorld("fwWorld_CreateBurnableMesh", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        constexpr const char* kName = "FwBurnableMeshDef";
+        const FwMeshId mesh = edge::readDef(given, FW_DEF_BURNABLE_MESH, kName).mesh;
+        const edge::Unit unit = edge::meshUnit(*world, mesh);
+        InMetres def(*world, given, FW_DEF_BURNABLE_MESH, kName, unit);
+        edge::scaleAxes(unit, world->unit, def->transform);
+        const FwBurnableMeshId made = w.createBurnableMesh(def);
+        try {
+            edge::setUnit(*world, world->objectUnits, made.index1, unit);
+        } catch (...) {
+            w.destroyBurnableMesh(made);
+            throw;
+        }
+        *id = made;
+        return FW_OK;
+    });
 }
 
 FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld* world, FwBurnableMeshId id) {
@@ -295,7 +353,8 @@ FwResult FW_CALL fwWorld_SetTransform(FwWorld* world, FwBurnableMeshId id,
                                       const float transform[16]) {
     return onWorld("fwWorld_SetTransform", world, [&](world::World& w) {
         checkPointer(transform, "transform");
-        w.setTransform(id, transform);
+        const edge::TransformInMetres pose(edge::objectUnit(*world, id), world->unit, transform);
+        w.setTransform(id, pose.matrix);
         return FW_OK;
     });
 }
@@ -305,7 +364,10 @@ FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld* world, FwBurnableMeshId id,
                                             uint32_t vertexCount) {
     return onWorld("fwWorld_SetVertexPositions", world, [&](world::World& w) {
         checkPointer(positions, "positions");
-        w.setVertexPositions(id, positions, normals, vertexCount);
+        (void)w.skinnedSlot(id, vertexCount);
+        edge::MetreArrays arrays(edge::objectUnit(*world, id), &world->context->memory);
+        const uint64_t count = uint64_t(vertexCount) * 3;
+        w.setVertexPositions(id, arrays(positions, count, count), normals, vertexCount);
         return FW_OK;
     });
 }
@@ -334,7 +396,7 @@ FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld* world, FwVolumetricFireId i
                                             const float position[3]) {
     return onWorld("fwWorld_MoveVolumetricFire", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveVolumetricFire(id, position);
+        w.moveVolumetricFire(id, Metres(world->unit, position));
         return FW_OK;
     });
 }
@@ -350,7 +412,8 @@ FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld* world, FwVolumetricFire
 FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld* world, FwVolumetricFireId id,
                                                  const FwFirePoint* points, uint32_t pointCount) {
     return onWorld("fwWorld_SetVolumetricFirePoints", world, [&](world::World& w) {
-        w.setVolumetricFirePoints(id, points, pointCount);
+        edge::MetreArrays arrays(world->unit, &world->context->memory);
+        w.setVolumetricFirePoints(id, arrays(points, pointCount, 32), pointCount);
         return FW_OK;
     });
 }
@@ -381,8 +444,8 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFire
                                                 const FwFireTrackDef* given) {
     return onWorld("fwWorld_SetVolumetricFireTrack", world, [&](world::World& w) {
         if (given) {
-            const FwFireTrackDef def = edge::readDef(given, FW_DEF_FIRE_TRACK, "FwFireTrackDef");
-            w.setVolumetricFireTrack(id, &def);
+            const InMetres def(*world, given, FW_DEF_FIRE_TRACK, "FwFireTrackDef");
+            w.setVolumetricFireTrack(id, &static_cast<const FwFireTrackDef&>(def));
         } else {
             w.setVolumetricFireTrack(id, nullptr);
         }
@@ -404,7 +467,7 @@ FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld* world, FwFireEmitterId id,
                                          const float position[3], const float* direction) {
     return onWorld("fwWorld_MoveFireEmitter", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveFireEmitter(id, position, direction);
+        w.moveFireEmitter(id, Metres(world->unit, position), direction);
         return FW_OK;
     });
 }
@@ -458,14 +521,20 @@ FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld* world, FwFlipbookId fire, Fw
 
 FwResult FW_CALL fwWorld_AddFireCollider(FwWorld* world, const FwFireColliderDef* given,
                                          FwFireColliderId* id) {
-    return createOf("fwWorld_AddFireCollider", world, &world::World::addFireCollider, given,
-                    FW_DEF_FIRE_COLLIDER, "FwFireColliderDef", id);
+    return onWorld("fwWorld_AddFireCollider", world, [&](world::World& w) {
+        checkPointer(id, "id");
+        *id = {};
+        const InMetres def(*world, given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef");
+        *id = w.addFireCollider(def, float(world->unit.perMetre()));
+        return FW_OK;
+    });
 }
 
 FwResult FW_CALL fwWorld_SetFireCollider(FwWorld* world, FwFireColliderId id,
                                          const FwFireColliderDef* given) {
     return onWorld("fwWorld_SetFireCollider", world, [&](world::World& w) {
-        w.setFireCollider(id, edge::readDef(given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef"));
+        const InMetres def(*world, given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef");
+        w.setFireCollider(id, def, float(world->unit.perMetre()));
         return FW_OK;
     });
 }
@@ -480,7 +549,8 @@ FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld* world, const float point[3]
         checkPointer(point, "point");
         const uint32_t size = edge::checkInfo(answer, "FwFireAnswer");
         FwFireAnswer filled{};
-        w.askVolumetricFires(point, filled);
+        w.askVolumetricFires(Metres(world->unit, point), filled);
+        edge::fromMetres(world->unit, filled);
         edge::writeInfo(answer, size, filled);
         return FW_OK;
     });
@@ -492,7 +562,9 @@ FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centr
         checkPointer(centre, "centre");
         const uint32_t size = edge::checkInfo(push, "FwFirePush");
         FwFirePush filled{};
-        w.volumetricFirePush(centre, radius, filled);
+        const edge::Scale metres(world->unit);
+        metres(radius);
+        w.volumetricFirePush(Metres(world->unit, centre), radius, filled);
         edge::writeInfo(push, size, filled);
         return FW_OK;
     });
@@ -513,7 +585,7 @@ FwResult FW_CALL fwWorld_MoveParticleField(FwWorld* world, FwParticleFieldId id,
                                            const float position[3], const float rotation[4]) {
     return onWorld("fwWorld_MoveParticleField", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveParticleField(id, position, rotation);
+        w.moveParticleField(id, Metres(world->unit, position), rotation);
         return FW_OK;
     });
 }
@@ -550,7 +622,8 @@ FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId
 
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
     return onWorld("fwWorld_Ignite", world, [&](world::World& w) {
-        const FwIgnitionDef def = edge::readDef(given, FW_DEF_IGNITION, "FwIgnitionDef");
+        const FwIgnitionDef def =
+            edge::readDef(world->unit, given, FW_DEF_IGNITION, "FwIgnitionDef");
         bool acts = false;
         const uint32_t count = w.ignite(def, &acts);
         if (texels) *texels = count;
@@ -561,7 +634,7 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
             char reason[sizeof FwErrorInfo::message];
             w.explainNothingThere(def, count, reason);
             char text[sizeof FwErrorInfo::message];
-            edge::composeMessage(text, reason, "fwWorld_Ignite");
+            edge::composeMessage(text, reason, "fwWorld_Ignite", world->unit);
             world->message.set(text);
             world->context->log.write(FW_LOG_INFO, "%s", text);
         }
@@ -591,7 +664,7 @@ FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld* world, const FwOffscreenDef* g
                        def.height);
         checkPointer(def.pixels, "FwOffscreenDef::pixels");
         components::checkValues(def.background, 4, "FwOffscreenDef::background", 0.0f, 1e6f);
-        edge::checkView(def.view, "FwOffscreenDef::view");
+        edge::takeView(world->unit, def.view, "FwOffscreenDef::view");
         if (world->world->shifted())
             world->context->device->step(*world->backend, *world->world, 0.0f);
         world->context->device->renderOffscreen(*world->backend, def);
@@ -606,6 +679,7 @@ uint32_t FW_CALL fwWorld_PollEvents(FwWorld* world, FwEvent* events, uint32_t ca
     (void)onWorld("fwWorld_PollEvents", world, [&](world::World& w) {
         if (capacity > 0) checkPointer(events, "events");
         count = w.pollEvents({events, capacity});
+        for (uint32_t i = 0; i < count; ++i) edge::fromMetres(world->unit, events[i]);
         return FW_OK;
     });
     return count;
@@ -615,7 +689,7 @@ FwResult FW_CALL fwWorld_TagPoint(FwWorld* world, FwBurnableMeshId id, const flo
                                   uint32_t tag) {
     return onWorld("fwWorld_TagPoint", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.tagPoint(id, position, tag);
+        w.tagPoint(id, Metres(world->unit, position), tag);
         return FW_OK;
     });
 }
@@ -650,7 +724,8 @@ FwResult FW_CALL fwWorld_TransferBurn(FwWorld* world, FwBurnableMeshId from, FwB
 FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld* world, const float* offset, float* applied) {
     return onWorld("fwWorld_ShiftOrigin", world, [&](world::World& w) {
         checkPointer(offset, "offset");
-        w.shiftOrigin(offset, applied);
+        w.shiftOrigin(Metres(world->unit, offset), applied);
+        if (applied) edge::fromMetres3(world->unit, applied);
         return FW_OK;
     });
 }
@@ -659,6 +734,7 @@ FwResult FW_CALL fwWorld_GetOrigin(FwWorld* world, double* origin) {
     return onWorld("fwWorld_GetOrigin", world, [&](world::World& w) {
         checkPointer(origin, "origin");
         w.origin(origin);
+        edge::fromMetres3(world->unit, origin);
         return FW_OK;
     });
 }
@@ -695,6 +771,7 @@ uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t cap
     (void)onWorld("fwWorld_GetLights", world, [&](world::World& w) {
         if (capacity > 0) checkPointer(lights, "lights");
         count = w.lights({lights, capacity});
+        for (uint32_t i = 0; i < count; ++i) edge::fromMetres(world->unit, lights[i]);
         return FW_OK;
     });
     return count;
@@ -706,7 +783,8 @@ FwResult FW_CALL fwWorld_AskSurroundings(FwWorld* world, const float point[3],
         checkPointer(point, "point");
         const uint32_t size = edge::checkInfo(surroundings, "FwSurroundings");
         FwSurroundings filled{};
-        w.askSurroundings(point, filled);
+        w.askSurroundings(Metres(world->unit, point), filled);
+        edge::fromMetres(world->unit, filled);
         edge::writeInfo(surroundings, size, filled);
         return FW_OK;
     });
@@ -718,7 +796,7 @@ FwResult FW_CALL fwWorld_AskSight(FwWorld* world, const float from[3], const flo
         checkPointer(from, "from");
         checkPointer(to, "to");
         checkPointer(seen, "seen");
-        *seen = w.askSight(from, to);
+        *seen = w.askSight(Metres(world->unit, from), Metres(world->unit, to));
         return FW_OK;
     });
 }
@@ -731,7 +809,8 @@ FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld* world, const float corner[3],
         checkPointer(columnStep, "columnStep");
         checkPointer(rowStep, "rowStep");
         checkPointer(mask, "mask");
-        w.makeSafetyMask(corner, columnStep, rowStep, columns, rows, mask);
+        w.makeSafetyMask(Metres(world->unit, corner), Metres(world->unit, columnStep),
+                         Metres(world->unit, rowStep), columns, rows, mask);
         return FW_OK;
     });
 }

@@ -75,7 +75,7 @@ void checkDeform(const FwBurnableMeshDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_Z_PASS needs SPRINGS or RECEDE.",
                    def.flags);
-    checkValue(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
+    checkLength(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::pinCount is %u; the limits are [0, %u].", def.pinCount,
@@ -84,9 +84,9 @@ void checkDeform(const FwBurnableMeshDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwBurnableMeshDef::pins is null but pinCount is %u.",
                    def.pinCount);
     for (uint32_t i = 0; i < def.pinCount; ++i) {
-        checkValues(def.pins[i].from, 3, "FwPin::from", -1e6f, 1e6f);
-        checkValues(def.pins[i].to, 3, "FwPin::to", -1e6f, 1e6f);
-        checkValue(def.pins[i].radius, "FwPin::radius", 0, 1e6f);
+        checkLengths(def.pins[i].from, 3, "FwPin::from", -1e6f, 1e6f);
+        checkLengths(def.pins[i].to, 3, "FwPin::to", -1e6f, 1e6f);
+        checkLength(def.pins[i].radius, "FwPin::radius", 0, 1e6f);
         checkValue(def.pins[i].reserved, "FwPin::reserved", 0, 0);
     }
 }

@@ -128,17 +128,17 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkWhole(def.shape, "FwFireEmitterDef::shape", 0, FW_EMITTER_MESH);
     checkWhole(def.reserved, "FwFireEmitterDef::reserved", 0, 0);
     checkWhole(def.maxParticles, "FwFireEmitterDef::maxParticles", 0, 1u << 20);
-    checkValues(def.position, 3, "FwFireEmitterDef::position", -1e6f, 1e6f);
+    checkLengths(def.position, 3, "FwFireEmitterDef::position", -1e6f, 1e6f);
     float direction[3];
     readDirection(def.direction, "FwFireEmitterDef::direction", direction);
-    checkValues(def.extent, 3, "FwFireEmitterDef::extent", -100.0f, 100.0f);
-    checkValue(def.radius, "FwFireEmitterDef::radius", 0.0f, 50.0f);
+    checkLengths(def.extent, 3, "FwFireEmitterDef::extent", -100.0f, 100.0f);
+    checkLength(def.radius, "FwFireEmitterDef::radius", 0.0f, 50.0f);
     checkValue(def.power, "FwFireEmitterDef::power", 0.0f, kMostPower);
     checkValue(def.rate, "FwFireEmitterDef::rate", 0.0f, 200000.0f);
-    checkValue(def.speed, "FwFireEmitterDef::speed", 0.0f, 200.0f);
+    checkLength(def.speed, "FwFireEmitterDef::speed", 0.0f, 200.0f);
     checkValue(def.cone, "FwFireEmitterDef::cone", 0.0f, 2.0f);
-    checkValue(def.size0, "FwFireEmitterDef::size0", 0.0f, 50.0f);
-    checkValue(def.size1, "FwFireEmitterDef::size1", 0.0f, 50.0f);
+    checkLength(def.size0, "FwFireEmitterDef::size0", 0.0f, 50.0f);
+    checkLength(def.size1, "FwFireEmitterDef::size1", 0.0f, 50.0f);
     checkValue(def.life, "FwFireEmitterDef::life", 0.0f, 60.0f);
     checkValue(def.lifeVariance, "FwFireEmitterDef::lifeVariance", 0.0f, 1.0f);
     checkValue(def.drag, "FwFireEmitterDef::drag", 0.0f, 60.0f);
@@ -151,8 +151,8 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkValue(def.smokeDensity, "FwFireEmitterDef::smokeDensity", 0.0f, 4.0f);
     checkValue(def.sparks, "FwFireEmitterDef::sparks", 0.0f, 1.0f);
     checkValue(def.temperature, "FwFireEmitterDef::temperature", 0.0f, 2500.0f);
-    checkValue(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
-    checkValue(def.behind, "FwFireEmitterDef::behind", 0.0f, 10.0f);
+    checkLength(def.ground, "FwFireEmitterDef::ground", -1e6f, 1e6f);
+    checkLength(def.behind, "FwFireEmitterDef::behind", 0.0f, 10.0f);
     checkValue(def.heat, "FwFireEmitterDef::heat", 0.0f, 1.0f);
     checkValue(def.stick, "FwFireEmitterDef::stick", 0.0f, 1.0f);
     checkValue(def.stickTime, "FwFireEmitterDef::stickTime", 0.125f, 120.0f);
@@ -180,7 +180,7 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
 }
 
 void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction) {
-    checkValues(position, 3, "position", -1e6f, 1e6f);
+    checkLengths(position, 3, "position", -1e6f, 1e6f);
     float way[3];
     std::copy_n(emitter.direction, 3, way);
     if (direction) readDirection(direction, "direction", way);

@@ -56,7 +56,7 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
     if (def.flags != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwGustDef::flags is 0x%x; it is zero.", def.flags);
     checkValue(def.strength, "FwGustDef::strength", 0.0f, 1.0f);
-    checkValue(def.size, "FwGustDef::size", kLeastGust, kMostGust);
+    checkLength(def.size, "FwGustDef::size", kLeastGust, kMostGust);
     Gusts gusts = before;
     gusts.strength = std::llround(double(def.strength) * double(kGustOne));
     gusts.size = millimetres(def.size);

@@ -119,8 +119,8 @@ ShieldShape makeShieldShape(const FwHeatShieldDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwHeatShieldDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
                    def.counts[0], def.counts[1], def.counts[2], shape.cells(), gpu::kShieldCells);
-    checkValues(def.origin, 3, "FwHeatShieldDef::origin", -kFarthestShield, kFarthestShield);
-    checkValue(def.cellSize, "FwHeatShieldDef::cellSize", kLeastShieldCell, kMostShieldCell);
+    checkLengths(def.origin, 3, "FwHeatShieldDef::origin", -kFarthestShield, kFarthestShield);
+    checkLength(def.cellSize, "FwHeatShieldDef::cellSize", kLeastShieldCell, kMostShieldCell);
     for (size_t i = 0; i < 3; ++i) shape.origin[i] = int32_t(millimetres(def.origin[i]));
     shape.cell = uint32_t(millimetres(def.cellSize));
     return shape;

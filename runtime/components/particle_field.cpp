@@ -46,8 +46,8 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
                    "FwParticleFieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kFlags);
     checkWhole(def.shape, "FwParticleFieldDef::shape", 0, FW_FIELD_DISPLACED);
-    checkValues(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
-    checkValues(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
+    checkLengths(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
+    checkLengths(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
     checkRotation(def.rotation, "FwParticleFieldDef::rotation");
     checkWhole(def.width, "FwParticleFieldDef::width", 32, gpu::kFieldSideMost);
     if (def.width % 4 != 0)
@@ -102,7 +102,7 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
 }
 
 void setFieldPlace(ParticleField& field, const float position[3], const float rotation[4]) {
-    checkValues(position, 3, "position", -1e6f, 1e6f);
+    checkLengths(position, 3, "position", -1e6f, 1e6f);
     if (rotation) checkRotation(rotation, "rotation");
     std::copy_n(position, 3, field.position);
     if (rotation) std::copy_n(rotation, 4, field.rotation);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace fw::components {
 
@@ -34,13 +35,34 @@ void checkValues(const float* values, unsigned count, const char* field, float l
                        i, double(values[i]), double(low), double(high));
 }
 
+void checkLength(float value, const char* field, float low, float high) {
+    if (!(value >= low && value <= high))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "%s is " FW_LENGTH "; the limits are [" FW_LENGTH ", " FW_LENGTH "].", field,
+                   double(value), double(low), double(high));
+}
+
+void checkLengths(const float* values, unsigned count, const char* field, float low, float high) {
+    for (unsigned i = 0; i < count; ++i)
+        if (!(values[i] >= low && values[i] <= high)) {
+            char name[128];
+            std::snprintf(name, sizeof name, "%s[%u]", field, i);
+            checkLength(values[i], name, low, high);
+        }
+}
+
 Pose makePose(const float transform[16], const char* field) {
     constexpr float kFar = 1e6f;         // m
     constexpr double kTolerance = 1e-3;  // of the scale
-    checkValues(transform, 16, field, -kFar, kFar);
+    checkValues(transform, 12, field, -kFar, kFar);
+    for (unsigned i = 12; i < 15; ++i) {
+        char name[128];
+        std::snprintf(name, sizeof name, "%s[%u]", field, i);
+        checkLength(transform[i], name, -kFar, kFar);
+    }
     const float lastRow[4] = {transform[3], transform[7], transform[11], transform[15]};
     for (unsigned i = 0; i < 4; ++i)
-        if (std::fabs(double(lastRow[i]) - (i == 3 ? 1.0 : 0.0)) > 1e-6)
+        if (!(std::fabs(double(lastRow[i]) - (i == 3 ? 1.0 : 0.0)) <= 1e-6))  // also catches NaN
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "%s[%u] is %g; the last row of the matrix is 0 0 0 1.", field, i * 4 + 3,
                        double(lastRow[i]));

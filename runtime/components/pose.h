@@ -32,6 +32,9 @@ constexpr float kMostPower = 1e5f;  // kW, of a fire
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);
 void checkValue(float value, const char* field, float low, float high);
+// The same of metres or m/s; the message has them in the unit of the host's world.
+void checkLengths(const float* values, unsigned count, const char* field, float low, float high);
+void checkLength(float value, const char* field, float low, float high);
 // Throws unless it is a unit quaternion.
 void checkRotation(const float q[4], const char* name);
 // The same of a whole number: "field is v; ...".

@@ -30,9 +30,9 @@ Room makeRoom(const FwRoomDef& def) {
                    "FwRoomDef::flags is 0x%x and reserved is %u; the known flags are 0x%x, and "
                    "reserved is zero.",
                    def.flags, def.reserved, kKnownRoomFlags);
-    checkValues(def.position, 3, "FwRoomDef::position", -kFarthestRoom, kFarthestRoom);
+    checkLengths(def.position, 3, "FwRoomDef::position", -kFarthestRoom, kFarthestRoom);
     checkRotation(def.rotation, "FwRoomDef::rotation");
-    checkValues(def.halfSize, 3, "FwRoomDef::halfSize", kLeastHalf, kMostHalf);
+    checkLengths(def.halfSize, 3, "FwRoomDef::halfSize", kLeastHalf, kMostHalf);
     checkValue(def.volume, "FwRoomDef::volume", 0, kMostVolume);
     checkValue(def.vent, "FwRoomDef::vent", 0, kMostVent);
     checkValue(def.oxygen, "FwRoomDef::oxygen", 0, 1);

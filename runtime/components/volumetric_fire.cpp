@@ -17,9 +17,9 @@ using gpu::vec3;
 void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
     char field[96];
     std::snprintf(field, sizeof field, "%s[%u].position", name, index);
-    checkValues(point.position, 3, field, -1e6f, 1e6f);
+    checkLengths(point.position, 3, field, -1e6f, 1e6f);
     std::snprintf(field, sizeof field, "%s[%u].radius", name, index);
-    checkValue(point.radius, field, 0.0f, 100.0f);
+    checkLength(point.radius, field, 0.0f, 100.0f);
 }
 
 // Into one flame or many, but seldom anew: what burns keeps its place while power wavers.
@@ -114,7 +114,7 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
                    "FwVolumetricFireDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
                    kKnown);
     checkWhole(def.preset, "FwVolumetricFireDef::preset", 0, FW_FIRE_PRESET_COUNT - 1);
-    checkValue(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
+    checkLength(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
     checkValue(def.windResponse, "FwVolumetricFireDef::windResponse", 0.0f, 4.0f);
     checkValue(def.turbulence, "FwVolumetricFireDef::turbulence", 0.0f, 3.0f);
     checkValue(def.speed, "FwVolumetricFireDef::speed", 0.0f, 4.0f);
@@ -169,7 +169,7 @@ void setFirePower(VolumetricFire& fire, float power) {
 }
 
 void setFirePosition(VolumetricFire& fire, const float position[3]) {
-    checkValues(position, 3, "position", -1e6f, 1e6f);
+    checkLengths(position, 3, "position", -1e6f, 1e6f);
     std::copy_n(position, 3, fire.position);
 }
 

@@ -36,9 +36,9 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwWindGridDef::counts makes %u x %u x %u = %u points; the limit is %u.",
                    def.counts[0], def.counts[1], def.counts[2], shape.points(), kMostGridPoints);
-    checkValues(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
-    checkValue(def.cellSize, "FwWindGridDef::cellSize", kLeastGridCell, kMostGridCell);
-    checkValue(def.fade, "FwWindGridDef::fade", 0.0f, kMostGridFade);
+    checkLengths(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
+    checkLength(def.cellSize, "FwWindGridDef::cellSize", kLeastGridCell, kMostGridCell);
+    checkLength(def.fade, "FwWindGridDef::fade", 0.0f, kMostGridFade);
     for (size_t i = 0; i < 3; ++i) shape.origin[i] = millimetres(def.origin[i]);
     shape.cell = millimetres(def.cellSize);
     shape.fade = millimetres(def.fade);
@@ -49,7 +49,8 @@ WindPoint makeWindPoint(const float velocity[3], uint32_t point) {
     for (uint32_t i = 0; i < 3; ++i)
         if (!(std::abs(velocity[i]) <= fire::kMostWind))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwWindGridDef::velocities[%u] is %g m/s; the limits are [%g, %g].",
+                       "FwWindGridDef::velocities[%u] is " FW_LENGTH " " FW_LENGTH_UNIT
+                       "/s; the limits are [" FW_LENGTH ", " FW_LENGTH "].",
                        3 * point + i, double(velocity[i]), double(-fire::kMostWind),
                        double(fire::kMostWind));
     const fire::WindVector units = fire::windUnits(velocity);

@@ -106,11 +106,11 @@ WindZone makeWindZone(const FwWindZoneDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwWindZoneDef::priority is %d; the limits are [%d, %d].", def.priority,
                    -kMostZonePriority, kMostZonePriority);
-    checkValues(def.position, 3, "FwWindZoneDef::position", -kFarthestZone, kFarthestZone);
+    checkLengths(def.position, 3, "FwWindZoneDef::position", -kFarthestZone, kFarthestZone);
     checkValues(def.axis, 3, "FwWindZoneDef::axis", -kFarthestZone, kFarthestZone);
     const unsigned sizes = sizesOf(def.shape);
-    checkValues(def.size, sizes, "FwWindZoneDef::size", 0.01f, kMostZoneSize);
-    checkValue(def.speed, "FwWindZoneDef::speed", -fire::kMostWind, fire::kMostWind);
+    checkLengths(def.size, sizes, "FwWindZoneDef::size", 0.01f, kMostZoneSize);
+    checkLength(def.speed, "FwWindZoneDef::speed", -fire::kMostWind, fire::kMostWind);
     checkValue(def.falloff, "FwWindZoneDef::falloff", 0.0f, 1.0f);
     WindZone zone;
     zone.shape = def.shape;

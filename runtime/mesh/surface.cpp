@@ -156,8 +156,9 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
     surface.extent = std::max({size.x, size.y, size.z});
     if (!(surface.extent >= kExtentLow && surface.extent <= kExtentHigh))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The mesh's longest side is %g m; it must lie in [%g, %g] m.", surface.extent,
-                   kExtentLow, kExtentHigh);
+                   "The mesh's longest side is " FW_LENGTH " " FW_LENGTH_UNIT
+                   "; it must lie in [" FW_LENGTH ", " FW_LENGTH "] " FW_LENGTH_UNIT ".",
+                   surface.extent, kExtentLow, kExtentHigh);
 
     std::pmr::vector<uint32_t> pointOf(memory);
     // Never finer than positions can tell apart, never so coarse that the shape goes.

@@ -11,13 +11,20 @@ namespace {
 constexpr double kCoordinateLimit = 1e6;  // m; and for UVs, turns of the unit square
 constexpr uint64_t kElementLimit = 1u << 28;
 
-void requireFinite(const char* array, std::span<const float> values, size_t width, double limit) {
+enum class Of { lengths, others };
+
+void requireFinite(const char* array, std::span<const float> values, size_t width, Of of) {
     for (size_t i = 0; i < values.size(); ++i) {
         const double value = values[i];
-        if (std::isfinite(value) && std::abs(value) <= limit) continue;
+        if (std::isfinite(value) && std::abs(value) <= kCoordinateLimit) continue;
+        if (of == Of::lengths)
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s of vertex %zu, component %zu, is " FW_LENGTH
+                       "; it must be finite and within +-" FW_LENGTH ".",
+                       array, i / width, i % width, value, kCoordinateLimit);
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "%s of vertex %zu, component %zu, is %g; it must be finite and within +-%g.",
-                   array, i / width, i % width, value, limit);
+                   array, i / width, i % width, value, kCoordinateLimit);
     }
 }
 
@@ -60,10 +67,10 @@ void validate(const BakeInput& input) {
     requireSize("details", input.details.size(), vertices * 2, "the vertices");
     requireSize("tints", input.tints.size(), vertices, "the vertices");
     requireSize("triangleMaterials", input.triangleMaterials.size(), triangles, "the triangles");
-    requireFinite("Position", input.positions, 3, kCoordinateLimit);
-    requireFinite("Normal", input.normals, 3, kCoordinateLimit);
-    requireFinite("UV", input.uvs, 2, kCoordinateLimit);
-    requireFinite("Detail coordinate", input.details, 2, kCoordinateLimit);
+    requireFinite("Position", input.positions, 3, Of::lengths);
+    requireFinite("Normal", input.normals, 3, Of::others);
+    requireFinite("UV", input.uvs, 2, Of::others);
+    requireFinite("Detail coordinate", input.details, 2, Of::lengths);
     for (size_t i = 0; i < input.indices.size(); ++i)
         if (input.indices[i] >= vertices)
             core::fail(FW_ERROR_INVALID_ARGUMENT,

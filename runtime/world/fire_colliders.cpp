@@ -4,10 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 
 namespace fw::world {
 namespace {
 
+using components::checkLength;
+using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
 
@@ -15,7 +18,9 @@ constexpr uint32_t kMaxFireColliders = 64;
 
 float askHost(void* user, const float point[3], float normal[3]) noexcept {
     const auto& entry = *static_cast<const FireColliderEntry*>(user);
-    return entry.distance(entry.distanceData, point, normal);
+    const float asked[3] = {point[0] * entry.unitsPerMetre, point[1] * entry.unitsPerMetre,
+                            point[2] * entry.unitsPerMetre};
+    return entry.distance(entry.distanceData, asked, normal) / entry.unitsPerMetre;
 }
 
 // Rows of a rotation to a quaternion.
@@ -45,37 +50,37 @@ void checkSides(const FwFireColliderDef& def, uint32_t most) {
                        def.columns, def.rows, most);
 }
 
-void checkNumbers(const float* numbers, size_t count, const char* name, float low, float high) {
-    if (!numbers) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::%s is null.", name);
-    for (size_t i = 0; i < count; ++i)
-        if (!(numbers[i] >= low && numbers[i] <= high))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwFireColliderDef::%s[%zu] is %g; the limits are [%g, %g].", name, i,
-                       double(numbers[i]), double(low), double(high));
+template <class Check>
+void checkNumbers(const float* numbers, size_t count, const char* name, float low, float high,
+                  Check check) {
+    char field[64];
+    std::snprintf(field, sizeof field, "FwFireColliderDef::%s", name);
+    if (!numbers) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", field);
+    check(numbers, unsigned(count), field, low, high);
 }
 
 // Throws, and then `entry` is as it was.
-void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
+void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEntry& entry) {
     volume::Collider shape;
     if (def.kind > FW_COLLIDER_DEPTH)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwFireColliderDef::kind is %u; the limits are [0, %u].", def.kind,
                    uint32_t(FW_COLLIDER_DEPTH));
-    checkValues(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
+    checkLengths(def.position, 3, "FwFireColliderDef::position", -1e6f, 1e6f);
     shape.kind = volume::ColliderKind(def.kind);
     shape.place = volume::vecOf(def.position);
     bool keep = false;
     switch (shape.kind) {
         case volume::ColliderKind::Capsule:
-            checkValues(def.end, 3, "FwFireColliderDef::end", -1e6f, 1e6f);
+            checkLengths(def.end, 3, "FwFireColliderDef::end", -1e6f, 1e6f);
             shape.extent = volume::vecOf(def.end);
             [[fallthrough]];
         case volume::ColliderKind::Sphere:
-            checkValue(def.radius, "FwFireColliderDef::radius", 1e-4f, 1e5f);
+            checkLength(def.radius, "FwFireColliderDef::radius", 1e-4f, 1e5f);
             shape.radius = def.radius;
             break;
         case volume::ColliderKind::Box:
-            checkValues(def.halfSize, 3, "FwFireColliderDef::halfSize", 1e-4f, 1e5f);
+            checkLengths(def.halfSize, 3, "FwFireColliderDef::halfSize", 1e-4f, 1e5f);
             checkValues(def.rotation, 4, "FwFireColliderDef::rotation", -1.01f, 1.01f);
             shape.extent = volume::vecOf(def.halfSize);
             for (int i = 0; i < 4; ++i) shape.rotation[i] = def.rotation[i];
@@ -85,7 +90,7 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
             shape.extent = volume::vecOf(def.normal);
             break;
         case volume::ColliderKind::HeightField: {
-            checkValue(def.cellSize, "FwFireColliderDef::cellSize", 1e-3f, 1e5f);
+            checkLength(def.cellSize, "FwFireColliderDef::cellSize", 1e-3f, 1e5f);
             checkSides(def, 4096);
             shape.radius = def.cellSize;
             shape.columns = def.columns;
@@ -101,9 +106,10 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
             shape.user = &entry;
             break;
         case volume::ColliderKind::Depth:
-            checkValue(def.radius, "FwFireColliderDef::radius", 0.01f, 100.0f);
+            checkLength(def.radius, "FwFireColliderDef::radius", 0.01f, 100.0f);
             checkSides(def, volume::kMaxDepthSide);
-            checkNumbers(def.depths, size_t(def.columns) * def.rows, "depths", 0.0f, 1.0f);
+            checkNumbers(def.depths, size_t(def.columns) * def.rows, "depths", 0.0f, 1.0f,
+                         &checkValues);
             checkValues(def.view, 16, "FwFireColliderDef::view", -1e9f, 1e9f);
             checkValues(def.projection, 16, "FwFireColliderDef::projection", -1e9f, 1e9f);
             shape.radius = def.radius;
@@ -114,7 +120,7 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
     std::pmr::vector<float> heights(entry.heights.get_allocator());
     if (shape.kind == volume::ColliderKind::HeightField && !keep) {
         const size_t count = size_t(def.columns) * def.rows;
-        checkNumbers(def.heights, count, "heights", -1e6f, 1e6f);
+        checkNumbers(def.heights, count, "heights", -1e6f, 1e6f, &checkLengths);
         heights.assign(def.heights, def.heights + count);
     }
     if (shape.kind == volume::ColliderKind::Depth)
@@ -127,25 +133,27 @@ void setShape(const FwFireColliderDef& def, FireColliderEntry& entry) {
     entry.shape.heights = entry.heights.data();
     entry.distance = def.distance;
     entry.distanceData = def.distanceData;
+    entry.unitsPerMetre = unitsPerMetre;
 }
 
 }  // namespace
 
 // What flames alone heed stops no jet.
-FwFireColliderId World::addFireCollider(const FwFireColliderDef& def) {
+FwFireColliderId World::addFireCollider(const FwFireColliderDef& def, float unitsPerMetre) {
     geometry_ += def.kind != FW_COLLIDER_DEPTH;
     if (fireColliders_.live() >= kMaxFireColliders)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
                    fireColliders_.live(), kMaxFireColliders);
     auto entry = core::Owned<FireColliderEntry>::make(memory_, memory_);
-    setShape(def, *entry);
+    setShape(def, unitsPerMetre, *entry);
     return fireColliders_.create(std::move(entry));
 }
 
-void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def) {
+void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def,
+                            float unitsPerMetre) {
     FireColliderEntry& entry = *fireColliders_.get(id);
     const bool body = entry.shape.kind != volume::ColliderKind::Depth;
-    setShape(def, entry);
+    setShape(def, unitsPerMetre, entry);
     geometry_ += body || def.kind != FW_COLLIDER_DEPTH;
 }
 

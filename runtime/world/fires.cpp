@@ -153,7 +153,7 @@ void World::destroyFireProfile(FwFireProfileId id) {
 // ---- questions --------------------------------------------------------------------------------
 
 void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) {
-    components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     if (!burning_.now().empty()) listFireColliders();  // as they stand now
     const components::FireAnswer found =
         components::askFires(burning_.now(), profiles_, walls(), volume::vecOf(point));
@@ -167,8 +167,8 @@ void World::askVolumetricFires(const float point[3], FwFireAnswer& answer) {
 }
 
 void World::volumetricFirePush(const float centre[3], float radius, FwFirePush& push) {
-    components::checkValues(centre, 3, "centre", -1e6f, 1e6f);
-    components::checkValue(radius, "radius", 0.0f, 100.0f);
+    components::checkLengths(centre, 3, "centre", -1e6f, 1e6f);
+    components::checkLength(radius, "radius", 0.0f, 100.0f);
     if (!burning_.now().empty()) listFireColliders();
     const volume::FlamePush found =
         components::pushOfFires(burning_.now(), profiles_, walls(), volume::vecOf(centre), radius);

@@ -19,6 +19,11 @@ struct Nearest {
     [[nodiscard]] bool beats(float distance) const noexcept { return object && metres <= distance; }
 };
 
+double threeDigits(float metres) noexcept {
+    const double step = std::pow(10, std::floor(std::log10(std::max(double(metres), 1e-9))) - 2);
+    return std::round(double(metres) / step) * step;
+}
+
 float distanceToBox(const float point[3], const mesh::BurnDomain& domain) noexcept {
     float squared = 0;
     for (int i = 0; i < 3; ++i) {
@@ -60,9 +65,11 @@ bool World::lightsSomething(size_t first) const noexcept {
 void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
                                 std::span<char> text) noexcept {
     const float* at = def.position;
-    char ball[96];
-    std::snprintf(ball, sizeof ball, "The ball of %g m at (%g, %g, %g)", double(def.radius),
-                  double(at[0]), double(at[1]), double(at[2]));
+    char ball[128];
+    std::snprintf(ball, sizeof ball,
+                  "The ball of " FW_LENGTH " " FW_LENGTH_UNIT " at (" FW_LENGTH ", " FW_LENGTH
+                  ", " FW_LENGTH ")",
+                  double(def.radius), double(at[0]), double(at[1]), double(at[2]));
     if (texels > 0) {
         std::snprintf(
             text.data(), text.size(),
@@ -105,9 +112,10 @@ void World::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
                       "%s reaches nothing: the world has no burnable mesh.", ball);
     else
         std::snprintf(text.data(), text.size(),
-                      "%s reaches nothing: the nearest burnable mesh, %u, is %.3g m away. Move the "
-                      "ball there, or give it a radius of that much.",
-                      ball, nearest.object->id.index1, double(nearest.metres));
+                      "%s reaches nothing: the nearest burnable mesh, %u, is " FW_LENGTH
+                      " " FW_LENGTH_UNIT
+                      " away. Move the ball there, or give it a radius of that much.",
+                      ball, nearest.object->id.index1, threeDigits(nearest.metres));
 }
 
 }  // namespace fw::world

@@ -24,6 +24,9 @@ Input makeInput(const FwMeshDef& def, std::pmr::memory_resource* memory) {
     if (def.flags & ~uint32_t(FW_MESH_TRUST_UVS))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::flags is 0x%x; the known flags are 0x1.",
                    def.flags);
+    if (def.reserved != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::reserved is %u; it is zero.",
+                   def.reserved);
     if (!def.positions) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::positions is null.");
     if (!def.indices) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indices is null.");
     if (def.vertexCount < 3 || def.vertexCount > kMostVertices)

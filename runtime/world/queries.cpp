@@ -64,7 +64,7 @@ uint32_t World::pollEvents(std::span<FwEvent> out) {
 }
 
 void World::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag) {
-    components::checkValues(position, 3, "position", -1e6f, 1e6f);
+    components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *objects_.get(id);
     if (tags_.size() >= kMaxTags)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu tagged points wait; the limit is %u.",
@@ -163,7 +163,7 @@ void World::energyBook(FwEnergyBook& book) noexcept {
 }
 
 Query World::makeQuery(FwBurnableMeshId id, const float position[3]) {
-    components::checkValues(position, 3, "position", -1e6f, 1e6f);
+    components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *objects_.get(id);
     if (queries_.live() >= kMaxQueries)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u queries are open; the limit is %u.",

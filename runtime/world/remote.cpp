@@ -16,6 +16,7 @@
 namespace fw::world {
 namespace {
 
+using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
 
@@ -70,11 +71,11 @@ void checkBlocker(const components::Pose& pose, const float halfSize[3], const c
     for (int i = 0; i < 3; ++i) {
         const float half = halfSize[i] * pose.scale * std::abs(pose.stretch[i]);
         if (half > 30.0f * 1.0001f)
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT,
-                "%s makes the blocker %g m to each side along its axis %d; the limit is 30 m. "
-                "Put several side by side.",
-                field, double(half), i);
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "%s makes the blocker " FW_LENGTH " " FW_LENGTH_UNIT
+                       " to each side along its axis %d; the limit is " FW_LENGTH " " FW_LENGTH_UNIT
+                       ". Put several side by side.",
+                       field, double(half), i, 30.0);
     }
 }
 
@@ -88,7 +89,7 @@ FwBlockerId World::addBlocker(const FwBlockerDef& def) {
                    def.reserved);
     BlockerEntry entry;
     entry.pose = components::makePose(def.transform, "FwBlockerDef::transform");
-    checkValues(def.halfSize, 3, "FwBlockerDef::halfSize", 0.0f, 30.0f);
+    checkLengths(def.halfSize, 3, "FwBlockerDef::halfSize", 0.0f, 30.0f);
     checkBlocker(entry.pose, def.halfSize, "FwBlockerDef::transform");
     std::copy_n(def.halfSize, 3, entry.halfSize);
     if (blockers_.live() >= gpu::kMaxBlockers)

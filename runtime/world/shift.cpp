@@ -73,8 +73,10 @@ void checkMoved(const Place& place, const double (&by)[3], const char* what, uin
     for (int i = 0; i < 3; ++i)
         if (const double moved = double(place[i]) + by[i]; !(std::abs(moved) <= kFar))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "offset[%d] is %g m and would put %s %u at %g m; places lie within +-%g m. "
-                       "Move or destroy it first.",
+                       "offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
+                       " and would put %s %u at " FW_LENGTH " " FW_LENGTH_UNIT
+                       "; places lie within +-" FW_LENGTH " " FW_LENGTH_UNIT
+                       ". Move or destroy it first.",
                        i, by[i], what, slot + 1, moved, kFar);
 }
 template <class Whole>
@@ -89,14 +91,15 @@ void checkMillimetres(const std::array<Whole, 3>& place, const double (&by)[3], 
 
 void World::shiftOrigin(const float offset[3], float applied[3]) {
     mayChange();
-    components::checkValues(offset, 3, "offset", -2e6f, 2e6f);
+    components::checkLengths(offset, 3, "offset", -2e6f, 2e6f);
     double by[3];
     for (int i = 0; i < 3; ++i) {
         by[i] = std::round(double(offset[i]));
         if (!(std::abs(origin_[i] + by[i]) <= kFarthestOrigin))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "offset[%d] is %g m and all places have moved by %g m already; the limit is "
-                       "+-%g m in all.",
+                       "offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
+                       " and all places have moved by " FW_LENGTH " " FW_LENGTH_UNIT
+                       " already; the limit is +-" FW_LENGTH " " FW_LENGTH_UNIT " in all.",
                        i, by[i], origin_[i], kFarthestOrigin);
     }
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)

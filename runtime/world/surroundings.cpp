@@ -66,7 +66,7 @@ components::Surroundings World::surroundingsAt(const components::SurroundingAir&
 }
 
 void World::askSurroundings(const float point[3], FwSurroundings& out) {
-    components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     const components::Surroundings at = surroundingsAt(listSources(), volume::vecOf(point));
     out.heatFlux = at.heatFlux;
     out.temperature = fire::kAmbient + at.excess;
@@ -80,17 +80,17 @@ void World::askSurroundings(const float point[3], FwSurroundings& out) {
 }
 
 float World::askSight(const float from[3], const float to[3]) {
-    components::checkValues(from, 3, "from", -1e6f, 1e6f);
-    components::checkValues(to, 3, "to", -1e6f, 1e6f);
+    components::checkLengths(from, 3, "from", -1e6f, 1e6f);
+    components::checkLengths(to, 3, "to", -1e6f, 1e6f);
     const components::SurroundingAir air = listSources();
     return components::sightThrough(sources_, air, volume::vecOf(from), volume::vecOf(to));
 }
 
 void World::makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
                            uint32_t columns, uint32_t rows, uint8_t* mask) {
-    components::checkValues(corner, 3, "corner", -1e6f, 1e6f);
-    components::checkValues(columnStep, 3, "columnStep", -1e4f, 1e4f);
-    components::checkValues(rowStep, 3, "rowStep", -1e4f, 1e4f);
+    components::checkLengths(corner, 3, "corner", -1e6f, 1e6f);
+    components::checkLengths(columnStep, 3, "columnStep", -1e4f, 1e4f);
+    components::checkLengths(rowStep, 3, "rowStep", -1e4f, 1e4f);
     if (columns < 1 || columns > kMostMaskSide || rows < 1 || rows > kMostMaskSide)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The mask has %u columns and %u rows; the limits are [1, %u] each.", columns,

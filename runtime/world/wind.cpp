@@ -61,7 +61,7 @@ std::array<float, 3> World::steadyWindAt(const float place[3]) const noexcept {
 }
 
 void World::windAtPoint(const float point[3], float wind[3]) const {
-    components::checkValues(point, 3, "point", -1e6f, 1e6f);
+    components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     const std::array<float, 3> here = windAt(point, clock_.tick);
     std::copy_n(here.data(), 3, wind);
 }

@@ -19,6 +19,8 @@
 namespace fw::world {
 namespace {
 
+using components::checkLength;
+using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
 
@@ -48,7 +50,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
                    double(length));
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
-    checkValues(def.wind, 3, "FwWorldDef::wind", -fire::kMostWind, fire::kMostWind);
+    checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMostWind, fire::kMostWind);
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, components::kMostLights);
@@ -58,6 +60,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLimit(def.volumeOctaves, "FwWorldDef::volumeOctaves", 1, gpu::kFlameOctaves);
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
+    checkLimit(def.reserved3, "FwWorldDef::reserved3", 0, 0);
     checkLimit(def.maxFlames, "FwWorldDef::maxFlames", 0, 65536);
     checkLimit(def.maxParticles, "FwWorldDef::maxParticles", 0, 1u << 20);
     checkLimit(def.arrivalTiles, "FwWorldDef::arrivalTiles", 1, 1u << 20);
@@ -194,7 +197,7 @@ World::~World() {
 
 void World::setWind(const float wind[3]) {
     mayChange();
-    checkValues(wind, 3, "wind", -fire::kMostWind, fire::kMostWind);
+    checkLengths(wind, 3, "wind", -fire::kMostWind, fire::kMostWind);
     if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
     components::windChanges(gusts_, fire::windUnits(wind_), clock_.tick);
     std::copy_n(wind, 3, wind_);
@@ -661,7 +664,7 @@ void World::setVertexPositions(FwBurnableMeshId id, const float* positions, cons
     ++geometry_;
     Object& object = **objects_.at(skinnedSlot(id, count));
     const unsigned values = count * 3;
-    checkValues(positions, values, "positions", -1e6f, 1e6f);
+    checkLengths(positions, values, "positions", -1e6f, 1e6f);
     if (normals) checkValues(normals, values, "normals", -1e6f, 1e6f);
     object.skin.resize(values);
     object.skinNormals.resize(normals ? values : 0);
@@ -851,8 +854,8 @@ uint32_t World::ignite(const FwIgnitionDef& def, bool* acts) {
 
 uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
     checkLimit(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
-    checkValues(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
-    checkValue(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
+    checkLengths(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
+    checkLength(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
     checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
     for (uint32_t i = 0; i < 2; ++i)
         if (def.reserved[i] != 0)

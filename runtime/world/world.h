@@ -293,6 +293,7 @@ struct FireColliderEntry {
     std::pmr::vector<float> heights;
     float(FW_CALL* distance)(void*, const float*, float*) = nullptr;
     void* distanceData = nullptr;
+    float unitsPerMetre = 1;  // what the host's function gets and gives
     volume::DepthPicture picture;
 };
 
@@ -524,8 +525,9 @@ class World {
     void setFlameFlipbooks(FwFlipbookId fire, FwFlipbookId smoke);
     FwFireProfileId createFireProfile(const FwFireProfileDef& def);
     void destroyFireProfile(FwFireProfileId id);
-    FwFireColliderId addFireCollider(const FwFireColliderDef& def);
-    void setFireCollider(FwFireColliderId id, const FwFireColliderDef& def);
+    FwFireColliderId addFireCollider(const FwFireColliderDef& def, float unitsPerMetre = 1);
+    void setFireCollider(FwFireColliderId id, const FwFireColliderDef& def,
+                         float unitsPerMetre = 1);
     void removeFireCollider(FwFireColliderId id);
     FwParticleFieldId createParticleField(const FwParticleFieldDef& def);
     void destroyParticleField(FwParticleFieldId id);

@@ -41,6 +41,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwContext_Prepare(NULL));
     IS_ZERO(fwContext_GetMemoryReport(NULL, NULL, 0));
     REFUSES(fwCreateWorld(NULL, NULL, NULL));
+    REFUSES(fwWorld_ConvertDef(NULL, FW_DEF_ROOM, NULL));
     RUNS(fwDestroyWorld(NULL));
     IS_ZERO(fwWorld_GetLastMessage(NULL, NULL, 0));
     REFUSES(fwWorld_DestroyAfterFrame(NULL, 0));

@@ -218,7 +218,7 @@ class EveryPass : public GpuTest {
         vertices.accessBefore = VK_ACCESS_HOST_WRITE_BIT;
         vertices.stageAfter = VK_PIPELINE_STAGE_HOST_BIT;
         vertices.accessAfter = VK_ACCESS_HOST_WRITE_BIT;
-        rig_->backend.setVertexBuffer(0, vertices);
+        rig_->backend.setVertexBuffer(0, vertices, 1);
     }
 
     void texels(std::vector<gpu::TexelEvent>& out, uint32_t kind, uint32_t every) {

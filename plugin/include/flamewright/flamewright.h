@@ -1,6 +1,8 @@
 /* flamewright/flamewright.h: the stable C ABI. C11 and C++20; no Vulkan and no C++ in here.
  *
- * Units: metre, second, kilogram, kelvin, degree Celsius only where a name says so.
+ * Units: second, kilogram, kelvin, degree Celsius only where a name says so. Lengths and speeds (m and m/s in comments) are
+ * in the world's unit, metres by default: see FwWorldDef::metersPerUnit. Their limits and defaults are given in metres here,
+ * in errors in that unit. All other numbers (m^2, m^3, 1/m, W/m^2, kg/m^3, N), and all of FwMaterialDef, are SI in every world.
  * Matrices: column-major, column vectors, not jittered. Colour: linear Rec.709, scene-referred.
  * Thread tags: [any] any thread; [world] one thread at a time per world; [record] as [world], and
  * the caller owns the command buffer. Callbacks may come from any thread and must not call back in.
@@ -229,11 +231,19 @@ typedef struct FwWorldDef {
     uint32_t volumeOctaves;     /* [1, 4], default 4: most octaves of noise of a volumetric flame; presets have
                                    3, large fires 4. Fewer are quicker and smoother, and as high and bright */
     uint32_t reserved2;         /* 0 */
+    float metersPerUnit;        /* m, [0.0001, 1000], default 1: length of the unit in which the host gives and gets
+                                   every length of this world. 0.01: centimetres (Unreal, Qt); 0.3048: feet. 0: 1 */
+    uint32_t reserved3;         /* 0 */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
 }
 FW_API FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* def, FwWorld** world); /* [any] */
+/* Turns the lengths of a def from metres into the world's unit. Defaults (fwDefault...), presets (fwInitFirePreset) and what
+ * a host keeps in metres know no world. def: a struct of FwDefType `defType` whose structSize is set; what it points to stays
+ * as it is. Once for each def. FW_ERROR_INVALID_ARGUMENT: defType is unknown. The defaults of
+ * FwMeshDef and FwMaterialDef hold in every unit. [any] */
+FW_API FwResult FW_CALL fwWorld_ConvertDef(FwWorld* world, uint32_t defType, void* def);
 FW_API void FW_CALL fwDestroyWorld(FwWorld* world); /* null is fine [world] */
 FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity); /* [any] */
 
@@ -271,7 +281,7 @@ FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
  * they say of objects counts for those created from now on. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags);
 
-/* Moves all places of the world by `offset` m, each within +-2e6 and rounded to whole metres: a place p is p + offset from
+/* Moves all places of the world by `offset` m, each within +-2e6 m and rounded to whole metres: a place p is p + offset from
  * here on. For hosts that move their origin in large worlds. Everything goes along: objects, what burns and what they
  * give each other, blockers, shields, rooms, wind, gusts, fires with their history, emitters with their particles,
  * fields, colliders, lights, answers and events that wait; the fire burns on and looks as if nothing had moved.
@@ -464,7 +474,7 @@ typedef enum FwMaterialPreset {
     FW_MATERIAL_PRESET_FORCE32 = 0x7fffffff
 } FwMaterialPreset;
 
-typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md */
+typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md. In SI units in every world */
     uint32_t structSize;
     uint32_t look;        /* FwMaterialPreset whose appearance is used */
     float spreadRate;     /* m/s on a flat horizontal sheet in still air, [0, 1]; 0: cannot burn */
@@ -533,7 +543,7 @@ FW_API FwResult FW_CALL fwWorld_DestroyImage(FwWorld*, FwImageId id); /* objects
 
 typedef struct FwMeshDef {
     uint32_t structSize, flags;    /* FwMeshFlags */
-    const float* positions;        /* 3 per vertex, m, required unless cooked */
+    const float* positions;        /* 3 per vertex, m, required unless cooked. Here m is the mesh's unit */
     const float* normals;          /* 3 per vertex, or null: computed */
     const float* uvs;              /* 2 per vertex, or null */
     const float* details;          /* 2 per vertex, m on the surface, y along the grain, or null */
@@ -545,10 +555,15 @@ typedef struct FwMeshDef {
     uint32_t mapSize;              /* largest side of the burn map in texels, [8, 4096], default 512 */
     float texelsPerMetre;          /* wished density, (0, 4096], default 128; lowered to fit mapSize */
     float noiseAmplitude;          /* raggedness of the front, [0, 0.5], default 0.15 */
-    float noiseFeature;            /* m, default 0.012 */
+    float noiseFeature;            /* metres in every unit, [0.0001, 1000], default 0.012 */
     uint32_t noiseSeed;
     const void* cooked;            /* from fwCookMesh; then the arrays above are not read */
     uint64_t cookedSize;           /* bytes */
+    float metersPerUnit;           /* m, [0.0001, 1000]: length of the mesh's unit, in which are the arrays above and all of its
+                                      object space: transforms lead from it, pins, skinned vertices and FwMeshInfo are in
+                                      it. 0, default: the world's unit; with fwCookMesh: 1. Of a cooked mesh, whose bytes
+                                      hold metres: the unit of its object space from here on */
+    uint32_t reserved;             /* 0 */
 } FwMeshDef;
 typedef enum FwMeshFlags {
     FW_MESH_TRUST_UVS = 1, /* use the UVs as the burn map's even if they overlap or stretch */
@@ -563,7 +578,7 @@ typedef struct FwMeshInfo {
     uint32_t vertices, triangles, degenerateTriangles, openEdges, nonManifoldEdges;
     uint32_t usedOwnUvs, reserved;
     float area, texelArea;         /* m^2 */
-    float boundsLow[3], boundsHigh[3]; /* m */
+    float boundsLow[3], boundsHigh[3]; /* m, object space */
     float texelsPerMetre, bakeMilliseconds;
 } FwMeshInfo;
 /* Bakes the burn domain: up to seconds for 100k triangles. [world] */
@@ -616,7 +631,7 @@ typedef struct FwBurnableMeshDef {
     FwMaterialId materials[8];        /* by triangle material, default all null: the object is pine.
                                          Once one is named, null ones are noncombustible */
     FwImageId baseColor;              /* null: the material's base colour and procedural detail */
-    float transform[16];              /* object to world: rotation, a scale per axis (the largest at most
+    float transform[16];              /* the mesh's unit to the world's: rotation, a scale per axis (the largest at most
                                          16 times the smallest), a mirror; no shear. Default identity.
                                          Objects of one mesh and one shape share it; another shape costs a
                                          copy of the mesh's planes. */
@@ -786,7 +801,8 @@ typedef struct FwVolumetricFireDef {
 static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
     FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;
 }
-/* Sets preset, diameter and power of a whole def, whose structSize is set; the rest stays. [any] */
+/* Sets preset, diameter (in metres: see fwWorld_ConvertDef) and power of a whole def, whose structSize is set; the rest
+ * stays. [any] */
 FW_API FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset);
 FW_API const char* FW_CALL fwFirePresetName(uint32_t preset); /* static, never null [any] */
 /* At most 256 at a time in a world, as at most 256 flames. [world] */
@@ -1167,7 +1183,8 @@ FW_API FwResult FW_CALL fwWorld_Step(FwWorld*, float deltaTime);
 
 typedef struct FwView { /* what a camera and its light are; all lengths m */
     uint32_t structSize, flags;       /* 0 */
-    float view[16], projection[16];   /* Vulkan clip space: y down, depth 0..1 */
+    float view[16], projection[16];   /* world to view space, rigid; view to Vulkan clip space: y down, depth 0..1.
+                                         From another clip space: fwConvertProjection */
     float sunDirection[3];            /* towards the sun, unit */
     float sunColor[3];                /* radiance x pi/2 into a Lambert/pi surface; cd/m^2-like */
     float ambientSky[3], ambientGround[3]; /* hemisphere about world up */
@@ -1182,6 +1199,23 @@ typedef struct FwView { /* what a camera and its light are; all lengths m */
 } FwView;
 static inline FwView fwDefaultView(void) {
     FwView d; fwInitDef(FW_DEF_VIEW, &d, (uint32_t)sizeof d); return d;
+}
+typedef enum FwClipSpace { /* how a host's clip space differs from Vulkan's, for fwConvertProjection */
+    FW_CLIP_Y_UP = 1,           /* y of clip space points up: Direct3D, Metal, WebGPU, Unreal */
+    FW_CLIP_SYMMETRIC_DEPTH = 2,/* depth is -1..1 instead of 0..1 */
+    FW_CLIP_OPENGL = 3,         /* both: OpenGL, Qt, glm without GLM_FORCE_DEPTH_ZERO_TO_ONE */
+    FW_CLIP_REVERSE_DEPTH = 4,  /* turns the direction of depth: the matrix has near at 0 and the depth buffer at 1, or the
+                                   other way. A matrix that is reversed already needs FwVulkanTargetDef::reversedDepth alone */
+    FW_CLIP_SPACE_FORCE32 = 0x7fffffff
+} FwClipSpace;
+/* Turns the projection of a host's, in place, into one of Vulkan's clip space. clipSpace: FwClipSpace bits, 0: nothing
+ * changes. The same points stay at the same pixel and the same depth of the depth buffer. [any] */
+static inline void fwConvertProjection(float projection[16], uint32_t clipSpace) {
+    for (int c = 0; c < 16; c += 4) {
+        if (clipSpace & FW_CLIP_Y_UP) projection[c + 1] = -projection[c + 1];
+        if (clipSpace & FW_CLIP_SYMMETRIC_DEPTH) projection[c + 2] = 0.5f * (projection[c + 2] + projection[c + 3]);
+        if (clipSpace & FW_CLIP_REVERSE_DEPTH) projection[c + 2] = projection[c + 3] - projection[c + 2];
+    }
 }
 
 typedef struct FwOffscreenDef { /* own device only: the smallest way to a picture */

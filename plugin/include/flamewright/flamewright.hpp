@@ -5,6 +5,7 @@
 #define FLAMEWRIGHT_FLAMEWRIGHT_HPP
 #include "flamewright/flamewright.h"
 
+#include <array>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -109,6 +110,42 @@ template <>
     return fwDefaultOffscreenDef();
 }
 
+// Defs with lengths in the unit of a world that has another than the metre:
+// `auto room = fw::def<FwRoomDef>(world);`. See fwWorld_ConvertDef.
+template <class Def>
+inline constexpr uint32_t kDefType = 0;
+template <>
+inline constexpr uint32_t kDefType<FwBurnableMeshDef> = FW_DEF_BURNABLE_MESH;
+template <>
+inline constexpr uint32_t kDefType<FwBlockerDef> = FW_DEF_BLOCKER;
+template <>
+inline constexpr uint32_t kDefType<FwHeatShieldDef> = FW_DEF_HEAT_SHIELD;
+template <>
+inline constexpr uint32_t kDefType<FwWindZoneDef> = FW_DEF_WIND_ZONE;
+template <>
+inline constexpr uint32_t kDefType<FwWindGridDef> = FW_DEF_WIND_GRID;
+template <>
+inline constexpr uint32_t kDefType<FwGustDef> = FW_DEF_GUSTS;
+template <>
+inline constexpr uint32_t kDefType<FwRoomDef> = FW_DEF_ROOM;
+template <>
+inline constexpr uint32_t kDefType<FwVolumetricFireDef> = FW_DEF_VOLUMETRIC_FIRE;
+template <>
+inline constexpr uint32_t kDefType<FwFireColliderDef> = FW_DEF_FIRE_COLLIDER;
+template <>
+inline constexpr uint32_t kDefType<FwFireEmitterDef> = FW_DEF_FIRE_EMITTER;
+template <>
+inline constexpr uint32_t kDefType<FwParticleFieldDef> = FW_DEF_PARTICLE_FIELD;
+
+template <class Def>
+[[nodiscard]] Def def(const World& world) noexcept {
+    static_assert(kDefType<Def> != 0, "this def has no lengths of a world");
+    Def made;
+    fwInitDef(kDefType<Def>, &made, uint32_t(sizeof made));
+    (void)fwWorld_ConvertDef(world.get(), kDefType<Def>, &made);
+    return made;
+}
+
 // A struct that the library fills, e.g. fw::info<FwMeshInfo>().
 template <class Info>
 [[nodiscard]] Info info() noexcept {
@@ -126,6 +163,13 @@ template <class Info>
 [[nodiscard]] inline FwVolumetricFireDef preset(FwFirePreset which) noexcept {
     FwVolumetricFireDef made = fwDefaultVolumetricFireDef();
     (void)fwInitFirePreset(&made, uint32_t(which));
+    return made;
+}
+
+// The same in the unit of a world.
+[[nodiscard]] inline FwVolumetricFireDef preset(const World& world, FwFirePreset which) noexcept {
+    FwVolumetricFireDef made = preset(which);
+    (void)fwWorld_ConvertDef(world.get(), FW_DEF_VOLUMETRIC_FIRE, &made);
     return made;
 }
 
@@ -288,6 +332,15 @@ using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
     FwFireColliderId id{};
     (void)fwWorld_AddFireCollider(world.get(), &made, &id);
     return {world.get(), id};
+}
+
+// The projection of a host of another clip space, e.g. fw::convertedProjection(m, FW_CLIP_OPENGL).
+[[nodiscard]] inline std::array<float, 16> convertedProjection(std::span<const float, 16> given,
+                                                               uint32_t clipSpace) noexcept {
+    std::array<float, 16> made{};
+    for (size_t i = 0; i < 16; ++i) made[i] = given[i];
+    fwConvertProjection(made.data(), clipSpace);
+    return made;
 }
 
 // Lights the texels within `radius` m of `place` (m, world) on every object. FW_OK: something was

@@ -227,7 +227,8 @@ typedef struct FwVulkanVertices { /* skinned vertices in a buffer of yours, in t
     uint32_t structSize;
     uint32_t vertexCount;             /* the mesh's */
     VkBuffer buffer;                  /* usage TRANSFER_SRC */
-    uint64_t offset;                  /* bytes, a multiple of 4: the first position, 3 floats, m, object space */
+    uint64_t offset;                  /* bytes, a multiple of 4: the first position, 3 floats, m, object space
+                                         (in the mesh's unit) */
     uint32_t stride;                  /* bytes from vertex to vertex, a multiple of 4 in [12, 2048] */
     uint32_t normalOffset;            /* bytes from a position to its normal, 3 floats, a multiple of 4 in
                                          [12, 2048]; 0: none, they follow the triangles */

@@ -114,9 +114,9 @@ class VkBackend final : public Backend {
 
     void restore(std::span<const RestoredObject> objects, uint32_t tick) override;
 
-    // Vertices as setVertices', from a buffer that the next frame copies. Throws where memory is
-    // refused.
-    void setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices);
+    // Vertices as setVertices', from a buffer that the next frame copies, whose positions are in
+    // units of so many metres. Throws where memory is refused.
+    void setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices, float metersPerUnit);
 
     // Checks pacing and opens the frame. False: pipelines are not built yet. Throws core::Error:
     // FW_ERROR_INVALID_ARGUMENT for pacing, FW_ERROR_DEVICE_LOST once latched.

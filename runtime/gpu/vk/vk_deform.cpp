@@ -79,9 +79,9 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
     push.given = skin.words.first;
     push.stride = from.stride / 4;
     push.normal = from.normalOffset ? from.normalOffset / 4 : kNoneTexel;
-    push.scaleX = std::bit_cast<uint32_t>(object.shape[0]);
-    push.scaleY = std::bit_cast<uint32_t>(object.shape[1]);
-    push.scaleZ = std::bit_cast<uint32_t>(object.shape[2]);
+    push.scaleX = std::bit_cast<uint32_t>(object.shape[0] * skin.metersPerUnit);
+    push.scaleY = std::bit_cast<uint32_t>(object.shape[1] * skin.metersPerUnit);
+    push.scaleZ = std::bit_cast<uint32_t>(object.shape[2] * skin.metersPerUnit);
     recordSkin(recorder, push);
 }
 

@@ -360,7 +360,8 @@ void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
     skin.normals = !normals.empty();
 }
 
-void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices) {
+void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices,
+                                float metersPerUnit) {
     State& s = *state_;
     Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
     const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
@@ -372,6 +373,7 @@ void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices)
         skin.words = fresh;
     }
     skin.given = vertices;
+    skin.metersPerUnit = metersPerUnit;
     skin.givenDue = true;
     skin.dirty = false;
     skin.normals = vertices.normalOffset != 0;

@@ -152,6 +152,7 @@ struct Skin {
     bool dirty = false, normals = false;  // normals: the host's; else they follow the triangles
     // Instead of `shown`, what a buffer of the host's holds: copied by the next frame.
     FwVulkanVertices given{};
+    float metersPerUnit = 1;  // of its positions
     bool givenDue = false;
     RangeOf words;  // where it is copied to
     using allocator_type = std::pmr::polymorphic_allocator<>;

@@ -1,0 +1,279 @@
+// The unit in which a host gives and gets lengths. Inside of the library they are metres; this file
+// alone says which fields of the ABI's structs are lengths or speeds. A struct without an entry
+// here does not compile where a world's functions read or write it.
+#pragma once
+#include "flamewright/flamewright.h"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <list>
+#include <memory_resource>
+#include <vector>
+
+namespace fw::edge {
+
+// A ratio, since 0.01f is not a hundredth: 250 of the host's are 2.5 m exactly.
+struct Unit {
+    double metres = 1, units = 1;  // as many metres as units
+
+    static Unit of(float metersPerUnit) noexcept {
+        const double per = 1 / double(metersPerUnit), whole = std::round(per);
+        if (whole >= 1 && std::abs(per - whole) < 1e-6 * whole) return {1, whole};
+        return {double(metersPerUnit), 1};
+    }
+    [[nodiscard]] bool isMetre() const noexcept { return metres == units; }
+    bool operator==(const Unit&) const = default;
+    [[nodiscard]] double perMetre() const noexcept { return units / metres; }
+    [[nodiscard]] Unit inverse() const noexcept { return {units, metres}; }
+    // This unit, counted in the other one.
+    [[nodiscard]] Unit in(const Unit& other) const noexcept {
+        return {metres * other.units, units * other.metres};
+    }
+};
+
+// Throws unless it is a length of a unit; 0: `otherwise`.
+Unit checkedUnit(float metersPerUnit, const char* field, const Unit& otherwise);
+
+// Turns lengths of the unit into metres.
+class Scale {
+ public:
+    explicit Scale(const Unit& unit) noexcept : unit_(unit) {}
+
+    template <class... Field>
+    void operator()(Field&... fields) const noexcept {
+        (scale(fields), ...);
+    }
+    // A matrix that leads to the world: its translation.
+    void transform(float (&matrix)[16]) const noexcept {
+        for (int i = 12; i < 15; ++i) scale(matrix[i]);
+    }
+    // A camera's: the same clip positions, but for a factor that leaves w the way along the axis.
+    void view(float (&view)[16], float (&projection)[16]) const noexcept {
+        transform(view);
+        const bool perspective = projection[15] == 0;
+        const Scale columns(perspective ? unit_ : unit_.inverse());
+        for (int i = 0; i < 16; ++i)
+            if ((i >= 12) == perspective) columns.scale(projection[i]);
+    }
+
+ private:
+    void scale(float& value) const noexcept {
+        if (std::abs(value) != FLT_MAX)  // "nothing there"
+            value = float(double(value) * unit_.metres / unit_.units);
+    }
+    void scale(double& value) const noexcept { value = value * unit_.metres / unit_.units; }
+    template <class T, size_t N>
+    void scale(T (&values)[N]) const noexcept {
+        for (T& value : values) scale(value);
+    }
+
+    Unit unit_;
+};
+
+// ---- lengths of each struct, but for those behind pointers --------------------------------------
+
+template <class T>
+inline constexpr bool kHasNoLengths = false;
+#define FW_NO_LENGTHS(T) \
+    template <>          \
+    inline constexpr bool kHasNoLengths<T> = true
+FW_NO_LENGTHS(FwContextDef);
+FW_NO_LENGTHS(FwMaterialDef);  // SI in every world
+FW_NO_LENGTHS(FwImageDef);
+FW_NO_LENGTHS(FwMeshDef);  // arrays; noiseFeature is metres in every world
+FW_NO_LENGTHS(FwFireProfileDef);
+FW_NO_LENGTHS(FwFlipbookDef);
+FW_NO_LENGTHS(FwBudgetDef);
+FW_NO_LENGTHS(FwNetDef);
+FW_NO_LENGTHS(FwTimelineDef);
+FW_NO_LENGTHS(FwFireTrackDef);
+FW_NO_LENGTHS(FwRoomState);
+FW_NO_LENGTHS(FwFirePush);
+FW_NO_LENGTHS(FwParticleFieldState);
+FW_NO_LENGTHS(FwObjectState);
+FW_NO_LENGTHS(FwWorldStats);
+FW_NO_LENGTHS(FwEnergyBook);
+FW_NO_LENGTHS(FwBudgetState);
+FW_NO_LENGTHS(FwTimelineState);
+#undef FW_NO_LENGTHS
+
+template <class T>
+requires kHasNoLengths<T>
+void visitLengths(T&, const Scale&) noexcept {}
+inline void visitLengths(FwWorldDef& def, const Scale& scale) noexcept { scale(def.wind); }
+inline void visitLengths(FwMeshInfo& info, const Scale& scale) noexcept {
+    scale(info.boundsLow, info.boundsHigh);
+}
+inline void visitLengths(FwBurnableMeshDef& def, const Scale& scale) noexcept {
+    scale.transform(def.transform);
+    scale(def.ground);
+}
+inline void visitLengths(FwIgnitionDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.radius);
+}
+inline void visitLengths(FwBlockerDef& def, const Scale& scale) noexcept {
+    scale.transform(def.transform);
+    scale(def.halfSize);
+}
+inline void visitLengths(FwHeatShieldDef& def, const Scale& scale) noexcept {
+    scale(def.origin, def.cellSize);
+}
+inline void visitLengths(FwWindZoneDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.size, def.speed);
+}
+inline void visitLengths(FwWindGridDef& def, const Scale& scale) noexcept {
+    scale(def.origin, def.cellSize, def.fade);
+}
+inline void visitLengths(FwGustDef& def, const Scale& scale) noexcept { scale(def.size); }
+inline void visitLengths(FwRoomDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.halfSize);
+}
+inline void visitLengths(FwVolumetricFireDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.diameter);
+}
+inline void visitLengths(FwVolumetricFireState& state, const Scale& scale) noexcept {
+    scale(state.height, state.boundsLow, state.boundsHigh, state.tip, state.lightPosition,
+          state.contact);
+}
+inline void visitLengths(FwFireColliderDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.end, def.halfSize, def.radius, def.cellSize);
+    scale.view(def.view, def.projection);
+}
+inline void visitLengths(FwFireAnswer& answer, const Scale& scale) noexcept { scale(answer.gas); }
+inline void visitLengths(FwFireEmitterDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.extent, def.radius, def.speed, def.size0, def.size1, def.ground,
+          def.behind);
+}
+inline void visitLengths(FwFireEmitterState& state, const Scale& scale) noexcept {
+    scale(state.speed, state.reach, state.lightPosition, state.freeWay);
+}
+inline void visitLengths(FwParticleFieldDef& def, const Scale& scale) noexcept {
+    scale(def.position, def.size);
+}
+inline void visitLengths(FwView& view, const Scale& scale) noexcept {
+    scale.view(view.view, view.projection);
+}
+inline void visitLengths(FwOffscreenDef& def, const Scale& scale) noexcept {
+    visitLengths(def.view, scale);
+}
+inline void visitLengths(FwEvent& event, const Scale& scale) noexcept { scale(event.position); }
+inline void visitLengths(FwPointState& state, const Scale& scale) noexcept {
+    scale(state.distance, state.position);
+}
+inline void visitLengths(FwArrivalState& state, const Scale& scale) noexcept {
+    scale(state.distance, state.position);
+}
+inline void visitLengths(FwLight& light, const Scale& scale) noexcept {
+    scale(light.position, light.radius);
+}
+inline void visitLengths(FwSurroundings& around, const Scale& scale) noexcept {
+    scale(around.nearest, around.nearestPosition);
+}
+
+template <class T>
+void toMetres(const Unit& unit, T& given) noexcept {
+    if (!unit.isMetre()) visitLengths(given, Scale(unit));
+}
+template <class T>
+void fromMetres(const Unit& unit, T& filled) noexcept {
+    if (!unit.isMetre()) visitLengths(filled, Scale(unit.inverse()));
+}
+
+// ---- what functions take beside structs ---------------------------------------------------------
+
+// Three numbers of the host's in metres, while a call lasts. Null stays null.
+class Metres {
+ public:
+    Metres(const Unit& unit, const float* given) noexcept : there_(given != nullptr) {
+        if (!given) return;
+        std::memcpy(values_, given, sizeof values_);
+        if (!unit.isMetre()) Scale{unit}(values_);
+    }
+    operator const float*() const noexcept { return there_ ? values_ : nullptr; }
+
+ private:
+    bool there_;
+    float values_[3] = {};
+};
+
+template <class T>
+void fromMetres3(const Unit& unit, T* filled) noexcept {
+    const Scale host(unit.inverse());
+    for (int i = 0; !unit.isMetre() && i < 3; ++i) host(filled[i]);
+}
+
+// The axes of a matrix from an object space of one unit to a world of another: metres to metres.
+inline void scaleAxes(const Unit& object, const Unit& world, float (&matrix)[16]) noexcept {
+    if (object == world) return;
+    const Scale scale(world.in(object));
+    for (int i = 0; i < 12; ++i)
+        if (i % 4 != 3) scale(matrix[i]);
+}
+
+struct TransformInMetres {
+    TransformInMetres(const Unit& object, const Unit& world, const float* given) noexcept {
+        std::memcpy(matrix, given, sizeof matrix);
+        if (!world.isMetre()) Scale(world).transform(matrix);
+        scaleAxes(object, world, matrix);
+    }
+    float matrix[16];
+};
+
+// Whole arrays, while a call lasts.
+class MetreArrays {
+ public:
+    MetreArrays(const Unit& unit, std::pmr::memory_resource* memory)
+        : unit_(unit), copies_(memory) {}
+    // More than `most` stay as they are: the world refuses them by their number.
+    template <class T>
+    const T* operator()(const T* given, uint64_t count, uint64_t most) {
+        static_assert(sizeof(T) % sizeof(float) == 0);
+        if (!given || unit_.isMetre() || count > most) return given;
+        std::pmr::vector<float>& copy = copies_.emplace_back();
+        copy.resize(size_t(count) * (sizeof(T) / sizeof(float)));
+        std::memcpy(copy.data(), given, copy.size() * sizeof(float));
+        const Scale scale(unit_);
+        for (float& value : copy) scale(value);
+        return reinterpret_cast<const T*>(copy.data());
+    }
+
+ private:
+    Unit unit_;
+    std::pmr::list<std::pmr::vector<float>> copies_;
+};
+
+// What structs point to.
+template <class Def>
+void visitArrays(Def&, MetreArrays&) noexcept {}
+inline void visitArrays(FwWindGridDef& def, MetreArrays& arrays) {
+    const uint64_t points = uint64_t(def.counts[0]) * def.counts[1] * def.counts[2];
+    const bool few = std::max({def.counts[0], def.counts[1], def.counts[2]}) <= 64;
+    def.velocities = arrays(def.velocities, few ? 3 * points : UINT64_MAX, 3 * 32768);
+}
+inline void visitArrays(FwVolumetricFireDef& def, MetreArrays& arrays) {
+    def.points = arrays(def.points, def.pointCount, 32);
+}
+inline void visitArrays(FwFireTrackDef& def, MetreArrays& arrays) {
+    const bool few = def.keyCount <= 4096 && def.pointsPerKey <= 32;
+    def.points = arrays(def.points, few ? def.keyCount * def.pointsPerKey : UINT64_MAX, 4096 * 32);
+}
+inline void visitArrays(FwFireColliderDef& def, MetreArrays& arrays) {
+    if (def.kind != FW_COLLIDER_HEIGHT_FIELD) return;  // others do not read it
+    const bool few = def.columns <= 4096 && def.rows <= 4096;
+    def.heights = arrays(def.heights, few ? def.columns * def.rows : UINT64_MAX, 4096 * 4096);
+}
+// In the mesh's unit.
+inline void visitArrays(FwMeshDef& def, MetreArrays& arrays) {
+    constexpr uint64_t kMost = 16u << 20;  // vertices
+    if (def.cooked) return;
+    def.positions = arrays(def.positions, uint64_t(def.vertexCount) * 3, kMost * 3);
+    def.details = arrays(def.details, uint64_t(def.vertexCount) * 2, kMost * 2);
+}
+inline void visitArrays(FwBurnableMeshDef& def, MetreArrays& arrays) {
+    def.pins = arrays(def.pins, def.pinCount, 8);
+}
+
+}  // namespace fw::edge
