@@ -1,8 +1,10 @@
 // An engine with its own Vulkan device and its own render pass has a crate burn in it. It draws the
 // room before the plugin and blocks of stone after it, all in one pass. The switches show the ways
-// in which engines differ: secondary command buffers, MSAA, depth, encoding, pacing.
+// in which engines differ: secondary command buffers, MSAA, depth, encoding, pacing, split screens.
 #include <cmath>
 #include <cstdio>
+#include <memory>
+#include <vector>
 
 #include "common/filming.h"
 #include "common/fire_host.h"
@@ -14,6 +16,7 @@ namespace {
 
 struct Switches {
     bool secondary = false, msaa = false, reversed = false, slotPacing = false, blocks = true;
+    bool split = false;
     std::string target = "linear";
     float wind[3] = {1.6f, 0.0f, 0.3f};  // m/s
     float pace = 60.0f;
@@ -54,6 +57,31 @@ void loadCrate(sample::FireHost& fire, const CrateMesh& crate) {
     fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
 }
 
+// A part of the frame, and who looks at it.
+struct Player {
+    FwView view;
+    sample::StageFrame frame;
+    std::unique_ptr<sample::Studio> studio;  // it holds one camera a frame
+};
+
+// Players side by side look at the crate from two sides.
+void look(std::vector<Player>& players, const sample::Turntable& table,
+          const sample::StageFrame& frame, bool reversed) {
+    const auto count = static_cast<uint32_t>(players.size());
+    for (uint32_t i = 0; i < count; ++i) {
+        Player& player = players[i];
+        player.frame = frame;
+        player.frame.extent.width = frame.extent.width / count;
+        player.frame.viewport.width = static_cast<float>(player.frame.extent.width);
+        player.frame.viewport.x = player.frame.viewport.width * static_cast<float>(i);
+        player.view = table.view;
+        player.view.viewId = i;
+        sample::OrbitCamera orbit = table.orbit;
+        orbit.yaw += 0.9f * static_cast<float>(i);
+        sample::setCamera(player.view, orbit.camera(), player.frame, reversed);
+    }
+}
+
 int run(const sample::Options& options, const Switches& switches) {
     sample::ValidationLog validation;
     {
@@ -66,9 +94,12 @@ int run(const sample::Options& options, const Switches& switches) {
         stageRequest.reversedDepth = switches.reversed;
         const uint32_t frames = sample::framesOf(options, 96 / options.fps);
         sample::Stage stage(host, options, stageRequest, frames);
-        sample::Studio studio(host, stage, {0, 0, 0}, 0.7f);
-        studio.addBlock({0.40f, 0.055f, 0.48f}, {0.13f, 0.055f, 0.08f});
-        studio.addBlock({0.44f, 0.145f, 0.47f}, {0.07f, 0.035f, 0.06f});
+        std::vector<Player> players(switches.split ? 2 : 1);
+        for (Player& player : players) {
+            player.studio = std::make_unique<sample::Studio>(host, stage, glm::vec3(0, 0, 0), 0.7f);
+            player.studio->addBlock({0.40f, 0.055f, 0.48f}, {0.13f, 0.055f, 0.08f});
+            player.studio->addBlock({0.44f, 0.145f, 0.47f}, {0.07f, 0.035f, 0.06f});
+        }
 
         // The plugin's part: lend the device, say what the pass looks like, fill the world.
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -86,9 +117,10 @@ int run(const sample::Options& options, const Switches& switches) {
                                         .yaw = -0.45f,
                                         .pitch = 0.28f,
                                         .fieldOfView = 0.5f});
-        const FwView& view = table.view;
-        studio.castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
-                          {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
+        const float* sun = table.view.sunDirection;
+        for (Player& player : players)
+            player.studio->castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
+                                      {sun[0], sun[1], sun[2]});
 
         sample::Filming filming(stage, options, {.name = "lent_device"});
 
@@ -97,23 +129,34 @@ int run(const sample::Options& options, const Switches& switches) {
             FwLight lights[8];
             const uint32_t lightCount = fwWorld_GetLights(fire.world, lights, 8);
 
+            look(players, table, frame, stage.made.reversedDepth);
+            std::vector<FwView> views;
+            for (const Player& player : players) views.push_back(player.view);
+            const auto draw = [&](VkCommandBuffer secondary) {
+                const VkCommandBuffer commands = secondary ? secondary : frame.commands;
+                const VkRect2D whole{{0, 0}, frame.extent};
+                for (const Player& player : players) {
+                    vkCmdSetViewport(commands, 0, 1, &player.frame.viewport);
+                    vkCmdSetScissor(commands, 0, 1, &whole);
+                    player.studio->draw(player.frame, commands, player.view, {lights, lightCount});
+                    fire.recordInside(player.frame, player.view, secondary);
+                    if (switches.blocks) player.studio->drawBlocks(player.frame, commands);
+                }
+            };
+
             // Outside any pass: the plugin simulates. Inside: room, fire, stones.
             if (switches.secondary) {
                 VkCommandBuffer outside = stage.beginSecondary(frame, false);
-                fire.recordOutside(frame, view, outside);
+                fire.recordOutside(frame, views, outside);
                 stage.executeSecondary(frame, outside);
                 stage.beginScene(frame, true);
                 VkCommandBuffer inside = stage.beginSecondary(frame, true);
-                studio.draw(frame, inside, view, {lights, lightCount});
-                fire.recordInside(frame, view, inside);
-                if (switches.blocks) studio.drawBlocks(frame, inside);
+                draw(inside);
                 stage.executeSecondary(frame, inside);
             } else {
-                fire.recordOutside(frame, view);
+                fire.recordOutside(frame, views);
                 stage.beginScene(frame);
-                studio.draw(frame, frame.commands, view, {lights, lightCount});
-                fire.recordInside(frame, view);
-                if (switches.blocks) studio.drawBlocks(frame, frame.commands);
+                draw(VK_NULL_HANDLE);
             }
             stage.endScene(frame);
             stage.finish(frame);
@@ -149,6 +192,7 @@ int main(int argc, char** argv) {
         parser.addFlag("--slot-pacing", "pace by slot, not by completed frame",
                        switches.slotPacing);
         parser.addText("--target", "NAME", "linear, srgb or unorm", switches.target);
+        parser.addFlag("--split", "two views side by side, one recording", switches.split);
         parser.addVector("--wind", "m/s", switches.wind);
         parser.addNumber("--pace", "how much faster than wood it burns", switches.pace, 0.1f,
                          1000.0f);

@@ -144,9 +144,15 @@ FwVulkanFrame FireHost::describe(const StageFrame& frame, VkCommandBuffer second
 
 void FireHost::recordOutside(const StageFrame& frame, const FwView& view,
                              VkCommandBuffer secondary) {
+    recordOutside(frame, {&view, 1}, secondary);
+}
+
+void FireHost::recordOutside(const StageFrame& frame, std::span<const FwView> views,
+                             VkCommandBuffer secondary) {
     const FwVulkanFrame described = describe(frame, secondary);
-    const FwResult result = fwWorld_RecordOutside(world, &described, &view);
-    if (result != FW_NOT_READY) check(result, "fwWorld_RecordOutside");
+    const FwResult result = fwWorld_RecordOutsideViews(world, &described, views.data(),
+                                                       static_cast<uint32_t>(views.size()));
+    if (result != FW_NOT_READY) check(result, "fwWorld_RecordOutsideViews");
     countPasses();
 }
 

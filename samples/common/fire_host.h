@@ -2,6 +2,7 @@
 // register the pass, then two calls a frame. Read this and fire_host.cpp as documentation.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "common/camera.h"
@@ -38,6 +39,9 @@ class FireHost {
     void registerTarget(const Stage& stage, bool surfaces = false);
     // Outside any pass, before it, once per frame: simulates. `secondary` may be null.
     void recordOutside(const StageFrame& frame, const FwView& view,
+                       VkCommandBuffer secondary = VK_NULL_HANDLE);
+    // The same for several views, each with a viewId of its own.
+    void recordOutside(const StageFrame& frame, std::span<const FwView> views,
                        VkCommandBuffer secondary = VK_NULL_HANDLE);
     // Inside the scene pass: draws; where the stage lends its scene the surfaces alone.
     void recordInside(const StageFrame& frame, const FwView& view,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # Runs 01_lent_device in every way that its switches allow, under core and synchronization validation:
 # primary and secondary command buffers, one and four samples, normal and reversed depth, both kinds
-# of pacing, three encodings. Each must be silent and leave a picture.
+# of pacing, three encodings, one view and two. Each must be silent and leave a picture.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 turn=1
@@ -15,6 +15,7 @@ for secondary in "" --secondary; do
                 [[ $turn -eq 0 ]] || pacing=--slot-pacing
                 switches=()
                 for switch in $secondary $msaa $reversed $pacing; do switches+=("$switch"); done
+                [[ $target != srgb ]] || switches+=(--split)
                 switches+=(--target "$target")
                 echo "01_lent_device ${switches[*]}"
                 status=0

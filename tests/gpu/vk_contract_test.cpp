@@ -449,8 +449,8 @@ TEST_F(VkContract, BadFramesAndViewsAreRefused) {
             view.haze = bad;
             refused(good, view, "FwView.haze is ");
             view = lit;
-            view.reserved[1] = bad;
-            refused(good, view, "FwView.reserved[1] is ");
+            view.reserved = bad;
+            refused(good, view, "FwView.reserved is ");
         }
         for (const float edge : {0.0f, 8.0f}) {
             FwView view = lit;
