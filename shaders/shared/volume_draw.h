@@ -12,6 +12,8 @@
 FW_SHARED_BEGIN
 #ifdef __cplusplus
 using glm::clamp;
+using glm::min;
+using std::abs;
 using std::floor;
 #endif
 
@@ -40,8 +42,76 @@ struct VolumeDraw {
     uint intervals;       // [1, kFlameIntervals], of a ray, between knots
     float wide;           // m, the flame's diameter
     uint perPixel;        // rays a side of a pixel; [1, 8]
+    vec4 base;            // the plane through its base, see volumeBaseDepth
 };
-FW_SHARED_SIZE(VolumeDraw, 112)
+FW_SHARED_SIZE(VolumeDraw, 128)
+
+// ---- where depth is only tested
+
+// clip z / w of so many m along the view, and m along the view of a clip z / w. `clip`: as VolumeDraw's.
+FW_SHARED_FN float volumeDepth(vec4 clip, float metres) {
+    return (clip.x * metres + clip.y) / (clip.z * metres + clip.w);
+}
+FW_SHARED_FN float volumeMetres(vec4 clip, float depth) {
+    float per = clip.x - depth * clip.z;
+    float at = (depth * clip.w - clip.y) / (abs(per) > 1e-12f ? per : 1e-12f);
+    return at > 0.0f ? at : 1e9f;  // at the far end of an infinite view
+}
+
+// A flame stands on the plane through its base, and often on ground that lies there. clip z / w of that plane at x, y
+// of the view is linear there: base.x + base.y * x + base.z * y. base.w is 1 where the eye is on the flame's side of
+// the plane: all of its light is nearer than the plane; -1: all of it is beyond.
+FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) { return base.x + base.y * at.x + base.z * at.y; }
+
+// Light between `front` and `front + deep` m along the view is tested at one depth: in its middle, or, where the base
+// plane cuts it, in the middle of the part that is on the flame's side: ground in the plane never hides it, and what
+// stands before it does. `whole` and `cut` are those depths; nearest counts, or farthest if `turn` is -1.
+struct VolumeTest { float whole; float cut; float turn; };
+FW_SHARED_FN VolumeTest volumeTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+    VolumeTest test;
+    test.whole = volumeDepth(clip, front + 0.5f * deep);
+    float end = clamp(volumeDepth(clip, front + (0.5f - 0.5f * base.w) * deep), 0.0f, 1.0f);
+    test.cut = 0.5f * (end + volumeBaseDepth(base, at));
+    // Depth grows along the view, or falls.
+    test.turn = (clip.x * clip.w - clip.y * clip.z) * base.w < 0.0f ? -1.0f : 1.0f;
+    return test;
+}
+// Of a corner. Between corners the device goes straight, so the ground stays behind.
+FW_SHARED_FN float volumeTested(VolumeTest test) {
+    return clamp(test.turn * min(test.turn * test.whole, test.turn * test.cut), 0.0f, 1.0f);
+}
+// Below 0 where the base plane cuts the light: linear over the view.
+FW_SHARED_FN float volumeOver(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+    VolumeTest test = volumeTest(base, clip, front, deep, at);
+    return test.turn * (test.cut - test.whole);
+}
+
+// A quad as two polygons, one on either side of a line: of vertex [0, kVolumeSplit) its place in the unit square.
+// `over`: what is below 0 on the first one's side, at 0 0, 1 0, 1 1 and 0 1.
+FW_SHARED_CONST uint kVolumeSplit = 18u;  // three triangles of each, some of them empty
+FW_SHARED_FN vec2 volumeSplit(vec4 over, uint vertex) {
+    float side = vertex < 9u ? 1.0f : -1.0f;
+    uint fan = vertex < 9u ? vertex : vertex - 9u;
+    uint turn = fan / 3u;
+    uint wanted = fan - 3u * turn;
+    if (wanted > 0u) wanted += turn;
+    vec2 at = vec2(0.0f);
+    uint count = 0u;
+    FW_UNROLL
+    for (uint k = 0u; k < 4u; ++k) {
+        vec2 a = vec2(k == 1u || k == 2u ? 1.0f : 0.0f, k < 2u ? 0.0f : 1.0f);
+        vec2 b = vec2(k < 2u ? 1.0f : 0.0f, k == 1u || k == 2u ? 1.0f : 0.0f);
+        float da = over[k];
+        float db = over[(k + 1u) & 3u];
+        bool in_ = side * da <= 0.0f;
+        if (in_ && count <= wanted) at = a;
+        if (in_) ++count;
+        bool crosses = in_ != (side * db <= 0.0f);
+        if (crosses && count <= wanted) at = a + (b - a) * (da / (da - db));
+        if (crosses) ++count;
+    }
+    return at;
+}
 
 FW_SHARED_CONST uint kVolumeTile = 8u;          // cells a side; a workgroup marches a tile
 FW_SHARED_CONST uint kVolumeCellWords = 4u;     // of a cell in a slab, a texel: as halfs red and green, blue and
@@ -115,8 +185,9 @@ struct VolumeComposite {
     float from; float to; // see volumeTurned
     uint reserved0; uint reserved1;
     vec4 window;          // low x, y, high x, y, cells from the origin: finer ones show the flame there
+    vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(VolumeComposite, 96)
+FW_SHARED_SIZE(VolumeComposite, 112)
 
 // A flame that was marched once and is shown for some frames: tiles of one slab, whose cells are
 // kept as wide as they are in the world. Its words are what is known of its tiles, then its cells.
@@ -134,8 +205,9 @@ struct VolumeCard {
     float from; float to; // see volumeTurned
     float upX; float upY;
     uint reserved0;
+    vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(VolumeCard, 80)
+FW_SHARED_SIZE(VolumeCard, 96)
 
 // Push constants of a flame that is drawn as slices of its lattice, see volume_slices.h.
 struct VolumeSlices {
@@ -202,6 +274,13 @@ float volumeThrough(uint lies) { return float(lies >> 16u) * (1.0 / 65535.0); }
 float volumeNearer(uint lies, float cut) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
+}
+// How much of it is on the flame's side of the base, which is `cut` slabs beyond this one's front; `side`: VolumeDraw::
+// base.w. A ray of its own has no light beyond: all of it counts until the base is nearer than its middle.
+float volumeBeside(uint lies, float cut, float side) {
+    vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
+    float end = side < 0.0 ? ends.y : ends.x;
+    return clamp(side * (cut - end) / max(0.5 * (ends.y - ends.x), 5e-3), 0.0, 1.0);
 }
 #endif
 

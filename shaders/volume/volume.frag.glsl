@@ -17,6 +17,7 @@ layout(push_constant) uniform Push { VolumeDraw draw; };
 layout(location = 0) in vec3 inRay;
 layout(location = 1) flat in vec2 inSlab;
 layout(location = 2) flat in uint inZero;
+layout(location = 3) in float inBase;
 
 layout(location = 0) out vec4 outColor;
 
@@ -40,12 +41,17 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     FlameSun sun = raySun(direction, white);
 
-    float farthest = 1e9;
-#ifdef FW_SOFT
-    farthest = depthOfScene(draw.clip) * perDepth;
-#endif
     vec4 spans = flameSpans(f, from, direction);
-    spans.yw = min(spans.yw, vec2(farthest));
+#ifdef FW_SOFT
+    spans.yw = min(spans.yw, vec2(depthOfScene(draw.clip) * perDepth));
+#else
+    // On the flame's side of the plane through its base: samples are as close as where ground is known.
+    float base = inBase + off.x * perPixel.x * draw.base.y + off.y * perPixel.y * draw.base.z;
+    float beyond = 0.5 - 0.5 * draw.base.w;
+    base = volumeMetres(draw.clip, base) * perDepth;
+    spans.xz = max(spans.xz, vec2(beyond * base));
+    spans.yw = min(spans.yw, vec2(base + beyond * 1e9));
+#endif
     float pixel = volumeFine(view.eye.w * (perspective ? 1.0 / perDepth : 0.0), draw.perPixel);
     vec2 slab = inSlab * perDepth;
 

@@ -1,6 +1,7 @@
 #version 450
 // A volumetric flame's card at a pixel: the mean of what it has of the pixel's square, so that its
-// light is the flame's however small it is. Where the host's depth can be read, what lies before it.
+// light is the flame's however small it is. Where the host's depth can be read, what lies before it; else
+// what lies on the flame's side of the plane through its base.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -12,6 +13,7 @@ layout(location = 1) flat in vec2 inSlab;
 layout(location = 2) flat in ivec4 inTaps;
 layout(location = 3) flat in vec2 inHalf;
 layout(location = 4) flat in vec2 inShows;
+layout(location = 5) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
@@ -24,9 +26,10 @@ layout(location = 0) out vec4 outColor;
 void main() {
     outColor = vec4(0.0);
     if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
-    float cut = 1e9;
 #ifdef FW_SOFT
-    cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+    float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+#else
+    float cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     vec2 low = inCell - inHalf, high = inCell + inHalf;
     ivec2 first = ivec2(floor(low));
@@ -44,6 +47,8 @@ void main() {
             uvec4 cell = cellAt(draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
 #ifdef FW_SOFT
             weight *= volumeNearer(cell.z, cut);
+#else
+            weight *= volumeBeside(cell.z, cut, inBase.y);
 #endif
             color += weight * cellColor(cell);
         }

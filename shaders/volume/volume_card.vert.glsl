@@ -11,11 +11,15 @@ layout(location = 1) flat out vec2 outSlab;    // m along the view: from; 1/m: i
 layout(location = 2) flat out ivec4 outTaps;   // cells around a pixel, then all
 layout(location = 3) flat out vec2 outHalf;    // cells, of what a pixel averages
 layout(location = 4) flat out vec2 outShows;
+layout(location = 5) centroid out vec2 outBase;  // as volume_composite's
+
+vec2 placeOf(vec2 cell) {
+    return draw.place.xy + draw.place.zw * cell.x + vec2(draw.upX, draw.upY) * cell.y;
+}
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
-    uint corner = vertex < 3u ? vertex : 6u - vertex;  // 0 1 2, 3 2 1
-    int zero = int(vertex >> 31u);                     // not a constant, see volume.frag
+    int zero = int(vertex >> 31u);  // not a constant, see volume.frag
     // As wide as whole pixels, so that each cell counts alike, and as a cell at least.
     vec2 perPixel = vec2(draw.perX, draw.perY);
     outHalf = 0.5 * perPixel * ceil(max(1.0 / perPixel, 1.0));
@@ -23,10 +27,14 @@ void main() {
     outTaps = ivec4(ivec2(ceil(2.0 * outHalf)) + 1, cells) + zero;
     outShows = vec2(draw.from, draw.to) + float(zero);
     outSlab = vec2(draw.front, 1.0 / draw.deep);
-    vec2 side = vec2(corner & 1u, corner >> 1u);
-    outCell = mix(-outHalf, vec2(cells) + outHalf, side);
-    vec2 place = draw.place.xy + draw.place.zw * outCell.x + vec2(draw.upX, draw.upY) * outCell.y;
-    float middle = draw.front + 0.5 * draw.deep;
-    float w = draw.clip.z * middle + draw.clip.w;
-    gl_Position = vec4(place * w, clamp(draw.clip.x * middle + draw.clip.y, 0.0, w), w);
+    vec2 low = -outHalf, high = vec2(cells) + outHalf;
+    vec4 over = vec4(volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(low)),
+                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
+                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
+                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
+    outCell = mix(low, high, volumeSplit(over, vertex));
+    vec2 place = placeOf(outCell);
+    outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
+    float depth = volumeTested(volumeTest(draw.base, draw.clip, draw.front, draw.deep, place));
+    gl_Position = vec4(place, depth, 1.0);
 }

@@ -1,7 +1,8 @@
 #version 450
 // A slab of a marched flame at a pixel: the nearest nine cells, so weighed that the four places at
 // which neighbours' samples begin count alike; of a small flame all that lie in it. Where the host's
-// depth can be read, of each what of its light lies before it.
+// depth can be read, of each what of its light lies before it; else what lies on the flame's side of the
+// plane through its base, for light of cells beside the pixel reaches beyond that.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -14,6 +15,7 @@ layout(location = 2) flat in vec2 inSlab;
 layout(location = 3) flat in ivec4 inCells;
 layout(location = 4) flat in uint inPerPixel;
 layout(location = 5) flat in vec2 inShows;
+layout(location = 6) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
@@ -23,7 +25,7 @@ layout(location = 0) out vec4 outColor;
 #include "volume/scene_depth.glsl"
 #endif
 
-float cut = 1e9;  // slabs from this one's front to the scene
+float cut = 0.0;  // slabs from this one's front to the scene, or to the base
 
 // A cell counts as much as the slabs before this one let through of it: the mean of that is what they
 // let through of a pixel as they are drawn, so slabs neither lose nor make light.
@@ -33,6 +35,8 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
     through += weight;
 #ifdef FW_SOFT
     weight *= volumeNearer(cell.z, cut);
+#else
+    weight *= volumeBeside(cell.z, cut, inBase.y);
 #endif
     color += weight * cellColor(cell);
 }
@@ -46,6 +50,8 @@ void main() {
     float through = 0.0;
 #ifdef FW_SOFT
     cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
+#else
+    cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     if (inPerPixel > 1u) {
         uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;

@@ -14,6 +14,7 @@ layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: it
 layout(location = 3) flat out ivec4 outCells; // first and last that there are
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
+layout(location = 6) centroid out vec2 outBase;  // clip z / w of the plane through the base; VolumeDraw::base.w
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -60,9 +61,7 @@ void main() {
     outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
-    float middle = front + 0.5 * draw.deep;
-    float w = draw.clip.z * middle + draw.clip.w;
-    gl_Position = ((lit >> slab) & 1u) != 0u
-                      ? vec4(place * w, clamp(draw.clip.x * middle + draw.clip.y, 0.0, w), w)
-                      : vec4(0.0, 0.0, 0.0, 1.0);
+    outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
+    float depth = volumeTested(volumeTest(draw.base, draw.clip, front, draw.deep, place));
+    gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }

@@ -80,11 +80,27 @@ class Volume : public GpuTest {
     }
     void look(const float eye[3], const float at[3], float degrees) {
         FwView& view = rig_->view;
-        view = testView(eye, at, degrees, 1, false);
+        view = testView(eye, at, degrees, 1, reversed_);
         for (int i = 0; i < 3; ++i)
             view.sunColor[i] = view.ambientSky[i] = view.ambientGround[i] = 0;
         view.time = 2;
         looked_ = view;
+    }
+    // The view of look(), in parallel: so many m wide.
+    void lookParallel(float across) {
+        const float near = 0.05f, far = 50.0f;
+        glm::mat4 projection(1.0f);
+        projection[0][0] = 2 / across;
+        projection[1][1] = -2 / across;
+        projection[2][2] = reversed_ ? 1 / (far - near) : 1 / (near - far);
+        projection[3][2] = reversed_ ? far / (far - near) : near / (near - far);
+        std::memcpy(rig_->view.projection, glm::value_ptr(projection), sizeof projection);
+        looked_ = rig_->view;
+    }
+    // As the view's depth is, of so many m along it.
+    [[nodiscard]] float depthOf(float away) const {
+        const float* p = rig_->view.projection;
+        return (p[14] - p[10] * away) / (p[15] - p[11] * away);
     }
     void TearDown() override {
         rig_.reset();
@@ -99,6 +115,7 @@ class Volume : public GpuTest {
         def.colorFormat = kColor;
         def.depthMode = mode;
         if (mode != FW_DEPTH_NONE) def.depthFormat = kDepth;
+        def.reversedDepth = reversed_;
         // Pipelines are dear: once for all draws of a kind.
         FwTargetId& target = targets_[backdrop_.empty() ? size_t(mode) : targets_.size() - 1];
         if (target.index1 == 0) target = rig_->context.registerTarget(def);
@@ -131,8 +148,7 @@ class Volume : public GpuTest {
         plan.detail.memory = memory_;
         if (emitters_) plan.emitters = emitters_;
         if (fields_) plan.fields = fields_;
-        const float behind =
-            far > 0 ? -rig_->view.projection[10] + rig_->view.projection[14] / far : 1.0f;
+        const float behind = far > 0 ? depthOf(far) : reversed_ ? 0.0f : 1.0f;
         rig_->alsoRecord = [&](const FwVulkanFrame& frame) { record(frame, target, mode, behind); };
         rig_->run(plan);
         rig_->alsoRecord = nullptr;
@@ -161,14 +177,14 @@ class Volume : public GpuTest {
         const VkClearDepthStencilValue cleared{behind, 0};
         vkCmdClearColorImage(commands, color_.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &black,
                              1, &barriers[0].subresourceRange);
+        if (ground_ != vec4(0.0f)) scene_ = depthsOfGround();
         if (scene_.empty()) {
             vkCmdClearDepthStencilImage(commands, depth_.image,
                                         VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &cleared, 1,
                                         &barriers[1].subresourceRange);
         } else {
             auto* depths = static_cast<float*>(scenes_.mapped);
-            for (size_t i = 0; i < scene_.size(); ++i)
-                depths[i] = -rig_->view.projection[10] + rig_->view.projection[14] / scene_[i];
+            for (size_t i = 0; i < scene_.size(); ++i) depths[i] = depthOf(scene_[i]);
             VkBufferImageCopy whole{};
             whole.imageSubresource = {VK_IMAGE_ASPECT_DEPTH_BIT, 0, 0, 1};
             whole.imageExtent = {kSide, kSide, 1};
@@ -210,6 +226,32 @@ class Volume : public GpuTest {
         toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT;
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT, VK_PIPELINE_STAGE_HOST_BIT,
                              0, 1, &toHost, 0, nullptr, 0, nullptr);
+    }
+
+    // m along the view, pixel by pixel, to the ground and the post.
+    [[nodiscard]] std::vector<float> depthsOfGround() const {
+        const FwView& view = rig_->view;
+        const glm::mat4 fromClip =
+            glm::inverse(glm::make_mat4(view.projection) * glm::make_mat4(view.view));
+        const glm::mat4 look = glm::make_mat4(view.view);
+        const auto placeOf = [&](vec2 at, float depth) {
+            const vec4 place = fromClip * vec4(at, depth, 1.0f);
+            return vec3(place) / place.w;
+        };
+        std::vector<float> depths;
+        for (uint32_t i = 0; i < kSide * kSide; ++i) {
+            const vec2 at =
+                (vec2(float(i % kSide), float(i / kSide)) + 0.5f) * (2.0f / float(kSide)) - 1.0f;
+            const vec3 from = placeOf(at, reversed_ ? 1.0f : 0.0f);
+            const vec3 way = placeOf(at, 0.5f) - from;
+            const vec3 normal(ground_);
+            const float along = -(glm::dot(normal, from) + ground_.w) / glm::dot(normal, way);
+            const float depth = -(look * vec4(from + along * way, 1.0f)).z;
+            depths.push_back(along > 0.0f && depth < 49.0f ? depth : 49.0f);
+            if (post_ > 0 && std::abs(at.x + 0.05f) < 0.1f && at.y < 0.5f)
+                depths.back() = std::min(depths.back(), post_);
+        }
+        return depths;
     }
 
     // What the host drew, in the target and as the copy that it lends.
@@ -632,6 +674,9 @@ class Volume : public GpuTest {
     TestImage color_, depth_, behind_;
     TestBuffer read_, scenes_, backdrops_;
     std::vector<float> scene_;    // m along the view, of each pixel; empty: flat
+    vec4 ground_{0.0f};           // a plane that is the scene: dot(xyz, x) + w is 0 on it
+    float post_ = 0;              // m along the view, of a post that stands on it; 0: there is none
+    bool reversed_ = false;       // depth is 1 at the eye
     std::vector<vec4> backdrop_;  // that the host drew and lends; empty: black, and no haze
     uint64_t index_ = 0;
     uint32_t key_ = 0;                      // of the last flame
@@ -829,6 +874,110 @@ TEST_F(Volume, APlaneThroughItCutsNoEdge) {
         EXPECT_LT(meanOf(exact).x, 0.95f * meanOf(whole).x) << "it is not cut";
         EXPECT_LT(steepest(soft), std::max(steepest(exact), steepest(whole)) + brightest / 255);
         EXPECT_NEAR(meanOf(soft).x / meanOf(exact).x, 1.0f, 0.05f);
+    }
+}
+
+// A fire on the ground, whose depth is only tested, is the same as where there is no ground, and as
+// where the ground's depth is sampled, but for light that cells beside a pixel give it: from all
+// around and above, in perspective and in parallel. All tiers.
+TEST_F(Volume, StandsOnGroundThatDepthIsTestedAgainst) {
+    if (!device_) return;
+    struct Seen {
+        const char* name;
+        vec3 eye;
+        float degrees;
+        bool below = false, reversed = false, parallel = false;
+    };
+    const Seen all[] = {{"as one stands", {0.7f, 0.9f, 2.6f}, 30},
+                        {"far", {2.0f, 1.7f, 9.6f}, 10},
+                        {"from above", {0.7f, 2.6f, 1.4f}, 26},
+                        {"low", {0.5f, 0.12f, 2.0f}, 36},
+                        {"from below", {0.6f, -0.7f, 2.2f}, 30, true},
+                        {"in parallel", {0.7f, 0.9f, 2.6f}, 30, false, false, true},
+                        {"reversed", {0.7f, 0.9f, 2.6f}, 30, false, true},
+                        {"reversed, in parallel", {0.7f, 0.9f, 2.6f}, 30, false, true, true}};
+    struct Tier {
+        uint32_t tier;
+        bool direct;
+        double none;   // RMS against no ground, of 255 of the brightest
+        double soft;   // against a sampled depth
+        double alone;  // of both without ground
+    };
+    // Where the ground ends rays of what is marched as it is drawn, samples begin elsewhere. A
+    // slice is cut by the ground.
+    const Tier tiers[] = {{FW_FIRE_TIER_MARCH_HIGH, false, 0.1, 2.6, 1.4},
+                          {FW_FIRE_TIER_MARCH_HIGH, true, 0.1, 1.0, 1.6},
+                          {FW_FIRE_TIER_IMPOSTOR, false, 0.1, 2.6, 2.9},
+                          {FW_FIRE_TIER_SLICES, false, 1.2, 1.2, 0.1}};
+    for (const Seen& seen : all) {
+        if (!rig_ || reversed_ != seen.reversed) {
+            reversed_ = seen.reversed;
+            makeRig();
+        }
+        const vec3 at(0, 0.35f, 0);
+        look(&seen.eye.x, &at.x, seen.degrees);
+        if (seen.parallel) lookParallel(0.8f);
+        gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
+        for (const Tier& tier : tiers) {
+            const auto shown = [&](FwDepthMode mode, bool ground) {
+                ground_ = vec4(0, ground ? 1 : 0, 0, 0);
+                scene_.clear();
+                flame.record.key = ++key_;
+                flame.record.tier = tier.tier;
+                return tier.direct ? drawDirect({&flame, 1}, mode) : draw({&flame, 1}, mode);
+            };
+            const auto off = [&](const Mean& a, const Mean& b) {
+                double sum = 0, brightest = 0;
+                for (size_t i = 0; i < a.size(); ++i) {
+                    brightest = std::max(brightest, double(b[i].x));
+                    sum += std::pow(double(a[i].x) - double(b[i].x), 2);
+                }
+                return 255 * std::sqrt(sum / double(a.size())) / std::max(brightest, 1e-9);
+            };
+            const Mean alone = shown(FW_DEPTH_TEST, false);
+            const double softAlone = off(alone, shown(FW_DEPTH_SAMPLED, false));
+            EXPECT_GT(meanOf(alone).x, 0.01f);
+            EXPECT_LT(softAlone, tier.alone) << seen.name << ", tier " << tier.tier;
+            if (seen.below) continue;
+            const Mean tested = shown(FW_DEPTH_TEST, true);
+            const double none = off(tested, alone),
+                         soft = off(tested, shown(FW_DEPTH_SAMPLED, true));
+            std::printf(
+                "           %s, tier %u%s: %.2f against no ground, %.2f and %.2f against a "
+                "sampled depth\n",
+                seen.name, tier.tier, tier.direct ? " as it is drawn" : "", none, soft, softAlone);
+            EXPECT_LT(none, tier.none) << seen.name << ", tier " << tier.tier;
+            EXPECT_LT(soft, tier.soft) << seen.name << ", tier " << tier.tier;
+        }
+    }
+}
+
+// A wall before a fire's foot hides it, and a post in the fire what is behind the post: the plane
+// through the base makes no slab nearer than its own front.
+TEST_F(Volume, WhatStandsBeforeItsBaseHidesIt) {
+    if (!device_) return;
+    makeRig();
+    ground_ = vec4(0, 1, 0, 0);
+    gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
+    for (const uint32_t tier : {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_IMPOSTOR}) {
+        flame.record.tier = tier;
+        const auto inPost = [&](float away) {
+            post_ = away;
+            flame.record.key = ++key_;
+            const std::vector<vec4> picture = draw({&flame, 1}, FW_DEPTH_TEST);
+            float sum = 0;
+            for (size_t i = 0; i < picture.size(); ++i)
+                if (scene_[i] == away) sum += picture[i].x;
+            return sum;
+        };
+        const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.35f, 0};
+        look(eye, at, 30);
+        const float middle = 2.75f, behind = inPost(middle + 0.4f);
+        EXPECT_GT(behind, 1.0f);
+        EXPECT_LT(inPost(middle - 0.4f), 0.02f * behind) << "before all of it, tier " << tier;
+        EXPECT_NEAR(inPost(middle + 0.3f), behind, 1e-3f * behind) << "behind all of it";
+        if (tier == FW_FIRE_TIER_IMPOSTOR) continue;  // all of it is tested in its middle
+        EXPECT_LT(inPost(middle - 0.1f), 0.6f * behind);
     }
 }
 

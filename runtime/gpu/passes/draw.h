@@ -80,8 +80,8 @@ class DrawRecorder {
                             uint32_t instances) = 0;
     // The same, of vertices that the shader makes.
     virtual void drawListed(uint32_t resource, uint64_t offset, const void* push) = 0;
-    // Six vertices, which the shader makes.
-    virtual void drawQuad(const void* push) = 0;
+    // So many vertices, which the shader makes.
+    virtual void drawVertices(const void* push, uint32_t vertices) = 0;
 
  protected:
     ~DrawRecorder() = default;
@@ -139,6 +139,11 @@ extern const DrawPass kVolumePass;
 // Where the view shows it, in so many slabs; false: nowhere.
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole = nullptr);
+// The plane through its base: dot(xyz, x) + w is m on the flame's side. Lower where it leans below
+// its base: nothing that it shows is beyond.
+vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count);
+// VolumeDraw::base of such a plane, of a draw that volumeDraw made: that has none.
+void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept;
 // VolumeDraw::clip: what tells how far something is from its depth.
 vec4 volumeClip(const ViewParams& view) noexcept;
 // How many samples each of them is worth where all are marched as they are drawn.

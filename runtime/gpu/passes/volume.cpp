@@ -18,6 +18,8 @@ constexpr Use kVolumeUses[] = {
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
 constexpr float kLeastW = 1e-4f;     // of clip space: what is nearer is beside the eye or behind it
+constexpr float kLeastAway = 1e-4f;  // m: a plane that is nearer to the eye, or no more aslant
+constexpr float kBeyond = 4.0f;      // depth of no plane
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
 
@@ -125,6 +127,8 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
         out.rayO = vec4(-fromClip[0] * view.clip3.x - fromClip[1] * view.clip3.y, 0.0f);
     }
     out.clip = volumeClip(view);
+    const bool rises = out.clip.x * out.clip.w > out.clip.y * out.clip.z;
+    out.base = {rises ? kBeyond : -kBeyond, 0.0f, 0.0f, 1.0f};
     out.front = near;
     out.deep = (far - near) / float(slabs);
     out.slabs = slabs;
@@ -134,6 +138,43 @@ bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint3
     out.wide = low.w;
     out.spacing = std::max(kSpacing * low.w, 1e-4f);
     return true;
+}
+
+vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count) {
+    const vec3 normal(nodes[0].along);
+    float lowest = 0.0f;  // m, of what shows
+    for (uint32_t k = 1; k < count; ++k) {
+        const float s = nodes[k].along.w;
+        float reach = s < kFlameTop * record.high.w ? nodes[k].centre.w : 0.0f;
+        if (record.smoke > 0.0f && s > 0.6f * record.high.w && s < record.smokeTop * record.high.w)
+            reach = std::max(reach, nodes[k].side.w * flamePlumeWide(record, s));
+        const float upright = glm::dot(vec3(nodes[k].along), normal);
+        const float aside = std::sqrt(std::max(1.0f - upright * upright, 0.0f));
+        const float at = glm::dot(vec3(nodes[k].centre) - vec3(nodes[0].centre), normal);
+        lowest = std::min(lowest, at - reach * aside);
+    }
+    return {normal, -glm::dot(vec3(nodes[0].centre), normal) - lowest};
+}
+
+void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept {
+    const vec3 normal(plane), forward(view.forward);
+    const vec4& clip = out.clip;
+    const auto awayFrom = [](float x) {
+        return std::copysign(std::max(std::abs(x), kLeastAway), x);
+    };
+    // By the view's 1, x and y.
+    const vec3 rays(glm::dot(normal, vec3(out.rayO)), glm::dot(normal, vec3(out.rayX)),
+                    glm::dot(normal, vec3(out.rayY)));
+    const float height = glm::dot(normal, vec3(view.eye)) + plane.w;
+    if (view.forward.w > 0.5f) {  // 1 / depth is -rays / height
+        const float above = awayFrom(height);
+        out.base = vec4(rays * (-clip.y / (clip.z * above)), above < 0.0f ? -1.0f : 1.0f);
+        out.base.x += clip.x / clip.z;
+    } else {  // depth is -(height + rays) / along
+        const float along = awayFrom(glm::dot(normal, forward));
+        out.base = vec4(rays * (-clip.x / (clip.w * along)), along > 0.0f ? -1.0f : 1.0f);
+        out.base.x += (clip.y - clip.x * height / along) / clip.w;
+    }
 }
 
 // So many flames, those that cover most of the view, get all their samples; the others a few,
@@ -188,7 +229,7 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
 
 void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {
     for (const VolumeItem& item : items)
-        recorder.drawVolume(item.flame, &item.draw, 6, item.draw.slabs);
+        recorder.drawVolume(item.flame, &item.draw, kVolumeSplit, item.draw.slabs);
 }
 
 }  // namespace fw::gpu

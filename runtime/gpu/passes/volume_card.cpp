@@ -112,6 +112,7 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     out.clip = draw.clip;
     out.front = draw.front;
     out.deep = draw.deep * float(draw.slabs);
+    out.base = draw.base;
     out.perX = 2.0f / (screen.size.x * perCell.x);
     out.perY = 2.0f / (screen.size.y * perCell.y);
     out.tilesX = card.tilesX;
@@ -122,7 +123,7 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
 }
 
 void recordVolumeCards(DrawRecorder& recorder, std::span<const VolumeCard> cards) {
-    for (const VolumeCard& card : cards) recorder.drawQuad(&card);
+    for (const VolumeCard& card : cards) recorder.drawVertices(&card, kVolumeSplit);
 }
 
 }  // namespace fw::gpu

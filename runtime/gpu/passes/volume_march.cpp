@@ -271,6 +271,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         composite.place =
             vec4(perCell * vec2(float(tiles.originX), float(tiles.originY)) - vec2(1.0f), perCell);
         composite.clip = draw.clip;
+        composite.base = draw.base;
         composite.front = draw.front;
         composite.deep = draw.deep;
         composite.slabs = draw.slabs;

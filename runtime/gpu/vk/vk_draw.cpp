@@ -116,12 +116,12 @@ class PassRecorder : public DrawRecorder {
                             pass_.pushBytes, push);
         drawIndirect(resource, offset);
     }
-    void drawQuad(const void* push) override {
+    void drawVertices(const void* push, uint32_t vertices) override {
         const Table& vk = s_.device.table;
         vk.CmdPushConstants(commands_, layout_,
                             VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
                             pass_.pushBytes, push);
-        vk.CmdDraw(commands_, 6, 1, 0, 0);
+        vk.CmdDraw(commands_, vertices, 1, 0, 0);
     }
 
  private:

@@ -46,7 +46,8 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
                                         {},
                                         {},
                                         {},
-                                        {}};
+                                        {},
+                                        volumeBasePlane(record, flame.nodes, kFlameNodes)};
         box.kind = bookKind(record, flame.nodes, kFlameNodes, box.tip);
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
         volumeHazeBounds(record, flame.nodes, kFlameNodes, box.hazeLow, box.hazeHigh);
@@ -74,6 +75,7 @@ uint32_t VkBackend::State::orderVolumes(
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
         volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
+        if (slabs > 1) volumeBase(seen, volumes[i].basePlane, item.draw);
         VolumeDraw burning;
         item.burns = volumes[i].smokes && volumeDraw(seen, volumes[i].flameLow,
                                                      volumes[i].flameHigh, slabs, burning)

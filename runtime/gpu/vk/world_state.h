@@ -359,7 +359,8 @@ struct VkBackend::State {
         bool smokes = false;
         vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
         BookKind kind;
-        vec3 tip{};  // as VolumeItem's
+        vec3 tip{};        // as VolumeItem's
+        vec4 basePlane{};  // as volumeBasePlane has it
     };
     std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
     uint32_t quadsShown = 0;              // by the last view whose readback came
