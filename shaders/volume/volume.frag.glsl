@@ -28,6 +28,30 @@ layout(location = 0) out vec4 outColor;
 #include "volume/scene_depth.glsl"
 #endif
 
+// Of the four pixels that are shaded together.
+vec3 meanOfFour(vec3 value) {
+    vec2 to = 1.0 - 2.0 * vec2(uvec2(gl_FragCoord.xy) & 1u);  // the neighbours' side
+    value += 0.5 * to.x * dFdxFine(value);
+    return value + 0.5 * to.y * dFdyFine(value);
+}
+
+// Diameters of a flame within which the scene's depth at a pixel is the mean of four's on one surface.
+const float kOneSurface = 0.02;
+
+// Smoke has few samples, and each of four pixels begins them elsewhere: one by one they are seen as a screen door.
+FlameSmokeRay smokeOfFour(FlameSmokeRay smoke) {
+    FlameSmokeRay mean = FlameSmokeRay(FlameRay(meanOfFour(smoke.front.radiance), meanOfFour(smoke.front.through)),
+                                       FlameRay(meanOfFour(smoke.back.radiance), meanOfFour(smoke.back.through)));
+    bool alike = draw.perPixel == 1u;
+#ifdef FW_SOFT
+    // No light from behind an edge of the scene comes before it.
+    float there = min(depthOfScene(draw.clip), 1e6);
+    alike = alike && abs(there - meanOfFour(vec3(there)).x) < kOneSurface * draw.wide;
+#endif
+    if (alike) smoke = mean;
+    return smoke;
+}
+
 // Of the ray `off` pixels beside the pixel's middle, whose samples begin `jitter` of a step late.
 vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     bool perspective = view.forward.w > 0.5;
@@ -86,22 +110,12 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
                                k < last ? stride : 0.0);
         k += 1.0;
     }
+    smoke = smokeOfFour(smoke);
     vec3 scattered = smoke.front.radiance + smoke.front.through * ray.through * smoke.back.radiance;
     ray = flameBetween(ray, smoke);
 
     return flameShown(ray, scattered, white * view.sunDirection.w, kEncoding);
 }
-
-// Of the four pixels that are shaded together: samples of each begin at another place, and one by one they would be
-// seen as a pattern.
-vec4 meanOfFour(vec4 value) {
-    vec2 to = 1.0 - 2.0 * vec2(uvec2(gl_FragCoord.xy) & 1u);  // the neighbours' side
-    value += 0.5 * to.x * dFdxFine(value);
-    return value + 0.5 * to.y * dFdyFine(value);
-}
-
-// Diameters of a flame by which the scene's depth at a pixel is from the mean of four on one surface.
-const float kOneSurface = 0.02;
 
 void main() {
     FlameRecord f = flame.record;
@@ -122,13 +136,5 @@ void main() {
         sum += shownAlong(f, off, volumePhase(cell.x, cell.y));
         k += 1u;
     } while (k < side * side);
-    vec4 shown = sum / float(side * side);
-    vec4 mean = meanOfFour(shown);
-    bool alike = side == 1u;
-#ifdef FW_SOFT
-    // No light from behind an edge of the scene comes before it.
-    float there = min(depthOfScene(draw.clip), 1e6);
-    alike = alike && abs(there - meanOfFour(vec4(there)).x) < kOneSurface * draw.wide;
-#endif
-    outColor = alike ? mean : shown;
+    outColor = sum / float(side * side);
 }

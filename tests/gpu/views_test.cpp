@@ -469,7 +469,7 @@ TEST_F(Views, OneThatWasNotRecordedForIsAlike) {
                     uint32_t(depth), off, grainy, wanted);
         EXPECT_LT(grainy, 4 * wanted) << "depth mode " << depth;
         // Slabs of a tested depth are tone mapped one by one.
-        EXPECT_LT(off, depth == FW_DEPTH_TEST ? 11 : 8) << "depth mode " << depth;
+        EXPECT_LT(off, depth == FW_DEPTH_TEST ? 12 : 10) << "depth mode " << depth;
         vkDeviceWaitIdle(device_->device);
         fwDestroyWorld(world);
         EXPECT_EQ(fwContext_UnregisterTarget(context_, target), FW_OK);

@@ -13,10 +13,11 @@ namespace fw::gpu::vk {
 // What is marched before it is drawn, on the screen that a draw of the view was last seen to have.
 // Views that were not given to RecordOutside, and the first picture, march as they draw.
 struct March {
-    VolumeScreen screen;  // no size: none was seen
-    uint64_t frame = 0;   // that saw it: of several screens in a frame the largest counts
-    VolumeScreen made;    // of what is in the plane
-    FwView view{};        // and its view; in the plane nothing: count is 0
+    VolumeScreen screen;   // no size: none was seen
+    uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts
+    VolumeScreen made;     // of what is in the plane
+    VolumeScreen unknown;  // that was last drawn before anything was marched for it
+    FwView view{};         // and its view; in the plane nothing: count is 0
     bool there = false;
     uint32_t count = 0;
     // Cards that are marched behind them.

@@ -239,7 +239,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.volumeRuns = {march.order.runs.data(), march.order.count};
         } else {
             const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-            const uint32_t count = orderVolumes(slabs, items);
+            const uint32_t count = orderVolumes(slabs, items), least = leastRays(of, view, screen);
             uint32_t whole = 0, cut = 0;
             for (uint32_t i = 0; i < count; ++i) {
                 if (volumes[items[i].flame].tier == FW_FIRE_TIER_SLICES &&
@@ -248,7 +248,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                     order.add(kVolumeSlicesPass, cut++);
                 } else {
                     items[whole] = items[i];
-                    volumeRays(screen, items[whole].draw);
+                    VolumeDraw& draw = items[whole].draw;
+                    volumeRays(screen, draw);
+                    draw.perPixel = std::max(draw.perPixel, least);
                     order.add(kVolumePass, whole++);
                 }
             }

@@ -12,6 +12,8 @@ namespace fw::gpu::vk {
 constexpr uint32_t kLeastCards = 32;     // that there is room for
 constexpr uint32_t kCardsPerFrame = 12;  // are marched anew, or all that must be
 constexpr uint32_t kPairWords = 2 * kCardWords;
+// A side of a pixel: all four places at which samples begin, or it is grain.
+constexpr uint32_t kUnknownRays = 2;
 constexpr float kCardTurn = 0.985f;  // cosine of what a card is seen from aside: 10 degrees
 
 static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
@@ -439,6 +441,13 @@ bool VkBackend::State::marchedFor(const OutsideView& of, const FwView& view,
                                   const VolumeScreen& screen) noexcept {
     const March& march = of.march;
     return of.given && march.there && screen == march.made && sameView(view, march.view);
+}
+
+uint32_t VkBackend::State::leastRays(OutsideView& of, const FwView& view,
+                                     const VolumeScreen& screen) noexcept {
+    if (!sameView(view, of.view) || screen == of.march.unknown) return 1;
+    of.march.unknown = screen;
+    return kUnknownRays;
 }
 
 uint32_t VkBackend::quadsShown() const noexcept { return state_->quadsShown; }

@@ -513,6 +513,10 @@ struct VkBackend::State {
     // drawn.
     [[nodiscard]] static bool marchedFor(const OutsideView& of, const FwView& view,
                                          const VolumeScreen& screen) noexcept;
+    // A side of a pixel, of the view as it is drawn: more where nobody could know its screen, in
+    // the first picture and after a resize. A second screen of each frame takes them once.
+    static uint32_t leastRays(OutsideView& of, const FwView& view,
+                              const VolumeScreen& screen) noexcept;
     // What bends what is behind it in the view that was last pushed, farthest first; how many.
     // `march`: that shows the flames, or null.
     uint32_t orderHazes(const March* march, float strength,
