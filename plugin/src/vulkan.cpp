@@ -218,6 +218,13 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved is %u; it is zero.",
                    frame.reserved);
     checkScissor(frame.scissor);
+    if (!(frame.transparency >= 0.0f && frame.transparency <= 1.0f))
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::transparency is %g; the limits are [0, 1].",
+                   double(frame.transparency));
+    if (frame.reserved1 != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved1 is %u; it is zero.",
+                   frame.reserved1);
     if (frame.frameIndex == 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameIndex is 0; it starts at 1.");
     if (frame.flags & FW_FRAME_SLOT_PACING) {
@@ -353,7 +360,8 @@ void checkTarget(const FwVulkanTargetDef& def, const core::Log& log) {
     };
     constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
     constexpr uint32_t kKnown = FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE |
-                                FW_TARGET_HALF_EFFECTS | FW_TARGET_AS_NEEDED;
+                                FW_TARGET_HALF_EFFECTS | FW_TARGET_AS_NEEDED |
+                                FW_TARGET_TRANSPARENCY;
     if (def.flags & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x%x.", def.flags,

@@ -20,9 +20,10 @@ struct Shot {  // how the host draws
     FwDepthMode depthMode = FW_DEPTH_TEST;
     uint32_t flags = 0;         // FwTargetFlags beyond FW_TARGET_COMPOSITE
     uint32_t depthSamples = 0;  // of a sampled depth, 0: as samples
-    float depthValue = -1;  // everywhere in a composite's or a sampled depth; -1: as the mode says
-    bool asNeeded = true;   // FW_TARGET_AS_NEEDED
-    VkRect2D scissor{};     // FwVulkanFrame::scissor
+    float depthValue = -1;   // everywhere in a composite's or a sampled depth; -1: as the mode says
+    bool asNeeded = true;    // FW_TARGET_AS_NEEDED
+    VkRect2D scissor{};      // FwVulkanFrame::scissor
+    float transparency = 0;  // FwVulkanFrame::transparency, over the host's blue
     float shift[2] = {0, 0};  // px, of what lies beneath a pixel: a supersampled picture's parts
     [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
@@ -237,6 +238,11 @@ class HostDraw : public GpuTest {
                                            VK_IMAGE_USAGE_SAMPLED_BIT);
         if (shot.samples > 1)
             resolved = device_->makeImage(shot.color, {kWidth, kHeight}, 1, colorUsage);
+        TestImage before;
+        if (shot.transparency > 0 && shot.transparency < 1)
+            before =
+                device_->makeImage(shot.color, {kWidth, kHeight}, 1,
+                                   VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
         const uint32_t pixelBytes = shot.color == VK_FORMAT_R16G16B16A16_SFLOAT ? 8 : 4;
 
         const TestBuffer read = device_->makeBuffer(uint64_t(kWidth) * kHeight * pixelBytes,
@@ -284,6 +290,12 @@ class HostDraw : public GpuTest {
             const VkCommandBuffer commands = frame.commandBuffer;
             FwVulkanFrame ours = frame;
             ours.scissor = shot.scissor;
+            ours.transparency = shot.transparency;
+            if (before.image) {
+                lendBlue(commands, before);
+                ours.sampledColor = before.view;
+                ours.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+            }
             if (shot.composite) {
                 recordComposite(shot, ours, target, view, color, depth, nearest, farthest);
             } else {
@@ -329,9 +341,9 @@ class HostDraw : public GpuTest {
                     vkCmdExecuteCommands(commands, 1, &second);
                 }
                 vkCmdEndRenderPass(commands);
-                EXPECT_GT(inside.draws, 0u);
+                EXPECT_EQ(inside.draws > 0, shot.transparency < 1);
                 EXPECT_EQ(inside.work + inside.barriers + inside.passes, 0u);
-                if (!shot.samplesDepth()) {
+                if (!shot.samplesDepth() && !before.image) {
                     EXPECT_EQ(inside.total(), 0u);
                 }
             }
@@ -387,6 +399,30 @@ class HostDraw : public GpuTest {
         barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
         barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         barrier.newLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
+                             VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barrier);
+    }
+
+    // A copy of what the host drew, but for its strips: ready for our fragment shaders.
+    static void lendBlue(VkCommandBuffer commands, const TestImage& image) {
+        VkImageMemoryBarrier barrier{};
+        barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
+        barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.srcQueueFamilyIndex = barrier.dstQueueFamilyIndex = VK_QUEUE_FAMILY_IGNORED;
+        barrier.image = image.image;
+        barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
+        vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                             VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 0, nullptr, 0, nullptr, 1,
+                             &barrier);
+        const VkClearColorValue blue{{0, 0, 1, 1}};
+        vkCmdClearColorImage(commands, image.image, VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, &blue, 1,
+                             &barrier.subresourceRange);
+        barrier.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
+        barrier.dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
+        barrier.oldLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
+        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
                              &barrier);

@@ -355,6 +355,59 @@ TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
     }
 }
 
+double lightOfStored(double stored) {
+    return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
+}
+
+// Surfaces and flames together: at 1 the host's picture is untouched, half of the way each pixel is
+// half-way between the host's picture and ours, whatever lies over what: as stored in UNORM and
+// float targets, as light in sRGB ones.
+TEST_F(HostDraw, TransparencyMixesThePictureAsAWhole) {
+    if (!device_) return;
+    Shot unorm, srgb, linear;
+    unorm.color = VK_FORMAT_R8G8B8A8_UNORM;
+    linear.color = VK_FORMAT_R16G16B16A16_SFLOAT;
+    unorm.encoding = srgb.encoding = linear.encoding = FW_OUTPUT_AUTO;
+    Shot several = unorm, reversed = unorm, composite = unorm, half = unorm;
+    several.samples = 4;
+    reversed.reversedDepth = true;
+    composite.composite = half.composite = true;
+    half.depthMode = FW_DEPTH_SAMPLED;
+    half.depthValue = 1;
+    half.flags = FW_TARGET_HALF_EFFECTS;
+    for (Shot* shot : {&unorm, &srgb, &linear, &several, &reversed, &composite, &half}) {
+        SCOPED_TRACE(int(shot->color));
+        shot->flags |= FW_TARGET_TRANSPARENCY;
+        const Picture ours = shoot(*shot);
+        shot->transparency = 1;
+        EXPECT_EQ(shoot(*shot).unlike(8, kWidth - 8, 0, 0, 1), 0u) << "nothing is drawn";
+        for (const float share : {0.5f, 0.25f}) {
+            shot->transparency = share;
+            const Picture mixed = shoot(*shot);
+            const bool light = shot == &srgb;
+            double most = 0;
+            uint32_t drawn = 0;
+            for (uint32_t y = 0; y < kHeight; ++y)
+                for (uint32_t x = 8; x < kWidth - 8; ++x)
+                    for (int c = 0; c < 3; ++c) {
+                        const double host = c == 2 ? 1 : 0, a = double(ours.at(x, y)[c]),
+                                     m = double(mixed.at(x, y)[c]);
+                        const auto level = [&](double v) { return light ? lightOfStored(v) : v; };
+                        const double wanted = level(a) + double(share) * (level(host) - level(a));
+                        // A step of what is stored is worth more light where it is bright.
+                        const double step =
+                            light ? (lightOfStored(m + 0.5 / 255) - lightOfStored(m - 0.5 / 255)) *
+                                        255
+                                  : std::max(1.0, a);
+                        most = std::max(most, std::abs(level(m) - wanted) / std::max(step, 0.1));
+                        drawn += std::abs(a - host) > 0.02;
+                    }
+            EXPECT_LE(most, 2.0 / 255) << share;
+            EXPECT_GT(drawn, 100u);
+        }
+    }
+}
+
 TEST_F(HostDraw, TargetsAreChecked) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
@@ -386,7 +439,7 @@ TEST_F(HostDraw, TargetsAreChecked) {
             d.depthSamples = 16;
         },
         "depthSamples is 16");
-    refused([](auto& d) { d.flags = 64; }, "flags is 64");
+    refused([](auto& d) { d.flags = 128; }, "flags is 128");
     refused(
         [](auto& d) {
             d.flags = FW_TARGET_HALF_EFFECTS;

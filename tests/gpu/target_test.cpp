@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <functional>
+#include <limits>
 #include <thread>
 
 namespace fw::test {
@@ -256,6 +257,11 @@ TEST_F(Targets, ViewsAndFramesThatShowNothingAreRefused) {
     EXPECT_THAT(refused(right, clipped), HasSubstr("FwVulkanFrame::scissor.offset.x is -1"));
     clipped.scissor = {{0, 0}, {4, 0}};
     EXPECT_THAT(refused(right, clipped), HasSubstr("leave out the call"));
+    FwVulkanFrame faint = frame;
+    for (const float wrong : {-0.1f, 1.5f, std::numeric_limits<float>::quiet_NaN()}) {
+        faint.transparency = wrong;
+        EXPECT_THAT(refused(right, faint), HasSubstr("transparency is "));
+    }
     EXPECT_EQ(FW_OK, fwWorld_RecordOutside(world, &frame, &right));
     frames.submit();
     frames.waitAll();

@@ -117,6 +117,7 @@ typedef enum FwTargetFlags {
                                 those for a kind that is new, about a seventh of all (0.2 s on a software device);
                                 fwWorld_DestroyImage, too, for objects that showed it. Never a record call.
                                 renderPass must live until the target is unregistered */
+    FW_TARGET_TRANSPARENCY = 64, /* frames may give FwVulkanFrame::transparency; one more pipeline, made at registration */
     FW_TARGET_FLAGS_FORCE32 = 0x7fffffff
 } FwTargetFlags;
 static inline FwVulkanTargetDef fwDefaultVulkanTargetDef(void) {
@@ -157,8 +158,8 @@ typedef struct FwVulkanFrame {
     VkImageLayout sampledDepthLayout; /* of the next while we draw: GENERAL or one of the READ_ONLY ones */
     VkImageView sampledDepth;        /* RecordInside on a target with FW_DEPTH_SAMPLED, where it is needed:
                                         its depth aspect alone, ready for our fragment shaders */
-    VkImageView sampledColor;        /* optional, RecordInside and RecordComposite on a target with FW_TARGET_HAZE: a
-                                        copy of what the target holds as we draw, of its size and with its encoding,
+    VkImageView sampledColor;        /* optional, RecordInside and RecordComposite on a target with FW_TARGET_HAZE or
+                                        FW_TARGET_TRANSPARENCY: a copy of what the target holds as we draw, of its size and with its encoding,
                                         one sample, ready for our fragment shaders. Null: no haze. Haze goes over the
                                         target before all flames; only fires that are marched with all their samples
                                         (FW_FIRE_TIER_MARCH_HIGH) have it */
@@ -166,6 +167,14 @@ typedef struct FwVulkanFrame {
     uint32_t reserved;               /* 0 */
     VkRect2D scissor;                /* RecordInside and RecordComposite: px of the target, drawn within it and the viewport
                                         alone; offset within [0, 32768]. Default: no extent, which is all of the viewport */
+    float transparency;              /* RecordInside and RecordComposite: [0, 1], default 0; of an item of a user interface 1 less
+                                        its opacity. So much of the host's picture shows through all that we draw, taken
+                                        together: no surface is seen through another one, no flame is fainter than
+                                        what it burns on. 1: nothing is drawn. Between 0 and 1 it needs a target with
+                                        FW_TARGET_TRANSPARENCY, and sampledColor. All four channels are mixed as the target
+                                        blends: as they are stored if it is UNORM or float, as light if it is sRGB. Our
+                                        depth is written as without it. Else FW_ERROR_INVALID_ARGUMENT */
+    uint32_t reserved1;              /* 0 */
 } FwVulkanFrame;
 static inline FwVulkanFrame fwDefaultVulkanFrame(void) {
     FwVulkanFrame d; fwInitDef(FW_DEF_VULKAN_FRAME, &d, (uint32_t)sizeof d); return d;

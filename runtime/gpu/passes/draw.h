@@ -124,6 +124,9 @@ extern const DrawPass kHalfDepthPass, kHalfTilesPass, kHalfCompositePass;
 // For a viewport that begins at `left`, `top` of the host's image.
 HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height);
 
+// Over all that was drawn what the host lends of the picture before.
+extern const DrawPass kTransparencyPass;
+
 struct VolumeItem {  // a volumetric flame that a view may show
     uint32_t flame = 0;
     VolumeDraw draw{};

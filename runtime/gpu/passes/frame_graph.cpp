@@ -47,7 +47,8 @@ constexpr const DrawPass* kDrawPasses[] = {
     &kFlamesPass,        &kVolumePass,          &kVolumeCardPass,      &kVolumeCompositePass,
     &kVolumeSlicesPass,  &kFieldDrawPasses[0],  &kFieldDrawPasses[1],  &kFieldDrawPasses[2],
     &kVolumeHazePass,    &kBookFlamesPasses[0], &kBookFlamesPasses[1], &kHalfDepthPass,
-    &kHalfTilesPass,     &kHalfCompositePass,   &kHalfSparksPasses[0], &kHalfSparksPasses[1]};
+    &kHalfTilesPass,     &kHalfCompositePass,   &kHalfSparksPasses[0], &kHalfSparksPasses[1],
+    &kTransparencyPass};
 
 constexpr uint32_t kNumberOfZPass = kSurfaceVariants;
 constexpr uint32_t kNumberOfVolumes = kNumberOfZPass + 2;
@@ -57,14 +58,15 @@ constexpr uint32_t kNumberOfBookFlames = kNumberOfHaze + 1;
 constexpr uint32_t kNumberOfHalf = kNumberOfBookFlames + kBookVariants;
 constexpr uint32_t kNumberOfHalfComposite = kNumberOfHalf + 2;
 constexpr uint32_t kNumberOfHalfSparks = kNumberOfHalf + 3;
-static_assert(std::size(kDrawPasses) == kNumberOfHalfSparks + 2);
+constexpr uint32_t kNumberOfTransparency = kNumberOfHalfSparks + 2;
+static_assert(std::size(kDrawPasses) == kNumberOfTransparency + 1);
 
 // What was hidden by the Z-pass shows what is behind it, so others come first. The variants of
 // fields are one step, in which they are drawn as they lie behind each other, and so are volumetric
 // flames of all tiers. Haze bends what is solid alone. Where fields, quads and volumes are drawn at
 // half resolution, they come over the picture at the end, and sparks after them.
 constexpr auto kDrawSteps = [] {
-    std::array<DrawStep, 2 * kSurfaceVariants + 10> steps{};
+    std::array<DrawStep, 2 * kSurfaceVariants + 11> steps{};
     for (uint32_t i = 0; i < kSurfaceVariants; ++i) {
         steps[i] = {i, false};
         steps[kSurfaceVariants + 1 + i] = {i, true};
@@ -79,6 +81,7 @@ constexpr auto kDrawSteps = [] {
     steps[2 * kSurfaceVariants + 7] = {kNumberOfHalfComposite, false};
     steps[2 * kSurfaceVariants + 8] = {kNumberOfHalfSparks, false};
     steps[2 * kSurfaceVariants + 9] = {kNumberOfHalfSparks + 1, false};
+    steps[2 * kSurfaceVariants + 10] = {kNumberOfTransparency, false};
     return steps;
 }();
 
@@ -401,6 +404,7 @@ bool drawStepDraws(const DrawStep& step, const DrawList& list) {
     if (step.pass >= kNumberOfBookFlames && step.pass < kNumberOfBookFlames + kBookVariants)
         return list.flames && list.books && list.pagesAlone == (step.pass > kNumberOfBookFlames);
     if (step.pass == kNumberOfHalfComposite) return list.half;
+    if (step.pass == kNumberOfTransparency) return list.transparent;
     if (step.pass >= kNumberOfHalfSparks)
         return list.flames && list.books == (step.pass > kNumberOfHalfSparks);
     if (step.pass == kNumberOfHaze) return !list.hazes.empty();

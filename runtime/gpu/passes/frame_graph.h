@@ -145,7 +145,8 @@ struct DrawList {                                      // what a view may show
     std::span<const SlicedVolume> sliced{};
     std::span<const VolumeRun> volumeRuns{};  // of these four
     std::span<const HazedVolume> hazes{};
-    bool half = false;  // what is soft was drawn at half resolution
+    bool half = false;         // what is soft was drawn at half resolution
+    bool transparent = false;  // the host's picture shows through all of it
 };
 // False: it would draw nothing, do not bind it.
 bool drawStepDraws(const DrawStep& step, const DrawList& list);

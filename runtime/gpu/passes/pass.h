@@ -90,7 +90,8 @@ enum class VertexInput : uint8_t {
            // mesh's: 0 position vec3, 1 normal uint, 7 lead float
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
-enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone };
+// constant: a mix by the blend constant, of all that is there, whatever its depth.
+enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone, constant };
 
 // What becomes of a pass in a target with FW_TARGET_HALF_EFFECTS.
 enum class AtHalf : uint8_t {
@@ -104,10 +105,11 @@ enum class AtHalf : uint8_t {
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant, 3 which part of the quads (kPart...), 4 the target's samples.
 // Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
-// flames` the flipbooks, of `volume haze` the scene's colour that the host lends (sampler2D); 2
-// binding 0 the look textures, of `volume` the fire profiles (sampler2DArray), of `half composite`
-// depth and tiles of half resolution, whose colour is its set 1 and that of `half tiles`; 3, with
-// softShader alone, binding 0 the depth that the host lends (sampler2D or sampler2DMS).
+// flames` the flipbooks, of `volume haze` and `transparency` the colour that the host lends
+// (sampler2D); 2 binding 0 the look textures, of `volume` the fire profiles (sampler2DArray), of
+// `half composite` depth and tiles of half resolution, whose colour is its set 1 and that of `half
+// tiles`; 3, with softShader alone, binding 0 the depth that the host lends (sampler2D or
+// sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;

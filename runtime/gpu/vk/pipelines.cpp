@@ -110,9 +110,10 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     key.encoding = def.encoding == FW_OUTPUT_AUTO ? Context::encodingOf(def.colorFormat)
                                                   : FwOutputEncoding(def.encoding);
     key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~63u) bad("flags", def.flags, "bits 0 to 5 are known");
+    if (def.flags & ~127u) bad("flags", def.flags, "bits 0 to 6 are known");
     key.asNeeded = (def.flags & FW_TARGET_AS_NEEDED) != 0;
     key.haze = (def.flags & FW_TARGET_HAZE) != 0;
+    key.transparency = (def.flags & FW_TARGET_TRANSPARENCY) != 0;
     if (key.haze && def.depthMode != FW_DEPTH_SAMPLED)
         bad("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
     const bool half = (def.flags & FW_TARGET_HALF_EFFECTS) != 0;
@@ -587,19 +588,21 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
     multisample.rasterizationSamples = VkSampleCountFlagBits(key.samples);
     auto depth = typed<VkPipelineDepthStencilStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-    depth.depthTestEnable = key.attachesDepth();
+    const bool mixes = pass.blend == Blend::constant;
+    depth.depthTestEnable = key.attachesDepth() && !mixes;
     depth.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
     depth.depthCompareOp =
         key.reversedDepth ? (pass.strict ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_GREATER_OR_EQUAL)
                           : (pass.strict ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_LESS_OR_EQUAL);
     std::array<VkPipelineColorBlendAttachmentState, 8> blends{};
     blends[0].blendEnable = colors && pass.blend != Blend::opaque;
-    blends[0].srcColorBlendFactor = VK_BLEND_FACTOR_ONE;
-    blends[0].dstColorBlendFactor = pass.blend == Blend::premultiplied
+    blends[0].srcColorBlendFactor = mixes ? VK_BLEND_FACTOR_CONSTANT_ALPHA : VK_BLEND_FACTOR_ONE;
+    blends[0].dstColorBlendFactor = mixes ? VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA
+                                    : pass.blend == Blend::premultiplied
                                         ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA
                                         : VK_BLEND_FACTOR_ONE;
     blends[0].srcAlphaBlendFactor =
-        pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : VK_BLEND_FACTOR_ONE;
+        pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : blends[0].srcColorBlendFactor;
     blends[0].dstAlphaBlendFactor = blends[0].dstColorBlendFactor;
     if (colors)
         blends[0].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
@@ -608,11 +611,11 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
         VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
     blend.attachmentCount = key.colorAttachments;
     blend.pAttachments = blends.data();
-    const std::array<VkDynamicState, 2> dynamics{VK_DYNAMIC_STATE_VIEWPORT,
-                                                 VK_DYNAMIC_STATE_SCISSOR};
+    const std::array<VkDynamicState, 3> dynamics{
+        VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_BLEND_CONSTANTS};
     auto dynamic = typed<VkPipelineDynamicStateCreateInfo>(
         VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-    dynamic.dynamicStateCount = uint32_t(dynamics.size());
+    dynamic.dynamicStateCount = mixes ? 3 : 2;
     dynamic.pDynamicStates = dynamics.data();
 
     auto info =
@@ -661,8 +664,9 @@ void Pipelines::makePipelines(Target& target, PassSet passes) {
         const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
         const bool haze = drawPasses()[pass] == &kVolumeHazePass;
         const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
-        const bool drawn =
-            surface ? key.surfaces : key.flames && (!haze || key.haze) && (always || key.half);
+        const bool drawn = drawPasses()[pass] == &kTransparencyPass ? key.transparency
+                           : surface                                ? key.surfaces
+                                     : key.flames && (!haze || key.haze) && (always || key.half);
         if (drawn) due |= PassSet(1) << pass;
     }
     const auto count = uint32_t(std::popcount(due));

@@ -28,7 +28,8 @@ struct TargetKey {
     FwDepthMode depthMode = FW_DEPTH_NONE;
     bool surfaces = true, flames = true;
     bool reversedDepth = false, composite = false, haze = false;
-    bool half = false;  // what is soft is drawn at half resolution
+    bool transparency = false;  // frames may be transparent
+    bool half = false;          // what is soft is drawn at half resolution
     bool asNeeded = false;
     VkFormat halfColor = VK_FORMAT_UNDEFINED;
     FwOutputEncoding encoding = FW_OUTPUT_LINEAR;

@@ -34,7 +34,7 @@ namespace fw::gpu::vk {
     X(CmdPipelineBarrier) X(CmdBindPipeline) X(CmdBindDescriptorSets) X(CmdPushConstants) \
     X(CmdDispatch) X(CmdDispatchIndirect) X(CmdCopyBuffer) X(CmdCopyBufferToImage) \
     X(CmdCopyImageToBuffer) X(CmdFillBuffer) X(CmdBindVertexBuffers) X(CmdBindIndexBuffer) \
-    X(CmdDrawIndexed) X(CmdDraw) X(CmdDrawIndirect) X(CmdDrawIndexedIndirect) X(CmdSetViewport) X(CmdSetScissor) \
+    X(CmdDrawIndexed) X(CmdDraw) X(CmdDrawIndirect) X(CmdDrawIndexedIndirect) X(CmdSetViewport) X(CmdSetScissor) X(CmdSetBlendConstants) \
     X(CmdBeginRenderPass) X(CmdEndRenderPass) X(CmdResetQueryPool) X(CmdWriteTimestamp)
 
 // Of VK_EXT_debug_utils.

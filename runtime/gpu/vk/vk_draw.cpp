@@ -153,9 +153,24 @@ VkImageMemoryBarrier imageBarrier(const FwVulkanImage& image, bool depth, VkForm
     return barrier;
 }
 
+bool isMixed(const FwVulkanFrame& frame) noexcept {
+    return frame.transparency > 0.0f && frame.transparency < 1.0f;
+}
+
 // Haze is drawn where a frame lends its colour, so none is no fault.
 void checkLentColor(const Target& target, const FwVulkanFrame& frame) {
-    if (!target.key.haze || !frame.sampledColor ||
+    if (isMixed(frame) && !target.key.transparency)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::transparency is %g and the target was registered without "
+                   "FW_TARGET_TRANSPARENCY (64); only 0 and 1 are drawn there.",
+                   double(frame.transparency));
+    if (isMixed(frame) && !frame.sampledColor)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "FwVulkanFrame::transparency is %g and sampledColor is null; between 0 and 1 a "
+                   "copy of what the target holds is needed. Lend one, or draw into a layer of "
+                   "your own and blend that.",
+                   double(frame.transparency));
+    if ((!target.key.haze && !isMixed(frame)) || !frame.sampledColor ||
         frame.sampledColorLayout == VK_IMAGE_LAYOUT_GENERAL ||
         frame.sampledColorLayout == VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL)
         return;
@@ -200,7 +215,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                    const Target& target, const FwView& view,
                                    const VkViewport& viewport, const Lent& lent, DrawPart part,
                                    const HalfImages* half) {
-    if (!showsAnything()) return;
+    if (!showsAnything() || transparency >= 1.0f) return;
     const Table& vk = device.table;
     OutsideView& of = viewFor(view);
     drawnView = of.number;
@@ -225,6 +240,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                   {fieldItems.data(), orderFields(fieldItems)},
                   turnsFaces(view, viewport)};
     list.half = half != nullptr;
+    list.transparent = transparency > 0.0f && part != DrawPart::half;
     if (target.key.flames && !volumes.empty()) {
         const float share = part == DrawPart::over ? 0.5f : 1.0f;
         const VolumeScreen screen =
@@ -258,7 +274,7 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             list.sliced = {sliced.data(), cut};
             list.volumeRuns = {order.runs.data(), order.count};
         }
-        if (lent.color)
+        if (target.key.haze && lent.color)
             list.hazes = {hazes.data(), orderHazes(made ? &march : nullptr, view.haze, hazes)};
     }
     for (const DrawStep& step : drawSteps()) {
@@ -280,6 +296,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
             continue;
         }
         slot.timers.begin(device, commands, pass.name);
+        if (&pass == &kTransparencyPass) {
+            recordTransparency(commands, target, lent);
+            slot.timers.end(device, commands);
+            continue;
+        }
         if (&pass == &kHalfCompositePass) {
             recordHalfComposite(commands, target, *half, viewport, lent);
             slot.timers.end(device, commands);
@@ -316,6 +337,18 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         recordDrawStep(step, recorder, list);
         slot.timers.end(device, commands);
     }
+}
+
+void VkBackend::State::recordTransparency(VkCommandBuffer commands, const Target& target,
+                                          const Lent& lent) const noexcept {
+    const Table& vk = device.table;
+    const size_t number = passNumber(kTransparencyPass);
+    const std::array<float, 4> share{transparency, transparency, transparency, transparency};
+    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
+    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
+                             context.pipelines.draw(number).layout, 1, 1, &lent.color, 0, nullptr);
+    vk.CmdSetBlendConstants(commands, share.data());
+    vk.CmdDraw(commands, 6, 1, 0, 0);
 }
 
 void VkBackend::State::recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands,
@@ -409,9 +442,8 @@ VkBackend::State::Lent VkBackend::State::lentFor(FrameInFlight& slot, const Targ
                                                  const FwVulkanFrame& frame, VkImageView depth,
                                                  VkImageLayout depthLayout) {
     Lent lent;
-    if (!target.key.samplesDepth()) return lent;
-    lent.depth = lentSetFor(slot, depth, depthLayout);
-    if (target.key.haze && frame.sampledColor)
+    if (target.key.samplesDepth()) lent.depth = lentSetFor(slot, depth, depthLayout);
+    if ((target.key.haze || isMixed(frame)) && frame.sampledColor)
         lent.color = lentSetFor(slot, frame.sampledColor, frame.sampledColorLayout);
     return lent;
 }
@@ -455,6 +487,7 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
     s.scissor = frame.scissor;
+    s.transparency = frame.transparency;
     s.recordDraws(slot, frame.commandBuffer, target, view, viewport,
                   s.lentFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
     return true;
@@ -515,6 +548,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
                                        VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
     s.scissor = frame.scissor;
+    s.transparency = frame.transparency;
 
     const Table& vk = s.device.table;
     const VkCommandBuffer commands = frame.commandBuffer;

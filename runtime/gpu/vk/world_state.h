@@ -544,6 +544,8 @@ struct VkBackend::State {
         VkDescriptorSet color = VK_NULL_HANDLE;  // haze is drawn
     };
     // Neighbours of volumetric flames that one pass draws; or all haze.
+    void recordTransparency(VkCommandBuffer commands, const Target& target,
+                            const Lent& lent) const noexcept;
     void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                            const DrawList& list, const VolumeRun& run, uint32_t viewOffset,
                            const Lent& lent);
@@ -552,6 +554,7 @@ struct VkBackend::State {
                      const FwView& view, const VkViewport& viewport, const Lent& lent,
                      DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
     uint32_t drawnView = 0;  // of the call that is recorded: OutsideView::number
+    float transparency = 0;  // of the call that is recorded
     VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
     Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,

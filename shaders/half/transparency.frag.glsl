@@ -1,0 +1,6 @@
+#version 450
+// What the host's picture was at a pixel before we drew; the blend constant says how much of it counts.
+layout(set = 1, binding = 0) uniform sampler2D hostColor;
+layout(location = 0) out vec4 outColor;
+
+void main() { outColor = texelFetch(hostColor, ivec2(gl_FragCoord.xy), 0); }
