@@ -17,11 +17,8 @@ struct Board {
     explicit Board(uint32_t backend, uint32_t flags = 0, float share = 0, float area = 0.01f,
                    bool pinned = false)
         : sheet(kWide, kHigh, kRows) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = 10;
         ok(fwCreateWorld(context, &def, &world));
