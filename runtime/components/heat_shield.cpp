@@ -30,9 +30,9 @@ gpu::ExchangePush rulesOf(const ShieldShape& shape) noexcept {
 }
 
 gpu::ivec3 placeOf(const float place[3]) noexcept {  // mm
-    return {int(std::lround(std::clamp(double(place[0]), -2e6, 2e6) * 1000)),
-            int(std::lround(std::clamp(double(place[1]), -2e6, 2e6) * 1000)),
-            int(std::lround(std::clamp(double(place[2]), -2e6, 2e6) * 1000))};
+    return {int(millimetres(std::clamp(double(place[0]), -2e6, 2e6))),
+            int(millimetres(std::clamp(double(place[1]), -2e6, 2e6))),
+            int(millimetres(std::clamp(double(place[2]), -2e6, 2e6)))};
 }
 
 // Cells that are filled so far, and how near to its middle the texel of each is.

@@ -1,5 +1,7 @@
 #include "components/remote.h"
 
+#include "components/wind_zone.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -7,12 +9,13 @@ namespace fw::components {
 namespace {
 
 constexpr double kMillimetres = 1000;
-constexpr double kFarthest = 2.0e9;  // mm: poses end at 1e6 m, boxes a little later
+constexpr double kFarthest = 2.0e6;  // m: poses end at 1e6 m, boxes a little later
 constexpr double kWeakest = 1000;    // W/m^2 that matter: nothing ignites below 4300
 constexpr double kCoolest = 40;      // K of a plume that matter
 
-int whole(double value) noexcept {
-    return int(std::lround(std::clamp(value, -kFarthest, kFarthest)));
+int whole(double value) noexcept { return int(std::lround(std::clamp(value, -2.0e9, 2.0e9))); }
+int placeOf(double metres) noexcept {  // mm
+    return int(millimetres(std::clamp(metres, -kFarthest, kFarthest)));
 }
 
 void turn(const Pose& pose, gpu::ivec4 (&rows)[3]) noexcept {
@@ -59,7 +62,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
         for (int c = 0; c < 3; ++c)
             (*rows[i])[c] = whole(double(pose.rotation[i][c]) * double(pose.stretch[c]) * unit *
                                   double(1u << out.shift));
-        (*rows[i])[3] = whole(origin[i] * kMillimetres);
+        (*rows[i])[3] = placeOf(origin[i]);
         *turns[i] = turned[i];
     }
     int boxLow[3], boxHigh[3];
@@ -114,7 +117,7 @@ void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) 
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)  // transposed: world to box
             (*turns[r])[c] = whole(double(pose.rotation[c][r]) * 4096);
-        (*turns[r])[3] = whole(pose.translation[r] * kMillimetres);
+        (*turns[r])[3] = placeOf(pose.translation[r]);
         out.size[r] = uint32_t(std::clamp(double(halfSize[r]) * double(pose.scale) *
                                               std::fabs(double(pose.stretch[r])) * kMillimetres,
                                           0.0, 30000.0));

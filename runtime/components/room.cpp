@@ -51,7 +51,7 @@ Room makeRoom(const FwRoomDef& def) {
         2 * (x * z + w * y),     2 * (y * z - w * x),     1 - 2 * (x * x + y * y)};
     Room room;
     for (size_t i = 0; i < 3; ++i) {
-        room.middle[i] = wholeOf(double(def.position[i]) * 1000);
+        room.middle[i] = millimetres(double(def.position[i]));
         room.half[i] = wholeOf(double(def.halfSize[i]) * 1000);
     }
     for (size_t i = 0; i < 9; ++i) room.axes[i] = wholeOf(axes[i] * kQ14);

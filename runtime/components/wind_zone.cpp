@@ -154,15 +154,14 @@ void sortWindZones(std::span<WindZone> zones) noexcept {
             std::swap(zones[k], zones[k - 1]);
 }
 
-int64_t millimetres(float metres) noexcept { return std::llround(double(metres) * 1000); }
+int64_t millimetres(double metres) noexcept { return int64_t(std::floor(metres * 1000 + 0.5)); }
 
 WindPlace windPlace(const float place[3]) noexcept {
     return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
 }
 
 WindPlace windPlace(const double place[3]) noexcept {
-    return {std::llround(place[0] * 1000), std::llround(place[1] * 1000),
-            std::llround(place[2] * 1000)};
+    return {millimetres(place[0]), millimetres(place[1]), millimetres(place[2])};
 }
 
 fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,

@@ -35,7 +35,8 @@ struct WindZone {
 void sortWindZones(std::span<WindZone> zones) noexcept;
 
 // m to mm.
-[[nodiscard]] int64_t millimetres(float metres) noexcept;
+// The nearest; halves go up everywhere, so that what moves by whole metres moves exactly.
+[[nodiscard]] int64_t millimetres(double metres) noexcept;
 [[nodiscard]] WindPlace windPlace(const float place[3]) noexcept;
 [[nodiscard]] WindPlace windPlace(const double place[3]) noexcept;
 

@@ -266,31 +266,33 @@ void World::rebuildRemote() {
     book.rebuild = false;
 }
 
-// The host's answers of saved pairs hold; the host is asked about other pairs now.
+// The host's answers of saved pairs hold. An object without any was elsewhere since the host was
+// asked about it: it is asked when the world awakes, as it would have been.
 void World::seeAsLoaded() {
     RemoteBook& book = remote_;
     const auto before = [](const Seen& a, const Seen& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     };
-    for (const uint32_t slot : book.seenDue) {
-        Object& object = **objects_.at(slot);
+    std::erase_if(book.seenDue, [&](uint32_t slot) {
+        bool due = false, holds = false;
         for (const uint32_t entry : book.neighbours.of(slot)) {
-            const uint32_t other = entry & Neighbours::kSlot;
-            const Seen wanted{{slot, other}};
+            const Seen wanted{{slot, entry & Neighbours::kSlot}};
             const auto known =
                 std::lower_bound(book.loadedSeen.begin(), book.loadedSeen.end(), wanted, before);
-            const bool holds = known != book.loadedSeen.end() && !before(wanted, *known);
-            book.neighbours.see(slot, other,
-                                holds ? known->part : seenPart(**objects_.at(other), object));
+            due = true;
+            if (known == book.loadedSeen.end() || before(wanted, *known)) continue;
+            holds = true;
+            book.neighbours.see(slot, wanted.slots[1], known->part);
         }
-        object.seenDue = false;
-    }
-    book.seenDue.clear();
+        due &= !holds;
+        (*objects_.at(slot))->seenDue = due;
+        return !due;
+    });
     book.loadedSeen.clear();
 }
 
 // Pairs of which the host has been asked since one of them was elsewhere, by slots.
-void World::noteSeen(std::pmr::vector<SavedSeen>& to) const {
+void World::noteSeen(std::pmr::vector<Seen>& to) const {
     const RemoteBook& book = remote_;
     if (!def_.visibility) return;
     if (book.rebuild) {

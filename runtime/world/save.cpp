@@ -43,7 +43,7 @@ uint64_t hashOf(const mesh::BurnDomain& domain) noexcept {
     return hash;
 }
 
-void checkPose(const components::Pose& pose, uint32_t object) {
+void checkPose(const components::Pose& pose, uint32_t object, double far = 1e6) {
     bool good = pose.scale >= 1e-4f && pose.scale <= 1e4f;
     for (const auto& row : pose.rotation)
         for (const float value : row) good &= std::abs(value) <= 1.01f;
@@ -51,7 +51,7 @@ void checkPose(const components::Pose& pose, uint32_t object) {
         const float size = std::abs(value);
         good &= size >= 1.0f / 64 && size <= 64;
     }
-    for (const double value : pose.translation) good &= std::abs(value) <= 1e6;
+    for (const double value : pose.translation) good &= std::abs(value) <= far;
     if (!good)
         core::fail(FW_ERROR_BAD_DATA,
                    "The save has a transform that none can be for burnable mesh %u.", object + 1);
@@ -517,7 +517,7 @@ void World::checkSaved(const SavedWorld& saved) {
                        object.slot + 1, static_cast<unsigned long long>(mine),
                        static_cast<unsigned long long>(object.asset));
         checkPose(object.pose, object.slot);
-        if (object.touched) checkPose(object.latched, object.slot);
+        if (object.touched) checkPose(object.latched, object.slot, kFarPast);
         for (const fire::WindFilter& filter : object.filters)
             for (int i = 0; i < 3; ++i)
                 if (std::abs(int64_t(filter.latched[size_t(i)])) > fire::kMostWindUnits ||
@@ -564,7 +564,7 @@ void World::checkSaved(const SavedWorld& saved) {
         checkObject(pair.slots[1], "a contact");
     }
     uint64_t before = 0;
-    for (const SavedSeen& seen : saved.seen) {
+    for (const Seen& seen : saved.seen) {
         checkObject(seen.slots[0], "what is seen");
         checkObject(seen.slots[1], "what is seen");
         const uint64_t pair = (uint64_t(seen.slots[0]) << 32 | seen.slots[1]) + 1;
@@ -676,7 +676,7 @@ void World::checkSaved(const SavedWorld& saved) {
                 checkTexel(patch.object.index1 - 1, patch.texel, "fuel that sticks");
         }
         for (const components::JetParcel& parcel : emitter.parcels) {
-            checkPlace(parcel.from, "a jet's stream");
+            checkPlace(parcel.from, "a jet's stream", float(kFarPast));
             if (!(parcel.wide >= 0 && parcel.wide <= 4) || parcel.most > 10000000 ||
                 parcel.launched > clock.tick)
                 core::fail(FW_ERROR_BAD_DATA, "The save has a jet's stream that none can be.");
@@ -921,9 +921,7 @@ void World::applySaved(const SavedWorld& saved,
         pair.touches = true;
         remote_.pairs.push_back(pair);
     }
-    remote_.loadedSeen.clear();
-    for (const SavedSeen& from : saved.seen)
-        remote_.loadedSeen.push_back({{from.slots[0], from.slots[1]}, from.part});
+    remote_.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
     const auto idOf = [&](uint32_t plus1) {
         return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};
     };

@@ -6,6 +6,9 @@
 
 namespace fw::world {
 
+// m: of places that their owners may have left before the origin moved, see shift.cpp.
+constexpr double kFarPast = 2e6;
+
 struct SavedTouch {        // of a fire or a jet
     uint32_t object1 = 0;  // slot + 1; 0: none
     uint64_t since = 0;
@@ -96,10 +99,6 @@ struct SavedPair {  // that touch, since when
     uint32_t slots[2] = {}, since = 0;
 };
 
-struct SavedSeen {  // what the host said of a pair, see Seen
-    uint32_t slots[2] = {}, part = 0;
-};
-
 struct SavedStats {  // as of the readback
     uint32_t frontTiles = 0, burningTiles = 0, hotTiles = 0, receivers = 0;
     uint32_t lateClamps = 0;
@@ -168,7 +167,7 @@ struct SavedWorld {
     std::pmr::vector<PendingTexel> pending;
     std::pmr::vector<SavedTag> tags;
     std::pmr::vector<SavedPair> pairs;
-    std::pmr::vector<SavedSeen> seen;
+    std::pmr::vector<Seen> seen;
     std::pmr::vector<SavedBlocker> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
     std::pmr::vector<SavedWindZone> windZones;

@@ -62,7 +62,7 @@ template <typename S, Is<SavedTag> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedPair> T>
 void put(S& s, T& value);
-template <typename S, Is<SavedSeen> T>
+template <typename S, Is<Seen> T>
 void put(S& s, T& value);
 template <typename S, Is<SavedStats> T>
 void put(S& s, T& value);
@@ -184,7 +184,7 @@ template <typename S, Is<SavedPair> T>
 void put(S& s, T& p) {
     all(s, p.slots, p.since);
 }
-template <typename S, Is<SavedSeen> T>
+template <typename S, Is<Seen> T>
 void put(S& s, T& seen) {
     all(s, seen.slots, seen.part);
 }

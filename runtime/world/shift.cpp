@@ -22,22 +22,31 @@ void moveBy(double (&place)[3], const double (&by)[3]) noexcept {
 void moveBy(gpu::vec3& place, const double (&by)[3]) noexcept {
     for (int i = 0; i < 3; ++i) place[i] = float(double(place[i]) + by[i]);
 }
-// mm by m. Wraps where a load goes to an origin so far off that only its save has places there.
-template <class Whole>
-void moveMillimetres(Whole& place, double by) noexcept {
-    using Wraps = std::make_unsigned_t<Whole>;
-    place = Whole(Wraps(place) + Wraps(int64_t(by * 1000)));
+// Where something was: its owner may be elsewhere by now, and this leaves the limits of space.
+template <class Place>
+void movePast(Place& place, const double (&by)[3]) noexcept {
+    for (int i = 0; i < 3; ++i) {
+        auto& metres = place[i];
+        metres = std::remove_reference_t<decltype(metres)>(
+            std::clamp(double(metres) + by[i], -kFarPast, kFarPast));
+    }
 }
+void movePast(int& millimetres, double metres) noexcept {
+    constexpr double kMost = kFarPast * 1000;
+    millimetres = int(std::clamp(double(millimetres) + metres * 1000, -kMost, kMost));
+}
+// Wraps where a load goes to an origin so far off that only its save has places there.
 template <class Whole>
 void moveMillimetres(std::array<Whole, 3>& place, const double (&by)[3]) noexcept {
-    for (size_t i = 0; i < 3; ++i) moveMillimetres(place[i], by[i]);
+    using Wraps = std::make_unsigned_t<Whole>;
+    for (size_t i = 0; i < 3; ++i) place[i] = Whole(Wraps(place[i]) + Wraps(int64_t(by[i] * 1000)));
 }
 void moveJet(components::JetStream& stream, const double (&by)[3]) noexcept {
     for (components::JetPatches* patches : {&stream.patches, &stream.before})
-        for (components::JetPatch& patch : *patches) moveBy(patch.place, by);
+        for (components::JetPatch& patch : *patches) movePast(patch.place, by);
     for (components::JetParcel& parcel : stream.parcels) {
-        moveBy(parcel.from, by);
-        for (components::JetRay& ray : parcel.rays) moveBy(ray.hit.place, by);
+        movePast(parcel.from, by);
+        for (components::JetRay& ray : parcel.rays) movePast(ray.hit.place, by);
     }
 }
 void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double along) noexcept {
@@ -62,9 +71,9 @@ void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
     gpu::ivec4* rows[] = {&record.row0, &record.row1, &record.row2};
     gpu::ivec4* lows[] = {&record.turn0, &record.turn1, &record.turn2};
     for (int i = 0; i < 3; ++i) {
-        moveMillimetres(rows[i]->w, by[i]);
-        moveMillimetres(lows[i]->w, by[i]);
-        moveMillimetres(record.high[i], by[i]);
+        movePast(rows[i]->w, by[i]);
+        movePast(lows[i]->w, by[i]);
+        movePast(record.high[i], by[i]);
     }
 }
 
@@ -102,6 +111,8 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
                        " already; the limit is +-" FW_LENGTH " " FW_LENGTH_UNIT " in all.",
                        i, by[i], origin_[i], kFarthestOrigin);
     }
+    float whole[3];
+    for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (const auto* object = objects_.at(i))
             checkMoved((*object)->data.pose.translation, by, "burnable mesh", i);
@@ -136,15 +147,21 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     if (shield_.grid.shape.cells() != 0)
         checkMillimetres(shield_.grid.shape.origin, by, "heat shield", 0);
     places_.reserveMoves(objects_.live());
+    // What the host said of sight holds; shiftBy has the lists of neighbours made again.
+    std::pmr::vector<Seen> seen(memory_);
+    noteSeen(seen);
     shiftBy(by);
-    float whole[3];
-    for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
+    if (remote_.rebuild) remote_.loadedSeen.swap(seen);
     if (applied) std::copy_n(whole, 3, applied);
     noteMove(Deed::Kind::shiftOrigin, 0, whole, 3);
 }
 
 // Places in a readback of a frame before `lastFrame_` + 1 are relative to the old origin.
-void World::noteShift(const double by[3]) noexcept {
+void World::noteShift(const double (&by)[3]) noexcept {
+    if (shiftCount_ > 0 && shifts_[shiftCount_ - 1].frame == lastFrame_) {
+        moveBy(shifts_[shiftCount_ - 1].by, by);
+        return;
+    }
     if (shiftCount_ == shifts_.size()) {  // rare: the two oldest count together
         for (int i = 0; i < 3; ++i) shifts_[1].by[i] += shifts_[0].by[i];
         std::copy(shifts_.begin() + 1, shifts_.end(), shifts_.begin());
@@ -173,7 +190,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
         if (!owned) continue;
         Object& object = **owned;
         moveBy(object.data.pose.translation, by);
-        moveBy(object.latch.pose.translation, by);
+        movePast(object.latch.pose.translation, by);
         sendPose(object);
         placeNow(object);
         if (object.remoteVersion != 0) moveRecord(object.remote, by);
@@ -183,7 +200,7 @@ void World::shiftBy(const double (&by)[3]) noexcept {
         if (BlockerEntry* blocker = blockers_.at(i)) moveBy(blocker->pose.translation, by);
     for (gpu::Blocker& blocker : remote_.blockers) {
         gpu::ivec4* turns[] = {&blocker.turn0, &blocker.turn1, &blocker.turn2};
-        for (int i = 0; i < 3; ++i) moveMillimetres(turns[i]->w, by[i]);
+        for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
     }
     remote_.unsent |= !remote_.blockers.empty();
     if (shield_.grid.shape.cells() != 0) {

@@ -357,7 +357,7 @@ struct RemoteBook {
     std::pmr::vector<uint32_t> unsentSlots;  // whose records the backend does not have
     uint32_t version = 0;                    // of the last latched object
     Neighbours neighbours;                   // of latched boxes
-    std::pmr::vector<Seen> loadedSeen;       // of a save, by slots, until the lists are rebuilt
+    std::pmr::vector<Seen> loadedSeen;       // kept by slots until the lists are rebuilt
     bool rebuild = false;                    // all but `pairs` is of another world
     // Placed objects that no event ever touched, and some that one did since; and whether the
     // neighbours of all touched objects have been touched, but for `neighbours.changed()`.
@@ -439,7 +439,6 @@ void checkWorldDef(const FwWorldDef& def);  // throws
 struct SavedWorld;
 struct SavedObject;
 struct SavedEmitter;
-struct SavedSeen;
 struct SavedRecords;
 struct SavedBreaks;
 struct ImageStore;
@@ -729,7 +728,7 @@ class World {
 
     // shift.cpp
     void shiftBy(const double (&by)[3]) noexcept;
-    void noteShift(const double by[3]) noexcept;
+    void noteShift(const double (&by)[3]) noexcept;
     // As a frame's readback says, to where it is now.
     void movePlace(float (&place)[3], uint64_t frame) const noexcept;
     // step.cpp
@@ -896,7 +895,7 @@ class World {
                   std::pmr::vector<gpu::ContactLink>& out);
     void commitRemote() noexcept;
     void countGoverned(const Object& object, bool more) noexcept;
-    void noteSeen(std::pmr::vector<SavedSeen>& to) const;
+    void noteSeen(std::pmr::vector<Seen>& to) const;
     void seeAsLoaded();
     void tellSpread(Object& object, const gpu::Readback& readback) noexcept;
     // events.cpp

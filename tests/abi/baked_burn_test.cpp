@@ -14,11 +14,8 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
     explicit Boards(uint32_t backend, uint32_t count = 1, uint32_t flags = 0, float gap = 3,
                     float width = 0.5f)
         : sheet(width, 0.3f) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT;
         def.paceFactor = 40;

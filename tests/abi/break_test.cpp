@@ -18,11 +18,8 @@ struct Board {
                    bool pinned = false,
                    uint32_t cutOut = 0)  // rows that its picture cuts out, bits
         : sheet(kWide, kHigh, kRows) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = 10;
         ok(fwCreateWorld(context, &def, &world));

@@ -45,17 +45,32 @@ inline void signSave(Bytes& bytes) {
     std::memcpy(&bytes[16], &hash, 8);
 }
 
+// Of every texel of some objects and what it holds, and of the tick.
+template <class Ids>
+uint64_t hashOf(FwWorld* world, const Ids& ids) {
+    uint64_t all = 0;
+    for (const FwBurnableMeshId id : ids)
+        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id)) << lastMessage(world);
+    for (const FwBurnableMeshId id : ids) {
+        uint64_t one = 0, tick = 0;
+        come(world,
+             [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
+        all = all * 31 + one + tick;
+    }
+    return all;
+}
+
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
 // that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
-// wets, a wall, a shield of cells and of an object, a tag.
+// wets, a wall, a shield of cells and of an object, a tag. exact: its places are whole parts of a
+// metre, and nothing burns or is wet by what floats decide, so that a world of the same whose
+// origin is elsewhere burns alike.
 class BusyWorld {
  public:
-    explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+    explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10, bool exact = false)
+        : exact_(exact) {
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
         def.paceFactor = pace;
@@ -64,19 +79,19 @@ class BusyWorld {
         ok(fwCreateWorld(context, &def, &world));
         for (uint32_t i = 0; i < things; ++i) add(i);
         FwFireEmitterDef jetDef = fwDefaultFireEmitterDef();
-        jetDef.flags = FW_EMITTER_JET | FW_EMITTER_IGNITES;
-        put(jetDef.position, -1.2f, 0.15f, 0.1f);
+        jetDef.flags = exact ? 0u : FW_EMITTER_JET | FW_EMITTER_IGNITES;
+        putAt(jetDef.position, -1.2f, 0.15f, 0.1f);
         put(jetDef.direction, 1, 0, 0.05f);
         jetDef.power = 400;
         ok(fwWorld_CreateFireEmitter(world, &jetDef, &jet));
         FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
-        fireDef.flags |= FW_FIRE_IGNITES;
-        put(fireDef.position, 1.8f, 0, 0.55f);
+        if (!exact) fireDef.flags |= FW_FIRE_IGNITES;
+        putAt(fireDef.position, 1.8f, 0, 0.55f);
         ok(fwWorld_CreateVolumetricFire(world, &fireDef, &fire));
         FwParticleFieldDef fieldDef = fwDefaultParticleFieldDef();
         ok(fwInitFieldPreset(&fieldDef, FW_FIELD_WATER));
-        fieldDef.flags |= FW_FIELD_WETS;
-        put(fieldDef.position, 0.9f, 0.0f, 0.5f);
+        if (!exact) fieldDef.flags |= FW_FIELD_WETS;
+        putAt(fieldDef.position, 0.9f, 0.0f, 0.5f);
         fieldDef.width = fieldDef.height = 32;
         ok(fwWorld_CreateParticleField(world, &fieldDef, &field));
         FwBlockerDef wall = fwDefaultBlockerDef();
@@ -87,7 +102,7 @@ class BusyWorld {
         swirl.shape = FW_WIND_SPHERE;
         swirl.flow = FW_WIND_VORTEX;
         put(swirl.axis, 0, 1, 0);
-        put(swirl.position, 1.4f, 0, 0.4f);
+        putAt(swirl.position, 1.4f, 0, 0.4f);
         swirl.size[0] = 0.8f;
         swirl.priority = 2;
         ok(fwWorld_CreateWindZone(world, &swirl, &zones[0]));
@@ -111,22 +126,27 @@ class BusyWorld {
         }
     }
     static float timeOf(uint32_t frame) { return frame % 3 == 0 ? 1.0f / 60 : 1.0f / 24; }  // s
-    // Of every texel and what it holds, and of the tick.
-    uint64_t hash() {
-        uint64_t all = 0;
-        for (const FwBurnableMeshId id : ids) ok(fwDebug_RequestBurnMap(world, id));
-        for (const FwBurnableMeshId id : ids) {
-            uint64_t one = 0, tick = 0;
-            come(world,
-                 [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
-            all = all * 31 + one + tick;
-        }
-        return all;
-    }
+    uint64_t hash() { return hashOf(world, ids); }
     Bytes save() { return saveOf(world); }
     FwResult load(const Bytes& bytes) {
         const unsigned char none = 0;  // an empty vector has no address
-        return fwWorld_Load(world, bytes.empty() ? &none : bytes.data(), bytes.size());
+        const FwResult result =
+            fwWorld_Load(world, bytes.empty() ? &none : bytes.data(), bytes.size());
+        ok(fwWorld_GetOrigin(world, origin));
+        return result;
+    }
+    // All that the host places goes along.
+    void shift(float x, float y, float z) {
+        const float by[3] = {x, y, z};
+        float applied[3] = {};
+        ok(fwWorld_ShiftOrigin(world, by, applied));
+        for (int i = 0; i < 3; ++i) {
+            EXPECT_EQ(std::round(by[i]), applied[i]);
+            origin[i] += double(applied[i]);
+        }
+        double now[3] = {};
+        ok(fwWorld_GetOrigin(world, now));
+        for (int i = 0; i < 3; ++i) EXPECT_EQ(origin[i], now[i]);
     }
     uint32_t burning() {  // objects that caught
         uint32_t caught = 0;
@@ -149,33 +169,41 @@ class BusyWorld {
     FwBlockerId blocker{};
     FwWindZoneId zones[2] = {};
     FwRoomId room{};
+    double origin[3] = {};  // m
 
  private:
+    bool exact_ = false;
+
     void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
-    static void place(float (&at)[16], float x, float y, float z, float turn) {
+    void putAt(float* to, float x, float y, float z) const {
+        const float at[3] = {x, y, z};
+        for (int i = 0; i < 3; ++i)
+            to[i] = float((exact_ ? std::round(at[i] * 64) / 64 : at[i]) + origin[i]);
+    }
+    void place(float (&at)[16], float x, float y, float z, float turn) const {
         std::fill(std::begin(at), std::end(at), 0.0f);
         at[0] = at[10] = std::cos(turn);
         at[8] = std::sin(turn);
         at[2] = -at[8];
         at[5] = at[15] = 1;
-        at[12] = x, at[13] = y, at[14] = z;
+        putAt(at + 12, x, y, z);
     }
-    static FwWindZoneDef fanOf(uint32_t frame) {
+    FwWindZoneDef fanOf(uint32_t frame) const {
         FwWindZoneDef fan = fwDefaultWindZoneDef();
         fan.shape = FW_WIND_CONE;
         fan.blend = FW_WIND_REPLACE;
         fan.priority = -3;
-        put(fan.position, -0.4f, 0.1f, 0.2f);
+        putAt(fan.position, -0.4f, 0.1f, 0.2f);
         put(fan.axis, 1, 0, 0.2f * std::sin(float(frame)));
         put(fan.size, 2, 0.8f, 1);
         fan.speed = 3 + float(frame % 4);
         return fan;
     }
     // Around some of the things, with little air; its door opens and shuts.
-    static FwRoomDef closetOf(uint32_t frame) {
+    FwRoomDef closetOf(uint32_t frame) const {
         FwRoomDef closet = fwDefaultRoomDef();
-        put(closet.position, 0.7f, 0.1f, 0.3f);
+        putAt(closet.position, 0.7f, 0.1f, 0.3f);
         put(closet.halfSize, 0.7f, 1, 0.8f);
         closet.rotation[1] = std::sin(0.1f), closet.rotation[3] = std::cos(0.1f);
         closet.volume = 0.3f;
@@ -210,7 +238,7 @@ class BusyWorld {
         FwWindGridDef grid = fwDefaultWindGridDef();
         grid.counts[0] = 4;
         grid.blend = FW_WIND_ADD;
-        put(grid.origin, -0.5f, -0.3f, -0.4f);
+        putAt(grid.origin, -0.5f, -0.3f, -0.4f);
         grid.fade = 0.2f;
         float velocities[48] = {};
         for (uint32_t i = 0; i < 48; ++i)
@@ -221,7 +249,7 @@ class BusyWorld {
     // A post where none of the things is, a hill below some, and two of the things themselves.
     void shield(uint32_t frame) {
         FwHeatShieldDef cells = fwDefaultHeatShieldDef();
-        put(cells.origin, -0.5f, -0.6f, -0.5f);
+        putAt(cells.origin, -0.5f, -0.6f, -0.5f);
         cells.counts[0] = 60;
         cells.counts[1] = 20;
         cells.counts[2] = frame == 95 ? 31 : 33;
@@ -229,7 +257,7 @@ class BusyWorld {
         std::vector<uint8_t> post(size_t{60} * 20 * cells.counts[2]);
         for (size_t y = 0; y < 20; ++y) post[(size_t{14} * 20 + y) * 60 + 43] = 1;
         cells.cells = post.data();
-        float low = frame == 50 ? -0.45f : -0.35f;
+        float low = float((frame == 50 ? -0.453125 : -0.34375) + origin[1]);
         cells.distance = [](void* data, const float* place) {
             return place[1] - *static_cast<const float*>(data);
         };
@@ -245,14 +273,14 @@ class BusyWorld {
         if (frame == 2 || frame == 90) {
             ball.radius = 0.15f;
             ball.delay = frame == 90 ? 0.7f : 0.0f;
-            put(ball.position, frame == 2 ? 0.6f : 1.4f, 0.1f, 0.2f);
+            putAt(ball.position, frame == 2 ? 0.6f : 1.4f, 0.1f, 0.2f);
             ok(fwWorld_Ignite(world, &ball, &texels));
         }
         if (frame == 60 || frame == 130) {
             ball.kind = frame == 60 ? FW_WET : FW_EXTINGUISH;
             ball.water = frame == 60 ? 80.0f : 0.0f;
             ball.radius = 0.2f;
-            put(ball.position, 0.5f, 0.1f, 0.1f);
+            putAt(ball.position, 0.5f, 0.1f, 0.1f);
             ok(fwWorld_Ignite(world, &ball, &texels));
         }
         if (frame % 25 == 7) {

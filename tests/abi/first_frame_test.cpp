@@ -13,11 +13,8 @@ using namespace host;
 class Camp {
  public:
     explicit Camp(uint32_t backend) : sheet_(0.6f, 0.4f, 4) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host_.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context_, &error) != FW_OK) return;
+        context_ = createContext(host_, backend);
+        if (!context_) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = 8;
         ok(fwCreateWorld(context_, &def, &world));

@@ -49,8 +49,11 @@ struct Act {
         play,
         stopPlay,
         carry,
+        shift,
         kinds
     };
+    // Of makeObject: what a scripted game has; less: one of a random session's.
+    static constexpr uint32_t house = 4096, figure = 4097;
     Kind kind = ignite;
     uint32_t name = 0, other = 0;
     float numbers[12] = {};
@@ -58,15 +61,57 @@ struct Act {
 
 struct Session {
     FwWorldDef world = fwDefaultWorldDef();
-    bool sees = false;  // the host says what sees what
+    bool sees = false;    // the host says what sees what
+    bool played = false;  // it has houses and figures
     std::vector<std::vector<Act>> frames;
     std::vector<float> times;  // s of each frame
     std::vector<bool> polls;   // after each frame
 };
 
+// A box that stands on y = 0, without a floor, with unique UVs.
+struct Block {
+    std::vector<float> positions, uvs;
+    std::vector<uint32_t> indices;
+
+    Block(float x, float y, float z) {
+        const float longest = 2 * std::max({x, y, z});
+        const float corners[5][4][3] = {{{0, 0, z}, {x, 0, z}, {x, y, z}, {0, y, z}},
+                                        {{x, 0, 0}, {0, 0, 0}, {0, y, 0}, {x, y, 0}},
+                                        {{x, 0, z}, {x, 0, 0}, {x, y, 0}, {x, y, z}},
+                                        {{0, 0, 0}, {0, 0, z}, {0, y, z}, {0, y, 0}},
+                                        {{0, y, z}, {x, y, z}, {x, y, 0}, {0, y, 0}}};
+        const float sizes[5][2] = {{x, y}, {x, y}, {z, y}, {z, y}, {x, z}};
+        for (int face = 0; face < 5; ++face) {
+            const auto first = uint32_t(positions.size() / 3);
+            for (int k = 0; k < 4; ++k) {
+                const float* at = corners[face][k];
+                positions.insert(positions.end(), {at[0] - x / 2, at[1], at[2] - z / 2});
+                const float u = k == 1 || k == 2 ? sizes[face][0] : 0.0f;
+                const float v = k >= 2 ? sizes[face][1] : 0.0f;
+                // Side by side in a map of 3 x 2 faces.
+                uvs.insert(uvs.end(), {(float(face % 3) * 0.6f * longest + u) / (2 * longest),
+                                       (float(face / 3) * 0.6f * longest + v) / (2 * longest)});
+            }
+            for (const uint32_t k : {0u, 1u, 2u, 0u, 2u, 3u}) indices.push_back(first + k);
+        }
+    }
+    [[nodiscard]] FwMeshDef def() const {
+        FwMeshDef made = fwDefaultMeshDef();
+        made.positions = positions.data();
+        made.uvs = uvs.data();
+        made.vertexCount = uint32_t(positions.size() / 3);
+        made.indices = indices.data();
+        made.indexCount = uint32_t(indices.size());
+        made.noiseAmplitude = 0.2f;
+        return made;
+    }
+};
+
 class SessionDraw {
  public:
-    explicit SessionDraw(uint64_t seed) : state_(seed * 0x9E3779B97F4A7C15ull + 1) {}
+    // exact: without jets, fires and fields, which strike what they strike by floats.
+    explicit SessionDraw(uint64_t seed, bool exact = false)
+        : state_(seed * 0x9E3779B97F4A7C15ull + 1), exact_(exact) {}
 
     Session draw(uint32_t frames) {
         Session made;
@@ -122,15 +167,17 @@ class SessionDraw {
         alive.erase(alive.begin() + at);
         return name;
     }
-    // Close together, so that things touch; seldom at the limits of space.
+    // Close together, so that things touch; seldom at the limits of space. In whole parts of a
+    // metre, so that a host whose origin is elsewhere has the same places.
     void place(float* at, bool far = true) {
-        at[0] = 0.31f * float(below(5)) + (once(3) ? between(0, 0.2f) : 0.0f);
-        at[1] = once(3) ? between(0, 0.4f) : 0.0f;
-        at[2] = 0.31f * float(below(3)) + (once(3) ? between(0, 0.2f) : 0.0f);
-        if (far && once(24)) at[below(3)] = once(2) ? 1e6f : -1e6f;
+        at[0] = 0.3125f * float(below(5)) + (once(3) ? between(0, 0.2f) : 0.0f);
+        at[1] = once(3) ? between(-0.2f, 0.4f) : 0.0f;
+        at[2] = 0.3125f * float(below(3)) + (once(3) ? between(0, 0.2f) : 0.0f);
+        for (int i = 0; i < 3; ++i) at[i] = std::round(at[i] * 64) / 64;
+        if (far && !exact_ && once(24)) at[below(3)] = once(2) ? 1e6f : -1e6f;
     }
     static void aside(float* at) {
-        if (std::abs(at[2]) < 100) at[2] -= 0.8f;
+        if (std::abs(at[2]) < 100) at[2] -= 0.8125f;
     }
     void object() {
         Act& made = act(Act::makeObject, make(objects_));
@@ -145,7 +192,7 @@ class SessionDraw {
         std::copy_n((*now_)[0].numbers, 3, fire.numbers);
     }
     void one() {
-        const uint32_t kind = below(50);
+        const uint32_t kind = below(54);
         if (kind < 8) {
             Act& ball = act(Act::ignite, once(2) && !objects_.empty() ? any(objects_) : 0);
             place(ball.numbers);
@@ -187,11 +234,11 @@ class SessionDraw {
                 place(act(Act::setZone, any(zones_)).numbers);
         } else if (kind < 28) {
             if (rooms_.empty() || (rooms_.size() < 2 && once(2)))
-                place(act(Act::makeRoom, make(rooms_)).numbers);
+                place(act(Act::makeRoom, make(rooms_)).numbers, false);
             else if (once(3))
                 act(Act::dropRoom, drop(rooms_));
             else
-                place(act(Act::setRoom, any(rooms_)).numbers);
+                place(act(Act::setRoom, any(rooms_)).numbers, false);
         } else if (kind < 30) {
             if (blockers_.empty() || (blockers_.size() < 3 && once(2)))
                 place(act(Act::makeBlocker, make(blockers_)).numbers);
@@ -199,6 +246,8 @@ class SessionDraw {
                 act(Act::dropBlocker, drop(blockers_));
             else
                 place(act(Act::moveBlocker, any(blockers_)).numbers);
+        } else if (kind < 41 && exact_) {
+            return;
         } else if (kind < 34) {
             fire();
         } else if (kind < 38) {
@@ -220,6 +269,14 @@ class SessionDraw {
             Act& carry = act(Act::carry, any(objects_));
             carry.other = any(objects_);
             carries_ = true;
+        } else if (kind >= 50) {
+            // Some go back, and some add up.
+            const float side = once(4) ? -1.0f : 1.0f;
+            if (side > 0)
+                for (float& metres : shift_)
+                    metres = float(below(once(3) ? 30000 : 3000)) * (once(2) ? 1.0f : -1.0f);
+            Act& shift = act(Act::shift);
+            for (int i = 0; i < 3; ++i) shift.numbers[i] = side * shift_[i];
         } else if (!objects_.empty()) {
             Act& play = act(once(4) ? Act::stopPlay : Act::play, any(objects_));
             play.numbers[0] = once(2) ? between(0, 0.5f) : 0.0f;
@@ -262,14 +319,18 @@ class SessionDraw {
             place(move.numbers);
             aside(move.numbers);
             move.numbers[3] = between(-0.5f, 0.5f);
+            move.numbers[4] = 0.1f;
+            move.numbers[5] = 1;
         } else {
             act(Act::jetPower, any(jets_)).numbers[0] = once(3) ? 0 : between(50, 800);
         }
     }
 
     uint64_t state_;
+    bool exact_ = false;
     uint32_t names_ = 0;
     bool carries_ = false;  // who gives a burn stays until the step that takes it
+    float shift_[3] = {};   // m, the last one
     std::vector<Act>* now_ = nullptr;
     std::vector<uint32_t> objects_, zones_, rooms_, blockers_, fires_, jets_, fields_;
 };
@@ -291,12 +352,17 @@ class SessionWorld {
 
     void build(uint32_t frame) {
         for (const Act& act : session.frames[frame])
-            if (act.kind <= Act::lastOfBuilding) doOne(act);
+            if (act.kind <= Act::lastOfBuilding) doOne(here(act));
     }
     void act(uint32_t frame) {
-        for (const Act& act : session.frames[frame]) doOne(act);
+        for (const Act& act : session.frames[frame]) doOne(here(act));
     }
     void step(uint32_t frame) { ok(fwWorld_Step(world, session.times[frame])); }
+    void shift(double x, double y, double z) {
+        const float by[3] = {float(x), float(y), float(z)};
+        (void)fwWorld_ShiftOrigin(world, by, nullptr);
+        ok(fwWorld_GetOrigin(world, origin));
+    }
     // Another life than the session's, so that nothing is as it was when it was made.
     void liveOtherwise(uint32_t frames) {
         const float wind[3] = {3, 1, -2};
@@ -311,14 +377,26 @@ class SessionWorld {
                 float at[16];
                 pose(at, 0.3f * float(name % 4), 0.02f * float(i), 0.3f * float(name / 4 % 4),
                      0.1f * float(i));
+                moveByOrigin(at + 12);
                 ok(fwWorld_SetTransform(world, id, at));
                 if (i == 0) ok(fwWorld_TagPoint(world, id, at + 12, 99));
             }
             ok(fwWorld_Step(world, 1.0f / 16));
+            if (i == 2) shift(100, -20, 3);
         }
     }
-    // Events since the last poll, without what depends on the frame's number.
-    std::vector<std::string> poll() {
+    // Of every texel and what it holds, and of the tick.
+    uint64_t hash() {
+        std::vector<FwBurnableMeshId> ids;
+        for (const auto& [name, id] : objects) ids.push_back(id);
+        return hashOf(world, ids);
+    }
+    struct Place {
+        double at[3];  // m from the origin as it was when the world was made
+    };
+    // Events since the last poll, without what depends on the frame's number. places: get theirs,
+    // which then are not in the words.
+    std::vector<std::string> poll(std::vector<Place>* places = nullptr) {
         std::vector<std::string> reported;
         FwEvent events[64];
         for (uint32_t count; (count = fwWorld_PollEvents(world, events, 64)) != 0;)
@@ -326,11 +404,16 @@ class SessionWorld {
                 const FwEvent& e = events[i];
                 // Events of destroyed objects are in no save.
                 if (e.object.index1 != 0 && nameOf(e.object) == 0) continue;
-                char text[200];
-                std::snprintf(text, sizeof text,
-                              "type %u tag %u of %u by %u at %.9g %.9g %.9g: %.9g", e.type, e.tag,
-                              nameOf(e.object), nameOf(e.other), double(e.position[0]),
-                              double(e.position[1]), double(e.position[2]), double(e.value));
+                char text[200], where[100] = "";
+                if (places && e.type != FW_EVENT_TIME_DROPPED)
+                    places->push_back(
+                        {{double(e.position[0]) - origin[0], double(e.position[1]) - origin[1],
+                          double(e.position[2]) - origin[2]}});
+                else
+                    std::snprintf(where, sizeof where, " at %.9g %.9g %.9g", double(e.position[0]),
+                                  double(e.position[1]), double(e.position[2]));
+                std::snprintf(text, sizeof text, "type %u tag %u of %u by %u%s: %.9g", e.type,
+                              e.tag, nameOf(e.object), nameOf(e.other), where, double(e.value));
                 reported.emplace_back(text);
             }
         return reported;
@@ -377,10 +460,16 @@ class SessionWorld {
         }
         return all;
     }
-    FwResult load(const Bytes& bytes) { return fwWorld_Load(world, bytes.data(), bytes.size()); }
+    // And the places of the host's go with the origin.
+    FwResult load(const Bytes& bytes) {
+        const FwResult result = fwWorld_Load(world, bytes.data(), bytes.size());
+        ok(fwWorld_GetOrigin(world, origin));
+        return result;
+    }
 
     const Session& session;
     FwWorld* world = nullptr;
+    double origin[3] = {};  // m
     std::map<uint32_t, FwBurnableMeshId> objects;
     std::map<uint32_t, FwRoomId> rooms;
 
@@ -408,6 +497,29 @@ class SessionWorld {
             const FwMeshDef def = sheets[i].def(40);
             ok(fwWorld_CreateMesh(world, &def, &meshes_[i]));
         }
+        if (!session.played) return makeMaterials();
+        const Block blocks[2] = {Block(1.0f, 0.8f, 0.9f), Block(0.3f, 0.6f, 0.2f)};
+        for (int i = 0; i < 2; ++i) {
+            FwMeshDef def = blocks[i].def();
+            def.texelsPerMetre = i == 0 ? 16.0f : 24.0f;
+            ok(fwWorld_CreateMesh(world, &def, &blocks_[i]));
+        }
+        makeMaterials();
+    }
+    // Houses have heat, and say what of them breaks; figures are light, and end black.
+    void makePlayed(uint32_t kind, FwBurnableMeshDef& def) const {
+        const bool isHouse = kind == Act::house;
+        def.mesh = blocks_[isHouse ? 0 : 1];
+        def.materials[0] = materials_[isHouse ? 0 : 1];
+        def.flags = FW_BURNABLE_HIDDEN;
+        if (isHouse) {
+            def.breakShare = 0.2f;
+            def.breakArea = 0.5f;
+        } else {
+            def.flags |= FW_BURNABLE_LITE | FW_BURNABLE_NO_HOLES;
+        }
+    }
+    void makeMaterials() {
         static const uint32_t presets[3] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON,
                                             FW_MATERIAL_PLYWOOD};
         for (int i = 0; i < 3; ++i) {
@@ -415,6 +527,41 @@ class SessionWorld {
             ok(fwInitMaterialPreset(&material, presets[i]));
             ok(fwWorld_CreateMaterial(world, &material, &materials_[i]));
         }
+    }
+    void moveByOrigin(float* place) const {
+        // The limits of space are where they were.
+        for (int i = 0; i < 3; ++i)
+            if (std::abs(place[i]) < 1e5f) place[i] = float(double(place[i]) + origin[i]);
+    }
+    // A session's places are those of a world whose origin never moved.
+    Act here(Act act) const {
+        switch (act.kind) {
+            case Act::makeObject:
+            case Act::makeZone:
+            case Act::makeRoom:
+            case Act::makeBlocker:
+            case Act::makeFire:
+            case Act::makeJet:
+            case Act::makeField:
+            case Act::ignite:
+            case Act::moveObject:
+            case Act::setZone:
+            case Act::setRoom:
+            case Act::moveBlocker:
+            case Act::moveFire:
+            case Act::moveJet:
+            case Act::moveField:
+            case Act::tag:
+                moveByOrigin(act.numbers);
+                break;
+            case Act::firePoints:
+                moveByOrigin(act.numbers);
+                moveByOrigin(act.numbers + 3);
+                break;
+            default:
+                break;
+        }
+        return act;
     }
     template <class Id>
     static Id idOf(const std::map<uint32_t, Id>& all, uint32_t name) {
@@ -429,15 +576,21 @@ class SessionWorld {
         for (float& size : def.size) size = 0.8f;
         def.speed = 4;
         def.priority = int32_t(act.name % 3);
+        if (act.numbers[6] != 0) {  // a fan
+            def.shape = FW_WIND_CONE;
+            std::copy_n(act.numbers + 3, 3, def.axis);
+            def.size[0] = 2.5f;
+            def.speed = act.numbers[6];
+        }
         return def;
     }
     FwRoomDef roomOf(const Act& act) const {
         FwRoomDef def = fwDefaultRoomDef();
-        for (int i = 0; i < 3; ++i)  // rooms are not at the limits of space
-            def.position[i] = std::abs(act.numbers[i]) > 100 ? 0.5f : act.numbers[i];
+        std::copy_n(act.numbers, 3, def.position);
         for (float& half : def.halfSize) half = 0.7f;
         def.volume = 0.4f;
         def.vent = act.name % 2 ? 0.05f : 0.0f;
+        if (session.played) def.volume = 6, def.vent = 2;  // whose houses burn for long
         return def;
     }
     void doOne(const Act& act) {
@@ -446,13 +599,17 @@ class SessionWorld {
         switch (act.kind) {
             case Act::makeObject: {
                 FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+                pose(def.transform, n[0], n[1], n[2], n[3]);
+                if (act.other >= Act::house) {
+                    makePlayed(act.other, def);
+                    return ok(fwWorld_CreateBurnableMesh(world, &def, &objects[act.name]));
+                }
                 def.mesh = meshes_[act.other % 2];
                 def.materials[0] = materials_[act.other / 2 % 3];
                 if (act.other / 6 % 3 == 0) def.flags |= FW_BURNABLE_LITE;
                 if (act.other / 18 % 4 == 0) def.maxBurningTiles = 4;
                 if (act.other / 72 % 4 == 0) def.timeToLive = 2;
                 if (act.other / 288 % 3 == 0) def.breakShare = 0.3f, def.breakArea = 0.002f;
-                pose(def.transform, n[0], n[1], n[2], n[3]);
                 return ok(fwWorld_CreateBurnableMesh(world, &def, &objects[act.name]));
             }
             case Act::dropObject:
@@ -526,10 +683,8 @@ class SessionWorld {
                 def.maxParticles = 16;
                 return ok(fwWorld_CreateFireEmitter(world, &def, &jets_[act.name]));
             }
-            case Act::moveJet: {
-                const float way[3] = {n[3], 0.1f, 1};
-                return ok(fwWorld_MoveFireEmitter(world, jets_[act.name], n, way));
-            }
+            case Act::moveJet:
+                return ok(fwWorld_MoveFireEmitter(world, jets_[act.name], n, n + 3));
             case Act::jetPower:
                 return ok(fwWorld_SetFireEmitterPower(world, jets_[act.name], n[0]));
             case Act::dropJet:
@@ -573,7 +728,8 @@ class SessionWorld {
                 if (act.other == 0) return ok(fwWorld_SetWindGrid(world, nullptr));
                 FwWindGridDef def = fwDefaultWindGridDef();
                 def.counts[0] = 3, def.counts[1] = def.counts[2] = 2;
-                for (float& value : def.origin) value = -0.3f;
+                for (float& value : def.origin) value = -0.3125f;
+                moveByOrigin(def.origin);
                 float velocities[36];
                 for (uint32_t i = 0; i < 36; ++i) velocities[i] = float((i * act.other) % 9) - 4;
                 def.velocities = velocities;
@@ -585,7 +741,8 @@ class SessionWorld {
                 if (act.other == 0) return ok(fwWorld_SetHeatShield(world, nullptr));
                 FwHeatShieldDef def = fwDefaultHeatShieldDef();
                 for (uint32_t& count : def.counts) count = 8;
-                for (float& value : def.origin) value = -0.2f;
+                for (float& value : def.origin) value = -0.1875f;
+                moveByOrigin(def.origin);
                 def.cellSize = 0.2f;
                 uint8_t cells[512];
                 for (uint32_t i = 0; i < 512; ++i) cells[i] = (i * act.other) % 97 == 3;
@@ -607,12 +764,14 @@ class SessionWorld {
             case Act::carry:  // refused where the two are not alike
                 (void)fwWorld_TransferBurn(world, objects[act.name], objects[act.other]);
                 return;
+            case Act::shift:  // refused where something is at the limits of space
+                return shift(double(n[0]), double(n[1]), double(n[2]));
             case Act::kinds:
                 break;
         }
     }
 
-    FwMeshId meshes_[2] = {};
+    FwMeshId meshes_[2] = {}, blocks_[2] = {};
     FwMaterialId materials_[3] = {};
     FwBurnId burn_{};
     std::map<uint32_t, FwWindZoneId> zones_;

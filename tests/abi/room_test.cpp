@@ -15,11 +15,8 @@ float volumeFor(double joules) { return float(joules * kTakes / (0.2095 - 0.15))
 // A sheet of paper on which fire runs, and how much there is in it.
 struct Paper {
     explicit Paper(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER) : sheet(0.6f, 0.6f) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.maxStepsPerFrame = 64;
         EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);

@@ -1,7 +1,7 @@
-// Random sessions. A save of every frame loads into a new world and into a used one, which then go
-// on as the original does: in state, figures, events and the bytes of later saves. And both
-// backends tell the same of a session.
-#include "abi/random_session.h"
+// Random sessions, and a scripted game. A save of every frame loads into a new world and into a
+// used one, which then go on as the original does: in state, figures, events and the bytes of later
+// saves. Both backends tell the same of a session, and so does a world whose origin moves.
+#include "abi/scripted_game.h"
 
 #include <algorithm>
 
@@ -62,37 +62,70 @@ bool goesOn(SessionWorld& w, const std::vector<Kept>& original, uint32_t frame, 
     return true;
 }
 
-void savesOfEveryFrame(uint64_t seed, uint32_t frames, uint32_t goes) {
-    SCOPED_TRACE("seed " + std::to_string(seed));
-    Host host;
-    FwContext* context = createCpuContext(host);
-    const Bytes burn = burnOfSession(context);
-    const Session session = SessionDraw(seed).draw(frames);
+// How far loaded worlds are followed.
+struct Following {
+    uint32_t frames = 9;        // of each save
+    uint32_t usedEvery = 4;     // so many saves one is loaded into a used world, too
+    uint32_t wholeEvery = ~0u;  // and so many one is followed to the session's end
+};
+
+void savesOfEveryFrame(FwContext* context, const Session& session, const Bytes& burn,
+                       const Following& following, std::vector<std::string>* reported = nullptr) {
+    const auto frames = uint32_t(session.frames.size());
     std::vector<Kept> original;
     uint32_t events = 0;
     {
         SessionWorld first(context, session, burn);
-        for (uint32_t frame = 0; frame < frames; ++frame) {
+        for (uint32_t frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame) {
             original.push_back(live(first, frame));
-            events += uint32_t(original.back().reported.size());
+            const std::vector<std::string>& now = original.back().reported;
+            events += uint32_t(now.size());
+            if (reported) reported->insert(reported->end(), now.begin(), now.end());
         }
     }
     for (uint32_t frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame)
         for (const bool used : {false, true}) {
-            if (used && frame % 4 != 1) continue;
+            if (used && frame % following.usedEvery != 1) continue;
             SessionWorld other(context, session, burn);
             for (uint32_t past = 0; past <= frame; ++past) other.build(past);
             if (used) other.liveOtherwise(6);
-            if (!goesOn(other, original, frame, goes, used ? "used" : "new")) break;
+            const bool whole = frame % following.wholeEvery == following.wholeEvery / 2;
+            if (!goesOn(other, original, frame, whole ? frames : following.frames,
+                        used ? "used" : "new"))
+                break;
         }
     EXPECT_GT(events, 5u);
-    fwDestroyContext(context);
-    EXPECT_EQ(0, host.blocks);
 }
 
 class SavedSession : public ::testing::TestWithParam<uint64_t> {};
-TEST_P(SavedSession, GoesOnAlikeFromEveryFrame) { savesOfEveryFrame(GetParam(), 56, 9); }
+TEST_P(SavedSession, GoesOnAlikeFromEveryFrame) {
+    Host host;
+    FwContext* context = createCpuContext(host);
+    savesOfEveryFrame(context, SessionDraw(GetParam()).draw(56), burnOfSession(context), {});
+    fwDestroyContext(context);
+    EXPECT_EQ(0, host.blocks);
+}
 INSTANTIATE_TEST_SUITE_P(Seeds, SavedSession, ::testing::Range<uint64_t>(1, 9));
+
+TEST(SavedGame, GoesOnAlikeFromEveryFrame) {
+    Host host;
+    FwContext* context = createCpuContext(host);
+    Following following;
+    following.frames = 5;
+    following.wholeEvery = 40;
+    std::vector<std::string> reported;
+    savesOfEveryFrame(context, ScriptedGame::play(), {}, following, &reported);
+    fwDestroyContext(context);
+    EXPECT_EQ(0, host.blocks);
+    // It is a game in which much happens.
+    for (const uint32_t type : {FW_EVENT_IGNITED, FW_EVENT_BURNT_OUT, FW_EVENT_EXTINGUISHED,
+                                FW_EVENT_SPREAD_TO, FW_EVENT_SPOT_FIRE})
+        EXPECT_TRUE(std::any_of(reported.begin(), reported.end(),
+                                [&](const std::string& line) {
+                                    return line.starts_with("type " + std::to_string(type) + " ");
+                                }))
+            << "no event of type " << type;
+}
 
 // ---- two boxes that touch, of which the first burns ---------------------------------------------
 
@@ -266,15 +299,6 @@ TEST(Save, OfAnOlderVersionIsRefusedByItsNumber) {
 
 // ---- backends -----------------------------------------------------------------------------------
 
-FwContext* createDeviceContext(Host& host) {
-    FwContextDef def = fwDefaultContextDef();
-    def.backend = FW_BACKEND_VULKAN;
-    def.callbacks = host.callbacks();
-    FwContext* context = nullptr;
-    FwErrorInfo error{};
-    return fwCreateContext(&def, &context, &error) == FW_OK ? context : nullptr;
-}
-
 // Until all readbacks are here.
 void settle(SessionWorld& w) {
     for (int i = 0; i < 6; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0)) << lastMessage(w.world);
@@ -284,7 +308,7 @@ bool drops(const Session& session, uint32_t frame) {
     return std::any_of(session.frames[frame].begin(), session.frames[frame].end(),
                        [](const Act& act) {
                            return act.kind == Act::dropObject || act.kind == Act::dropRoom ||
-                                  act.kind == Act::moveObject;
+                                  act.kind == Act::moveObject || act.kind == Act::shift;
                        });
 }
 
@@ -294,7 +318,8 @@ bool drops(const Session& session, uint32_t frame) {
 void backendsAgree(uint64_t seed, uint32_t frames) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Host hosts[2];
-    FwContext* contexts[2] = {createCpuContext(hosts[0]), createDeviceContext(hosts[1])};
+    FwContext* contexts[2] = {createCpuContext(hosts[0]),
+                              createContext(hosts[1], FW_BACKEND_VULKAN)};
     if (!contexts[1]) {
         fwDestroyContext(contexts[0]);
         GTEST_SKIP() << "there is no device here";
@@ -345,5 +370,90 @@ void backendsAgree(uint64_t seed, uint32_t frames) {
 class AgreedSession : public ::testing::TestWithParam<uint64_t> {};
 TEST_P(AgreedSession, IsAlikeOnBothBackends) { backendsAgree(GetParam(), 48); }
 INSTANTIATE_TEST_SUITE_P(Seeds, AgreedSession, ::testing::Range<uint64_t>(101, 104));
+
+// ---- a world whose origin moves -----------------------------------------------------------------
+
+struct Reported {
+    std::vector<std::string> words;
+    std::vector<SessionWorld::Place> places;
+};
+void expectAlike(const Reported& still, const Reported& shifted) {
+    EXPECT_EQ(still.words, shifted.words);
+    ASSERT_EQ(still.places.size(), shifted.places.size());
+    for (size_t i = 0; i < still.places.size(); ++i)
+        for (int k = 0; k < 3; ++k)
+            EXPECT_NEAR(still.places[i].at[k], shifted.places[i].at[k], 0.05)
+                << "of event " << i << ": " << still.words[i];
+}
+
+// Places of the second are those of the first from its origin, and all else is the same. Its save,
+// loaded and moved back, is the first one's.
+void shiftsChangeNothingElse(uint32_t backend, uint64_t seed, uint32_t frames) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    Host host;
+    FwContext* context = createContext(host, backend);
+    if (!context) GTEST_SKIP() << "there is no device here";
+    const Bytes burn = burnOfSession(context);
+    const Session moves = SessionDraw(seed, true).draw(frames);
+    Session stays = moves;
+    size_t shifts = 0;
+    for (std::vector<Act>& acts : stays.frames)
+        shifts += std::erase_if(acts, [](const Act& act) { return act.kind == Act::shift; });
+    {
+        SessionWorld still(context, stays, burn), shifted(context, moves, burn);
+        SessionWorld* const both[2] = {&still, &shifted};
+        Reported reported[2];
+        const auto poll = [&](int k) {
+            const std::vector<std::string> more = both[k]->poll(&reported[k].places);
+            reported[k].words.insert(reported[k].words.end(), more.begin(), more.end());
+        };
+        for (uint32_t frame = 0; frame < frames && !::testing::Test::HasFailure(); ++frame) {
+            SCOPED_TRACE("frame " + std::to_string(frame));
+            const bool settles = drops(moves, frame);
+            Bytes saves[2];
+            uint64_t hashes[2] = {};
+            std::string figures[2];
+            for (int k = 0; k < 2; ++k) {
+                SessionWorld& w = *both[k];
+                if (settles) settle(w);
+                if (settles) poll(k);
+                w.act(frame);
+                w.step(frame);
+                if (frame % 8 != 7) continue;
+                settle(w);
+                poll(k);
+                figures[k] = w.figures();
+                hashes[k] = w.hash();
+                saves[k] = saveOf(w.world);
+            }
+            if (frame % 8 != 7) continue;
+            expectAlike(reported[0], reported[1]);
+            reported[0] = reported[1] = {};
+            EXPECT_EQ(figures[0], figures[1]);
+            EXPECT_EQ(hashes[0], hashes[1]);
+            SessionWorld back(context, moves, burn);
+            for (uint32_t past = 0; past <= frame; ++past) back.build(past);
+            ASSERT_EQ(FW_OK, back.load(saves[1])) << lastMessage(back.world);
+            back.shift(-back.origin[0], -back.origin[1], -back.origin[2]);
+            const Bytes again = saveOf(back.world);
+            EXPECT_TRUE(saves[0] == again)
+                << "saves of " << saves[0].size() << " and " << again.size() << " bytes differ at "
+                << differsAt(saves[0], again);
+        }
+    }
+    EXPECT_GT(shifts, 0u);
+    fwDestroyContext(context);
+    EXPECT_EQ(0, host.blocks);
+}
+
+class ShiftedSession : public ::testing::TestWithParam<uint64_t> {};
+TEST_P(ShiftedSession, IsAlikeButForItsOrigin) {
+    shiftsChangeNothingElse(FW_BACKEND_CPU, GetParam(), 64);
+}
+TEST_P(ShiftedSession, IsAlikeButForItsOriginOnADevice) {
+    if (GetParam() % 2 == 0) GTEST_SKIP() << "every other one";
+    shiftsChangeNothingElse(FW_BACKEND_VULKAN, GetParam(), 40);
+}
+INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSession, ::testing::Range<uint64_t>(201, 205));
 
 }  // namespace

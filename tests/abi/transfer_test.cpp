@@ -14,11 +14,8 @@ using ::testing::HasSubstr;
 struct Boards {
     explicit Boards(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER, uint32_t flags = 0)
         : fine(0.6f, 0.4f, 6), coarse(0.6f, 0.4f, 1) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = preset == FW_MATERIAL_PAPER ? 1.0f : 10.0f;
         ok(fwCreateWorld(context, &def, &world));

@@ -22,11 +22,8 @@ FwMaterialDef leaning() {  // as wind has it
 // Sheets of one such material, side by side along z, each lit in its middle.
 struct Meadow {
     explicit Meadow(uint32_t backend, uint32_t sheets = 3, uint32_t flags = 0) : sheet(1, 0.3f) {
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK) return;
+        context = createContext(host, backend);
+        if (!context) return;
         FwWorldDef def = worldDef(flags);
         EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
         const FwMeshDef meshDef = sheet.def(64);

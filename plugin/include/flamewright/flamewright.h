@@ -287,8 +287,9 @@ FW_API FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags);
  * fields, colliders, lights, answers and events that wait; the fire burns on and looks as if nothing had moved.
  * Callbacks of the host's (FwFireColliderDef::distance) are asked in the new places. Saves keep the origin, and loading or
  * seeking goes back to theirs: see fwWorld_GetOrigin. In logs, timelines and networks. *applied (may be null) gets the
- * whole metres. Exact for what burns, but for what jets and FW_FIRE_IGNITES strike, which is found in floats: to the tenth
- * of a millimetre at 1000 m. FW_ERROR_INVALID_ARGUMENT, and nothing moved: something would be beyond +-1e6 m. [world] */
+ * whole metres. Exact for what burns, but for what jets, FW_FIRE_IGNITES and FW_FIELD_WETS strike, which is found in
+ * floats: to the tenth of a millimetre at 1000 m. A world that follows a server has the server's origin.
+ * FW_ERROR_INVALID_ARGUMENT, and nothing moved: something would be beyond +-1e6 m, or the world follows a server. [world] */
 FW_API FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld*, const float offset[3], float applied[3]);
 /* m that fwWorld_ShiftOrigin has moved all places since the world was created, in all. [world] */
 FW_API FwResult FW_CALL fwWorld_GetOrigin(FwWorld*, double origin[3]);
