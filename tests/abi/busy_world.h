@@ -28,6 +28,16 @@ inline Bytes saveOf(FwWorld* world) {
     return bytes;
 }
 
+// Turned about y by `turn` rad, at a place in m.
+inline void poseAt(float (&at)[16], float x, float y, float z, float turn) {
+    std::fill(std::begin(at), std::end(at), 0.0f);
+    at[0] = at[10] = std::cos(turn);
+    at[8] = std::sin(turn);
+    at[2] = -at[8];
+    at[5] = at[15] = 1;
+    at[12] = x, at[13] = y, at[14] = z;
+}
+
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
 // that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
 // wets, a wall, a shield of cells and of an object, a tag.
@@ -63,7 +73,7 @@ class BusyWorld {
         fieldDef.width = fieldDef.height = 32;
         ok(fwWorld_CreateParticleField(world, &fieldDef, &field));
         FwBlockerDef wall = fwDefaultBlockerDef();
-        place(wall.transform, 1.0f, 0.3f, 0.25f, 0);
+        poseAt(wall.transform, 1.0f, 0.3f, 0.25f, 0);
         put(wall.halfSize, 0.3f, 0.3f, 0.01f);
         ok(fwWorld_AddBlocker(world, &wall, &blocker));
         FwWindZoneDef swirl = fwDefaultWindZoneDef();
@@ -136,14 +146,6 @@ class BusyWorld {
  private:
     void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
-    static void place(float (&at)[16], float x, float y, float z, float turn) {
-        std::fill(std::begin(at), std::end(at), 0.0f);
-        at[0] = at[10] = std::cos(turn);
-        at[8] = std::sin(turn);
-        at[2] = -at[8];
-        at[5] = at[15] = 1;
-        at[12] = x, at[13] = y, at[14] = z;
-    }
     static FwWindZoneDef fanOf(uint32_t frame) {
         FwWindZoneDef fan = fwDefaultWindZoneDef();
         fan.shape = FW_WIND_CONE;
@@ -182,8 +184,8 @@ class BusyWorld {
         ok(fwInitMaterialPreset(&material, kPresets[i % 5]));
         ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
         if (i == 4) def.flags |= FW_BURNABLE_LITE;
-        place(def.transform, float(i % 5) * 0.45f, 0.12f * float(i % 3), float(i / 5) * 0.4f,
-              0.2f * float(i));
+        poseAt(def.transform, float(i % 5) * 0.45f, 0.12f * float(i % 3), float(i / 5) * 0.4f,
+               0.2f * float(i));
         FwBurnableMeshId id{};
         ok(fwWorld_CreateBurnableMesh(world, &def, &id));
         ids.push_back(id);
@@ -244,7 +246,7 @@ class BusyWorld {
         }
         if (frame % 40 == 11) {
             float at[16];
-            place(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
+            poseAt(at, 0.9f + 0.01f * float(frame % 7), 0.1f, 0.5f, 0.1f * float(frame));
             ok(fwWorld_SetTransform(world, ids[7 % ids.size()], at));
         }
         if (frame == 20 || frame == 105) {
