@@ -69,55 +69,65 @@ uint32_t packSum(const int64_t (&sum)[3]) noexcept {
            (part(2, 511) & 0x3FFu) << 22;
 }
 
-int cellOf(int mm) noexcept {
-    constexpr int kSide = int(gpu::kContactGap);
-    return mm >= 0 ? mm / kSide : -((kSide - 1 - mm) / kSide);
-}
+// Cells of the search, which hold at least the gap.
+constexpr int kCellShift = 6;  // mm: 64
+static_assert(gpu::kContactGap <= 1u << kCellShift);
 
-gpu::ivec3 cellAt(const gpu::ivec3& p) noexcept { return {cellOf(p.x), cellOf(p.y), cellOf(p.z)}; }
-
-// mm from a place, `within` its cell along an axis, to the cell beside it; 0: its own.
-uint32_t wayTo(int beside, int within) noexcept {
-    return uint32_t(beside == 0 ? 0 : beside < 0 ? within + 1 : int(gpu::kContactGap) - within);
-}
-
-// The cells of places that one object has near another: numbers of their own, wherever in the world
-// that is.
+// Places that one object has near another, by cells: these have numbers of their own, wherever in
+// the world that is.
 struct ContactCells {
     static constexpr size_t kMostListed = 4096;
-    gpu::ivec3 low{0}, high{-1};
+    int low[3] = {}, high[3] = {};
+    uint64_t sideY = 0, sideZ = 0;
     bool listed = false;                           // they are few enough for `starts`
     std::array<uint32_t, kMostListed + 1> starts;  // by cell: its first place
+    std::span<const Contacts::Place> places;       // by cell
 
-    void add(const gpu::ivec3& cell) noexcept {
-        const bool first = high.x < low.x;
-        low = first ? cell : glm::min(low, cell);
-        high = first ? cell : glm::max(high, cell);
-    }
     [[nodiscard]] uint64_t keyOf(int x, int y, int z) const noexcept {
-        const auto side = [&](int axis) { return uint64_t(high[axis] - low[axis]) + 1; };
-        return (uint64_t(x - low.x) * side(1) + uint64_t(y - low.y)) * side(2) +
-               uint64_t(z - low.z);
+        return (uint64_t(x - low[0]) * sideY + uint64_t(y - low[1])) * sideZ + uint64_t(z - low[2]);
     }
-    // Of places that are in the order of their keys.
-    void list(std::span<const ContactPlace> places) noexcept {
-        const uint64_t cells = keyOf(high.x, high.y, high.z) + 1;
-        listed = cells <= kMostListed;
-        if (!listed) return;
-        size_t at = 0;
-        for (uint64_t key = 0; key <= cells; ++key) {
-            while (at < places.size() && places[at].key < key) ++at;
-            starts[key] = uint32_t(at);
+    [[nodiscard]] uint64_t keyOf(const Contacts::Place& place) const noexcept {
+        return keyOf(place.at[0] >> kCellShift, place.at[1] >> kCellShift,
+                     place.at[2] >> kCellShift);
+    }
+    void list(std::span<Contacts::Place> given, std::pmr::vector<Contacts::Place>& sorted) {
+        for (int i = 0; i < 3; ++i) {
+            low[i] = std::numeric_limits<int>::max();
+            high[i] = std::numeric_limits<int>::min();
         }
+        for (const Contacts::Place& place : given)
+            for (int i = 0; i < 3; ++i) {
+                low[i] = std::min(low[i], place.at[i] >> kCellShift);
+                high[i] = std::max(high[i], place.at[i] >> kCellShift);
+            }
+        sideY = uint64_t(int64_t(high[1]) - low[1]) + 1;
+        sideZ = uint64_t(int64_t(high[2]) - low[2]) + 1;
+        const uint64_t cells = keyOf(high[0], high[1], high[2]) + 1;
+        listed = cells <= kMostListed;
+        if (!listed) {
+            sorted.assign(given.begin(), given.end());
+            std::sort(sorted.begin(), sorted.end(),
+                      [&](const auto& a, const auto& b) { return keyOf(a) < keyOf(b); });
+            places = sorted;
+            return;
+        }
+        sorted.resize(given.size());
+        places = sorted;
+        std::fill_n(starts.begin(), cells + 1, 0);
+        for (Contacts::Place& place : given) ++starts[place.cell = uint32_t(keyOf(place))];
+        uint32_t end = 0;
+        for (uint64_t cell = 0; cell <= cells; ++cell) end = starts[cell] += end;
+        for (const Contacts::Place& place : given) sorted[--starts[place.cell]] = place;
     }
-    // The places in three cells of a row.
-    [[nodiscard]] std::span<const ContactPlace> around(std::span<const ContactPlace> places, int x,
-                                                       int y, int z) const noexcept {
-        const int first = std::max(z - 1, low.z), last = std::min(z + 1, high.z);
-        if (x < low.x || x > high.x || y < low.y || y > high.y || first > last) return {};
+    // The places in some cells of a row along z.
+    [[nodiscard]] std::span<const Contacts::Place> row(int x, int y, int first,
+                                                       int last) const noexcept {
+        first = std::max(first, low[2]);
+        last = std::min(last, high[2]);
+        if (x < low[0] || x > high[0] || y < low[1] || y > high[1] || first > last) return {};
         const uint64_t from = keyOf(x, y, first), end = keyOf(x, y, last) + 1;
-        if (listed) return places.subspan(starts[from], starts[end] - starts[from]);
-        const auto before = [](const ContactPlace& a, uint64_t key) { return a.key < key; };
+        if (listed) return {&places[0] + starts[from], starts[end] - starts[from]};
+        const auto before = [&](const Contacts::Place& a, uint64_t key) { return keyOf(a) < key; };
         const auto at = std::lower_bound(places.begin(), places.end(), from, before);
         return {at, std::lower_bound(at, places.end(), end, before)};
     }
@@ -127,17 +137,6 @@ bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
     for (int i = 0; i < 3; ++i)
         if (p[i] < box.low[i] - more || p[i] > box.high[i] + more) return false;
     return true;
-}
-
-// Calls each(tile, box) for the tiles that come near `other`.
-template <class Each>
-void nearTiles(const ContactSide& side, const Box& other, Each&& each) {
-    for (uint32_t tile = 0; tile < side.domain->tileCount(); ++tile) {
-        const TileBounds& bounds = side.domain->tileBounds[tile];
-        if (bounds.low[0] > bounds.high[0]) continue;
-        const Box box = placedBox(*side.place, bounds.low, bounds.high);
-        if (gapOf(box, other) <= int(gpu::kContactGap)) each(tile, box);
-    }
 }
 
 Box wholeBox(const ContactSide& side) noexcept {
@@ -159,6 +158,109 @@ bool burnsAt(const ContactSide& side, uint32_t texel) noexcept {
 gpu::ivec3 placeOf(const ContactSide& side, uint32_t texel) noexcept {
     const TexelPosition& p = side.domain->texels[texel];
     return gpu::remotePlace(*side.place, gpu::ivec3(p.x, p.y, p.z));
+}
+
+// The burnable texels of `side` that are near `other`, block by block.
+void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Contacts::Place>& out) {
+    const BurnDomain& domain = *side.domain;
+    for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
+        const TileBounds& bounds = domain.tileBounds[tile];
+        if (bounds.low[0] > bounds.high[0]) continue;
+        if (gapOf(placedBox(*side.place, bounds.low, bounds.high), other) > int(gpu::kContactGap))
+            continue;
+        const uint32_t corner =
+            tile / domain.tilesX * kTileSide * domain.width + tile % domain.tilesX * kTileSide;
+        for (uint32_t lane = 0; lane < 64; ++lane) {
+            const uint32_t block = lane >> 4;
+            const uint32_t x = (block & 1) * 4 + (lane & 3), y = (block >> 1) * 4 + (lane >> 2 & 3);
+            const uint32_t texel = corner + y * domain.width + x;
+            if (!burnsAt(side, texel)) continue;
+            const gpu::ivec3 p = placeOf(side, texel);
+            if (!inside(p, other, int(gpu::kContactGap))) continue;
+            out.push_back({{p.x, p.y, p.z}, texel, tile * 4 + block});
+        }
+    }
+}
+
+// Cubes of kContactGap, whose order decides between places that are equally near.
+int cubeOf(int mm) noexcept {
+    constexpr int kSide = int(gpu::kContactGap);
+    return mm >= 0 ? mm / kSide : -((kSide - 1 - mm) / kSide);
+}
+
+// The nearest pair of a block's texels and those in `cells`. Of pairs that are equally near it is
+// the one with the first texel of the block, then with the first cube, then with the first texel
+// there.
+struct NearestPair {
+    const ContactCells& cells;
+    const Contacts::Place *to = nullptr, *from = nullptr;
+    int limit =
+        int(gpu::kContactGap * gpu::kContactGap);  // squared mm: of the pair, if there is one
+
+    void offer(const Contacts::Place& a, std::span<const Contacts::Place> row) noexcept {
+        for (const Contacts::Place& b : row) {
+            const int x = b.at[0] - a.at[0], y = b.at[1] - a.at[1], z = b.at[2] - a.at[2];
+            const int square = x * x + y * y + z * z;
+            if (square > limit || (square == limit && from && !comesBefore(a, b))) continue;
+            limit = square;
+            to = &a;
+            from = &b;
+        }
+    }
+    [[nodiscard]] bool comesBefore(const Contacts::Place& a,
+                                   const Contacts::Place& b) const noexcept {
+        if (&a != to) return &a < to;
+        for (int i = 0; i < 3; ++i)
+            if (const int mine = cubeOf(b.at[i]), theirs = cubeOf(from->at[i]); mine != theirs)
+                return mine < theirs;
+        return b.texel < from->texel;
+    }
+    void offerOwnCell(const Contacts::Place& a) noexcept {
+        const int z = a.at[2] >> kCellShift;
+        offer(a, cells.row(a.at[0] >> kCellShift, a.at[1] >> kCellShift, z, z));
+    }
+    // Cells around, as far as they may hold a nearer one.
+    void offerAround(const Contacts::Place& a) noexcept {
+        constexpr int kSide = 1 << kCellShift;
+        int before[3], after[3];  // squared mm along each axis to the next cell
+        for (int i = 0; i < 3; ++i) {
+            const int within = a.at[i] & (kSide - 1);
+            before[i] = (within + 1) * (within + 1);
+            after[i] = (kSide - within) * (kSide - within);
+        }
+        const int x = a.at[0] >> kCellShift, y = a.at[1] >> kCellShift, z = a.at[2] >> kCellShift;
+        for (int dx = before[0] <= limit ? -1 : 0; dx <= (after[0] <= limit ? 1 : 0); ++dx) {
+            const int wayX = dx == 0 ? 0 : dx < 0 ? before[0] : after[0];
+            for (int dy = wayX + before[1] <= limit ? -1 : 0;
+                 dy <= (wayX + after[1] <= limit ? 1 : 0); ++dy) {
+                const int way = wayX + (dy == 0 ? 0 : dy < 0 ? before[1] : after[1]);
+                if (way > limit) continue;
+                const bool below = way + before[2] <= limit, above = way + after[2] <= limit;
+                if (way != 0) {
+                    offer(a, cells.row(x + dx, y + dy, z - below, z + above));
+                    continue;
+                }
+                if (below) offer(a, cells.row(x, y, z - 1, z - 1));
+                if (above) offer(a, cells.row(x, y, z + 1, z + 1));
+            }
+        }
+    }
+};
+
+void findNearest(std::span<const Contacts::Place> places, const ContactCells& cells,
+                 std::pmr::vector<Contact>& out) {
+    for (size_t first = 0; first < places.size() && out.size() < kMostContacts;) {
+        size_t end = first + 1;
+        while (end < places.size() && places[end].block == places[first].block) ++end;
+        NearestPair nearest{cells};
+        // All of the own cells first: the pair that they give rules out most of the cells around.
+        for (size_t i = first; i < end; ++i) nearest.offerOwnCell(places[i]);
+        for (size_t i = first; i < end; ++i) nearest.offerAround(places[i]);
+        if (nearest.from)
+            out.push_back(
+                {nearest.to->texel, nearest.from->texel, gpu::isqrtNear(uint32_t(nearest.limit))});
+        first = end;
+    }
 }
 
 }  // namespace
@@ -210,19 +312,17 @@ uint32_t sourceCells(const BurnDomain& domain) noexcept {
 
 Box placedBox(const gpu::RemoteObject& place, const uint16_t (&low)[3],
               const uint16_t (&high)[3]) noexcept {
+    const gpu::ivec4* const rows[3] = {&place.row0, &place.row1, &place.row2};
     Box box;
-    for (int i = 0; i < 3; ++i) {
-        box.low[i] = std::numeric_limits<int>::max();
-        box.high[i] = std::numeric_limits<int>::min();
-    }
-    for (uint32_t corner = 0; corner < 8; ++corner) {
-        const gpu::ivec3 at = gpu::remotePlace(
-            place, gpu::ivec3((corner & 1 ? high : low)[0], (corner & 2 ? high : low)[1],
-                              (corner & 4 ? high : low)[2]));
-        for (int i = 0; i < 3; ++i) {
-            box.low[i] = std::min(box.low[i], at[i]);
-            box.high[i] = std::max(box.high[i], at[i] + 1);
+    for (int i = 0; i < 3; ++i) {  // as remotePlace of the corners
+        int least = 0, most = 0;
+        for (int k = 0; k < 3; ++k) {
+            const int a = (*rows[i])[k] * int(low[k]), b = (*rows[i])[k] * int(high[k]);
+            least += std::min(a, b);
+            most += std::max(a, b);
         }
+        box.low[i] = (*rows[i]).w + (least >> int(place.shift));
+        box.high[i] = (*rows[i]).w + (most >> int(place.shift)) + 1;
     }
     return box;
 }
@@ -234,65 +334,21 @@ int gapOf(const Box& a, const Box& b) noexcept {
     return int(std::min<int64_t>(gap, std::numeric_limits<int>::max()));
 }
 
-void findContacts(const ContactSide& to, const ContactSide& from,
-                  std::pmr::vector<ContactPlace>& placed, std::pmr::vector<Contact>& out) {
-    constexpr int kGap = int(gpu::kContactGap);
-    if (gapOf(wholeBox(to), wholeBox(from)) > kGap) return;
-    placed.clear();
-    ContactCells cells;
-    const Box toBox = wholeBox(to), fromBox = wholeBox(from);
-    nearTiles(from, toBox, [&](uint32_t tile, const Box&) {
-        const uint32_t corner = tile / from.domain->tilesX * kTileSide * from.domain->width +
-                                tile % from.domain->tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t texel = corner + (lane >> 3) * from.domain->width + (lane & 7);
-            if (!burnsAt(from, texel)) continue;
-            const gpu::ivec3 p = placeOf(from, texel);
-            if (!inside(p, toBox, kGap)) continue;
-            cells.add(cellAt(p));
-            placed.push_back({0, {p.x, p.y, p.z}, texel});
-        }
-    });
-    if (placed.empty()) return;
-    for (ContactPlace& one : placed)
-        one.key = cells.keyOf(cellOf(one.place[0]), cellOf(one.place[1]), cellOf(one.place[2]));
-    std::sort(placed.begin(), placed.end(), [](const ContactPlace& a, const ContactPlace& b) {
-        return a.key != b.key ? a.key < b.key : a.texel < b.texel;
-    });
-    cells.list(placed);
-    const size_t most = out.size() + kMostContacts;
-    nearTiles(to, fromBox, [&](uint32_t tile, const Box&) {
-        const uint32_t corner = tile / to.domain->tilesX * kTileSide * to.domain->width +
-                                tile % to.domain->tilesX * kTileSide;
-        for (uint32_t block = 0; block < 4 && out.size() < most; ++block) {
-            Contact best;
-            uint32_t bestSquare = uint32_t(kGap * kGap) + 1;
-            for (uint32_t lane = 0; lane < 16; ++lane) {
-                const uint32_t x = (block & 1) * 4 + (lane & 3), y = (block >> 1) * 4 + (lane >> 2);
-                const uint32_t texel = corner + y * to.domain->width + x;
-                if (!burnsAt(to, texel)) continue;
-                const gpu::ivec3 p = placeOf(to, texel);
-                if (!inside(p, fromBox, kGap)) continue;
-                const gpu::ivec3 cell = cellAt(p);
-                for (int around = 0; around < 9; ++around) {
-                    const int cx = around / 3 - 1, cy = around % 3 - 1;
-                    const uint32_t x1 = wayTo(cx, p.x - cell.x * kGap),
-                                   y1 = wayTo(cy, p.y - cell.y * kGap);
-                    if (x1 * x1 + y1 * y1 >= bestSquare) continue;  // so is all of the row
-                    for (const ContactPlace& entry :
-                         cells.around(placed, cell.x + cx, cell.y + cy, cell.z)) {
-                        const gpu::ivec3 d(entry.place[0] - p.x, entry.place[1] - p.y,
-                                           entry.place[2] - p.z);
-                        const uint32_t square = gpu::squareSum(d);
-                        if (square >= bestSquare) continue;
-                        bestSquare = square;
-                        best = {texel, entry.texel, gpu::isqrtNear(square)};
-                    }
-                }
-            }
-            if (bestSquare <= uint32_t(kGap * kGap)) out.push_back(best);
-        }
-    });
+void findContacts(const ContactSide (&sides)[2], Contacts& contacts) {
+    for (int k = 0; k < 2; ++k) {
+        contacts.found[k].clear();
+        contacts.places[k].clear();
+    }
+    if (gapOf(wholeBox(sides[0]), wholeBox(sides[1])) > int(gpu::kContactGap)) return;
+    for (int k = 0; k < 2; ++k) {
+        placeNear(sides[k], wholeBox(sides[1 - k]), contacts.places[k]);
+        if (contacts.places[k].empty()) return;
+    }
+    for (int k = 0; k < 2; ++k) {
+        ContactCells cells;
+        cells.list(contacts.places[1 - k], contacts.byCell);
+        findNearest(contacts.places[k], cells, contacts.found[k]);
+    }
 }
 
 }  // namespace fw::mesh

@@ -30,15 +30,24 @@ struct ContactSide {
     uint32_t burns = 0;  // bit i: its material i can burn
 };
 
-// Per block of 4 x 4 texels of `to`, its texel that is nearest to one of `from`; at most
-// kMostContacts, then the rest of the tiles is left out. Appends.
+// Contacts of one object take no more; the rest of its tiles is left out.
 constexpr size_t kMostContacts = 8192;
-struct ContactPlace {  // scratch: a texel of `from`, by the cell that it is in
-    uint64_t key = 0;
-    int place[3] = {};
-    uint32_t texel = 0;
+
+// Memory that searches for contacts share, and what the last of them found.
+struct Contacts {
+    struct Place {  // a burnable texel near the other object
+        int at[3] = {};
+        uint32_t texel = 0, block = 0;  // block: of 4 x 4 texels
+        uint32_t cell = 0;              // of the search, if it lists its cells
+    };
+    explicit Contacts(std::pmr::memory_resource* memory)
+        : found{std::pmr::vector<Contact>(memory), std::pmr::vector<Contact>(memory)},
+          places{std::pmr::vector<Place>(memory), std::pmr::vector<Place>(memory)},
+          byCell(memory) {}
+    // [k]: per block of side k its texel that is nearest to one of the other side.
+    std::pmr::vector<Contact> found[2];
+    std::pmr::vector<Place> places[2], byCell;
 };
-void findContacts(const ContactSide& to, const ContactSide& from,
-                  std::pmr::vector<ContactPlace>& scratch, std::pmr::vector<Contact>& out);
+void findContacts(const ContactSide (&sides)[2], Contacts& contacts);
 
 }  // namespace fw::mesh

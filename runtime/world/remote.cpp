@@ -344,14 +344,10 @@ uint32_t burnMask(const components::BurnableMesh& object) noexcept {
 
 }  // namespace
 
-// The contacts of one pair, one way.
-void World::linkPair(const Object& to, const Object& from, uint32_t since,
-                     std::pmr::vector<gpu::ContactLink>& out) {
-    remote_.contacts.clear();
-    mesh::findContacts({&domainOf(to), &to.remote, burnMask(to.data)},
-                       {&domainOf(from), &from.remote, burnMask(from.data)}, remote_.contactPlaces,
-                       remote_.contacts);
-    for (const mesh::Contact& contact : remote_.contacts) {
+// The links of one pair, one way.
+void World::linkPair(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
+                     uint32_t since, std::pmr::vector<gpu::ContactLink>& out) {
+    for (const mesh::Contact& contact : contacts) {
         const FwMaterialDef& def =
             to.data.materials[domainOf(to).texels[contact.texel].materialFlags &
                               (gpu::kMaterialsPerObject - 1)];
@@ -405,15 +401,17 @@ void World::linkClose(Object& object, uint32_t now) {
         const uint32_t since = same && pair.touches ? pair.since : now;
         dropLinks(a.slot, b.slot);
         dropLinks(b.slot, a.slot);
-        size_t found = 0;
-        for (const bool first : {true, false}) {
+        const Object* const both[2] = {&a, &b};
+        mesh::findContacts({{&domainOf(a), &a.remote, burnMask(a.data)},
+                            {&domainOf(b), &b.remote, burnMask(b.data)}},
+                           book.contacts);
+        for (int k = 0; k < 2; ++k) {
             book.pairLinks.clear();
-            linkPair(first ? a : b, first ? b : a, since, book.pairLinks);
-            found += book.pairLinks.size();
-            addLinks(first ? a.slot : b.slot, book.pairLinks);
+            linkPair(*both[k], *both[1 - k], book.contacts.found[k], since, book.pairLinks);
+            addLinks(both[k]->slot, book.pairLinks);
         }
         pair.since = since;
-        pair.touches = found != 0;
+        pair.touches = !book.contacts.found[0].empty() || !book.contacts.found[1].empty();
         pair.ids[0] = a.id;
         pair.ids[1] = b.id;
         pair.versions[0] = a.remoteVersion;

@@ -334,7 +334,6 @@ struct RemoteBook {
           links(memory, noLink()),
           linksOf(memory),
           contacts(memory),
-          contactPlaces(memory),
           pairLinks(memory),
           mergedLinks(memory),
           blockers(memory) {}
@@ -372,8 +371,7 @@ struct RemoteBook {
     ListPool<gpu::ContactLink> links;
     std::pmr::vector<ListPlace> linksOf;  // by slot that they lead to: of `links`, by texel
     uint64_t contactStamp = 0;
-    std::pmr::vector<mesh::Contact> contacts;                   // scratch
-    std::pmr::vector<mesh::ContactPlace> contactPlaces;         // scratch
+    mesh::Contacts contacts;                                    // scratch
     std::pmr::vector<gpu::ContactLink> pairLinks, mergedLinks;  // scratch
     std::pmr::vector<gpu::Blocker> blockers;                    // latched
 };
@@ -891,8 +889,8 @@ class World {
     gpu::ExchangePush exchangeRules() const noexcept;
     void touchNear(uint32_t now);
     void addLatch(Object& object, const components::Latch& latch, bool due) noexcept;
-    void linkPair(const Object& to, const Object& from, uint32_t since,
-                  std::pmr::vector<gpu::ContactLink>& out);
+    void linkPair(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
+                  uint32_t since, std::pmr::vector<gpu::ContactLink>& out);
     void commitRemote() noexcept;
     void countGoverned(const Object& object, bool more) noexcept;
     void noteSeen(std::pmr::vector<Seen>& to) const;

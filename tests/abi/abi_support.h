@@ -4,6 +4,7 @@
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
 #include "flamewright/flamewright_vulkan.h"
+#include "support/burnable.h"
 
 #include <gtest/gtest.h>
 
@@ -17,6 +18,8 @@
 #include <vector>
 
 namespace host {
+
+using fw::test::addBurnable;
 
 // Memory and log of a host. Fails the `failAt`-th allocation and, if `failAlways`, all after it.
 struct Host {

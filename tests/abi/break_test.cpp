@@ -31,10 +31,6 @@ struct Board {
             of.insert(of.end(), size_t(kRows) * 2, row == 4 || row == 11 ? 0 : 1);
         meshDef.triangleMaterials = of.data();
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
-        ok(fwWorld_CreateMesh(world, &meshDef, &made.mesh));
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER));
-        ok(fwWorld_CreateMaterial(world, &material, &made.materials[0]));
         std::vector<uint32_t> pixels;
         for (uint32_t i = 0; i < kRows * kRows; ++i)
             pixels.push_back(cutOut >> i / kRows & 1 ? 0x00FFFFFFu : 0xFFFFFFFFu);
@@ -58,7 +54,7 @@ struct Board {
             made.pins = &pin;
             made.pinCount = 1;
         }
-        ok(fwWorld_CreateBurnableMesh(world, &made, &id));
+        id = addBurnable(world, meshDef, FW_MATERIAL_PAPER, made);
     }
     ~Board() {
         fwDestroyContext(context);

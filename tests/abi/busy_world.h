@@ -60,6 +60,16 @@ uint64_t hashOf(FwWorld* world, const Ids& ids) {
     return all;
 }
 
+// Turned about y by `turn` rad, at a place in m.
+inline void poseAt(float (&at)[16], float x, float y, float z, float turn) {
+    std::fill(std::begin(at), std::end(at), 0.0f);
+    at[0] = at[10] = std::cos(turn);
+    at[8] = std::sin(turn);
+    at[2] = -at[8];
+    at[5] = at[15] = 1;
+    at[12] = x, at[13] = y, at[14] = z;
+}
+
 // Much goes on at once in it: boxes and boards of several materials that light each other, wind
 // that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
 // wets, a wall, a shield of cells and of an object, a tag. exact: its places are whole parts of a
@@ -182,11 +192,7 @@ class BusyWorld {
             to[i] = float((exact_ ? std::round(at[i] * 64) / 64 : at[i]) + origin[i]);
     }
     void place(float (&at)[16], float x, float y, float z, float turn) const {
-        std::fill(std::begin(at), std::end(at), 0.0f);
-        at[0] = at[10] = std::cos(turn);
-        at[8] = std::sin(turn);
-        at[2] = -at[8];
-        at[5] = at[15] = 1;
+        poseAt(at, 0, 0, 0, turn);
         putAt(at + 12, x, y, z);
     }
     FwWindZoneDef fanOf(uint32_t frame) const {

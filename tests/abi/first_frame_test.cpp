@@ -18,14 +18,10 @@ class Camp {
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = 8;
         ok(fwCreateWorld(context_, &def, &world));
-        const FwMeshDef meshDef = sheet_.def(64);
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
-        ok(fwWorld_CreateMesh(world, &meshDef, &made.mesh));
-        const FwMaterialDef pine = fwDefaultMaterialDef();
-        ok(fwWorld_CreateMaterial(world, &pine, &made.materials[0]));
         const float upright[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
         std::copy_n(upright, 16, made.transform);
-        ok(fwWorld_CreateBurnableMesh(world, &made, &board));
+        board = addBurnable(world, sheet_.def(64), fwDefaultMaterialDef(), made);
         FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
         emitter.position[0] = -2;
         ok(fwWorld_CreateFireEmitter(world, &emitter, &camp));

@@ -158,35 +158,61 @@ void leadWrong(BentSession::Client& client, uint32_t frame) {
                                     FW_IGNITE, texels, 2));
 }
 
+// A session of an honest client and of one whose packets are bent for 900 frames; then all are
+// equal.
+struct BentPlay {
+    explicit BentPlay(uint32_t seed)
+        : session(makeBentPanels(), seed),
+          honest(session.join(makeBentPanels())),
+          other(session.join(makeBentPanels())),
+          seed_(seed) {
+        other.spoils = true;
+    }
+    // `hook`: of the other client. `bends`: whether it bends its packet of that number. Counts by
+    // name.
+    template <class Bends>
+    void run(std::function<void(Bytes&)> BentSession::Client::*hook,
+             std::span<const PacketField> fields, Bends bends, uint32_t until,
+             std::map<std::string, uint32_t>& bent) {
+        Bender bender(fields, seed_);
+        uint32_t packets = 0;
+        other.*hook = [&](Bytes& packet) {
+            if (!bends(++packets)) return;
+            const size_t field = bender.bend(packet);
+            if (field < fields.size()) ++bent[fields[field].name];
+        };
+        for (uint32_t frame = 0; frame < 900; ++frame) {
+            playBent(session, frame, frame + 1);
+            leadWrong(other, frame);
+        }
+        other.*hook = nullptr;
+        playBent(session, 900, until);
+        session.expectEqual("at the end");
+    }
+
+    BentSession session;
+    BentSession::Client &honest, &other;
+
+ private:
+    uint32_t seed_;
+};
+
 TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
     uint64_t refused = 0;
     std::map<std::string, uint32_t> bent;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
-        BentSession session(makeBentPanels(), seed);
-        auto& honest = session.join(makeBentPanels());
-        auto& hostile = session.join(makeBentPanels());
-        Bender bender(kUpFields, seed);
-        uint32_t packets = 0;
-        hostile.spoils = true;
-        hostile.bendUp = [&](Bytes& packet) {
-            if (++packets % 4 == seed % 2) return;  // so that the session gets on
-            const size_t field = bender.bend(packet);
-            if (field < std::size(kUpFields)) ++bent[kUpFields[field].name];
+        BentPlay play(seed);
+        const auto bends = [&](uint32_t packet) {
+            return packet % 4 != seed % 2;  // so that the session gets on
         };
-        for (uint32_t frame = 0; frame < 900; ++frame) {
-            playBent(session, frame, frame + 1);
-            leadWrong(hostile, frame);
-        }
-        hostile.bendUp = nullptr;
-        playBent(session, 900, 1000);
-        session.expectEqual("at the end");
-        const FwNetState good = BentSession::stateOf(session.server->world, honest.peer);
+        play.run(&BentSession::Client::bendUp, kUpFields, bends, 1000, bent);
+        const FwNetState good = BentSession::stateOf(play.session.server->world, play.honest.peer);
         EXPECT_EQ(0u, good.packetsRefused);
         EXPECT_EQ(1u, good.states);
-        EXPECT_EQ(0u, BentSession::stateOf(honest.world->world).strays);
-        const FwNetState bad = BentSession::stateOf(session.server->world, hostile.peer);
+        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).strays);
+        const FwNetState bad = BentSession::stateOf(play.session.server->world, play.other.peer);
         EXPECT_GT(bad.packetsRefused, 40u);
-        EXPECT_FALSE(session.server->host.warnings.empty());
+        EXPECT_FALSE(play.session.server->host.warnings.empty());
         refused += bad.packetsRefused;
     }
     for (const PacketField& field : kUpFields)
@@ -198,26 +224,11 @@ TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
 TEST(NetBent, AClientSurvivesEachBentFieldOfItsServer) {
     std::map<std::string, uint32_t> bent;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
-        BentSession session(makeBentPanels(), seed);
-        auto& honest = session.join(makeBentPanels());
-        auto& victim = session.join(makeBentPanels());
-        Bender bender(kDownFields, seed);
-        uint32_t packets = 0;
-        victim.spoils = true;
-        victim.bendDown = [&](Bytes& packet) {
-            if (++packets % 4 != seed % 4) return;
-            const size_t field = bender.bend(packet);
-            if (field < std::size(kDownFields)) ++bent[kDownFields[field].name];
-        };
-        for (uint32_t frame = 0; frame < 900; ++frame) {
-            playBent(session, frame, frame + 1);
-            leadWrong(victim, frame);
-        }
-        victim.bendDown = nullptr;
-        playBent(session, 900, 1100);
-        session.expectEqual("at the end");
-        EXPECT_EQ(0u, BentSession::stateOf(honest.world->world).strays);
-        EXPECT_GT(BentSession::stateOf(victim.world->world).packetsRefused, 20u);
+        BentPlay play(seed);
+        const auto bends = [&](uint32_t packet) { return packet % 4 == seed % 4; };
+        play.run(&BentSession::Client::bendDown, kDownFields, bends, 1100, bent);
+        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).strays);
+        EXPECT_GT(BentSession::stateOf(play.other.world->world).packetsRefused, 20u);
     }
     for (const PacketField& field : kDownFields)
         if (field.kind != 1 && field.kind != kChunkKind) {

@@ -140,17 +140,7 @@ std::vector<FwLight> lightsOf(FwContext* context) {
     const FwWorldDef worldDef = fwDefaultWorldDef();
     EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world)) << lastMessage(context);
     const host::Sheet sheet(0.8f, 0.4f, 3);
-    const FwMeshDef meshDef = sheet.def(64);
-    FwMeshId mesh{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh)) << lastMessage(world);
-    FwMaterialDef pine = fwDefaultMaterialDef();
-    FwMaterialId material{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &pine, &material));
-    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    def.mesh = mesh;
-    def.materials[0] = material;
-    FwBurnableMeshId object{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &object)) << lastMessage(world);
+    (void)host::addBurnable(world, sheet.def(64), fwDefaultMaterialDef());
     FwIgnitionDef ignition = fwDefaultIgnitionDef();
     ignition.position[0] = 0.4f;
     ignition.position[2] = 0.2f;

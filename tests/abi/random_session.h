@@ -375,8 +375,8 @@ class SessionWorld {
         for (uint32_t i = 0; i < frames; ++i) {
             for (const auto& [name, id] : objects) {
                 float at[16];
-                pose(at, 0.3f * float(name % 4), 0.02f * float(i), 0.3f * float(name / 4 % 4),
-                     0.1f * float(i));
+                poseAt(at, 0.3f * float(name % 4), 0.02f * float(i), 0.3f * float(name / 4 % 4),
+                       0.1f * float(i));
                 moveByOrigin(at + 12);
                 ok(fwWorld_SetTransform(world, id, at));
                 if (i == 0) ok(fwWorld_TagPoint(world, id, at + 12, 99));
@@ -482,14 +482,6 @@ class SessionWorld {
         for (const auto& [name, mine] : objects)
             if (mine.index1 == id.index1 && mine.generation == id.generation) return name;
         return 0;
-    }
-    static void pose(float (&at)[16], float x, float y, float z, float turn) {
-        std::fill(std::begin(at), std::end(at), 0.0f);
-        at[0] = at[10] = std::cos(turn);
-        at[8] = std::sin(turn);
-        at[2] = -at[8];
-        at[5] = at[15] = 1;
-        at[12] = x, at[13] = y, at[14] = z;
     }
     void makeMeshes() {
         const Sheet sheets[2] = {Sheet(0.3f, 0.3f, 2), Sheet(0.3f, 0.2f, 1)};
@@ -599,7 +591,7 @@ class SessionWorld {
         switch (act.kind) {
             case Act::makeObject: {
                 FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-                pose(def.transform, n[0], n[1], n[2], n[3]);
+                poseAt(def.transform, n[0], n[1], n[2], n[3]);
                 if (act.other >= Act::house) {
                     makePlayed(act.other, def);
                     return ok(fwWorld_CreateBurnableMesh(world, &def, &objects[act.name]));
@@ -640,12 +632,12 @@ class SessionWorld {
                 return;
             case Act::makeBlocker: {
                 FwBlockerDef def = fwDefaultBlockerDef();
-                pose(def.transform, n[0], n[1], n[2], 0);
+                poseAt(def.transform, n[0], n[1], n[2], 0);
                 for (float& half : def.halfSize) half = 0.1f;
                 return ok(fwWorld_AddBlocker(world, &def, &blockers_[act.name]));
             }
             case Act::moveBlocker:
-                pose(at, n[0], n[1], n[2], 0.3f);
+                poseAt(at, n[0], n[1], n[2], 0.3f);
                 return ok(fwWorld_MoveBlocker(world, blockers_[act.name], at));
             case Act::dropBlocker:
                 return ok(fwWorld_RemoveBlocker(world, blockers_[act.name]));
@@ -714,7 +706,7 @@ class SessionWorld {
                 return ok(fwWorld_Ignite(world, &def, nullptr));
             }
             case Act::moveObject:
-                pose(at, n[0], n[1], n[2], n[3]);
+                poseAt(at, n[0], n[1], n[2], n[3]);
                 return ok(fwWorld_SetTransform(world, objects[act.name], at));
             case Act::wind:
                 return ok(fwWorld_SetWind(world, n));

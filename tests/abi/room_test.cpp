@@ -20,13 +20,7 @@ struct Paper {
         FwWorldDef def = fwDefaultWorldDef();
         def.maxStepsPerFrame = 64;
         EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
-        const FwMeshDef meshDef = sheet.def(48);
-        FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
-        EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &made.mesh)) << lastMessage(world);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&material, preset));
-        EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &material, &made.materials[0]));
-        EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &made, &id)) << lastMessage(world);
+        id = addBurnable(world, sheet.def(48), preset);
         fuel = double(book().fuel) / 1048576;
     }
     ~Paper() {

@@ -3,7 +3,7 @@
 // match is struck, and when it rains on all of them. Where a row leaves crates elsewhere, the next
 // finds them settled there. Time: of this process's threads. Counters:
 // texels of a crate; burning: crates; slowest_ms: of all steps; bytes of a crate, in every pool of
-// the memory report (objects10k/memory).
+// the memory report (objects10k/memory; of a device: objects1k/memory_on_device).
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
 #include "support/meshes.h"
@@ -44,9 +44,9 @@ struct Square {
         for (uint32_t i = 0; i < count; ++i) fwWorld_Step(world, kStep);
     }
     // Null: fine.
-    const char* make(uint32_t count) {
+    const char* make(uint32_t count, uint32_t backend = FW_BACKEND_CPU) {
         FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = FW_BACKEND_CPU;
+        contextDef.backend = backend;
         FwErrorInfo info{};
         if (fwCreateContext(&contextDef, &context, &info) != FW_OK) return "there is no context";
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -249,11 +249,12 @@ void rain(benchmark::State& state) {
 }
 
 // Bytes of each crate, none of which burns, by pool: of all crates less those of one.
+template <uint32_t kBackend, uint32_t kCount>
 void memoryOf(benchmark::State& state) {
-    constexpr uint32_t kRows = 256, kCount = 10000;
+    constexpr uint32_t kRows = 256;
     const auto report = [&](uint32_t count, std::vector<FwMemoryRow>& rows) -> const char* {
         Square square;
-        if (const char* why = square.make(count)) return why;
+        if (const char* why = square.make(count, kBackend)) return why;
         rows.resize(kRows);
         rows.resize(std::min(fwContext_GetMemoryReport(square.context, rows.data(), kRows), kRows));
         FwContextInfo info{};
@@ -262,6 +263,9 @@ void memoryOf(benchmark::State& state) {
         FwMemoryRow all{};  // with what no pool counts
         std::snprintf(all.name, sizeof all.name, "%s", "cpu memory in all");
         all.bytes = info.cpuMemoryUsed;
+        rows.push_back(all);
+        std::snprintf(all.name, sizeof all.name, "%s", "device memory in all");
+        all.bytes = info.gpuMemoryUsed;
         rows.push_back(all);
         state.counters["texels"] = square.texels;
         return nullptr;
@@ -298,7 +302,8 @@ const bool rows = [] {
     row("objects10k/spawn", spawn, 64);
     row("objects10k/first_match", firstMatch, 3);
     row("objects10k/rain", rain, 3);
-    row("objects10k/memory", memoryOf, 1);
+    row("objects10k/memory", memoryOf<FW_BACKEND_CPU, 10000>, 1);
+    row("objects1k/memory_on_device", memoryOf<FW_BACKEND_VULKAN, 1000>, 1);
     row("objects2k/all_walk", allWalk, 64);
     return true;
 }();

@@ -12,7 +12,7 @@ while read -r row; do
     grep -q -F -x -- "$row" <<<"$listed" || { echo "the bench has no row $row" && status=1; }
 done < <(printf '%s\n' front/{dense,sparse3,published}/{128,256,512,1024} \
     front/wide/1024 front/wide_cpu/1024 front/mapsize_smallfire/{256,1024} \
-    objects10k/{rest,one_walks,thousand_walk,thousand_touch,spawn,first_match,rain,memory} objects2k/all_walk objects/{burning,exchange}10 objects/{burning,exchange}10_idle1000 objects/{idle/1000,burning/100} \
+    objects10k/{rest,one_walks,thousand_walk,thousand_touch,spawn,first_match,rain,memory} objects1k/memory_on_device objects2k/all_walk objects/{burning,exchange}10 objects/{burning,exchange}10_idle1000 objects/{idle/1000,burning/100} \
     front/{dense,sparse,published}_bunny{4k,31k}/512 \
     deform/{xpbd,published}/{4k,31k} deform/recession/31k heat/bunny31k/1024 \
     refine/{full,adaptive}/{10,15,20,50}k refine/{full,adaptive}_{lit5,burnt}/20k refine/published/20k \

@@ -6,7 +6,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <random>
 
 namespace fw::test {
@@ -401,25 +404,85 @@ TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
         // Beside it along its own z.
         for (int r = 0; r < 3; ++r) b.translation[r] = a.translation[r] + a.rotation[r][2] * gap;
         const Placed one(makePlane(0.4, 0.3), 64, a), two(makePlane(0.4, 0.3), 64, b);
-        std::pmr::vector<mesh::Contact> contacts;
-        std::pmr::vector<mesh::ContactPlace> scratch;
-        mesh::findContacts({&one.domain, &one.place, 1}, {&two.domain, &two.place, 1}, scratch,
-                           contacts);
+        mesh::Contacts search(std::pmr::get_default_resource());
+        mesh::findContacts({{&one.domain, &one.place, 1}, {&two.domain, &two.place, 1}}, search);
+        const std::pmr::vector<mesh::Contact>& contacts = search.found[0];
         if (gap > 0.05f) {
             EXPECT_TRUE(contacts.empty());
+            EXPECT_TRUE(search.found[1].empty());
             continue;
         }
         EXPECT_GT(contacts.size(), 20u);
+        EXPECT_EQ(contacts.size(), search.found[1].size()) << "the sheets are equal";
         for (const mesh::Contact& contact : contacts) {
             const glm::dvec3 p = one.real(a, contact.texel), q = two.real(b, contact.fromTexel);
             EXPECT_NEAR(glm::length(p - q), contact.gap, 4);
             EXPECT_NEAR(double(gap) * 1000, contact.gap, 8);
         }
-        contacts.clear();
-        mesh::findContacts({&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}, scratch,
-                           contacts);
+        mesh::findContacts({{&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}}, search);
         EXPECT_TRUE(contacts.empty());  // it cannot burn
     }
+}
+
+// Each block of 4 x 4 texels has the nearest pair: of equals the first texel of the block, then of
+// the other's texels the one in the first cell of 50 mm, then the first.
+TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
+    std::mt19937 random(17);
+    const auto cellOf = [](int mm) { return mm >= 0 ? mm / 50 : -((49 - mm) / 50); };
+    size_t contacts = 0, ties = 0;
+    for (int round = 0; round < 8; ++round) {
+        components::Pose poses[2];
+        if (round < 4) {  // side by side, so that many pairs are equally near
+            poses[1].translation[0] = 0.05f * float(round) - 0.02f;
+        } else {
+            for (components::Pose& pose : poses) pose = randomPose(random, 0.1f);
+        }
+        const Placed boxes[2] = {{makeCube(0.2, 1), 32, poses[0]},
+                                 {makeCube(0.2, 1), 32, poses[1]}};
+        mesh::Contacts search(std::pmr::get_default_resource());
+        mesh::findContacts(
+            {{&boxes[0].domain, &boxes[0].place, 1}, {&boxes[1].domain, &boxes[1].place, 1}},
+            search);
+        for (int side = 0; side < 2; ++side) {
+            const Placed &to = boxes[side], &from = boxes[1 - side];
+            const auto placeOf = [](const Placed& box, uint32_t texel) {
+                const mesh::TexelPosition& p = box.domain.texels[texel];
+                return gpu::remotePlace(box.place, ivec3(p.x, p.y, p.z));
+            };
+            std::map<uint32_t, mesh::Contact> found;  // by its texel's block
+            const auto blockOf = [&](uint32_t texel) {
+                return texel / to.domain.width / 4 * 4096 + texel % to.domain.width / 4;
+            };
+            for (const mesh::Contact& contact : search.found[side])
+                found[blockOf(contact.texel)] = contact;
+            EXPECT_EQ(search.found[side].size(), found.size()) << "one for each block";
+            std::map<uint32_t, std::array<int64_t, 6>> nearest;  // square, texel, cell, texel
+            for (uint32_t a = 0; a < to.domain.texelCount(); ++a) {
+                if (!to.domain.real(a) || to.domain.slowness[a] == 0) continue;
+                const ivec3 p = placeOf(to, a);
+                for (uint32_t b = 0; b < from.domain.texelCount(); ++b) {
+                    if (!from.domain.real(b) || from.domain.slowness[b] == 0) continue;
+                    const ivec3 q = placeOf(from, b), d = q - p;
+                    const int64_t square = d.x * d.x + d.y * d.y + d.z * d.z;
+                    if (square > 2500) continue;
+                    const std::array<int64_t, 6> one = {square,      a,           cellOf(q.x),
+                                                        cellOf(q.y), cellOf(q.z), b};
+                    const auto [at, first] = nearest.emplace(blockOf(a), one);
+                    if (!first && one[0] == at->second[0]) ++ties;
+                    if (!first) at->second = std::min(at->second, one);
+                }
+            }
+            EXPECT_EQ(nearest.size(), found.size());
+            contacts += nearest.size();
+            for (const auto& [block, one] : nearest) {
+                EXPECT_EQ(one[1], int64_t(found[block].texel));
+                EXPECT_EQ(one[5], int64_t(found[block].fromTexel));
+                EXPECT_EQ(gpu::isqrtNear(uint32_t(one[0])), found[block].gap);
+            }
+        }
+    }
+    EXPECT_GT(contacts, 100u);
+    EXPECT_GT(ties, 100u);
 }
 
 }  // namespace

@@ -149,6 +149,12 @@ TEST(NetTransfer, OnlySentPiecesCanHaveCome) {
     EXPECT_EQ(2u, sender.next(0.2, 1));
 }
 
+net::Record captureAt(uint64_t tick) {
+    net::Record record;
+    record.kind = net::RecordKind::capture;
+    record.tick = tick;
+    return record;
+}
 net::Record messageOf(std::span<const std::byte> text) {
     net::Record record;
     record.kind = net::RecordKind::message;
@@ -160,9 +166,7 @@ net::Record messageOf(std::span<const std::byte> text) {
 TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
     net::RecordLog log(std::pmr::get_default_resource());
     const Bytes text(3);
-    net::Record capture;
-    capture.kind = net::RecordKind::capture;
-    capture.tick = 1;
+    const net::Record capture = captureAt(1);
     for (uint32_t i = 0; i < 1000; ++i) log.push(i % 100 == 50 ? messageOf(text) : capture, i);
     const auto walk = [&](uint32_t from, uint32_t skipsBefore) {
         std::vector<uint32_t> messages;
@@ -197,9 +201,7 @@ TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
 TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
     net::RecordLog log(std::pmr::get_default_resource());
     const Bytes text(10);
-    net::Record capture;
-    capture.kind = net::RecordKind::capture;
-    capture.tick = 1;
+    const net::Record capture = captureAt(1);
     for (uint32_t i = 0; i < 10; ++i) log.push(i == 4 ? messageOf(text) : capture, 0.5 * i);
     EXPECT_EQ(9u * 14 + 16, log.bytes());
     EXPECT_EQ(6u * 14 + 16, log.bytesFrom(3));

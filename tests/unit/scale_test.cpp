@@ -468,10 +468,9 @@ TEST(Contacts, AreFoundWhereverInTheWorldObjectsTouch) {
             pose.translation[1] = pose.translation[2] = at;
             components::placeRemote(pose, domain, places[i]);
         }
-        std::pmr::vector<mesh::ContactPlace> scratch(memory());
-        std::pmr::vector<mesh::Contact> found(memory());
-        mesh::findContacts({&domain, &places[0], 1}, {&domain, &places[1], 1}, scratch, found);
-        return found.size();
+        mesh::Contacts contacts(memory());
+        mesh::findContacts({{&domain, &places[0], 1}, {&domain, &places[1], 1}}, contacts);
+        return contacts.found[0].size();
     };
     const size_t here = count(0);
     EXPECT_GT(here, 0u);
