@@ -3,6 +3,9 @@
 
 #include <gmock/gmock.h>
 
+#include <set>
+#include <vector>
+
 namespace {
 
 using host::lastMessage;
@@ -71,6 +74,58 @@ TEST(Ignite, TheNearestObjectIsNamedHoweverFarItIs) {
     EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &between, nullptr));
     EXPECT_THAT(lastMessage(w.world),
                 HasSubstr("mesh, " + std::to_string(other.index1) + ", is 2 m away"));
+}
+
+// Balls that hold whole objects are one event each, in a list with those of many single texels.
+TEST(Ignite, WholeObjectsAmongPartsOfOthersChangeAlikeOnBothBackends) {
+    std::vector<uint64_t> hashes[2];
+    for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
+        host::Host host;
+        FwContextDef contextDef = fwDefaultContextDef();
+        contextDef.backend = backend;
+        contextDef.callbacks = host.callbacks();
+        FwContext* context = nullptr;
+        FwErrorInfo error{};
+        if (fwCreateContext(&contextDef, &context, &error) != FW_OK)
+            GTEST_SKIP() << "there is no such backend here";
+        FwWorld* world = nullptr;
+        const FwWorldDef def = fwDefaultWorldDef();
+        ASSERT_EQ(FW_OK, fwCreateWorld(context, &def, &world));
+        const host::Sheet sheet(1, 1);
+        const FwMeshDef meshDef = sheet.def(128);
+        FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
+        ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &made.mesh)) << lastMessage(world);
+        FwBurnableMeshId ids[4] = {};
+        for (FwBurnableMeshId& id : ids)
+            ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &made, &id));
+        const auto ball = [&](uint32_t kind, FwBurnableMeshId id, float radius) {
+            FwIgnitionDef one = matchAt(0.5f, 0, 0.5f, radius);
+            one.kind = kind;
+            one.object = id;
+            EXPECT_EQ(FW_OK, fwWorld_Ignite(world, &one, nullptr)) << lastMessage(world);
+        };
+        ball(FW_IGNITE, ids[0], 2);
+        ball(FW_IGNITE, ids[1], 0.4f);
+        ball(FW_WET, ids[2], 2);
+        ball(FW_EXTINGUISH, ids[3], 0.4f);
+        for (int i = 0; i < 8; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
+        ball(FW_EXTINGUISH, ids[0], 2);
+        for (int i = 0; i < 8; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
+        for (const FwBurnableMeshId id : ids) {
+            ASSERT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id));
+            uint64_t hash = 0;
+            FwResult result = FW_NOT_READY;
+            for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+                ASSERT_EQ(FW_OK, fwWorld_Step(world, 0));
+                result = fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &hash, nullptr);
+            }
+            ASSERT_EQ(FW_OK, result) << lastMessage(world);
+            hashes[backend == FW_BACKEND_VULKAN].push_back(hash);
+        }
+        fwDestroyContext(context);
+    }
+    EXPECT_EQ(hashes[0], hashes[1]);
+    EXPECT_EQ(4u, std::set<uint64_t>(hashes[0].begin(), hashes[0].end()).size());
 }
 
 TEST(Ignite, AWorldWithoutObjectsSaysSo) {

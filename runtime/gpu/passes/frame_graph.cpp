@@ -168,7 +168,27 @@ void recordExchange(vk::FrameRecorder& recorder, const FrameLists& lists, const 
     light();
 }
 
+// Events that address all texels of an object, with a group for each tile and row of the list: many
+// events of single texels between two such rows are left out.
+void recordWholeObjects(vk::FrameRecorder& recorder, const StepRecord& step, StepPush& push) {
+    constexpr uint32_t kMostBetween = 16;
+    const auto count = uint32_t(step.allTiles != 0 ? step.eventList.size() : 0);
+    for (uint32_t first = 0, end = 0; first < count; first = end) {
+        end = first + 1;
+        if (!addressesAll(step.eventList[first])) continue;
+        for (uint32_t i = end; i < count && i <= end + kMostBetween && i - first < kMaxGroups; ++i)
+            if (addressesAll(step.eventList[i])) end = i + 1;
+        push.object = first;
+        recorder.dispatch(kEventsAllPass, &push, std::min(step.allTiles, kMaxGroups), end - first);
+    }
+}
+
 }  // namespace
+
+bool addressesAll(const TexelEvent& event) noexcept {
+    const uint32_t kind = eventKind(event.kind);
+    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+}
 
 void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord& step) {
     const bool dense = (step.switches & kSwitchDense) != 0;
@@ -209,11 +229,7 @@ void recordStep(vk::FrameRecorder& recorder, FrameLists& lists, const StepRecord
         push.count = step.events.count;
         askThen([&] {
             recorder.dispatch(kEventsPass, &push, (push.count + 63) / 64);
-            for (uint32_t first = step.allFirst; first < step.allEnd; first += kMaxGroups) {
-                push.object = first;
-                recorder.dispatch(kEventsAllPass, &push, std::min(step.allTiles, kMaxGroups),
-                                  std::min(step.allEnd - first, kMaxGroups));
-            }
+            recordWholeObjects(recorder, step, push);
         });
     }
     if (step.rooms) {

@@ -74,6 +74,8 @@ struct PublishedStep {  // one object in as-published mode
 };
 uint32_t publishedGroups(const BurnObject& object);
 
+[[nodiscard]] bool addressesAll(const TexelEvent& event) noexcept;  // texels of its object
+
 struct StepRecord {
     uint32_t now = 0, stepShift = 0, switches = 0;
     bool iterate = true;  // false: the front is known to be empty
@@ -81,10 +83,9 @@ struct StepRecord {
     bool heat = false;
     bool rooms = false;  // their air, before heat
     Staged events;
-    // The first and behind the last of those that address all texels of an object, and the tiles of
-    // the largest such object.
-    uint32_t allFirst = 0, allEnd = 0, allTiles = 0;
-    Staged wakeGroups;  // of latches; with the dense switch: of all objects
+    std::span<const TexelEvent> eventList;  // the same
+    uint32_t allTiles = 0;  // of the largest object that one addresses as a whole; 0: none does
+    Staged wakeGroups;      // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
     std::span<const PublishedStep> published;
     bool governed = false, capped = false, plays = false;

@@ -274,12 +274,6 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
     return staged;
 }
 
-// All texels of its object.
-bool addressesAll(const TexelEvent& event) noexcept {
-    const uint32_t kind = eventKind(event.kind);
-    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
-}
-
 // An object that an event reaches is drawn as one that may burn from now on.
 void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.objects[event.object];
@@ -518,13 +512,11 @@ void VkBackend::State::run(const FramePlan& plan) {
         const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
         step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
         step.events = writer.write(planned.events);
-        for (uint32_t i = 0; i < planned.events.size(); ++i) {
-            const TexelEvent& event = planned.events[i];
+        step.eventList = planned.events;
+        for (const TexelEvent& event : planned.events) {
             noteEvent(*this, event, planned.now);
-            if (!addressesAll(event)) continue;
-            if (step.allEnd == 0) step.allFirst = i;
-            step.allEnd = i + 1;
-            step.allTiles = std::max(step.allTiles, objects[event.object].record.tileCount);
+            if (addressesAll(event))
+                step.allTiles = std::max(step.allTiles, objects[event.object].record.tileCount);
         }
         if (needs.publishedRuns) {
             for (PublishedStep& one : published) {
