@@ -17,15 +17,6 @@ void readColor(const std::vector<double>& from, std::array<float, 4>& to) {
     for (size_t i = 0; i < from.size() && i < 4; ++i) to[i] = static_cast<float>(unit(from[i], 1));
 }
 
-double toLinear(double value) {
-    return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
-}
-
-uint8_t toSrgb(double value) {
-    value = value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1 / 2.4) - 0.055;
-    return static_cast<uint8_t>(std::lround(255 * std::clamp(value, 0.0, 1.0)));
-}
-
 double brightness(const glm::dvec3& c) { return 0.299 * c.x + 0.587 * c.y + 0.114 * c.z; }
 
 // How far a specular-glossiness surface is a metal, which is black in diffuse light and has its
@@ -62,7 +53,8 @@ void addMetal(DecodedImage& diffuse, const std::array<float, 4>& factor,
             if (share <= 0) continue;
             for (int c = 0; c < 3; ++c) {
                 const double wanted = glm::mix(base[c], metal[c], share);
-                to[c] = toSrgb(wanted / std::max(double(factor[size_t(c)]), 1e-3));
+                const double stored = toSrgb(wanted / std::max(double(factor[size_t(c)]), 1e-3));
+                to[c] = static_cast<uint8_t>(std::lround(255 * std::clamp(stored, 0.0, 1.0)));
             }
         }
     }

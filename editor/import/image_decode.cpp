@@ -37,12 +37,10 @@ const char* nameFor(std::span<const uint8_t> bytes) {
 // Numbers of light, as films have them, as bytes of a picture.
 void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_t> bytes) {
     for (size_t i = 0; i < linear.size(); ++i) {
-        const float value = std::clamp(linear[i], 0.0f, 1.0f);  // not a number: 0
+        const float value = linear[i] > 0 ? std::min(linear[i], 1.0f) : 0.0f;  // not a number: 0
         const bool alpha = channels % 2 == 0 && i % channels == channels - 1;
-        const float shown = alpha                 ? value
-                            : value <= 0.0031308f ? 12.92f * value
-                                                  : 1.055f * std::pow(value, 1 / 2.4f) - 0.055f;
-        bytes[i] = static_cast<uint8_t>(std::lround(255 * (shown > 0 ? shown : 0.0f)));
+        const double shown = alpha ? double(value) : toSrgb(double(value));
+        bytes[i] = static_cast<uint8_t>(std::lround(255 * shown));
     }
 }
 
@@ -58,6 +56,14 @@ void divideByAlpha(std::span<T> values, size_t channels, float most) {
 }
 
 }  // namespace
+
+double toLinear(double stored) {
+    return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
+}
+
+double toSrgb(double linear) {
+    return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+}
 
 bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error) {
     const char* name = nameFor(bytes);

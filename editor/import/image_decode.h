@@ -16,6 +16,10 @@ struct DecodedImage {
 
 constexpr uint32_t kMaxImageSide = 8192;  // pixels
 
+// The curve of sRGB, of values in [0, 1].
+double toLinear(double stored);
+double toSrgb(double linear);
+
 // False: `error` says why and `image` is untouched.
 bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error);
 

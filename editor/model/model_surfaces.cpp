@@ -38,10 +38,7 @@ std::string nameOf(const ImportedModel& model, size_t material) {
 // Linear, of up to 65,536 pixels that are spread over the whole picture; holes do not count.
 glm::vec3 meanColor(const fwimport::DecodedImage& image, float alphaCutoff) {
     std::array<double, 256> linear{};
-    for (size_t i = 0; i < linear.size(); ++i) {
-        const double s = static_cast<double>(i) / 255;
-        linear[i] = s <= 0.04045 ? s / 12.92 : std::pow((s + 0.055) / 1.055, 2.4);
-    }
+    for (size_t i = 0; i < linear.size(); ++i) linear[i] = fwimport::toLinear(double(i) / 255);
     const size_t count = image.rgba.size() / 4;
     size_t step = std::max<size_t>(1, count / 65536);
     // Has no divisor in common with the width: else some columns would never be looked at.

@@ -177,6 +177,7 @@ bool cookScene(const OutputInput& input, const OutputPlan& plan, FwContext* cpu,
             std::string key;
             const auto model = modelOf(mesh, input.folder, input.assets, error);
             const auto bake = model ? bakeOf(cpu, mesh, *model, input.assets, key, error) : nullptr;
+            if (model && !bake) error = mesh.file + ": " + error;
             if (!bake || !writeAll(out / planned.map, *bake, files, error)) return false;
         }
         if (!planned.paint.empty() &&

@@ -180,7 +180,8 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
         // A cache that cannot be read is made again.
     }
     std::string error;
-    if (!fwmodel::cookMesh(fire.context, def, bytes, error)) throw sample::Failure(error);
+    if (!fwmodel::cookMesh(fire.context, def, bytes, error))
+        throw sample::Failure(subject.name + ": " + error);
     const FwMeshDef cooked = fwmodel::cookedDefOf(bytes);
     fire.check(fwWorld_CreateMesh(fire.world, &cooked, &id), "fwWorld_CreateMesh");
     note = "baked";

@@ -75,6 +75,9 @@ done
 exits 0 "$tools/fw-info" board.gltf --json
 json fw-info
 grep -q -F '"size_x": 2, "size_y": 2, "size_z": 0' out.txt || fail "fw-info has no size in JSON"
+sed 's/{"mesh": 0}/{"mesh": 0, "scale": [1e-9, 1e-9, 1e-9]}/' board.gltf >tiny.gltf
+exits 1 "$tools/fw-cook" tiny.gltf --quiet
+grep -q "tiny.gltf: The mesh's longest side is" err.txt || fail "fw-cook does not name the mesh's file"
 # shares TOOL OPTION...: all at once, then in two shares, each as if on a machine of its own.
 shares() {
     exits 0 "$tools/fw-$1" two.fwscene --json --out "$1_all" "${@:2}"
