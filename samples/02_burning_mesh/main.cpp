@@ -15,7 +15,7 @@
 
 namespace {
 
-struct Wishes {
+struct Settings {
     std::string material = "pine";
     float ignite[3] = {0, 0, 0};  // m, in the studio; used if `igniteGiven`
     bool igniteGiven = false, noCache = false, reversed = false, msaa = false, neutral = false;
@@ -81,33 +81,33 @@ void touch(sample::FireHost& fire, glm::vec3 position, float radius, FwIgnitionK
     fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
 }
 
-BurnMapRequest mapRequestOf(const sample::Options& options, const Wishes& wishes, float size) {
+BurnMapRequest mapRequestOf(const sample::Options& options, const Settings& settings, float size) {
     BurnMapRequest request;
-    request.mapSize = static_cast<uint32_t>(wishes.mapSize);
+    request.mapSize = static_cast<uint32_t>(settings.mapSize);
     request.texelsPerMetre =
         std::clamp(0.5f * static_cast<float>(request.mapSize) / size, 32.0f, 512.0f);
-    if (!wishes.noCache) request.cache = options.out.parent_path() / "cache";
+    if (!settings.noCache) request.cache = options.out.parent_path() / "cache";
     return request;
 }
 
-Subject loadAndReport(const sample::Options& options, const Wishes& wishes) {
-    Subject subject = loadSubject(fileToBurn(options), wishes.size, wishes.neutral);
+Subject loadAndReport(const sample::Options& options, const Settings& settings) {
+    Subject subject = loadSubject(fileToBurn(options), settings.size, settings.neutral);
     for (const auto* notes : {&subject.model.notes, &subject.surfaces.notes})
         for (const std::string& line : *notes)
             std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
     return subject;
 }
 
-int showNeutral(sample::Options options, const Wishes& wishes) {
-    const uint32_t preset = presetNamed(wishes.material);
-    const Subject subject = loadAndReport(options, wishes);
+int showNeutral(sample::Options options, const Settings& settings) {
+    const uint32_t preset = presetNamed(settings.material);
+    const Subject subject = loadAndReport(options, settings);
     options.headless = true;
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest request;
         request.colorFormat = VK_FORMAT_R8G8B8A8_SRGB;
-        request.samples = wishes.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+        request.samples = settings.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
         std::copy(fwmodel::kNeutralBackground.begin(), fwmodel::kNeutralBackground.end(),
                   request.clearColor);
         sample::Stage stage(host, options, request, 1);
@@ -115,15 +115,15 @@ int showNeutral(sample::Options options, const Wishes& wishes) {
         fire.registerTarget(stage);
         std::string bakeNote;
         const FwMeshId mesh =
-            createMesh(fire, subject, mapRequestOf(options, wishes, subject.size()), bakeNote);
+            createMesh(fire, subject, mapRequestOf(options, settings, subject.size()), bakeNote);
         placeSubject(fire, subject, mesh, preset);
         const std::filesystem::path file = options.out / "neutral.png";
         stage.onPicture = [&](uint32_t, sample::Picture&& picture) {
             sample::writePng(file, picture);
         };
-        const FwView view =
-            fwmodel::neutralView(subject.model.low, subject.model.high, {wishes.yaw, wishes.pitch},
-                                 stage.extent().width, stage.extent().height);
+        const FwView view = fwmodel::neutralView(subject.model.low, subject.model.high,
+                                                 {settings.yaw, settings.pitch},
+                                                 stage.extent().width, stage.extent().height);
         sample::StageFrame frame;
         while (stage.next(frame)) {
             fire.recordOutside(frame, view);
@@ -137,28 +137,29 @@ int showNeutral(sample::Options options, const Wishes& wishes) {
     return validation.exitCode();
 }
 
-int run(const sample::Options& options, const Wishes& wishes) {
-    const uint32_t preset = presetNamed(wishes.material);
-    const Subject subject = loadAndReport(options, wishes);
+int run(const sample::Options& options, const Settings& settings) {
+    const uint32_t preset = presetNamed(settings.material);
+    const Subject subject = loadAndReport(options, settings);
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: " + subject.name;
-        stageRequest.reversedDepth = wishes.reversed;
-        stageRequest.samples = wishes.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
-        const uint32_t frames = sample::framesOf(options, wishes.seconds);
+        stageRequest.reversedDepth = settings.reversed;
+        stageRequest.samples = settings.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
+        const uint32_t frames = sample::framesOf(options, settings.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
-        sample::Turntable table(
-            stage, orbitAround(subject, wishes.yaw, wishes.pitch, stage.extent()), wishes.turn);
+        sample::Turntable table(stage,
+                                orbitAround(subject, settings.yaw, settings.pitch, stage.extent()),
+                                settings.turn);
         const FwView& view = table.view;
 
         // Faster than wood burns: so that the fire is through the subject before the run is over.
         FwMaterialDef material = fwDefaultMaterialDef();
         fwInitMaterialPreset(&material, preset);
-        float pace = wishes.pace;
+        float pace = settings.pace;
         if (!(pace > 0)) {
             const float seconds =
                 options.headless ? static_cast<float>(frames / options.fps) : 25.0f;
@@ -171,12 +172,12 @@ int run(const sample::Options& options, const Wishes& wishes) {
         worldDef.paceFactor = pace;
         worldDef.seed = options.seed;
         worldDef.maxStepsPerFrame = 64;
-        for (int c = 0; c < 3; ++c) worldDef.wind[c] = wishes.wind[c];
+        for (int c = 0; c < 3; ++c) worldDef.wind[c] = settings.wind[c];
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
         std::string bakeNote;
         const FwMeshId mesh =
-            createMesh(fire, subject, mapRequestOf(options, wishes, subject.size()), bakeNote);
+            createMesh(fire, subject, mapRequestOf(options, settings, subject.size()), bakeNote);
         const FwBurnableMeshId object = placeSubject(fire, subject, mesh, preset);
 
         const fwmodel::SolidTriangles solid =
@@ -184,8 +185,8 @@ int run(const sample::Options& options, const Wishes& wishes) {
         studio.castShadow(solid.positions, solid.indices, glm::mat4(1.0f),
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
         const float matchRadius = 0.03f * subject.size();
-        glm::vec3 match(wishes.ignite[0], wishes.ignite[1], wishes.ignite[2]);
-        if (!wishes.igniteGiven) match = matchPlace(subject, table.orbit.camera().eye).position;
+        glm::vec3 match(settings.ignite[0], settings.ignite[1], settings.ignite[2]);
+        if (!settings.igniteGiven) match = matchPlace(subject, table.orbit.camera().eye).position;
 
         sample::Filming filming(stage, options, {.name = "burning_mesh"});
 
@@ -235,7 +236,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
             summary.rows.emplace_back("burn map", line);
             summary.rows.emplace_back("", bakeNote);
             std::snprintf(line, sizeof line, "%s, %.0f times as fast as real; %.0f %% caught fire",
-                          wishes.material.c_str(), pace, 100.0f * state.burntFraction);
+                          settings.material.c_str(), pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
             if (dropped > 0) {
                 std::snprintf(line, sizeof line, "%.1f s of time were dropped: lower --pace",
@@ -259,27 +260,27 @@ int main(int argc, char** argv) {
         options.fps = 8.0;
         options.width = 768;
         options.height = 432;
-        Wishes wishes;
+        Settings settings;
         sample::OptionParser parser("02_burning_mesh", "any glTF mesh burns", "[FILE.glb]");
         parser.addText("--material", "NAME", "what it is made of; --list names them",
-                       wishes.material);
-        parser.addVector("--ignite", "where to light it, m, floor is 0", wishes.ignite,
-                         &wishes.igniteGiven);
-        parser.addNumber("--pace", "how much faster than real", wishes.pace, 0.1f, 1000.0f);
-        parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);
-        parser.addNumber("--turn", "turntable, degrees a second", wishes.turn, -360.0f, 360.0f);
-        parser.addNumber("--yaw", "camera around it, degrees", wishes.yaw, -360.0f, 360.0f);
-        parser.addNumber("--pitch", "camera above it, degrees", wishes.pitch, -5.0f, 85.0f);
-        parser.addVector("--wind", "m/s", wishes.wind);
-        parser.addNumber("--scale-to", "largest side, m", wishes.size, 0.05f, 20.0f);
-        parser.addNumber("--map", "side of the burn map, texels", wishes.mapSize, 8.0f, 4096.0f);
-        parser.addFlag("--no-cache", "bake anew", wishes.noCache);
-        parser.addFlag("--msaa", "four samples", wishes.msaa);
-        parser.addFlag("--reversed", "reversed depth", wishes.reversed);
+                       settings.material);
+        parser.addVector("--ignite", "where to light it, m, floor is 0", settings.ignite,
+                         &settings.igniteGiven);
+        parser.addNumber("--pace", "how much faster than real", settings.pace, 0.1f, 1000.0f);
+        parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
+        parser.addNumber("--turn", "turntable, degrees a second", settings.turn, -360.0f, 360.0f);
+        parser.addNumber("--yaw", "camera around it, degrees", settings.yaw, -360.0f, 360.0f);
+        parser.addNumber("--pitch", "camera above it, degrees", settings.pitch, -5.0f, 85.0f);
+        parser.addVector("--wind", "m/s", settings.wind);
+        parser.addNumber("--scale-to", "largest side, m", settings.size, 0.05f, 20.0f);
+        parser.addNumber("--map", "side of the burn map, texels", settings.mapSize, 8.0f, 4096.0f);
+        parser.addFlag("--no-cache", "bake again", settings.noCache);
+        parser.addFlag("--msaa", "four samples", settings.msaa);
+        parser.addFlag("--reversed", "reversed depth", settings.reversed);
         parser.addFlag("--neutral",
                        "one picture of it as the file has it, in even light before grey, into "
                        "neutral.png",
-                       wishes.neutral);
+                       settings.neutral);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("materials:");
@@ -291,6 +292,6 @@ int main(int argc, char** argv) {
             std::printf("\n");
             return 0;
         }
-        return wishes.neutral ? showNeutral(options, wishes) : run(options, wishes);
+        return settings.neutral ? showNeutral(options, settings) : run(options, settings);
     });
 }

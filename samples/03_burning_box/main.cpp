@@ -13,7 +13,7 @@
 
 namespace {
 
-struct Wishes {
+struct Settings {
     bool plain = false, published = false, tongues = false;
     float seconds = 12;      // of a headless run
     float pace = 60;         // so that boards of 20 mm are gone in the run
@@ -40,7 +40,7 @@ Box makeBox(glm::vec3 low, glm::vec3 high) {
 
 constexpr float kApart = 0.6f;  // m, of two boxes from the middle
 
-FwBurnableMeshDef describeBox(sample::FireHost& fire, const Box& box, const Wishes& wishes) {
+FwBurnableMeshDef describeBox(sample::FireHost& fire, const Box& box, const Settings& settings) {
     FwMeshDef mesh = fwDefaultMeshDef();
     mesh.positions = box.positions.data();
     mesh.indices = box.indices.data();
@@ -50,11 +50,11 @@ FwBurnableMeshDef describeBox(sample::FireHost& fire, const Box& box, const Wish
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef pine = fwDefaultMaterialDef();
-    pine.thickness = wishes.wall;
+    pine.thickness = settings.wall;
     pine.spreadRate *= 2;  // dry kindling
     fire.check(fwWorld_CreateMaterial(fire.world, &pine, &def.materials[0]),
                "fwWorld_CreateMaterial");
-    def.refineDepth = static_cast<uint32_t>(std::lround(wishes.depth));
+    def.refineDepth = static_cast<uint32_t>(std::lround(settings.depth));
     return def;
 }
 
@@ -122,7 +122,7 @@ void light(sample::FireHost& fire, FwBurnableMeshId object, glm::vec3 aside) {
     fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
 }
 
-int run(const sample::Options& options, const Wishes& wishes) {
+int run(const sample::Options& options, const Settings& settings) {
     const Box box = makeBox({-0.4f, 0, -0.3f}, {0.4f, 0.6f, 0.3f});
     sample::ValidationLog validation;
     {
@@ -131,39 +131,40 @@ int run(const sample::Options& options, const Wishes& wishes) {
         stageRequest.title = "Flamewright: a burning box";
         stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
         stageRequest.lendAs(options);
-        const uint32_t frames = sample::framesOf(options, wishes.seconds);
+        const uint32_t frames = sample::framesOf(options, settings.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
-        sample::Turntable table(stage,
-                                {.target = {0, wishes.tongues ? 0.29f : 0.62f, 0},
-                                 .distance = wishes.distance * (wishes.published ? 1.5f : 1.0f) *
-                                             (wishes.tongues ? 1.0f : 1.45f),
-                                 .yaw = glm::radians(32.0f),
-                                 .pitch = glm::radians(20.0f),
-                                 .fieldOfView = 0.5f},
-                                wishes.turn);
+        sample::Turntable table(
+            stage,
+            {.target = {0, settings.tongues ? 0.29f : 0.62f, 0},
+             .distance = settings.distance * (settings.published ? 1.5f : 1.0f) *
+                         (settings.tongues ? 1.0f : 1.45f),
+             .yaw = glm::radians(32.0f),
+             .pitch = glm::radians(20.0f),
+             .fieldOfView = 0.5f},
+            settings.turn);
         const FwView& view = table.view;
 
         FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.paceFactor = wishes.pace;
+        worldDef.paceFactor = settings.pace;
         worldDef.seed = options.seed;
         worldDef.maxStepsPerFrame = 64;
         worldDef.maxRefinedTriangles = 60000;
-        if (!wishes.tongues) worldDef.maxFlames = 0;
+        if (!settings.tongues) worldDef.maxFlames = 0;
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage, true);
-        const FwBurnableMeshDef def = describeBox(fire, box, wishes);
+        const FwBurnableMeshDef def = describeBox(fire, box, settings);
         // To the right, as the camera first stands.
         const glm::vec3 right(std::cos(table.orbit.yaw), 0, -std::sin(table.orbit.yaw));
-        const glm::vec3 aside = right * (wishes.published ? kApart : 0.0f);
+        const glm::vec3 aside = right * (settings.published ? kApart : 0.0f);
         const FwBurnableMeshId object =
-            placeBox(fire, def, wishes.plain ? 0u : uint32_t(FW_BURNABLE_REFINE), -aside);
+            placeBox(fire, def, settings.plain ? 0u : uint32_t(FW_BURNABLE_REFINE), -aside);
         FwBurnableMeshId other{};
-        if (wishes.published) other = placeBox(fire, def, FW_BURNABLE_REFINE_PUBLISHED, aside);
-        if (!wishes.tongues) addParticles(fire, object);
+        if (settings.published) other = placeBox(fire, def, FW_BURNABLE_REFINE_PUBLISHED, aside);
+        if (!settings.tongues) addParticles(fire, object);
         std::vector<float> positions = box.positions;
         std::vector<uint32_t> indices = box.indices;
-        if (wishes.published) {
+        if (settings.published) {
             for (size_t i = 0; i < box.positions.size(); ++i)
                 positions.push_back(box.positions[i] + aside[int(i % 3)]);
             for (size_t i = 0; i < box.positions.size(); ++i) positions[i] -= aside[int(i % 3)];
@@ -179,10 +180,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
         while (table.next(frame)) {
             if (frame.number == 1) {  // one frame of the untouched thing first
                 light(fire, object, -aside);
-                if (wishes.published) light(fire, other, aside);
+                if (settings.published) light(fire, other, aside);
             }
             sample::showStudio(frame, stage, studio, fire, view);
-            for (int i = 0; i < (wishes.published ? 2 : 1); ++i) {
+            for (int i = 0; i < (settings.published ? 2 : 1); ++i) {
                 last[i] = fire.objectState(i ? other : object).refinedTriangles;
                 most[i] = std::max(most[i], last[i]);
             }
@@ -194,9 +195,9 @@ int run(const sample::Options& options, const Wishes& wishes) {
             summary.title = "A box of twelve triangles";
             summary.rows.emplace_back("device", host.properties.deviceName);
             std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
-                          wishes.pace, 100.0f * state.burntFraction);
+                          settings.pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
-            for (int i = 0; i < (wishes.published ? 2 : 1); ++i) {
+            for (int i = 0; i < (settings.published ? 2 : 1); ++i) {
                 std::snprintf(line, sizeof line, "%u triangles at most, %u at the end", most[i],
                               last[i]);
                 summary.rows.emplace_back(i ? "as published" : "refined", line);
@@ -215,18 +216,18 @@ int main(int argc, char** argv) {
         options.fps = 10.0;
         options.width = 640;
         options.height = 480;
-        Wishes wishes;
+        Settings settings;
         sample::OptionParser parser("03_burning_box", "twelve triangles burn");
-        parser.addFlag("--plain", "without refinement", wishes.plain);
+        parser.addFlag("--plain", "without refinement", settings.plain);
         parser.addFlag("--published", "beside it one refined by the published scheme",
-                       wishes.published);
-        parser.addFlag("--tongues", "flames of its tiles instead of particles", wishes.tongues);
-        parser.addNumber("--depth", "halvings of an edge", wishes.depth, 0.0f, 5.0f);
-        parser.addNumber("--pace", "how much faster than real", wishes.pace, 0.1f, 1000.0f);
-        parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);
-        parser.addNumber("--turn", "turntable, degrees a second", wishes.turn, -360.0f, 360.0f);
-        parser.addNumber("--wall", "thickness of the boards, m", wishes.wall, 0.001f, 0.1f);
-        parser.addNumber("--distance", "of the camera, m", wishes.distance, 0.3f, 50.0f);
+                       settings.published);
+        parser.addFlag("--tongues", "flames of its tiles instead of particles", settings.tongues);
+        parser.addNumber("--depth", "halvings of an edge", settings.depth, 0.0f, 5.0f);
+        parser.addNumber("--pace", "how much faster than real", settings.pace, 0.1f, 1000.0f);
+        parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
+        parser.addNumber("--turn", "turntable, degrees a second", settings.turn, -360.0f, 360.0f);
+        parser.addNumber("--wall", "thickness of the boards, m", settings.wall, 0.001f, 0.1f);
+        parser.addNumber("--distance", "of the camera, m", settings.distance, 0.3f, 50.0f);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         parser.addLending(options);
         if (!parser.parse(argc, argv, options)) return 0;
@@ -234,7 +235,7 @@ int main(int argc, char** argv) {
             std::printf("one box\n");
             return 0;
         }
-        wishes.tongues |= wishes.published;  // what is compared is the surface
-        return run(options, wishes);
+        settings.tongues |= settings.published;  // what is compared is the surface
+        return run(options, settings);
     });
 }

@@ -26,7 +26,7 @@ constexpr uint32_t kStepsPerSecond = 32;
 constexpr float kStep = 1.0f / kStepsPerSecond;
 constexpr double kPatience = 30;  // s without the other one
 
-struct Wishes {
+struct Settings {
     uint32_t crates = 36, steps = 12 * kStepsPerSecond, seed = 1;
     uint16_t port = 0;  // of the server, for a client; 0: this is the server
     WireWeather weather;
@@ -43,44 +43,44 @@ constexpr const char* kUsage =
     "  --out DIR    leave DIR/server.txt and DIR/client.txt: step and hash\n"
     "  --port P     be the client of the server at this port (it starts its own)\n";
 
-Wishes readArguments(int count, char** arguments) {
-    Wishes wishes;
+Settings readArguments(int count, char** arguments) {
+    Settings settings;
     for (int i = 1; i < count; ++i) {
         const std::string name = arguments[i];
         if (name == "--headless") continue;  // it never has a window
         if (i + 1 == count) throw std::runtime_error(name + " has no value, or is not known");
         const char* value = arguments[++i];
         if (name == "--crates") {
-            wishes.crates = wholeOf(name, value, 1, 1000);
+            settings.crates = wholeOf(name, value, 1, 1000);
         } else if (name == "--frames") {
-            wishes.steps = wholeOf(name, value, 1, 1000000);
+            settings.steps = wholeOf(name, value, 1, 1000000);
         } else if (name == "--seconds") {
-            wishes.steps = kStepsPerSecond * wholeOf(name, value, 1, 30000);
+            settings.steps = kStepsPerSecond * wholeOf(name, value, 1, 30000);
         } else if (name == "--seed") {
-            wishes.seed = wholeOf(name, value, 0, 0x7FFFFFFF);
+            settings.seed = wholeOf(name, value, 0, 0x7FFFFFFF);
         } else if (name == "--loss") {
-            wishes.weather.loss = wholeOf(name, value, 0, 90) / 100.0;
+            settings.weather.loss = wholeOf(name, value, 0, 90) / 100.0;
         } else if (name == "--delay") {
-            wishes.weather.latest = wholeOf(name, value, 0, 500) / 1000.0;
-            wishes.weather.soonest = wishes.weather.latest / 6;
+            settings.weather.latest = wholeOf(name, value, 0, 500) / 1000.0;
+            settings.weather.soonest = settings.weather.latest / 6;
         } else if (name == "--port") {
-            wishes.port = uint16_t(wholeOf(name, value, 1, 65535));
+            settings.port = uint16_t(wholeOf(name, value, 1, 65535));
         } else if (name == "--out") {
-            wishes.out = value;
+            settings.out = value;
         } else if (name != "--size") {
             throw std::runtime_error(name + " is not known; --help lists the arguments");
         }
     }
-    return wishes;
+    return settings;
 }
 
 // A world of a yard on the cpu backend; the same on both sides.
 class Side {
  public:
-    explicit Side(const Wishes& wishes)
-        : wishes_(wishes),
-          isServer_(wishes.port == 0),
-          wire_(0, wishes.weather, wishes.seed * 2 + (isServer_ ? 0 : 1)),
+    explicit Side(const Settings& settings)
+        : settings_(settings),
+          isServer_(settings.port == 0),
+          wire_(0, settings.weather, settings.seed * 2 + (isServer_ ? 0 : 1)),
           start_(Clock::now()) {
         FwContextDef contextDef = fwDefaultContextDef();
         contextDef.backend = FW_BACKEND_CPU;
@@ -90,7 +90,7 @@ class Side {
         FwWorldDef def = fwDefaultWorldDef();
         def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
         def.paceFactor = 10;
-        def.seed = wishes.seed;
+        def.seed = settings.seed;
         def.wind[0] = 2;
         if (fwCreateWorld(context_, &def, &world_) != FW_OK) {
             char why[512] = "";
@@ -98,7 +98,7 @@ class Side {
             fwDestroyContext(context_);
             throw std::runtime_error(why);
         }
-        yard_ = makeYard(world_, wishes.crates);
+        yard_ = makeYard(world_, settings.crates);
         FwNetDef net = fwDefaultNetDef();
         net.token = std::random_device{}() | 1;
         check(isServer_ ? fwNet_Serve(world_, &net) : fwNet_Join(world_, &net));
@@ -155,15 +155,15 @@ class Side {
                     hash.c_str(), static_cast<unsigned long long>(end.bytesOut),
                     static_cast<unsigned long long>(end.bytesIn));
         std::fflush(stdout);
-        if (wishes_.out.empty()) return;
-        std::filesystem::create_directories(wishes_.out);
-        std::ofstream file(std::filesystem::path(wishes_.out) /
+        if (settings_.out.empty()) return;
+        std::filesystem::create_directories(settings_.out);
+        std::ofstream file(std::filesystem::path(settings_.out) /
                            (isServer_ ? "server.txt" : "client.txt"));
         file << end.step << ' ' << hash << '\n';
-        if (!file.flush()) throw std::runtime_error(wishes_.out + " cannot be written");
+        if (!file.flush()) throw std::runtime_error(settings_.out + " cannot be written");
     }
 
-    Wishes wishes_;
+    Settings settings_;
     bool isServer_;
     Wire wire_;
     FwContext* context_ = nullptr;
@@ -187,12 +187,12 @@ class Server : public Side {
         double heard = 0;
         for (;;) {
             const double now = seconds();
-            for (; step < wishes_.steps && double(step) * double(kStep) <= now; ++step) {
+            for (; step < settings_.steps && double(step) * double(kStep) <= now; ++step) {
                 act(step);
                 check(fwWorld_Step(world_, kStep));
             }
             // The last that it says, to a client that is there.
-            if (step == wishes_.steps && told.empty() && follows()) {
+            if (step == settings_.steps && told.empty() && follows()) {
                 told = hash();
                 check(fwNet_Tell(world_, told.data(), uint32_t(told.size())));
                 leave(told);
@@ -213,7 +213,7 @@ class Server : public Side {
             });
             if (client_ != 0) send(peer_, client_, now);
             if (!told.empty() && state().records == 0) return true;
-            if (step < wishes_.steps) heard = now;
+            if (step < settings_.steps) heard = now;
             if (now - heard > kPatience) return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(4));
         }
@@ -268,7 +268,7 @@ class Client : public Side {
             const double now = seconds();
             // A damaged packet is refused, and comes again.
             exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
-                if (from == wishes_.port) (void)fwNet_Read(world_, {}, packet, size);
+                if (from == settings_.port) (void)fwNet_Read(world_, {}, packet, size);
             });
             FwNetTurn turn{};
             turn.structSize = sizeof turn;
@@ -293,7 +293,7 @@ class Client : public Side {
                             static_cast<unsigned long long>(at.step));
             }
             if (at.step != step || !followed) step = at.step, progress = now;
-            send({}, wishes_.port, now);
+            send({}, settings_.port, now);
             // A little longer, so that the server hears that all has come.
             if (done && now - doneAt > 2) return equal;
             if (!done && (now - progress > kPatience || double(at.silent) > kPatience))
@@ -316,8 +316,8 @@ pid_t startClient(int count, char** arguments, uint16_t port) {
     _exit(127);
 }
 
-bool serve(const Wishes& wishes, int count, char** arguments) {
-    Server server(wishes);
+bool serve(const Settings& settings, int count, char** arguments) {
+    Server server(settings);
     const pid_t client = startClient(count, arguments, server.port());
     if (client < 0) throw std::runtime_error("the client cannot be started");
     const bool heard = server.run();
@@ -334,8 +334,10 @@ int main(int count, char** arguments) {
     for (int i = 1; i < count; ++i)
         if (std::strcmp(arguments[i], "--help") == 0) return std::puts(kUsage), 0;
     try {
-        const Wishes wishes = readArguments(count, arguments);
-        return (wishes.port == 0 ? serve(wishes, count, arguments) : Client(wishes).run()) ? 0 : 1;
+        const Settings settings = readArguments(count, arguments);
+        return (settings.port == 0 ? serve(settings, count, arguments) : Client(settings).run())
+                   ? 0
+                   : 1;
     } catch (const std::exception& failure) {
         std::fprintf(stderr, "12_multiplayer: %s\n", failure.what());
         return 1;

@@ -21,7 +21,7 @@ namespace {
 constexpr uint32_t kStepsPerSecond = 32;
 constexpr float kStep = 1.0f / kStepsPerSecond;
 
-struct Wishes {
+struct Settings {
     uint32_t crates = 100, steps = 20 * kStepsPerSecond, seed = 1;
     bool fast = false;  // do not wait for the clock
     bool baked = false;
@@ -37,36 +37,36 @@ constexpr const char* kUsage =
     "  --baked      crates play a burn baked of one until something disturbs them\n"
     "  --out DIR    leave DIR/server.fwsave at the end\n";
 
-Wishes readArguments(int count, char** arguments) {
-    Wishes wishes;
+Settings readArguments(int count, char** arguments) {
+    Settings settings;
     for (int i = 1; i < count; ++i) {
         const std::string name = arguments[i];
         if (name == "--fast") {
-            wishes.fast = true;
+            settings.fast = true;
             continue;
         }
         if (name == "--baked") {
-            wishes.baked = true;
+            settings.baked = true;
             continue;
         }
         if (name == "--headless") continue;  // as all samples: it never has a window
         if (i + 1 == count) throw std::runtime_error(name + " has no value, or is not known");
         const char* value = arguments[++i];
         if (name == "--crates") {
-            wishes.crates = wholeOf("--crates", value, 1, 1000);
+            settings.crates = wholeOf("--crates", value, 1, 1000);
         } else if (name == "--frames") {
-            wishes.steps = wholeOf("--frames", value, 1, 1000000);
+            settings.steps = wholeOf("--frames", value, 1, 1000000);
         } else if (name == "--seconds") {
-            wishes.steps = kStepsPerSecond * wholeOf("--seconds", value, 1, 30000);
+            settings.steps = kStepsPerSecond * wholeOf("--seconds", value, 1, 30000);
         } else if (name == "--seed") {
-            wishes.seed = wholeOf("--seed", value, 0, 0x7FFFFFFF);
+            settings.seed = wholeOf("--seed", value, 0, 0x7FFFFFFF);
         } else if (name == "--out") {
-            wishes.out = value;
+            settings.out = value;
         } else if (name != "--size") {
             throw std::runtime_error(name + " is not known; --help lists the arguments");
         }
     }
-    return wishes;
+    return settings;
 }
 
 // The processor's time, of all threads of the process.
@@ -102,12 +102,12 @@ std::string bakeCrate(FwWorld* world) {
 }
 
 // `burn`: what crates play; null: they are lit.
-void serve(FwWorld* world, const Yard& yard, FwBurnId burn, const Wishes& wishes) {
+void serve(FwWorld* world, const Yard& yard, FwBurnId burn, const Settings& settings) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
     double spent = 0, worst = 0, all = 0;  // s: of the second, its longest step, of the run
     uint32_t lit = 0;
-    for (uint32_t step = 0; step < wishes.steps; ++step) {
+    for (uint32_t step = 0; step < settings.steps; ++step) {
         // All of them are alight within two seconds.
         for (; lit < yard.crates.size() && lit * 2 * kStepsPerSecond <= step * yard.crates.size();
              ++lit)
@@ -135,17 +135,17 @@ void serve(FwWorld* world, const Yard& yard, FwBurnId burn, const Wishes& wishes
             std::fflush(stdout);
             spent = worst = 0;
         }
-        if (!wishes.fast)
+        if (!settings.fast)
             std::this_thread::sleep_until(
                 start + std::chrono::duration_cast<Clock::duration>(
                             std::chrono::duration<double>(double(step + 1) * double(kStep))));
     }
     std::printf("%u steps of %zu crates: %.2f ms of the processor each, %.1f %% of a core\n",
-                wishes.steps, yard.crates.size(), 1000 * all / wishes.steps,
-                100 * all / (wishes.steps * double(kStep)));
+                settings.steps, yard.crates.size(), 1000 * all / settings.steps,
+                100 * all / (settings.steps * double(kStep)));
 }
 
-void run(const Wishes& wishes) {
+void run(const Settings& settings) {
     FwContextDef contextDef = fwDefaultContextDef();
     contextDef.backend = FW_BACKEND_CPU;
     FwContext* context = nullptr;
@@ -159,7 +159,7 @@ void run(const Wishes& wishes) {
     FwWorldDef def = fwDefaultWorldDef();
     def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
     def.paceFactor = 10;
-    def.seed = wishes.seed;
+    def.seed = settings.seed;
     def.wind[0] = 2;
     const auto createWorld = [&] {
         FwWorld* made = nullptr;
@@ -169,18 +169,18 @@ void run(const Wishes& wishes) {
         throw std::runtime_error(why);
     };
     std::string baked;
-    if (wishes.baked) {
+    if (settings.baked) {
         FwWorld* alone = createWorld();  // the context's, if it throws
         baked = bakeCrate(alone);
         fwDestroyWorld(alone);
         std::printf("a crate's burn: %zu bytes\n", baked.size());
     }
     FwWorld* world = createWorld();
-    const Yard yard = makeYard(world, wishes.crates);
+    const Yard yard = makeYard(world, settings.crates);
     FwBurnId burn{};
-    if (wishes.baked) check(fwWorld_CreateBurn(world, baked.data(), baked.size(), &burn), world);
-    serve(world, yard, burn, wishes);
-    if (!wishes.out.empty()) save(world, wishes.out);
+    if (settings.baked) check(fwWorld_CreateBurn(world, baked.data(), baked.size(), &burn), world);
+    serve(world, yard, burn, settings);
+    if (!settings.out.empty()) save(world, settings.out);
 }
 
 }  // namespace

@@ -17,7 +17,7 @@
 
 namespace {
 
-struct Wishes {
+struct Settings {
     float seconds = 10;  // of a headless run; with --link, when time stands still
     std::string port;    // empty: no link
 };
@@ -254,13 +254,13 @@ class Link {
 
 // Without a window: to the time that was wished, where it stands still while scenes come; over once
 // the editor has gone. Leaves the last picture, and prints the hash of what burnt.
-void playForEditor(Player& player, sample::Stage& stage, Link& link, const Wishes& wishes,
+void playForEditor(Player& player, sample::Stage& stage, Link& link, const Settings& settings,
                    const sample::Options& options) {
     sample::Picture last;
     stage.onPicture = [&](uint32_t, sample::Picture&& picture) { last = std::move(picture); };
     sample::StageFrame frame;
     fwlink::LinkedScene scene;
-    const double end = double{wishes.seconds};
+    const double end = double{settings.seconds};
     const auto show = [&](bool waits) {
         const bool news = link.poll(scene);
         if (news) link.takes(scene, player.show(scene));
@@ -319,7 +319,7 @@ void play(Player& player, sample::Stage& stage, Link& link, const sample::Option
     sample::printSummary(summary);
 }
 
-int run(const sample::Options& options, const Wishes& wishes) {
+int run(const sample::Options& options, const Settings& settings) {
     if (options.positional.size() > 1)
         throw sample::Failure("one scene at a time; " + options.positional[1] + " is one too many");
     sample::ValidationLog validation;
@@ -329,10 +329,10 @@ int run(const sample::Options& options, const Wishes& wishes) {
         request.title = "Flamewright: a scene";
         request.vignette = 0.1f;  // as the editor's picture has it
         request.lendScene = true;
-        Link link(wishes.port);
+        Link link(settings.port);
         const bool forEditor = options.headless && link.listens();
         sample::Stage stage(host, options, request,
-                            forEditor ? 0 : sample::framesOf(options, double{wishes.seconds}));
+                            forEditor ? 0 : sample::framesOf(options, double{settings.seconds}));
         Player player(host, stage, cacheFolder(options));
         fwlink::LinkedScene scene;
         if (forEditor && options.positional.empty()) {
@@ -346,7 +346,7 @@ int run(const sample::Options& options, const Wishes& wishes) {
             if (!problem.empty()) throw sample::Failure(problem);
         }
         if (forEditor)
-            playForEditor(player, stage, link, wishes, options);
+            playForEditor(player, stage, link, settings, options);
         else
             play(player, stage, link, options);
     }
@@ -358,14 +358,14 @@ int run(const sample::Options& options, const Wishes& wishes) {
 int main(int argc, char** argv) {
     return sample::guardedMain("14_scene", [&] {
         sample::Options options;
-        Wishes wishes;
+        Settings settings;
         sample::OptionParser parser("14_scene", "a scene of the editor, as a game shows it",
                                     "[FILE.fwscene]");
-        parser.addNumber("--seconds", "length of a headless run", wishes.seconds, 0.1f, 600.0f);
+        parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
         parser.addText("--link", "PORT",
                        "takes changes from an editor of this machine; 0: on any free port",
-                       wishes.port);
+                       settings.port);
         if (!parser.parse(argc, argv, options)) return 0;
-        return run(options, wishes);
+        return run(options, settings);
     });
 }
