@@ -807,14 +807,8 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time) 
     const glm::mat4 matrix = glm::lookAtRH(eye, target, up);
     std::memcpy(view.view, &matrix[0][0], sizeof view.view);
     const float near = std::max(0.002f, 0.02f * camera.distance), far = 60 * camera.distance;
-    const float scale = 1.0f / std::tan(0.5f * glm::radians(camera.fieldOfView));
     const float aspect = static_cast<float>(width) / static_cast<float>(std::max(1u, height));
-    std::fill(std::begin(view.projection), std::end(view.projection), 0.0f);
-    view.projection[0] = scale / aspect;
-    view.projection[5] = -scale;
-    view.projection[10] = far / (near - far);
-    view.projection[11] = -1;
-    view.projection[14] = near * far / (near - far);
+    fwmodel::setPerspective(view, glm::radians(camera.fieldOfView), aspect, near, far);
 
     // cd/m^2; a camera's exposure goes with the light.
     struct Light {

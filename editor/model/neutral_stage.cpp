@@ -38,13 +38,7 @@ FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& 
     std::memcpy(view.view, &matrix[0][0], sizeof view.view);
     const float near = std::max(distance - 1.1f * radius, 1e-3f * distance);
     const float far = distance + 1.1f * radius;
-    const float scale = 1.0f / std::tan(0.5f * kFieldOfView);
-    std::fill(std::begin(view.projection), std::end(view.projection), 0.0f);
-    view.projection[0] = scale / aspect;
-    view.projection[5] = -scale;
-    view.projection[10] = far / (near - far);
-    view.projection[11] = -1;
-    view.projection[14] = near * far / (near - far);
+    setPerspective(view, kFieldOfView, aspect, near, far);
     for (size_t c = 0; c < 3; ++c) {
         view.sunColor[c] = 0;
         view.ambientSky[c] = 1.1f;
@@ -53,6 +47,16 @@ FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& 
     view.exposure = 1;
     view.emissionScale = 1;
     return view;
+}
+
+void setPerspective(FwView& view, float fieldOfView, float aspect, float near, float far) {
+    const float scale = 1.0f / std::tan(0.5f * fieldOfView);
+    std::fill(std::begin(view.projection), std::end(view.projection), 0.0f);
+    view.projection[0] = scale / aspect;
+    view.projection[5] = -scale;
+    view.projection[10] = far / (near - far);
+    view.projection[11] = -1;
+    view.projection[14] = near * far / (near - far);
 }
 
 }  // namespace fwmodel

@@ -22,4 +22,8 @@ struct NeutralCamera {  // looks at the middle of what it shows
 FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& high,
                    const NeutralCamera& camera, uint32_t width, uint32_t height);
 
+// Sets the view's projection: Vulkan's clip space, depth 0 at `near` and 1 at `far`, both in m.
+// fieldOfView: rad, vertical.
+void setPerspective(FwView& view, float fieldOfView, float aspect, float near, float far);
+
 }  // namespace fwmodel
