@@ -41,6 +41,21 @@ bool soon(Ask&& ask) {
     return false;
 }
 
+// An editor with a painted board, and a game that listens for it.
+struct LinkedYard {
+    LinkedYard() {
+        yard.run(kPainted);
+        EXPECT_TRUE(receiver.listen(0, error)) << error;
+    }
+    void link() { yard.run("link " + std::to_string(receiver.port()) + "\n"); }
+    bool poll() { return receiver.poll(scene, report); }
+
+    Yard yard;
+    SceneReceiver receiver;
+    LinkedScene scene;
+    std::string error, report;
+};
+
 TEST(EditorLink, MessagesComeWholeInWhateverPieces) {
     Bytes stream;
     for (uint8_t i = 0; i < 40; ++i)
@@ -222,25 +237,21 @@ TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
 }
 
 TEST(EditorLink, AStrangerOnThePortIsShownOutAndTheNextIsServed) {
-    Yard yard;
-    yard.run(kPainted);
-    SceneReceiver receiver;
-    std::string error, report, said;
-    ASSERT_TRUE(receiver.listen(0, error)) << error;
-    LinkedScene scene;
+    LinkedYard w;
+    std::string said;
     Channel stranger;
-    ASSERT_TRUE(stranger.connect(receiver.port(), error)) << error;
+    ASSERT_TRUE(stranger.connect(w.receiver.port(), w.error)) << w.error;
     // A browser's request is no message, nor is a message that only the editor gets.
     stranger.send(Kind::Taken, Bytes{1, 2, 3});
     EXPECT_TRUE(soon([&] {
         stranger.pump();
-        EXPECT_FALSE(receiver.poll(scene, report));
-        said += report;
+        EXPECT_FALSE(w.poll());
+        said += w.report;
         return !stranger.open();
     }));
     EXPECT_THAT(said, HasSubstr("a message that is for the editor"));
-    yard.run("link " + std::to_string(receiver.port()) + "\n");
-    EXPECT_TRUE(soon([&] { return receiver.poll(scene, report); }));
+    w.link();
+    EXPECT_TRUE(soon([&] { return w.poll(); }));
 }
 
 // A paint message's body of 18 bytes: no tile, for a layer of 4096 x 4096.
@@ -315,42 +326,33 @@ TEST(EditorLink, TilesBeyondTheLimitAreRefusedAndTilesThatGoCountNoLonger) {
 }
 
 TEST(EditorLink, SilentCallersKeepNobodyOutAndTheLastSceneWins) {
-    Yard yard;
-    yard.run(kPainted);
-    SceneReceiver receiver;
-    std::string error, report;
-    ASSERT_TRUE(receiver.listen(0, error)) << error;
-    LinkedScene scene;
+    LinkedYard w;
     std::vector<Channel> silent(3 * SceneReceiver::kMostCallers);
     for (Channel& channel : silent) {
-        ASSERT_TRUE(channel.connect(receiver.port(), error)) << error;
-        EXPECT_FALSE(receiver.poll(scene, report)) << report;
+        ASSERT_TRUE(channel.connect(w.receiver.port(), w.error)) << w.error;
+        EXPECT_FALSE(w.poll()) << w.report;
     }
-    EXPECT_FALSE(receiver.connected());
-    yard.run("link " + std::to_string(receiver.port()) + "\n");
-    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
-    EXPECT_TRUE(receiver.connected());
+    EXPECT_FALSE(w.receiver.connected());
+    w.link();
+    ASSERT_TRUE(soon([&] { return w.poll(); })) << w.report;
+    EXPECT_TRUE(w.receiver.connected());
     // An editor that hangs, or pretends to be one, is replaced by the next that sends a scene.
     Yard other;
     other.run(kPainted);
-    other.run("set settings wind 7 0 0\nlink " + std::to_string(receiver.port()) + "\n");
-    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
-    EXPECT_THAT(report, HasSubstr("Another editor has taken over the link"));
-    EXPECT_EQ(7, scene.scene.settings.wind[0]);
+    other.run("set settings wind 7 0 0\nlink " + std::to_string(w.receiver.port()) + "\n");
+    ASSERT_TRUE(soon([&] { return w.poll(); })) << w.report;
+    EXPECT_THAT(w.report, HasSubstr("Another editor has taken over the link"));
+    EXPECT_EQ(7, w.scene.scene.settings.wind[0]);
 }
 
 TEST(EditorLink, AnEditorThatReadsNoAnswersIsLetGo) {
-    Yard yard;
-    yard.run(kPainted);
-    SceneReceiver receiver;
-    std::string error, report;
-    ASSERT_TRUE(receiver.listen(0, error)) << error;
-    LinkedScene scene;
-    yard.run("link " + std::to_string(receiver.port()) + "\n");
-    ASSERT_TRUE(soon([&] { return receiver.poll(scene, report); })) << report;
+    LinkedYard w;
+    w.link();
+    ASSERT_TRUE(soon([&] { return w.poll(); })) << w.report;
     const std::string answer(60000, 'a');
-    for (int i = 0; i < 1000 && receiver.connected(); ++i) receiver.took(scene.number, answer);
-    EXPECT_FALSE(receiver.connected());
+    for (int i = 0; i < 1000 && w.receiver.connected(); ++i)
+        w.receiver.took(w.scene.number, answer);
+    EXPECT_FALSE(w.receiver.connected());
 }
 
 TEST(EditorLink, AnAnswerThatIsTooLongOrToNoSceneEndsTheLinkInWords) {

@@ -25,17 +25,7 @@ TEST(Threads, ContextsAndWorldsAreMadeAnywhere) {
             FwWorld* world = nullptr;
             const FwWorldDef worldDef = fwDefaultWorldDef();
             ASSERT_EQ(FW_OK, fwCreateWorld(number % 2 ? context : own, &worldDef, &world));
-            const FwMeshDef meshDef = sheet.def(48);
-            FwMeshId mesh{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh));
-            FwMaterialDef materialDef = host::evenMaterial(0.02f, 3);
-            FwMaterialId material{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world, &materialDef, &material));
-            FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-            def.mesh = mesh;
-            def.materials[0] = material;
-            FwBurnableMeshId object{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &object));
+            (void)host::addBurnable(world, sheet.def(48), host::evenMaterial(0.02f, 3));
             FwIgnitionDef ignition = fwDefaultIgnitionDef();
             ignition.radius = 0.05f;
             ASSERT_EQ(FW_OK, fwWorld_Ignite(world, &ignition, nullptr));
