@@ -74,11 +74,12 @@ struct BoardMaterial {
 };
 
 // Boards of 0.2 x 0.6 m, 0.25 m apart along x, upright, towards +z. `grid`: quads along each side
-// of the last one. `ofNode`: of the node's JSON, with its comma.
+// of the last one. `ofNode`: of the node's JSON, with its comma. `leans`: two joints carry each
+// board, the upper of which leans to the left by 40 degrees, in an armature of twice the size.
 // Writes NAME.gltf, NAME.bin and its pictures.
 inline void writeBoardRow(const std::filesystem::path& folder, const std::string& name,
                           const std::vector<BoardMaterial>& materials, uint32_t grid = 1,
-                          const std::string& ofNode = "") {
+                          const std::string& ofNode = "", bool leans = false) {
     std::vector<float> data;
     std::vector<uint32_t> indices;
     std::string views, accessors, primitives, texts, images, textures;
@@ -123,8 +124,24 @@ inline void writeBoardRow(const std::filesystem::path& folder, const std::string
         const size_t index = add(indices.data(), indices.size() * 4,
                                  "\"componentType\":5125,\"type\":\"SCALAR\",\"count\":" +
                                      std::to_string(indices.size()));
+        std::string attributes;
+        if (leans) {
+            std::vector<uint8_t> joints;
+            std::vector<float> weights;
+            for (size_t i = 0; i < places.size(); i += 3) {
+                const float upper = places[i + 1] / 0.6f;
+                joints.insert(joints.end(), {0, 1, 0, 0});
+                weights.insert(weights.end(), {1 - upper, upper, 0, 0});
+            }
+            const size_t joint = add(joints.data(), joints.size(),
+                                     "\"componentType\":5121,\"type\":\"VEC4\"," + many);
+            const size_t weight = add(weights.data(), weights.size() * 4,
+                                      "\"componentType\":5126,\"type\":\"VEC4\"," + many);
+            attributes = ",\"JOINTS_0\":" + std::to_string(joint) +
+                         ",\"WEIGHTS_0\":" + std::to_string(weight);
+        }
         comma(primitives) += "{\"attributes\":{\"POSITION\":" + std::to_string(position) +
-                             ",\"TEXCOORD_0\":" + std::to_string(uv) +
+                             ",\"TEXCOORD_0\":" + std::to_string(uv) + attributes +
                              "},\"indices\":" + std::to_string(index) +
                              ",\"material\":" + std::to_string(k) + "}";
         const BoardMaterial& material = materials[k];
@@ -144,11 +161,18 @@ inline void writeBoardRow(const std::filesystem::path& folder, const std::string
                         "}" + material.more + "}";
     }
     std::ofstream file(folder / (name + ".gltf"));
-    file << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-         << "\"nodes\":[{\"mesh\":0" << ofNode << "}],\"meshes\":[{\"primitives\":[" << primitives
-         << "]}],\"accessors\":[" << accessors << "],\"bufferViews\":[" << views
-         << "],\"buffers\":[{\"uri\":\"" << name << ".bin\",\"byteLength\":" << bytes << "}]";
+    // A skin puts its mesh where the joints are: the mesh's own node has no say.
+    const std::string ofMesh = leans ? ",\"skin\":0,\"translation\":[7,7,7]" : "";
+    const std::string joints = leans ? ",{\"scale\":[2,2,2],\"children\":[2]},{\"children\":[3]},"
+                                       "{\"rotation\":[0,0,0.342020,0.939693]}"
+                                     : "";
+    file << "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":["
+         << (leans ? "0,1" : "0") << "]}],\"nodes\":[{\"mesh\":0" << ofMesh << ofNode << "}"
+         << joints << "],\"meshes\":[{\"primitives\":[" << primitives << "]}],\"accessors\":["
+         << accessors << "],\"bufferViews\":[" << views << "],\"buffers\":[{\"uri\":\"" << name
+         << ".bin\",\"byteLength\":" << bytes << "}]";
     if (!images.empty()) file << ",\"images\":[" << images << "],\"textures\":[" << textures << "]";
+    if (leans) file << ",\"skins\":[{\"joints\":[2,3]}]";
     file << ",\"materials\":[" << texts << "]}";
 }
 

@@ -261,6 +261,8 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
         const char* name;
         std::vector<BoardMaterial> row;
         std::string ofNode{};
+        uint32_t grid = 1;
+        bool leans = false;
     };
     const std::vector<uint8_t> half = plainPng(200, 60, 30, 128), none = plainPng(200, 60, 30, 0);
     const Case cases[] = {
@@ -289,11 +291,12 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
          {{{1, 0.2f, 0.2f}, {}, "", ""}, {{0.2f, 0.2f, 1}, {}, "", ""}},
          ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0}}}"},
         {"grey", {{{0.8f, 0.8f, 0.8f}, {}, "", ""}}},
+        {"skin", {{{0.8f, 0.8f, 0.8f}, {}, "", ""}}, "", 8, true},
     };
     double worst = 0;
     for (const Case& one : cases) {
         const std::string name = one.name;
-        writeBoardRow(yard.folder, name, one.row, 1, one.ofNode);
+        writeBoardRow(yard.folder, name, one.row, one.grid, one.ofNode, one.leans);
         yard.run("new\nimport " + name + ".gltf materials pine\nshot " + name +
                  "_editor.png 320x180 neutral 20 10\n");
         const fs::path out = yard.folder / (name + "_sample");
@@ -309,6 +312,10 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
         EXPECT_LE(difference, 3) << name;
         worst = std::max(worst, difference);
     }
+    EXPECT_GT(
+        Shot(yard.folder / "skin_editor.png").differenceFrom(Shot(yard.folder / "grey_editor.png")),
+        10)
+        << "its joints bend the board";
     std::printf("worst: %.2f\n", worst);
 }
 #endif
