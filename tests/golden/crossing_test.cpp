@@ -29,14 +29,11 @@ class Crossing : public OwnDevice {
         def.noiseAmplitude = 0;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
         object.flags = flags | FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE;
-        EXPECT_EQ(fwWorld_CreateMesh(world, &def, &object.mesh), FW_OK);
         FwMaterialDef wood = fwDefaultMaterialDef();
         wood.thickness = 0.03f;
         wood.recede = 1;
         wood.burnTime = 0.5f;
-        EXPECT_EQ(fwWorld_CreateMaterial(world, &wood, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        EXPECT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        (void)addBurnable(world, def, wood, object);
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.radius = 1;
         EXPECT_EQ(fwWorld_Ignite(world, &match, nullptr), FW_OK);

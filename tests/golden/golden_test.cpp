@@ -2,8 +2,9 @@
 // pictures against the ones beside this file. Simulation is exact; what is drawn may differ a
 // little between devices, hence the tolerances.
 #include "golden/golden_image.h"
+#include "support/burnable.h"
+#include "support/host_context.h"
 #include "support/meshes.h"
-#include "support/vulkan_device.h"
 
 #include <glm/glm.hpp>
 #include <glm/gtc/matrix_transform.hpp>
@@ -21,11 +22,11 @@ constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFL
 void must(VkResult result) { ASSERT_EQ(result, VK_SUCCESS); }
 
 // A host's pass with colour and depth, and a way to read the picture.
-class Golden : public GpuTest {
+class Golden : public HostContext {
  protected:
     void SetUp() override {
-        GpuTest::SetUp();
-        if (!device_) return;
+        HostContext::SetUp();
+        if (!context_) return;
         color_ = device_->makeImage(
             kColor, {kWidth, kHeight}, 1,
             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
@@ -44,18 +45,13 @@ class Golden : public GpuTest {
             needs, VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT);
         must(vkBindBufferMemory(device_->device, pixels_, pixelMemory_, 0));
 
-        const FwVulkanHost host = device_->host();
-        FwContextDef def = fwDefaultContextDef();
-        def.vulkan = &host;
-        FwErrorInfo error{};
-        ASSERT_EQ(fwCreateContext(&def, &context_, &error), FW_OK) << error.message;
         ASSERT_EQ(fwContext_Prepare(context_), FW_OK);
         frames_ = std::make_unique<HostFrames>(*device_, 2);
     }
 
     void TearDown() override {
         if (frames_) frames_->waitAll();
-        fwDestroyContext(context_);
+        destroyContext();
         frames_.reset();
         if (device_) {
             const VkDevice d = device_->device;
@@ -197,12 +193,7 @@ class Golden : public GpuTest {
         mesh.texelsPerMetre = density;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
         object.flags = flags | (box ? 0 : FW_BURNABLE_TWO_SIDED);
-        ASSERT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
-        ASSERT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        (void)addBurnable(world, mesh, preset, object);
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[0] = -0.2f * side;
         match.position[1] = -0.3f * side;
@@ -234,12 +225,7 @@ class Golden : public GpuTest {
         object.pins = &pin;
         object.pinCount = 1;
         object.transform[12] = object.transform[13] = -0.5f * side;
-        ASSERT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
-        ASSERT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        (void)addBurnable(world, mesh, preset, object);
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[0] = 0.1f * side;
         match.position[1] = -0.49f * side;
@@ -365,7 +351,6 @@ class Golden : public GpuTest {
                              VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0, nullptr, 0, nullptr);
     }
 
-    FwContext* context_ = nullptr;
     std::unique_ptr<HostFrames> frames_;
     TestImage color_, depth_;
     VkRenderPass pass_ = VK_NULL_HANDLE;

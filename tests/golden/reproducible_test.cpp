@@ -1,5 +1,6 @@
 // The same fire in two contexts gives the same pictures, byte for byte: nothing that is shown may
 // depend on the order in which a device runs its threads, or on a clock.
+#include "support/burnable.h"
 #include "support/own_world.h"
 
 #include <array>
@@ -13,35 +14,14 @@ class Reproducible : public OwnDevice {
  protected:
     // A standing sheet of `side` m that is lit near a corner, and wet in its middle.
     static void addSheet(FwWorld* world, uint32_t preset, float side, float x, uint32_t flags) {
-        constexpr uint32_t kCells = 6;
-        std::vector<float> positions;
-        std::vector<uint32_t> indices;
-        for (uint32_t b = 0; b <= kCells; ++b)
-            for (uint32_t a = 0; a <= kCells; ++a) {
-                positions.push_back(side * (float(a) / kCells - 0.5f));
-                positions.push_back(side * (float(b) / kCells - 0.5f));
-                positions.push_back(0);
-            }
-        for (uint32_t b = 0; b < kCells; ++b)
-            for (uint32_t a = 0; a < kCells; ++a) {
-                const uint32_t at = b * (kCells + 1) + a, up = at + kCells + 1;
-                indices.insert(indices.end(), {at, at + 1, up + 1, at, up + 1, up});
-            }
-        FwMeshDef mesh = fwDefaultMeshDef();
-        mesh.positions = positions.data();
-        mesh.vertexCount = uint32_t(positions.size() / 3);
-        mesh.indices = indices.data();
-        mesh.indexCount = uint32_t(indices.size());
+        const Mesh sheet = makeSheet(double(side), 6);
+        FwMeshDef mesh = meshDefOf(sheet);
         mesh.texelsPerMetre = 256;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
         object.flags = flags | FW_BURNABLE_TWO_SIDED;
-        object.transform[12] = x;
-        ASSERT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ASSERT_EQ(fwInitMaterialPreset(&material, preset), FW_OK);
-        ASSERT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        object.transform[12] = x - 0.5f * side;
+        object.transform[13] = -0.5f * side;
+        const FwBurnableMeshId id = addBurnable(world, mesh, preset, object);
         FwIgnitionDef touch = fwDefaultIgnitionDef();
         touch.object = id;
         touch.position[0] = x - 0.2f * side;

@@ -22,11 +22,7 @@ class Arrival : public OwnDevice {
         const Mesh plane = makePlane(1, 0.5);
         FwMeshDef mesh = meshDefOf(plane);
         mesh.texelsPerMetre = 64;
-        FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        EXPECT_EQ(fwWorld_CreateMesh(made.world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef pine = fwDefaultMaterialDef();
-        EXPECT_EQ(fwWorld_CreateMaterial(made.world, &pine, &object.materials[0]), FW_OK);
-        EXPECT_EQ(fwWorld_CreateBurnableMesh(made.world, &object, &made.object), FW_OK);
+        made.object = addBurnable(made.world, mesh, fwDefaultMaterialDef());
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[0] = 0.2f;
         match.position[1] = 0.25f;

@@ -1,5 +1,7 @@
 #include "gpu/host_with_state.h"
 
+#include "support/burnable.h"
+
 namespace fw::test {
 namespace {
 
@@ -19,13 +21,7 @@ void HostWithState::makeWorld() {
     mesh.vertexCount = ball.vertexCount();
     mesh.indexCount = uint32_t(ball.indices.size());
     mesh.texelsPerMetre = 48;
-    FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-    ASSERT_EQ(fwWorld_CreateMesh(world_, &mesh, &object.mesh), FW_OK);
-    FwMaterialDef material = fwDefaultMaterialDef();
-    ASSERT_EQ(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER), FW_OK);
-    ASSERT_EQ(fwWorld_CreateMaterial(world_, &material, &object.materials[0]), FW_OK);
-    FwBurnableMeshId id{};
-    ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &id), FW_OK);
+    (void)addBurnable(world_, mesh, FW_MATERIAL_PAPER);
     FwIgnitionDef match = fwDefaultIgnitionDef();
     match.position[2] = 0.6f;
     match.radius = 0.25f;

@@ -2,6 +2,7 @@
 // its own, and a world that burns in the middle of its picture. Fixture of host_clobber_test.cpp.
 #pragma once
 #include "support/burn_scene.h"
+#include "support/host_context.h"
 
 #include <array>
 #include <cstring>
@@ -34,16 +35,11 @@ constexpr Rect kAfter[] = {{72, 8, 88, 56}, {40, 28, 56, 36}, {16, 20, 84, 26}, 
 constexpr VkRect2D kScissorRect{{6, 5}, {84, 54}};
 constexpr VkViewport kHostViewport{4, 2, 88, 60, 0, 1};
 
-class HostWithState : public GpuTest {
+class HostWithState : public HostContext {
  protected:
     void SetUp() override {
-        GpuTest::SetUp();
-        if (!device_) return;
-        const FwVulkanHost host = device_->host();
-        FwContextDef def = fwDefaultContextDef();
-        def.vulkan = &host;
-        FwErrorInfo error{};
-        ASSERT_EQ(fwCreateContext(&def, &context_, &error), FW_OK) << error.message;
+        HostContext::SetUp();
+        if (!context_) return;
         ASSERT_EQ(fwContext_Prepare(context_), FW_OK);
         frames_ = std::make_unique<HostFrames>(*device_, 2);
         makeWorld();
@@ -52,7 +48,7 @@ class HostWithState : public GpuTest {
 
     void TearDown() override {
         if (device_) vkDeviceWaitIdle(device_->device);
-        fwDestroyContext(context_);
+        destroyContext();
         frames_.reset();
         for (auto drop = cleanup_.rbegin(); drop != cleanup_.rend(); ++drop) (*drop)();
         GpuTest::TearDown();
@@ -100,7 +96,6 @@ class HostWithState : public GpuTest {
         return out;
     }
 
-    FwContext* context_ = nullptr;
     FwWorld* world_ = nullptr;
     std::unique_ptr<HostFrames> frames_;
     std::array<FwView, 2> views_{};  // normal, reversed depth

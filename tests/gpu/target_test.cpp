@@ -1,8 +1,7 @@
 // Targets, views and frames as the C edge checks them on a host's device: what would show as a
 // wrong picture, and nothing else, is refused or said.
-#include "flamewright/flamewright_vulkan.h"
+#include "support/host_context.h"
 #include "support/views.h"
-#include "support/vulkan_device.h"
 
 #include <gmock/gmock.h>
 
@@ -15,23 +14,10 @@ namespace {
 
 using testing::HasSubstr;
 
-class Targets : public GpuTest {
+class Targets : public HostContext {
  protected:
-    void SetUp() override {
-        GpuTest::SetUp();
-        if (!device_) return;
-        const FwVulkanHost host = device_->host();
-        FwContextDef def = fwDefaultContextDef();
-        def.vulkan = &host;
-        def.callbacks.userData = this;
-        def.callbacks.log = [](void* data, int32_t level, const char* message) {
-            if (level == FW_LOG_WARNING) static_cast<Targets*>(data)->warnings_ += message;
-        };
-        FwErrorInfo error{};
-        ASSERT_EQ(FW_OK, fwCreateContext(&def, &context_, &error)) << error.message;
-    }
     void TearDown() override {
-        fwDestroyContext(context_);
+        destroyContext();
         if (pass_) vkDestroyRenderPass(device_->device, pass_, nullptr);
         GpuTest::TearDown();
     }
@@ -67,9 +53,7 @@ class Targets : public GpuTest {
         return (format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT) != 0;
     }
 
-    FwContext* context_ = nullptr;
     VkRenderPass pass_ = VK_NULL_HANDLE;
-    std::string warnings_;
 };
 
 TEST_F(Targets, EncodingMustFitTheFormat) {

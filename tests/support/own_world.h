@@ -2,6 +2,7 @@
 // burns. Skipped where there is no device.
 #pragma once
 #include "golden/golden_image.h"
+#include "support/burnable.h"
 #include "support/mesh_def.h"
 #include "support/views.h"
 
@@ -60,9 +61,7 @@ class OwnWorld : public OwnDevice {
     void add(const FwMeshDef& mesh, const FwMaterialDef& material, uint32_t flags) {
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
         object.flags = flags;
-        ASSERT_EQ(fwWorld_CreateMesh(world_, &mesh, &object.mesh), FW_OK);
-        ASSERT_EQ(fwWorld_CreateMaterial(world_, &material, &object.materials[0]), FW_OK);
-        ASSERT_EQ(fwWorld_CreateBurnableMesh(world_, &object, &added_), FW_OK);
+        added_ = addBurnable(world_, mesh, material, object);
     }
     void touch(uint32_t kind, float x, float y, float z, float radius) {
         FwIgnitionDef def = fwDefaultIgnitionDef();
