@@ -157,7 +157,16 @@ class Importer {
                     open.push_back({children[at][i], index});
             }
         };
-        for (const int root : roots(children)) walk(root, true);
+        std::vector<int> tops = roots(children);
+        std::ranges::stable_partition(
+            tops, [&](int top) { return !hasParent[static_cast<size_t>(top)]; });
+        for (const int top : tops) {
+            const auto at = static_cast<size_t>(top);
+            if (visited[at])
+                notes_.leaveOut("scene's second mention of a node", nodes.at(at).path());
+            else
+                walk(top, true);
+        }
         for (size_t i = 0; i < nodes.size(); ++i) {
             if (visited[i] || hasParent[i]) continue;
             walk(static_cast<int>(i), false);

@@ -562,6 +562,19 @@ TEST(ImportNumbers, EmptyPrimitivesAndMeshesWithoutANodeAreNoted) {
     EXPECT_THAT(model.notes, Contains("node is left out: no scene holds it (nodes[2])"));
 }
 
+TEST(ImportNumbers, NodesThatASceneNamesTwiceOrBesideTheirParentStandOnce) {
+    Quad quad;
+    quad.node =
+        R"({"mesh":0,"translation":[2,0,0]},{"mesh":0,"translation":[1,0,0],"children":[0]})";
+    quad.roots = "0,1,1";
+    ImportedModel model;
+    ASSERT_TRUE(loads(quad.bytes(), model));
+    EXPECT_EQ(4u, model.triangleCount());
+    EXPECT_EQ(4, model.high[0]) << "the child stands where its parent puts it";
+    EXPECT_THAT(model.notes,
+                Contains("scene's second mention of a node is left out (nodes[1] and 1 more)"));
+}
+
 TEST(ImportNumbers, AttributesWithoutValuesAreZero) {
     Quad quad;
     quad.accessors = R"(,{"componentType":5126,"count":4,"type":"VEC3"})";
