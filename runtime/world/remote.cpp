@@ -681,7 +681,8 @@ void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
     }
     if (now.spots != object.story.spotsTold) {
         float place[3];
-        texelPosition(object, std::min(now.spotTexel, domainOf(object).texelCount() - 1), place);
+        const uint32_t texel = now.spotTexel & ~gpu::kSpotFresh;
+        texelPosition(object, std::min(texel, domainOf(object).texelCount() - 1), place);
         raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
               float(now.spots - object.story.spotsTold));
         object.story.spotsTold = now.spots;

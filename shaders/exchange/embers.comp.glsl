@@ -47,7 +47,7 @@ void land(FireSource source) {
         uint texel = corner + (other >> 3u) * objects[object].width + (other & 7u);
         if (lightTexel(object, texel, push.now, litBy(source.hops, source.object))) {
             lit = 1u;
-            atomicExchange(objectCounters[object].spotTexel, texel);
+            atomicMax(objectCounters[object].spotTexel, kSpotFresh | texel);
         }
     }
     atomicAdd(objectCounters[object].spots, lit);

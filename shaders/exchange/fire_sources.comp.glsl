@@ -39,6 +39,7 @@ void main() {
     objectCounters[slot].litBy = c.litBy;
     objectCounters[slot].litTick = c.litTick;
     objectCounters[slot].stopTick = c.stopTick;
+    objectCounters[slot].spotTexel = c.spotTexel;
     objectCounters[slot].held =
         heldBits(counters[kRowBurn + push.burnParity].runCount, push.tilesMost, c.burningTiles,
                  remoteObjects[slot].tilesMost, c.stopTick, push.now);

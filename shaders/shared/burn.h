@@ -302,7 +302,7 @@ struct ObjectCounters {
     uint until;       // tick until which it may be warmed by others
     uint held;        // kHeld bits of the last exchange
     uint spots;       // embers that lit it, since ever
-    uint spotTexel;   // one of those texels
+    uint spotTexel;   // one of those texels, | kSpotFresh
     uint refined;     // triangles that its refined surface has
     uint air;         // of its room: how strongly fire burns there, Q8, | kAirKnown; 0: it is in none
     uint drawnLow;    // of its energy, that its room has accounted for; of no account in none
@@ -312,6 +312,8 @@ struct ObjectCounters {
 FW_SHARED_SIZE(ObjectCounters, 80)
 FW_SHARED_CONST uint kAirFull = 256u;
 FW_SHARED_CONST uint kAirKnown = 0x200u;
+// Lit in the last exchange: of its embers the highest texel counts, in whatever order they come down.
+FW_SHARED_CONST uint kSpotFresh = 0x80000000u;
 FW_SHARED_CONST uint kHeldFull = 1u;     // as many tiles burn as may: no other one catches
 FW_SHARED_CONST uint kHeldStopped = 2u;  // its time is over
 FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but warmed by others

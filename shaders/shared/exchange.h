@@ -559,6 +559,7 @@ FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint worldHopsMost) 
 // What the exchange notes of an object: when it was found alight, and when its front stops.
 FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o,
                            FW_IN(ExchangePush) rules) {
+    c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
         // Who warms it may have lit it by the next time.
         if ((c.held & kHeldWarm) == 0u) c.litBy = 0u;

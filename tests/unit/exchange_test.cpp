@@ -1,8 +1,13 @@
 // What flames send across a distance: radiation and plume against their formulas, boxes in the way,
 // who may light whom, embers, and the contacts of two meshes.
 #include "components/remote.h"
+#include "fire/presets.h"
+#include "flamewright/flamewright_debug.h"
+#include "gpu/cpu/cpu_backend.h"
 #include "mesh/remote_tiles.h"
 #include "support/meshes.h"
+#include "support/world_defs.h"
+#include "world/world.h"
 
 #include <gtest/gtest.h>
 
@@ -10,6 +15,7 @@
 #include <array>
 #include <cmath>
 #include <map>
+#include <memory>
 #include <random>
 
 namespace fw::test {
@@ -483,6 +489,75 @@ TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
     }
     EXPECT_GT(contacts, 100u);
     EXPECT_GT(ties, 100u);
+}
+
+// Twelve sheets that burn fiercely, upwind of coarse ones on which many embers come down at once.
+class EmberRain {
+ public:
+    explicit EmberRain(uint32_t switches) {
+        FwWorldDef def = plainWorldDef(FW_WORLD_EMBERS);
+        def.paceFactor = 30;
+        def.wind[0] = 3;
+        world_ = std::make_unique<world::World>(def, backend, log_, memory_);
+        world_->setSwitches(switches);
+        FwMaterialDef hot = fire::presetDef(FW_MATERIAL_PAPER);
+        hot.spreadRate = 0.0005f;
+        hot.burnTime = 600;
+        hot.heatOfCombustion = 4e7f;
+        hot.burningFlux = 0.1f;
+        const FwMaterialId material = world_->createMaterial(hot);
+        const Mesh sheet = makePlane(0.4, 0.4), ground = makePlane(2, 2);
+        for (int i = 0; i < 12; ++i)
+            add(sheet, 24, material, 0.5f * float(i / 6), 0, 0.5f * float(i % 6 + 1));
+        for (int i = 0; i < 8; ++i)
+            add(ground, 6, material, 1.5f + 2.1f * float(i / 2), -0.5f, 2.1f * float(i % 2 + 1));
+        FwIgnitionDef ball{};
+        ball.position[0] = 0.4f;
+        ball.position[2] = 1.5f;
+        ball.radius = 2;
+        EXPECT_LT(0u, world_->ignite(ball));
+    }
+    void step() { world_->advance(++frame_, 1.0f / 32); }
+
+    gpu::cpu::CpuBackend backend{std::pmr::get_default_resource(), 4};
+    uint32_t objects = 0;
+
+ private:
+    void add(const Mesh& mesh, float texels, FwMaterialId material, float x, float y, float z) {
+        FwBurnableMeshDef def = plainBurnableDef(world_->createMesh(plainMeshDef(mesh, texels)));
+        def.materials[0] = material;
+        def.transform[0] = def.transform[9] = def.transform[15] = 1;  // lies, face up
+        def.transform[6] = -1;
+        def.transform[12] = x, def.transform[13] = y, def.transform[14] = z;
+        (void)world_->createBurnableMesh(def);
+        ++objects;
+    }
+
+    std::pmr::memory_resource* memory_ = std::pmr::get_default_resource();
+    core::Log log_{FwCallbacks{}};
+    std::unique_ptr<world::World> world_;
+    uint64_t frame_ = 0;
+};
+
+// Devices run the threads of a dispatch in any order, and hosts hear of who lit what, and where.
+TEST(Exchange, EmbersDoTheSameInWhateverOrderTheyComeDown) {
+    EmberRain inOrder(0), shuffled(FW_DEBUG_SHUFFLE);
+    uint32_t spots = 0;
+    for (int step = 0; step < 320; ++step) {
+        inOrder.step();
+        shuffled.step();
+        spots = 0;
+        for (uint32_t slot = 0; slot < inOrder.objects; ++slot) {
+            const gpu::ObjectCounters& a = inOrder.backend.counters(slot);
+            const gpu::ObjectCounters& b = shuffled.backend.counters(slot);
+            ASSERT_EQ(a.spots, b.spots) << step << ", object " << slot;
+            ASSERT_EQ(a.spotTexel, b.spotTexel) << step << ", object " << slot;
+            ASSERT_EQ(a.litBy, b.litBy) << step << ", object " << slot;
+            ASSERT_EQ(a.ignited, b.ignited) << step << ", object " << slot;
+            spots += a.spots;
+        }
+    }
+    EXPECT_GT(spots, 40u);
 }
 
 }  // namespace

@@ -1608,8 +1608,9 @@ typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host'
 /* The strongest fires, which shine for all others too: the sum of power and intensity is that of all fires, however
  * few lights there are. Of burning meshes as of the last readback, and smooth from frame to frame (a filter of 0.1 s,
  * and flicker of at most 7 % in 1/60 s); volumetric fires as of the last frame, or as they are about to be (their ids
- * have the highest bit set); fire emitters (the bit below it). At most FwWorldDef::maxLights; strongest first. Returns
- * how many were written. [world] */
+ * have the highest bit set); fire emitters (the bit below it). At most FwWorldDef::maxLights; strongest first. Backends
+ * gather burning tiles each in its own way: places, radii, ids and shares of the power differ between them, the sum of the
+ * power does not. Returns how many were written. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
 /* The same from any thread, as the last fwWorld_Step or fwWorld_RecordOutside left it: see
  * fwWorld_ReadObjectState. *count: room in `lights`, then how many were written. FW_NOT_READY: no frame has
@@ -1631,7 +1632,8 @@ typedef struct FwSurroundings {
     uint32_t nearestLight;     /* its FwLight::id, if it has a light of its own */
     uint32_t reserved;
 } FwSurroundings;
-/* At once, on every backend; some tens of nanoseconds a fire. [world] */
+/* At once, on every backend; some tens of nanoseconds a fire. heatFlux and danger add up the lights of fwWorld_GetLights, and
+ * differ between backends as these do. [world] */
 FW_API FwResult FW_CALL fwWorld_AskSurroundings(FwWorld*, const float point[3], FwSurroundings* surroundings);
 /* How much of one point is seen from the other through smoke, [0, 1]. Walls are the host's business. [world] */
 FW_API FwResult FW_CALL fwWorld_AskSight(FwWorld*, const float from[3], const float to[3], float* seen);

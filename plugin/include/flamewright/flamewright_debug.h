@@ -23,7 +23,7 @@ FW_API FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld*, FwBurnableMeshId id, uint
 
 typedef enum FwDebugSwitch {
     FW_DEBUG_DENSE = 1,             /* run every tile of burning objects each step */
-    FW_DEBUG_SHUFFLE = 2,           /* cpu: run due tiles in a random order */
+    FW_DEBUG_SHUFFLE = 2,           /* cpu: run due tiles and embers in a random order */
     FW_DEBUG_NO_SEAM_WAKE = 4,      /* mutants: each must make a test fail */
     FW_DEBUG_WRONG_READERS = 8,
     FW_DEBUG_NO_WIND_WAKE = 16,

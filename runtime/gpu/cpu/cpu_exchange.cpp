@@ -1,6 +1,7 @@
 // Fire at a distance, every fourth step after `reduce`: the passes of shaders/exchange, on vectors.
 #include "core/error.h"
 #include "core/growth.h"
+#include "core/hash.h"
 #include "gpu/cpu/cpu_state.h"
 #include "mesh/part_links.h"
 #include "mesh/remote_tiles.h"
@@ -182,19 +183,22 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
 bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by,
                               uint32_t now) noexcept {
     CpuObject& object = *objects[slot];
-    if (texel >= object.state.size() || !isReceptive(object.state[texel])) return false;
+    if (texel >= object.state.size()) return false;
+    const uint32_t before = object.state[texel];
+    if (before != tick && !isReceptive(before)) return false;
     const uint32_t x = texel % object.domain->width, y = texel / object.domain->width;
     const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
     const uint32_t worldTile = object.record.worldTileBase + local;
     if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
     if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
     if (asksOnly || !mayBurn(worldTile)) return false;
+    litFrom(object, by);
+    if (before == tick) return true;  // two flames lit it
     object.state[texel] = tick;
     ++object.counters.ignited;
     object.counters.lastIgnition = std::max(object.counters.lastIgnition, now);
     burning(worldTile);
     if (!object.heat.empty()) hot(worldTile);
-    litFrom(object, by);
     disturb(object, now);
     if (!object.published.empty()) {
         publishedEvent(object, texel, true);
@@ -384,7 +388,11 @@ CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& at,
 template <class Each>
 void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexcept {
     const ivec3 up = upOf(rules), wind(rules.windX, rules.windY, rules.windZ);
-    for (uint32_t slot = 0; slot < objects.size(); ++slot) {
+    const auto slots = uint32_t(objects.size());
+    const bool shuffles = (switches & kSwitchShuffle) != 0 && slots != 0;
+    const uint32_t first = shuffles ? core::hash32(random++) % slots : 0;
+    for (uint32_t i = 0; i < slots; ++i) {
+        const uint32_t slot = i < slots - first ? first + i : first + i - slots;
         if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
         CpuObject& from = *objects[slot];
         if (from.counters.burning == 0) continue;
@@ -443,7 +451,7 @@ void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, 
         const uint32_t texel = corner + (other >> 3) * object.domain->width + (other & 7);
         if (light(target, texel, rules.now, litBy(source.hops, source.object), rules.now)) {
             lit = 1;
-            object.counters.spotTexel = texel;
+            object.counters.spotTexel = std::max(object.counters.spotTexel, kSpotFresh | texel);
         }
     }
     object.counters.spots += lit;
