@@ -502,7 +502,7 @@ class SessionWorld {
     void makePlayed(uint32_t kind, FwBurnableMeshDef& def) const {
         const bool isHouse = kind == Act::house;
         def.mesh = blocks_[isHouse ? 0 : 1];
-        def.materials[0] = materials_[isHouse ? 0 : 1];
+        def.materials[0] = isHouse ? thatch_ : materials_[1];
         def.flags = FW_BURNABLE_HIDDEN;
         if (isHouse) {
             def.breakShare = 0.2f;
@@ -518,6 +518,11 @@ class SessionWorld {
             FwMaterialDef material = fwDefaultMaterialDef();
             ok(fwInitMaterialPreset(&material, presets[i]));
             ok(fwWorld_CreateMaterial(world, &material, &materials_[i]));
+            FwMaterialDef thatch = fwDefaultMaterialDef();
+            ok(fwInitMaterialPreset(&thatch, FW_MATERIAL_THATCH));
+            thatch.spreadRate *= 2;
+            thatch.burnTime *= 1.7f;
+            if (session.played) ok(fwWorld_CreateMaterial(world, &thatch, &thatch_));
         }
     }
     void moveByOrigin(float* place) const {
@@ -764,7 +769,7 @@ class SessionWorld {
     }
 
     FwMeshId meshes_[2] = {}, blocks_[2] = {};
-    FwMaterialId materials_[3] = {};
+    FwMaterialId materials_[3] = {}, thatch_{};
     FwBurnId burn_{};
     std::map<uint32_t, FwWindZoneId> zones_;
     std::map<uint32_t, FwBlockerId> blockers_;

@@ -154,7 +154,7 @@ class ScriptedGame {
         if (now_ % 20 == 9) ball(FW_IGNITE, walks(slot), 0.3f, 0.7f);  // an ember lands
         const Place house = kHouseAt[now_ / 12 % kHouses];
         if (now_ % 40 == 14)  // of its roof falls
-            ball(FW_IGNITE, {house.x + 0.4f, house.y + 0.75f, house.z}, 0.2f, 0);
+            ball(FW_IGNITE, {house.x + 0.4f, house.y + 0.25f, house.z + 0.4f}, 0.2f, 0);
         if (now_ > 120 && now_ % 12 == 7)
             ball(FW_WET, {house.x, house.y + 0.75f, house.z}, 0.5f, 0, 120);
         if (now_ == 160) ball(FW_EXTINGUISH, kHouseAt[0], 1.0f, 0);

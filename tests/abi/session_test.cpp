@@ -118,8 +118,9 @@ TEST(SavedGame, GoesOnAlikeFromEveryFrame) {
     fwDestroyContext(context);
     EXPECT_EQ(0, host.blocks);
     // It is a game in which much happens.
-    for (const uint32_t type : {FW_EVENT_IGNITED, FW_EVENT_BURNT_OUT, FW_EVENT_EXTINGUISHED,
-                                FW_EVENT_SPREAD_TO, FW_EVENT_SPOT_FIRE})
+    for (const uint32_t type :
+         {FW_EVENT_IGNITED, FW_EVENT_BURNT_OUT, FW_EVENT_EXTINGUISHED, FW_EVENT_TAG_REACHED,
+          FW_EVENT_SPREAD_TO, FW_EVENT_SPOT_FIRE, FW_EVENT_STRUCTURE_BROKE})
         EXPECT_TRUE(std::any_of(reported.begin(), reported.end(),
                                 [&](const std::string& line) {
                                     return line.starts_with("type " + std::to_string(type) + " ");

@@ -383,12 +383,11 @@ TEST(ShiftOrigin, ClientsGoAlongWithTheirServer) {
     EXPECT_GE(server.burning(), 2u);
 }
 
-// A log with a shift in it plays.
 // From one end of space to the other: no place of the loading world overflows on the way.
 TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
     ShiftedWorld w(FW_BACKEND_CPU);
     w.shift(512, 0, 64);
-    w.run(40);
+    w.go(40);
     Bytes bytes = saveOf(w.world);
     const double origin[3] = {512, 0, 64}, far[3] = {1e9, 0, -1e9};
     const auto* begin = reinterpret_cast<const unsigned char*>(origin);
@@ -403,11 +402,15 @@ TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
     other.ok(fwWorld_GetOrigin(other.world, now));
     EXPECT_EQ(1e9, now[0]);
     EXPECT_EQ(w.hash(), other.hash());
-    w.run(20);
-    other.run(20);
+    // What the host places is where the save has it.
+    std::copy_n(w.origin, 3, other.origin);
+    other.frame = w.frame;
+    w.go(20);
+    other.go(20);
     EXPECT_EQ(w.hash(), other.hash());
 }
 
+// A log with a shift in it plays.
 TEST(ShiftOrigin, IsInLogs) {
     ShiftedWorld w(FW_BACKEND_CPU), other(FW_BACKEND_CPU);
     const Bytes start = w.save();
