@@ -70,7 +70,7 @@ TEST(Ignite, TheNearestObjectIsNamedHoweverFarItIs) {
     const FwIgnitionDef far = matchAt(0.5f, 9e5f, 0.125f, 0.05f),
                         between = matchAt(0.5f, 6, 0.125f, 0.05f);
     EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &far, nullptr));
-    EXPECT_THAT(lastMessage(w.world), HasSubstr("is 9e+05 m away"));
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("is 900000 m away"));
     EXPECT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &between, nullptr));
     EXPECT_THAT(lastMessage(w.world),
                 HasSubstr("mesh, " + std::to_string(other.index1) + ", is 2 m away"));

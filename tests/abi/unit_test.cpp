@@ -147,7 +147,7 @@ const Owner kOthers[] = {
     {"fwWorld_PlayBurn", "delay speed"},
     {"fwNet_Update", "deltaTime"},
     {"fwWorld_AskSight", "seen"},
-    {"FwVulkanFrame", "deltaTime"},
+    {"FwVulkanFrame", "deltaTime transparency"},
     {"FwPassTime", "milliseconds"},
 };
 
