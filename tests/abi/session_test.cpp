@@ -451,10 +451,11 @@ class ShiftedSession : public ::testing::TestWithParam<uint64_t> {};
 TEST_P(ShiftedSession, IsAlikeButForItsOrigin) {
     shiftsChangeNothingElse(FW_BACKEND_CPU, GetParam(), 64);
 }
-TEST_P(ShiftedSession, IsAlikeButForItsOriginOnADevice) {
-    if (GetParam() % 2 == 0) GTEST_SKIP() << "every other one";
+INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSession, ::testing::Range<uint64_t>(201, 205));
+class ShiftedSessionOnADevice : public ::testing::TestWithParam<uint64_t> {};
+TEST_P(ShiftedSessionOnADevice, IsAlikeButForItsOrigin) {
     shiftsChangeNothingElse(FW_BACKEND_VULKAN, GetParam(), 40);
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSession, ::testing::Range<uint64_t>(201, 205));
+INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSessionOnADevice, ::testing::Values(201u, 203u));
 
 }  // namespace
