@@ -276,11 +276,11 @@ float volumeNearer(uint lies, float cut) {
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
 }
 // How much of it is on the flame's side of the base, which is `cut` slabs beyond this one's front; `side`: VolumeDraw::
-// base.w. A ray of its own has no light beyond: all of it counts until the base is nearer than its middle.
+// base.w. A ray of its own has no light beyond: all of it counts until the base is nearer than its first eighth.
 float volumeBeside(uint lies, float cut, float side) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     float end = side < 0.0 ? ends.y : ends.x;
-    return clamp(side * (cut - end) / max(0.5 * (ends.y - ends.x), 5e-3), 0.0, 1.0);
+    return clamp(side * (cut - end) / max(0.125 * (ends.y - ends.x), 5e-3), 0.0, 1.0);
 }
 #endif
 

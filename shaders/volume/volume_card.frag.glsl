@@ -48,7 +48,8 @@ void main() {
 #ifdef FW_SOFT
             weight *= volumeNearer(cell.z, cut);
 #else
-            weight *= volumeBeside(cell.z, cut, inBase.y);
+            // Cells that are parts of a pixel have bases of their own.
+            weight *= max(volumeBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
 #endif
             color += weight * cellColor(cell);
         }

@@ -36,7 +36,8 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
 #ifdef FW_SOFT
     weight *= volumeNearer(cell.z, cut);
 #else
-    weight *= volumeBeside(cell.z, cut, inBase.y);
+    // Cells that are parts of a pixel have bases of their own, and none is a neighbour's.
+    weight *= inPerPixel > 1u ? 1.0 : volumeBeside(cell.z, cut, inBase.y);
 #endif
     color += weight * cellColor(cell);
 }
