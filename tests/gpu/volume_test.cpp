@@ -14,6 +14,8 @@
 #include "volume/march.h"
 #include "world/world.h"
 
+#include <glm/gtc/type_ptr.hpp>
+
 #include <cmath>
 #include <functional>
 #include <random>
