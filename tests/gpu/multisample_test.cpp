@@ -36,7 +36,7 @@ TEST_F(BurntAway, LeavesNoPixelAtFourSamples) {
     if (!device_) return;
     for (const uint32_t samples : {1u, 4u}) {
         const Picture picture = shoot(surfaces(samples));
-        // One texel of this ball, at a corner of a chart, is out of the fire's way and stays.
+        // At the ball's outline one pixel, within which the burn map moves by many texels, stays.
         EXPECT_LE(picture.unlike(8, kWidth - 8, 0, 0, 1), 1u) << "at " << samples;
     }
 }
