@@ -245,7 +245,7 @@ class MetreArrays {
     std::pmr::list<std::pmr::vector<float>> copies_;
 };
 
-// What structs point to.
+// Lengths behind the pointers of structs.
 template <class Def>
 void visitArrays(Def&, MetreArrays&) noexcept {}
 inline void visitArrays(FwWindGridDef& def, MetreArrays& arrays) {

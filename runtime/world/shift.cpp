@@ -147,7 +147,7 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     if (shield_.grid.shape.cells() != 0)
         checkMillimetres(shield_.grid.shape.origin, by, "heat shield", 0);
     places_.reserveMoves(objects_.live());
-    // What the host said of sight holds; shiftBy has the lists of neighbours made again.
+    // The host's answers about sight hold; shiftBy has the lists of neighbours made again.
     std::pmr::vector<Seen> seen(memory_);
     noteSeen(seen);
     shiftBy(by);

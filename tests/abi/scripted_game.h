@@ -1,7 +1,7 @@
 // A tower defence game as its fire library sees it, by a scripted player: figures walk along a road
 // past houses, and are born again in the places of those before; jets, embers and water are aimed
 // at them, fans turn, houses flash over and break, one of them changes its level of detail, and the
-// origin follows the camera. What a frame does follows from its number alone.
+// origin follows the camera. A frame's acts follow from its number alone.
 #pragma once
 #include "abi/random_session.h"
 

@@ -8,7 +8,7 @@ namespace {
 using namespace host;
 using ::testing::HasSubstr;
 
-// What floats decide (jets and others that strike) is in ordinary worlds alone.
+// Jets and other things that floats decide are in ordinary worlds alone.
 struct ShiftedWorld : BusyWorld {
     enum Kind { exact, ordinary };
     explicit ShiftedWorld(uint32_t backend, Kind kind = exact)
@@ -213,7 +213,7 @@ TEST(ShiftOrigin, ASaveIsOfItsOwnFramesOriginOnADevice) {
     savedAndShiftedInOneFrame(FW_BACKEND_VULKAN);
 }
 
-// What an object, a jet or its stream left behind may be beyond the limits of space by then: the
+// Traces of an object, a jet or its stream may be beyond the limits of space by then: the
 // world is saved and loaded all the same.
 TEST(ShiftOrigin, AWorldIsSavedWhoseThingsWereElsewhereJustNow) {
     ShiftedWorld w(FW_BACKEND_CPU, ShiftedWorld::ordinary);
@@ -292,7 +292,7 @@ TEST(ShiftOrigin, KeepsWhatTheHostSaidOfSight) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// What burns, and what comes next to it after the shift, and water on it.
+// A burning object, another that comes next to it after the shift, and water on it.
 void meetsWhatComes(uint32_t backend) {
     ShiftedWorld stays(backend), moves(backend);
     if (!there(stays)) GTEST_SKIP() << "there is no such backend here";
@@ -402,7 +402,7 @@ TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
     other.ok(fwWorld_GetOrigin(other.world, now));
     EXPECT_EQ(1e9, now[0]);
     EXPECT_EQ(w.hash(), other.hash());
-    // What the host places is where the save has it.
+    // Things that the host places are where the save has them.
     std::copy_n(w.origin, 3, other.origin);
     other.frame = w.frame;
     w.go(20);

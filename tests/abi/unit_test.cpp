@@ -234,7 +234,7 @@ struct Got {
     bool length = false;
 };
 
-// What it gives is a few bits of a metre, so that it is the same metres in centimetres.
+// Numbers of few bits in metres, so that they are the same metres in centimetres.
 class Session {
  public:
     // `wrong`: a number of which it gives as many times too much.
@@ -321,7 +321,7 @@ class Session {
         else
             ASSERT_LE(FW_OK, result) << lastMessage(world);
     }
-    // What metres are times, where `name` takes them.
+    // The factor on metres, where `name` takes them.
     float units(const char* name) {
         given.insert(name);
         return name == wrong_ ? per * per : per;

@@ -1,4 +1,4 @@
-// What two views in one recording cost: a camp fire with smoke and a jet in both, each over a
+// The cost of two views in one recording: a camp fire with smoke and a jet in both, each over a
 // 1280 x 720 picture. The time is that of such a frame; twice_one_ms: of two frames with one view;
 // ratio: its processor time over theirs; not_given: the same of a frame that draws both views but
 // is recorded for the first alone.

@@ -1,6 +1,6 @@
-// What the backend keeps of a view of RecordOutside from frame to frame: how its volumetric flames
-// are marched and shown. Each view has its own quads and marches on the device, see resourceOf;
-// all share the simulation, lights and meshes.
+// The state of a view of RecordOutside that the backend keeps from frame to frame: how its
+// volumetric flames are marched and shown. Each view has its own quads and marches on the device,
+// see resourceOf; all share the simulation, lights and meshes.
 #pragma once
 #include "gpu/passes/draw.h"
 #include "gpu/passes/volume_books.h"
@@ -10,8 +10,9 @@
 
 namespace fw::gpu::vk {
 
-// What is marched before it is drawn, on the screen that a draw of the view was last seen to have.
-// Views that were not given to RecordOutside, and the first picture, march as they draw.
+// Flames that are marched before they are drawn, on the screen that a draw of the view was last
+// seen to have. Views that were not given to RecordOutside, and the first picture, march as they
+// draw.
 struct March {
     VolumeScreen screen;   // no size: none was seen
     uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts

@@ -566,7 +566,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
 
-// What the frame's views show of fire, or where nobody looks its lights alone.
+// Flames, particles and marches of each of the frame's views; where there is none, lights alone.
 void VkBackend::State::recordAppearance(FrameInFlight& slot) {
     const std::span<OutsideView* const> from = seenFrom();
     const bool looked = !from.empty(), particles = showsEmitters();
