@@ -164,7 +164,7 @@ class EveryPass : public GpuTest {
         def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
         def.depthFormat = VK_FORMAT_D32_SFLOAT;
         target_ = rig_->context.registerTarget(def);
-        def.flags |= FW_TARGET_HAZE;
+        def.flags |= FW_TARGET_HAZE | FW_TARGET_TRANSPARENCY;
         def.depthMode = FW_DEPTH_SAMPLED;
         hazeTarget_ = rig_->context.registerTarget(def);
         def.flags |= FW_TARGET_HALF_EFFECTS;
@@ -410,6 +410,7 @@ class EveryPass : public GpuTest {
         FwVulkanFrame lends = frame;
         lends.sampledColor = behind_.view;
         lends.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        lends.transparency = 0.5f;
         EXPECT_TRUE(rig_->backend.recordComposite(lends, hazeTarget_, view, images));
         EXPECT_TRUE(rig_->backend.recordComposite(lends, halfTarget_, view, images));
     }
