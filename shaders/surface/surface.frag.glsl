@@ -91,6 +91,7 @@ struct Arrival {
     float damp;     // [0, 1] unburnt and wet
     float ahead;    // texels from those to the fire
     float soot;     // [0, 1]
+    bool none;      // no texel is near
 };
 
 // Bilinear over the taps that exist; towards chart borders each tap is continued along its own
@@ -136,6 +137,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
         never += t == kNever ? w : 0.0;
         if (i == 3 && total == 0.0) taps = 29;
     }
+    o.none = total == 0.0;
     float inverse = 1.0 / max(total, 1e-6), burnt = o.known + o.out_;
     o.soot = soot / max(total - o.out_, 1e-6) * (1.0 / 255.0);
     if (burnt <= 0.0) {
@@ -322,6 +324,7 @@ void main() {
     r1 *= inverse;
     r2 *= inverse;
     vec2 ux = dFdx(FW_ATLAS), uy = dFdy(FW_ATLAS);
+    float leap = dot(ux, ux) + dot(uy, uy);  // texels^2 to the next pixels
     ux = known ? ux : vec2(0.0);
     uy = known ? uy : vec2(0.0);
     vec3 gradU = r1 * ux.x + r2 * uy.x, gradV = r1 * ux.y + r2 * uy.y;  // texels/m
@@ -363,7 +366,7 @@ void main() {
     vec2 near = clamp(shift, -0.5, 0.5);
     // Where the tangent plane is not known slopes are not believed.
     float perMetre = inverse != 0.0 ? max(length(gradU), 1.0) : 1e9;
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootLead.x);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootLead.x, false);
     Warmth warmth = Warmth(300.0, 0.0);
     vec2 coat = vec2(0.0);
     if (kBurns) {
@@ -375,6 +378,13 @@ void main() {
         vec2 creeps = vec2(coarse.r + 0.4 * fine.b, coarse.g + 0.4 * fine.r) * 3.0 - 2.0;
         coat = coatAt(inAtlas + clamp(creeps, -1.0, 1.0));
     }
+
+    // A sliver that is seen edge on covers samples where the map is many texels beyond its chart: as
+    // nothing says whether it has burnt there, the triangles beside it show.
+    bool lost = false;
+#ifdef FW_MULTISAMPLED
+    lost = arrival.none && leap > 16.0;
+#endif
 
     // Where holes come first; in wood also where its rings wander. Both walls of a solid have the same,
     // whatever their patterns: one that is the other's mirror image would let see through them in
@@ -411,7 +421,7 @@ void main() {
     float delay = clamp(fresh.delay, -1.5, 1.5);
     float later = holeDelay(grown, fine, delay, look) + look.jitter * delay;
     vec3 laterSlope = r1 * dFdx(later) + r2 * dFdy(later);
-    if (cutOut) discard;
+    if (cutOut || lost) discard;
 
     Site site;
     site.d = d;
