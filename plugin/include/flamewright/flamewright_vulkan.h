@@ -159,10 +159,10 @@ typedef struct FwVulkanFrame {
     VkImageView sampledDepth;        /* RecordInside on a target with FW_DEPTH_SAMPLED, where it is needed:
                                         its depth aspect alone, ready for our fragment shaders */
     VkImageView sampledColor;        /* optional, RecordInside and RecordComposite on a target with FW_TARGET_HAZE or
-                                        FW_TARGET_TRANSPARENCY: a copy of what the target holds as we draw, of its size and with its encoding,
-                                        one sample, ready for our fragment shaders. Null: no haze. Haze goes over the
-                                        target before all flames; only fires that are marched with all their samples
-                                        (FW_FIRE_TIER_MARCH_HIGH) have it */
+                                        FW_TARGET_TRANSPARENCY: a copy of what the target holds as we draw, of its size
+                                        and with its encoding, one sample, ready for our fragment shaders. Null: no haze.
+                                        Haze goes over the target before all flames; only fires that are marched with all
+                                        their samples (FW_FIRE_TIER_MARCH_HIGH) have it */
     VkImageLayout sampledColorLayout; /* of it: GENERAL or SHADER_READ_ONLY_OPTIMAL */
     uint32_t reserved;               /* 0 */
     VkRect2D scissor;                /* RecordInside and RecordComposite: px of the target, drawn within it and the viewport
