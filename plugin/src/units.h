@@ -231,7 +231,7 @@ class MetreArrays {
     template <class T>
     const T* operator()(const T* given, uint64_t count, uint64_t most) {
         static_assert(sizeof(T) % sizeof(float) == 0);
-        if (!given || unit_.isMetre() || count > most) return given;
+        if (!given || unit_.isMetre() || count == 0 || count > most) return given;
         std::pmr::vector<float>& copy = copies_.emplace_back();
         copy.resize(size_t(count) * (sizeof(T) / sizeof(float)));
         std::memcpy(copy.data(), given, copy.size() * sizeof(float));

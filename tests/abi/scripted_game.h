@@ -137,16 +137,15 @@ class ScriptedGame {
             Act& move = act(Act::moveJet, jets_[plot], from);
             if (plot == 2 && now_ >= 100 && now_ < 112)  // at a limit of space
                 move.numbers[0] = now_ < 106 ? 1e6f : -1e6f;
-            move.numbers[3] = at.x - from.x;
-            move.numbers[4] = at.y - from.y + 0.25f;
-            move.numbers[5] = at.z - from.z;
+            const float aimed[3] = {at.x - from.x, at.y - from.y + 0.25f, at.z - from.z};
+            std::copy_n(aimed, 3, move.numbers + 3);
             if (plot == 0) continue;
             if (turn % 24 == 3) act(Act::fieldAmount, sprays_[plot]).numbers[0] = 3;
             if (turn % 24 == 15) act(Act::fieldAmount, sprays_[plot]);
             if (now_ % 4 == plot) act(Act::moveField, sprays_[plot], {at.x, at.y, at.z + 0.125f});
             if (now_ % 10 == plot) {
                 Act& fan = act(Act::setZone, fans_[plot], from);
-                std::copy_n(move.numbers + 3, 3, fan.numbers + 3);
+                std::copy_n(aimed, 3, fan.numbers + 3);
                 fan.numbers[6] = 2 + float(now_ % 4);
             }
         }
