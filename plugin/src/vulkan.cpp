@@ -160,7 +160,7 @@ VulkanDevice& vulkanOf(FwContext& context) {
 }
 
 // The backend of a world whose host records.
-gpu::vk::VkBackend& lentBackendOf(FwWorld& world) {
+gpu::vk::VkBackend& hostBackendOf(FwWorld& world) {
     if (vulkanOf(*world.context).context().ownDevice())
         core::fail(FW_ERROR_WRONG_BACKEND,
                    "The context has its own device; use fwWorld_Step and "
@@ -579,7 +579,7 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
                                        const FwView* givenView) {
     return onWorld("fwWorld_RecordOutside", world, [&](world::World& w) {
         const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(*world, givenView);
         return edge::recordOutside(*world, w, backend, frame, {&view, 1});
@@ -590,7 +590,7 @@ FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame*
                                             const FwView* givenViews, uint32_t viewCount) {
     return onWorld("fwWorld_RecordOutsideViews", world, [&](world::World& w) {
         const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         std::array<FwView, FW_MAX_VIEWS> views;
         const std::span<FwView> checked = edge::checkedViews(*world, givenViews, viewCount, views);
@@ -603,7 +603,7 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
                                       const VkViewport* viewport) {
     return onWorld("fwWorld_RecordInside", world, [&](world::World& w) {
         const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(*world, givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
@@ -615,7 +615,7 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
 FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
                                          const FwVulkanVertices* given) {
     return onWorld("fwWorld_SetVertexBuffer", world, [&](world::World& w) {
-        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanVertices def =
             edge::readDef(given, FW_DEF_VULKAN_VERTICES, "FwVulkanVertices");
         edge::checkVertices(def);
@@ -630,7 +630,7 @@ FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* gi
                                          const FwVulkanComposite* givenImages) {
     return onWorld("fwWorld_RecordComposite", world, [&](world::World& w) {
         const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::lentBackendOf(*world);
+        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(*world, givenView);
         const FwVulkanComposite images =

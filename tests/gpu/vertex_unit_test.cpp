@@ -1,28 +1,24 @@
 // A host's vertex buffer in centimetres: what is drawn from it stands where the same buffer in
 // metres puts it.
 #include "support/burn_scene.h"
+#include "support/burnable.h"
+#include "support/host_context.h"
 
 #include <array>
 
 namespace fw::test {
 namespace {
 
-class VertexUnits : public GpuTest {
+class VertexUnits : public HostContext {
  protected:
     void SetUp() override {
-        GpuTest::SetUp();
-        if (!device_) return;
-        const FwVulkanHost host = device_->host();
-        FwContextDef def = fwDefaultContextDef();
-        def.vulkan = &host;
-        FwErrorInfo error{};
-        ASSERT_EQ(fwCreateContext(&def, &context_, &error), FW_OK) << error.message;
+        HostContext::SetUp();
+        if (!context_) return;
         ASSERT_EQ(fwContext_Prepare(context_), FW_OK);
     }
     void TearDown() override {
         if (device_) vkDeviceWaitIdle(device_->device);
-        fwDestroyContext(context_);
-        GpuTest::TearDown();
+        HostContext::TearDown();
     }
 
     // The strongest light of a burning ball whose vertices a buffer moves by 2 m, with vertices in
@@ -43,14 +39,9 @@ class VertexUnits : public GpuTest {
         mesh.indexCount = uint32_t(ball.indices.size());
         mesh.texelsPerMetre = 32;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        EXPECT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        EXPECT_EQ(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER), FW_OK);
-        EXPECT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
         object.flags = FW_BURNABLE_SKINNED;
         for (int i = 0; i < 15; i += 5) object.transform[i] = vertexUnit / worldUnit;
-        FwBurnableMeshId id{};
-        EXPECT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        const FwBurnableMeshId id = addBurnable(world, mesh, FW_MATERIAL_PAPER, object);
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[2] = 0.5f / worldUnit;
         match.radius = 0.25f / worldUnit;
@@ -79,8 +70,6 @@ class VertexUnits : public GpuTest {
         return {light.position[0] * worldUnit, light.position[1] * worldUnit,
                 light.position[2] * worldUnit};
     }
-
-    FwContext* context_ = nullptr;
 };
 
 TEST_F(VertexUnits, BuffersAreInTheMeshesUnit) {

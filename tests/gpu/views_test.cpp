@@ -2,6 +2,7 @@
 // C ABI, with a scene of all that a view has something of its own for.
 #include "support/views.h"
 #include "flamewright/flamewright_vulkan.h"
+#include "support/burnable.h"
 #include "support/meshes.h"
 #include "support/vulkan_device.h"
 
@@ -129,13 +130,8 @@ class Views : public GpuTest {
         mesh.indexCount = uint32_t(ball.indices.size());
         mesh.texelsPerMetre = 48;
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
-        EXPECT_EQ(fwWorld_CreateMesh(world, &mesh, &object.mesh), FW_OK);
-        FwMaterialDef material = fwDefaultMaterialDef();
-        EXPECT_EQ(fwInitMaterialPreset(&material, FW_MATERIAL_PAPER), FW_OK);
-        EXPECT_EQ(fwWorld_CreateMaterial(world, &material, &object.materials[0]), FW_OK);
         object.transform[13] = 0.6f;
-        FwBurnableMeshId id{};
-        EXPECT_EQ(fwWorld_CreateBurnableMesh(world, &object, &id), FW_OK);
+        (void)addBurnable(world, mesh, FW_MATERIAL_PAPER, object);
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[1] = 0.6f;
         match.position[2] = 0.4f;

@@ -28,94 +28,11 @@ using World = std::unique_ptr<FwWorld, Close>;
 // ---------------------------------------------------
 
 template <class Def>
-[[nodiscard]] Def def() noexcept;
-template <>
-[[nodiscard]] inline FwContextDef def<FwContextDef>() noexcept {
-    return fwDefaultContextDef();
-}
-template <>
-[[nodiscard]] inline FwWorldDef def<FwWorldDef>() noexcept {
-    return fwDefaultWorldDef();
-}
-template <>
-[[nodiscard]] inline FwMaterialDef def<FwMaterialDef>() noexcept {
-    return fwDefaultMaterialDef();
-}
-template <>
-[[nodiscard]] inline FwImageDef def<FwImageDef>() noexcept {
-    return fwDefaultImageDef();
-}
-template <>
-[[nodiscard]] inline FwMeshDef def<FwMeshDef>() noexcept {
-    return fwDefaultMeshDef();
-}
-template <>
-[[nodiscard]] inline FwBurnableMeshDef def<FwBurnableMeshDef>() noexcept {
-    return fwDefaultBurnableMeshDef();
-}
-template <>
-[[nodiscard]] inline FwHeatShieldDef def<FwHeatShieldDef>() noexcept {
-    return fwDefaultHeatShieldDef();
-}
-template <>
-[[nodiscard]] inline FwTimelineDef def<FwTimelineDef>() noexcept {
-    return fwDefaultTimelineDef();
-}
-template <>
-[[nodiscard]] inline FwVolumetricFireDef def<FwVolumetricFireDef>() noexcept {
-    return fwDefaultVolumetricFireDef();
-}
-template <>
-[[nodiscard]] inline FwParticleFieldDef def<FwParticleFieldDef>() noexcept {
-    return fwDefaultParticleFieldDef();
-}
-template <>
-[[nodiscard]] inline FwFireProfileDef def<FwFireProfileDef>() noexcept {
-    return fwDefaultFireProfileDef();
-}
-template <>
-[[nodiscard]] inline FwFlipbookDef def<FwFlipbookDef>() noexcept {
-    return fwDefaultFlipbookDef();
-}
-template <>
-[[nodiscard]] inline FwBudgetDef def<FwBudgetDef>() noexcept {
-    return fwDefaultBudgetDef();
-}
-template <>
-[[nodiscard]] inline FwNetDef def<FwNetDef>() noexcept {
-    return fwDefaultNetDef();
-}
-template <>
-[[nodiscard]] inline FwFireColliderDef def<FwFireColliderDef>() noexcept {
-    return fwDefaultFireColliderDef();
-}
-template <>
-[[nodiscard]] inline FwFireTrackDef def<FwFireTrackDef>() noexcept {
-    return fwDefaultFireTrackDef();
-}
-template <>
-[[nodiscard]] inline FwFireEmitterDef def<FwFireEmitterDef>() noexcept {
-    return fwDefaultFireEmitterDef();
-}
-template <>
-[[nodiscard]] inline FwIgnitionDef def<FwIgnitionDef>() noexcept {
-    return fwDefaultIgnitionDef();
-}
-template <>
-[[nodiscard]] inline FwView def<FwView>() noexcept {
-    return fwDefaultView();
-}
-template <>
-[[nodiscard]] inline FwOffscreenDef def<FwOffscreenDef>() noexcept {
-    return fwDefaultOffscreenDef();
-}
-
-// Defs with lengths in the unit of a world that has another than the metre:
-// `auto room = fw::def<FwRoomDef>(world);`. See fwWorld_ConvertDef.
-template <class Def>
 inline constexpr uint32_t kDefType = 0;
 template <>
-inline constexpr uint32_t kDefType<FwBurnableMeshDef> = FW_DEF_BURNABLE_MESH;
+inline constexpr uint32_t kDefType<FwContextDef> = FW_DEF_CONTEXT;
+template <>
+inline constexpr uint32_t kDefType<FwWorldDef> = FW_DEF_WORLD;
 template <>
 inline constexpr uint32_t kDefType<FwBlockerDef> = FW_DEF_BLOCKER;
 template <>
@@ -129,19 +46,62 @@ inline constexpr uint32_t kDefType<FwGustDef> = FW_DEF_GUSTS;
 template <>
 inline constexpr uint32_t kDefType<FwRoomDef> = FW_DEF_ROOM;
 template <>
+inline constexpr uint32_t kDefType<FwMaterialDef> = FW_DEF_MATERIAL;
+template <>
+inline constexpr uint32_t kDefType<FwImageDef> = FW_DEF_IMAGE;
+template <>
+inline constexpr uint32_t kDefType<FwMeshDef> = FW_DEF_MESH;
+template <>
+inline constexpr uint32_t kDefType<FwBurnableMeshDef> = FW_DEF_BURNABLE_MESH;
+template <>
+inline constexpr uint32_t kDefType<FwIgnitionDef> = FW_DEF_IGNITION;
+template <>
 inline constexpr uint32_t kDefType<FwVolumetricFireDef> = FW_DEF_VOLUMETRIC_FIRE;
 template <>
+inline constexpr uint32_t kDefType<FwFireTrackDef> = FW_DEF_FIRE_TRACK;
+template <>
+inline constexpr uint32_t kDefType<FwFireProfileDef> = FW_DEF_FIRE_PROFILE;
+template <>
 inline constexpr uint32_t kDefType<FwFireColliderDef> = FW_DEF_FIRE_COLLIDER;
+template <>
+inline constexpr uint32_t kDefType<FwFlipbookDef> = FW_DEF_FLIPBOOK;
 template <>
 inline constexpr uint32_t kDefType<FwFireEmitterDef> = FW_DEF_FIRE_EMITTER;
 template <>
 inline constexpr uint32_t kDefType<FwParticleFieldDef> = FW_DEF_PARTICLE_FIELD;
+template <>
+inline constexpr uint32_t kDefType<FwView> = FW_DEF_VIEW;
+template <>
+inline constexpr uint32_t kDefType<FwOffscreenDef> = FW_DEF_OFFSCREEN;
+template <>
+inline constexpr uint32_t kDefType<FwTimelineDef> = FW_DEF_TIMELINE;
+template <>
+inline constexpr uint32_t kDefType<FwNetDef> = FW_DEF_NET;
+template <>
+inline constexpr uint32_t kDefType<FwBudgetDef> = FW_DEF_BUDGET;
 
 template <class Def>
-[[nodiscard]] Def def(const World& world) noexcept {
-    static_assert(kDefType<Def> != 0, "this def has no lengths of a world");
+[[nodiscard]] Def def() noexcept {
+    static_assert(kDefType<Def> != 0, "not a def of flamewright.h");
     Def made;
     fwInitDef(kDefType<Def>, &made, uint32_t(sizeof made));
+    return made;
+}
+
+// Types of defs whose defaults have lengths of a world, as bits.
+inline constexpr uint32_t kDefsWithLengths =
+    1u << FW_DEF_BURNABLE_MESH | 1u << FW_DEF_BLOCKER | 1u << FW_DEF_HEAT_SHIELD |
+    1u << FW_DEF_WIND_ZONE | 1u << FW_DEF_WIND_GRID | 1u << FW_DEF_GUSTS | 1u << FW_DEF_ROOM |
+    1u << FW_DEF_VOLUMETRIC_FIRE | 1u << FW_DEF_FIRE_COLLIDER | 1u << FW_DEF_FIRE_EMITTER |
+    1u << FW_DEF_PARTICLE_FIELD;
+
+// The same with these lengths in the unit of a world that has another than the metre:
+// `auto room = fw::def<FwRoomDef>(world);`. See fwWorld_ConvertDef.
+template <class Def>
+[[nodiscard]] Def def(const World& world) noexcept {
+    static_assert((kDefsWithLengths >> kDefType<Def> & 1u) != 0,
+                  "this def has no lengths of a world");
+    Def made = def<Def>();
     (void)fwWorld_ConvertDef(world.get(), kDefType<Def>, &made);
     return made;
 }

@@ -124,7 +124,7 @@ extern const DrawPass kHalfDepthPass, kHalfTilesPass, kHalfCompositePass;
 // For a viewport that begins at `left`, `top` of the host's image.
 HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height);
 
-// Over all that was drawn what the host lends of the picture before.
+// Lays the host's copy of the picture before our draws over their result.
 extern const DrawPass kTransparencyPass;
 
 struct VolumeItem {  // a volumetric flame that a view may show

@@ -14,7 +14,7 @@ namespace fw::gpu {
 // Resources are numbered by their binding (FW_BIND_*), so one list says both. Beyond them, what no
 // shader binds:
 constexpr uint32_t kMaxViews = 4;  // that a frame is recorded for
-// Of these each view has its own.
+// Each view has its own of these.
 constexpr std::array<uint32_t, 4> kResourcesOfViews{FW_BIND_FLAMES, FW_BIND_DRAW_ARGS,
                                                     FW_BIND_VOLUME_RAYS, FW_BIND_VOLUME_WORK};
 enum Resource : uint32_t {
