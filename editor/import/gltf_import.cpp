@@ -158,8 +158,8 @@ class Importer {
             }
         };
         std::vector<int> tops = roots(children);
-        std::ranges::stable_partition(
-            tops, [&](int top) { return !hasParent[static_cast<size_t>(top)]; });
+        std::stable_partition(tops.begin(), tops.end(),
+                              [&](int top) { return !hasParent[static_cast<size_t>(top)]; });
         for (const int top : tops) {
             const auto at = static_cast<size_t>(top);
             if (visited[at])

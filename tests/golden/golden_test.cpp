@@ -27,6 +27,10 @@ class Golden : public HostContext {
     void SetUp() override {
         HostContext::SetUp();
         if (!context_) return;
+        if (device_->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
+            still_ = {1, 0.01, 40};
+            moving_ = {6, 0.04, 40};
+        }
         color_ = device_->makeImage(
             kColor, {kWidth, kHeight}, 1,
             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
@@ -351,6 +355,10 @@ class Golden : public HostContext {
                              VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0, nullptr, 0, nullptr);
     }
 
+    // Half of each picture is fire: the mean finds a wrong look, the outliers a wrong shape. The
+    // software device drew the goldens. GPUs round floats differently, so cosmetic motion drifts.
+    // An H100 differs by 0.69 (still) and 4.4 (moving) at most.
+    PictureTolerance still_{0.5, 0.005, 40}, moving_{1.5, 0.02, 40};
     std::unique_ptr<HostFrames> frames_;
     TestImage color_, depth_;
     VkRenderPass pass_ = VK_NULL_HANDLE;
@@ -359,30 +367,25 @@ class Golden : public HostContext {
     VkDeviceMemory pixelMemory_ = VK_NULL_HANDLE;
 };
 
-// Half of the picture is fire: a mean over it shows a wrong look, outliers a wrong shape.
-constexpr PictureTolerance kTolerance{0.5, 0.005, 40};
-// What moves on floats moves a little otherwise elsewhere.
-constexpr PictureTolerance kMoving{1.5, 0.02, 40};
-
 TEST_F(Golden, PineSheetByDay) {
     FwWorld* world = makeWorld(40);
     addThing(world, FW_MATERIAL_PINE, 0.6f, 128, false);
     const FwView view = makeView({0.25f, 0.1f, 1.0f}, false, false);
-    EXPECT_TRUE(matchesGolden("pine_sheet", burnAndDraw(world, 9, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("pine_sheet", burnAndDraw(world, 9, view, false), still_));
 }
 
 TEST_F(Golden, PaperBurnsThrough) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_NEWSPAPER, 0.3f, 512, false);
     const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 11, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 11, view, false), still_));
 }
 
 TEST_F(Golden, ThatchByNight) {
     FwWorld* world = makeWorld(2, 1.5f);
     addThing(world, FW_MATERIAL_THATCH, 1.0f, 96, false);
     const FwView view = makeView({0.4f, 0.3f, 2.2f}, false, true);
-    EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), still_));
 }
 
 // Where it has charred it is smaller: the sheet's outline gives way.
@@ -390,7 +393,7 @@ TEST_F(Golden, LeatherShrinksAndCracks) {
     FwWorld* world = makeWorld(8);
     hang(world, FW_MATERIAL_LEATHER, 0.3f, 36, 320);
     const FwView view = makeView({0.1f, 0.05f, 0.55f}, false, false);
-    EXPECT_TRUE(matchesGolden("leather", playAndDraw(world, 8, view), kMoving));
+    EXPECT_TRUE(matchesGolden("leather", playAndDraw(world, 8, view), moving_));
 }
 
 // It keeps its shape, curls where it chars, and what is gone is gone.
@@ -403,14 +406,14 @@ TEST_F(Golden, PaperCurls) {
     end.kind = FW_EXTINGUISH;
     end.radius = 1;
     ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
-    EXPECT_TRUE(matchesGolden("paper_curls", playAndDraw(world, 0.5f, view), kMoving));
+    EXPECT_TRUE(matchesGolden("paper_curls", playAndDraw(world, 0.5f, view), moving_));
 }
 
 TEST_F(Golden, CottonBurnsThrough) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_COTTON, 0.3f, 384, false);
     const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("cotton", burnAndDraw(world, 5, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("cotton", burnAndDraw(world, 5, view, false), still_));
 }
 
 TEST_F(Golden, WetPatchIsLeftOver) {
@@ -423,7 +426,7 @@ TEST_F(Golden, WetPatchIsLeftOver) {
     water.radius = 0.10f;
     ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
     const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
-    EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), still_));
 }
 
 // Water's edge is soft where no fire has come, and it dries from there.
@@ -437,7 +440,7 @@ TEST_F(Golden, WetPatchBeforeTheFire) {
     water.radius = 0.13f;
     ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
     const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
-    EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), still_));
 }
 
 // Put out, it stays as black as it was, above the char too.
@@ -450,14 +453,14 @@ TEST_F(Golden, SootOutlivesItsFlame) {
     end.kind = FW_EXTINGUISH;
     end.radius = 1;
     ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
-    EXPECT_TRUE(matchesGolden("soot_stays", burnAndDraw(world, 3, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("soot_stays", burnAndDraw(world, 3, view, false), still_));
 }
 
 TEST_F(Golden, BurntOpenBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), still_));
 }
 
 // What recedes has the same walls, thinner where they burn: behind a hole is what is left of one.
@@ -465,7 +468,7 @@ TEST_F(Golden, BurntBoxThatRecedes) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_RECEDE);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("receding_box", burnAndDraw(world, 16, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("receding_box", burnAndDraw(world, 16, view, false), still_));
 }
 
 // Refined, walls have their thickness: an inner skin behind holes and along the open border.
@@ -473,7 +476,7 @@ TEST_F(Golden, InsideOfARefinedBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_REFINE, false);
     const FwView view = makeView({-0.5f, 0.8f, 1.0f}, false, false);
-    EXPECT_TRUE(matchesGolden("refined_box", burnAndDraw(world, 17, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("refined_box", burnAndDraw(world, 17, view, false), still_));
 }
 
 // Flames against the sampled depth of the surfaces that they stand on.
@@ -481,7 +484,7 @@ TEST_F(Golden, SoftFlames) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PINE, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, true, true);
-    EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), kTolerance));
+    EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), still_));
 }
 
 // A camp fire that no mesh feeds; a slab of its smoke is as thin as it is.
@@ -494,7 +497,7 @@ TEST_F(Golden, CampFireByNight) {
     ASSERT_EQ(fwWorld_CreateVolumetricFire(world, &fire, &id), FW_OK);
     const FwView view = makeView({0.4f, 0.3f, 2.4f}, false, true);
     EXPECT_TRUE(
-        matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false, false, 2), kTolerance));
+        matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false, false, 2), still_));
 }
 
 TEST_F(Golden, ReversedDepthIsTheSamePicture) {
@@ -522,7 +525,7 @@ TEST(GoldenImage, RoundTripAndDifference) {
     EXPECT_EQ(read.rgb, picture.rgb);
     EXPECT_TRUE(picturesMatch(read, picture, {0, 0, 0}));
     for (size_t i = 0; i < 30; ++i) read.rgb[i] ^= 0x80;
-    EXPECT_FALSE(picturesMatch(read, picture, kTolerance));
+    EXPECT_FALSE(picturesMatch(read, picture, {0.5, 0.005, 40}));
     EXPECT_FALSE(readPng(path + ".missing", read));
 }
 
