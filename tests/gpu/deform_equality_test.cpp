@@ -1,8 +1,8 @@
 // The deformation passes on a device against the library: the same mesh, the same fire, step for
 // step. Floats, and devices keep bends and burnt shares in fewer bits: near, to a written distance.
 #include "mesh/bake.h"
-#include "mesh/deform/solver.h"
 #include "mesh/refine/model.h"
+#include "reference/deform_solver.h"
 #include "support/meshes.h"
 #include "support/pass_rig.h"
 
@@ -130,7 +130,7 @@ struct Pair {
             else
                 mesh::sheetStep(model, object, drive, state);
         }
-        mesh::drape(model, state, soft && !springs);
+        mesh::skinVertices(model, state, soft && !springs);
         fresh = false;
     }
 

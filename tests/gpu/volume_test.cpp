@@ -6,12 +6,12 @@
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
 #include "gpu/passes/volume_books.h"
+#include "reference/flame_march.h"
 #include "shared/spark.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 #include "support/spark_reference.h"
 #include "support/world_defs.h"
-#include "volume/march.h"
 #include "world/world.h"
 
 #include <glm/gtc/type_ptr.hpp>

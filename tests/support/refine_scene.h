@@ -2,7 +2,7 @@
 // refinement tests and benches share. The fire is a formula (distance over speed, with noise), so
 // that a test costs nothing but refinement.
 #pragma once
-#include "mesh/refine/cut.h"
+#include "reference/refine_cut.h"
 #include "support/front_rig.h"
 
 #include <algorithm>

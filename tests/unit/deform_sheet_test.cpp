@@ -1,6 +1,6 @@
 // Deformation, tiers B and C: sheets that curl, shrink, tear and fall, and the published springs.
 // The CPU's text of the passes' maths.
-#include "mesh/deform/solver.h"
+#include "reference/deform_solver.h"
 
 #include "support/sanitized.h"
 #include "unit/mesh_checks.h"
@@ -342,7 +342,7 @@ TEST(DeformSheet, AbsurdMeshesAreSurvived) {
         drive.wind = {30, -20, 10};
         for (gpu::ShownVertex& v : state.shown) v.burnt = 0.7f;
         for (int i = 0; i < 300; ++i) mesh::sheetStep(model, object, drive, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (const gpu::ShownVertex& v : state.shown)
             ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << seed;
     }

@@ -1,6 +1,6 @@
 // Deformation, tier A: which points move together, which way and how far, what is left of solids,
 // and when walls open. The same maths as the passes.
-#include "mesh/deform/solver.h"
+#include "reference/deform_solver.h"
 
 #include "unit/mesh_checks.h"
 
@@ -136,7 +136,7 @@ TEST(DeformTierA, VerticesSplitBySeamsNeverPart) {
     const gpu::DeformObject object = objectOf(60, 0.02f);
     for (uint32_t now = 1; now < 200 * kTicksPerSecond; now += 9 * kTicksPerSecond) {
         mesh::recede(model, object, states, now, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (uint32_t v = 0; v < domain.vertices.size(); ++v) {
             const gpu::ShownVertex& a = state.shown[v];
             const gpu::ShownVertex& b = state.shown[model.nodes[model.nodeOf[v]].vertex];
@@ -168,7 +168,7 @@ TEST(DeformTierA, VolumeGoneIsFuelGone) {
         const double depth = 0.004;
         mesh::recede(model, objectOf(60, float(depth)), allLit(domain), 1 + 60 * kTicksPerSecond,
                      state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         const double gone = before - volumeOf(domain, state);
         const double expected = domain.report.meshArea * depth;
         EXPECT_NEAR(expected, gone, (sphere ? 0.10 : 0.05) * expected) << sphere;
@@ -181,7 +181,7 @@ TEST(DeformTierA, NeverThroughTheWallBehindAndNeverBack) {
     const DeformModel model = modelOf(domain);
     DeformState state = restOf(model);
     mesh::recede(model, objectOf(10, 1.0f), allLit(domain), 100 * kTicksPerSecond, state);
-    mesh::drape(model, state);
+    mesh::skinVertices(model, state);
     EXPECT_LT(0, volumeOf(domain, state));
     for (size_t i = 0; i + 2 < domain.indices.size(); i += 3) {
         const auto& n = domain.indices;
@@ -276,7 +276,7 @@ TEST(DeformModel, AbsurdMeshesAreSurvived) {
         DeformState state = restOf(model);
         std::vector<uint32_t> states = allLit(domain);
         mesh::recede(model, objectOf(5, 0.1f, 5), states, 50 * kTicksPerSecond, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (const gpu::ShownVertex& v : state.shown)
             ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << seed;
     }

@@ -2,6 +2,7 @@
 // picture.
 #pragma once
 #include "core/error.h"
+#include "reference/flame_march.h"
 #include "volume/flame.h"
 
 #include <cmath>
