@@ -345,13 +345,14 @@ typedef struct FwHeatShieldDef {
 static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
     FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
 }
-/* Replaces the heat-occlusion grid; null removes it. Takes effect at the next exchange, in addition to occluder boxes.
- * Cells of the host also stop jets; jets hit meshes without the grid. Nothing shades itself: the library ignores all cells
- * within one cell of a flame or of a heated surface. Cells of the host and of these two objects it ignores within a few cells.
- * Burnt holes let fire pass without another call. If an object moves, its cells stay until the next call; if it is destroyed,
- * they are gone. Objects fill at most 262144 cells. The result is the same on every backend and goes to saves, command logs
- * and networks. Size there: 9 bytes for each object, and 57 for each row of 288 cells in which a host's cell changed. If the grid differs,
- * all rows with solid cells count. Cost: about 5 ns a cell, the time of the callback, and about 40 ns a texel of the objects. [world] */
+/* Replaces the heat-occlusion grid; null removes it. Takes effect at the next exchange, in addition to occluder boxes. Cells
+ * of the host also stop jets; jets hit meshes without the grid. Nothing shades itself: the library ignores all cells within
+ * one cell of a flame or of a heated surface. Cells of the host and of these two objects it ignores within a few cells. Burnt
+ * holes let fire pass without another call. If an object moves, its cells stay until the next call; if it is destroyed, they
+ * are gone. Objects fill at most 262144 cells. The result is the same on every backend and goes to saves, command logs and
+ * networks. Size there: 9 bytes for each object, and 57 for each row of 288 cells in which a host's cell changed. If the grid
+ * differs, all rows with solid cells count. Cost: about 5 ns a cell, the time of the callback, and about 40 ns a texel of the
+ * objects. [world] */
 FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
 
 typedef enum FwWindShape { /* extent of a wind zone. Falloff runs from its middle to its edge */
@@ -516,7 +517,8 @@ typedef struct FwMaterialDef {
     float autoIgnitionTemperature; /* K, [ignitionTemperature, 3000], default 873. Ignition without a flame */
     float flameFeedback;           /* W/m^2, [0, 200000], default 25000. Heat that its own flame returns to the surface. Below
                                       about 9000 a lone flame goes out, as on real planks */
-    float charFloor;               /* share, [0.01, 1], default 0.38. Thick fuel: share of its burning rate that char cannot stop */
+    float charFloor;               /* share, [0.01, 1], default 0.38. Thick fuel: share of its burning rate that char cannot
+                                      stop */
     float waterHeld;               /* g/m^2, [0, 1023], default 200. Water that stays on the surface; more runs off */
     float radiantFraction;         /* share, [0, 1], default 0.3. Share of its heat that leaves as radiation */
     float sootYield;               /* kg of soot per kg burnt, [0, 1], default 0.015 */
@@ -669,7 +671,8 @@ typedef struct FwBurnableMeshDef {
                                          of 1/32 s (delta r) */
     /* FW_EVENT_STRUCTURE_BROKE. Checked twice a second of world time. Holes count as gone: burnt out or collapsed. Each check
      * costs about 25 ns a texel; on a device it copies the burn map, 12 bytes a texel. */
-    float breakShare;                 /* share, [0, 1], default 0: never. Raises the event once this share of the surface is gone */
+    float breakShare;                 /* share, [0, 1], default 0: never. Raises the event once this share of the surface is
+                                        gone */
     float breakArea;                  /* m^2, [0, 1e6], default 0: never. Minimum area of a disconnected piece that raises the
                                          event. A piece is disconnected when no remaining surface connects it to its supports.
                                          Supports: texels of each connected part of the mesh that are at most two texel sides
@@ -721,11 +724,11 @@ static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
  * unknown here: see FW_POINT_WET of fwWorld_RequestPoint. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
-/* Transfers the burn of `from` to `to`, an object with another mesh of the same shape: a level of detail. At the next step each
- * texel of `to` copies state, fuel, temperature and water of the nearest texel of `from`. Nearest: in object space, in rest
- * pose. Texels that face the same way (within 60 degrees) come first. A texel copies nothing if none is within 5 % of the diagonal
- * of `to`'s box plus two texels. The burnt share of the area stays, to within a texel along its edge. Noncombustible texels stay
- * unchanged. Events and FwObjectState of `to` continue those of `from`; tags and queries stay with their object.
+/* Transfers the burn of `from` to `to`, an object with another mesh of the same shape: a level of detail. At the next step
+ * each texel of `to` copies state, fuel, temperature and water of the nearest texel of `from`. Nearest: in object space, in
+ * rest pose. Texels that face the same way (within 60 degrees) come first. A texel copies nothing if none is within 5 % of the
+ * diagonal of `to`'s box plus two texels. The burnt share of the area stays, to within a texel along its edge. Noncombustible
+ * texels stay unchanged. Events and FwObjectState of `to` continue those of `from`; tags and queries stay with their object.
  * `from` keeps its burn. Destroy it after the next step (fwWorld_DestroyLater waits for that), or hide it and put it out.
  * The result is bit-identical on every backend and in command logs, timelines and networks.
  * FW_ERROR_INVALID_ARGUMENT: one has FW_BURNABLE_LITE and the other not; either has FW_BURNABLE_PUBLISHED, plays a baked burn
@@ -1023,8 +1026,8 @@ typedef struct FwFireEmitterDef {
     float smoke;                /* share, [0, 1], default 0.32. Share of the particles that turn to smoke */
     float smokeLife;            /* times the life of the flame, [0, 20], default 2.2 */
     float smokeDensity;         /* factor, [0, 4], default 1 */
-    float sparks;               /* 1/s for each kW, [0, 1], default 0.04. Births of sparks and embers, at most 2048 alive. They fly
-                                   for up to 2.5 s, bounce off the ground and off walls that a jet hits, lie there and go out.
+    float sparks;               /* 1/s for each kW, [0, 1], default 0.04. Births of sparks and embers, at most 2048 alive. They
+                                   fly for up to 2.5 s, bounce off the ground and off walls that a jet hits, lie there and go out.
                                    FW_EMITTER_MESH: each tile throws its own */
     float temperature;          /* K, [0, 2500], default 0. At birth */
     float ground;               /* m along up, [-1e6, 1e6], default 0. With FW_EMITTER_GROUND */
@@ -1538,7 +1541,8 @@ FW_API FwResult FW_CALL fwNet_Leave(FwWorld*);
  * FwNetState::silent tells how long a peer has been silent; the host removes it. [world] */
 FW_API FwResult FW_CALL fwNet_AddPeer(FwWorld*, FwPeerId* id);
 FW_API FwResult FW_CALL fwNet_RemovePeer(FwWorld*, FwPeerId id); /* [world] */
-/* Advances network time by deltaTime: s of real time, [0, 10]. Call it once in each frame of the host, after its steps. [world] */
+/* Advances network time by deltaTime: s of real time, [0, 10]. Call it once in each frame of the host, after its steps.
+ * [world] */
 FW_API FwResult FW_CALL fwNet_Update(FwWorld*, float deltaTime);
 /* Writes the next packet for a peer; on a client, for the server, with a null id. *size is the capacity on entry
  * (FwNetDef::packetBytes) and the bytes written on return. FW_NOT_READY: none before the next fwNet_Update. [world] */
