@@ -1509,11 +1509,12 @@ FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
  * that is damaged, incomplete, or of another session or version is refused with a message and changes nothing. The checksum
  * detects damage, not attacks: encrypt where attacks are possible. No call waits.
  *
- * Sent automatically: fwWorld_Ignite, PlayBurn, StopBurn, TransferBurn, SetWind, SetWindGrid, SetGusts, SetWindZone, SetRoom,
- * SetFlags, SetTransform, MoveBlocker, SetHeatShield, ShiftOrigin; position and power of volumetric fires with FW_FIRE_IGNITES
- * and of jets with FW_EMITTER_IGNITES; position and amount of fields with FW_FIELD_WETS. A client refuses these calls, and
- * fwWorld_Load. Each host repeats all else that changes the burn at the same step, when a message of fwNet_Tell says so:
- * creation, destruction, colliders, points of fires, painted fields, vertices. */
+ * Sent automatically: fwWorld_Ignite, fwWorld_PlayBurn, fwWorld_StopBurn, fwWorld_TransferBurn, fwWorld_SetWind,
+ * fwWorld_SetWindGrid, fwWorld_SetGusts, fwWorld_SetWindZone, fwWorld_SetRoom, fwWorld_SetFlags, fwWorld_SetTransform,
+ * fwWorld_MoveBlocker, fwWorld_SetHeatShield and fwWorld_ShiftOrigin; position and power of volumetric fires with
+ * FW_FIRE_IGNITES and of jets with FW_EMITTER_IGNITES; position and amount of fields with FW_FIELD_WETS. A client refuses these
+ * calls, and fwWorld_Load. Each host repeats all else that changes the burn at the same step, when a message of fwNet_Tell says
+ * so: creation, destruction, colliders, points of fires, painted fields, vertices. */
 typedef struct FwNetDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t token;             /* [1, 2^32). A random number of the host, new each time: of the session, or of this client.
