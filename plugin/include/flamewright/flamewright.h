@@ -752,9 +752,9 @@ typedef enum FwVolumetricFireFlags {
 } FwVolumetricFireFlags;
 typedef enum FwFireTier { /* how the views of fwWorld_RecordOutside show a fire. Other views march all fires as they draw */
     FW_FIRE_TIER_AUTO = 0,       /* by size on the screen. Marches at most 32 flames, the 16 largest at high quality */
-    FW_FIRE_TIER_MARCH_HIGH = 1, /* marched each frame with up to 64 samples a ray. If requested here, rays through thin
-                                    regions take more samples than with AUTO, so that thin flame tongues show the least grain.
-                                    Cost: about 1.5 times that of AUTO */
+    FW_FIRE_TIER_MARCH_HIGH = 1, /* marched each frame with up to 64 samples a ray. If the host requests it, rays
+                                    through thin regions take more samples than with AUTO: thin flame tongues show the least
+                                    grain. Cost: about 1.5 times that of AUTO */
     FW_FIRE_TIER_MARCH_LOW = 2,  /* marched each frame with two thirds of those samples */
     FW_FIRE_TIER_IMPOSTOR = 3,   /* an impostor of its own: a billboard, marched at up to 24 march pixels across. Twelve
                                     impostors are marched in each frame, round-robin, whatever their number. Meant for flames
@@ -982,10 +982,10 @@ typedef enum FwEmitterShape {
     FW_EMITTER_POINT = 0,
     FW_EMITTER_DISC = 1,  /* perpendicular to `direction`, of `radius` */
     FW_EMITTER_LINE = 2,  /* from position - extent to position + extent */
-    FW_EMITTER_MESH = 3,  /* on the flaming tiles of `object`; each tile's chance is proportional to its power P. At `power` or
-                             above, the emitter runs at full particle count. Below it, count scales linearly; speed and
-                             lifetime scale with (P / power)^0.2, which gives flames the height of that power. The mesh
-                             provides the light */
+    FW_EMITTER_MESH = 3,  /* on the flaming tiles of `object`, each with a chance proportional to its power. If the object's
+                             power P is at least `power`, the emitter runs at full particle count. Below it, count scales
+                             linearly; speed and lifetime scale with (P / power)^0.2, which gives flames the height of
+                             that power. The mesh provides the light */
     FW_EMITTER_SHAPE_FORCE32 = 0x7fffffff
 } FwEmitterShape;
 typedef enum FwEmitterFlags {
@@ -1001,8 +1001,8 @@ typedef enum FwEmitterFlags {
     FW_EMITTER_FLAGS_FORCE32 = 0x7fffffff
 } FwEmitterFlags;
 /* Fire with its smoke and sparks, made of particles in world space: large soft quads that the device simulates and draws. CPU
- * cost is that of one emitter, whatever its particle count. Floats, cosmetic. Power drives it: a field whose default is 0 takes
- * the value of a fire of that power. */
+ * cost is that of one emitter, whatever its particle count. Floats, cosmetic. Power drives it: 0 in rate, speed, cone, size0,
+ * size1, life, drag and temperature means the value of a fire of that power. */
 typedef struct FwFireEmitterDef {
     uint32_t structSize, flags; /* flags: FwEmitterFlags, default 0 */
     uint32_t shape;             /* FwEmitterShape, default FW_EMITTER_POINT */
@@ -1036,7 +1036,7 @@ typedef struct FwFireEmitterDef {
     uint64_t userData;          /* returned in its state */
     /* Jet. 16 rays sweep its cone. They start `behind` the nozzle, where its holder stands: a nozzle that is pushed into or
      * through a wall burns that wall and not the room beyond. The share `heat` of its power heats the surfaces that rays hit,
-     * spread evenly, eight times a second. It arrives after the time of flight; a wall that moves in between is hit. The host's
+     * spread over the hit area, eight times a second. It arrives after the time of flight; a wall that moves in between is hit. The host's
      * numbers alone decide this, so it is the same on every backend. The jet passes holes of a mesh's shape. A ray also passes at
      * most two burnt walls, if FwBurnableMeshDef allows their holes. It does not pass burnt holes of FW_BURNABLE_LITE, nor does
      * it reach such objects through burnt holes. */
