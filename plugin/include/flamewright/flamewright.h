@@ -1036,10 +1036,10 @@ typedef struct FwFireEmitterDef {
     uint64_t userData;          /* returned in its state */
     /* Jet. 16 rays sweep its cone. They start `behind` the nozzle, where its holder stands: a nozzle that is pushed into or
      * through a wall burns that wall and not the room beyond. The share `heat` of its power heats the surfaces that rays hit,
-     * spread over the hit area, eight times a second. It arrives after the time of flight; a wall that moves in between is hit. The host's
-     * numbers alone decide this, so it is the same on every backend. The jet passes holes of a mesh's shape. A ray also passes at
-     * most two burnt walls, if FwBurnableMeshDef allows their holes. It does not pass burnt holes of FW_BURNABLE_LITE, nor does
-     * it reach such objects through burnt holes. */
+     * spread over the hit area, eight times a second. It arrives after the time of flight; a wall that moves in between is
+     * hit. The host's numbers alone decide this, so it is the same on every backend. The jet passes holes of a mesh's shape. A
+     * ray also passes at most two burnt walls, if FwBurnableMeshDef allows their holes. It does not pass burnt holes of
+     * FW_BURNABLE_LITE, nor does it reach such objects through burnt holes. */
     float behind;               /* m, [0, 10], default 0.5 */
     float heat;                 /* share, [0, 1], default 0.35 */
     /* Flipbooks. Each particle picks one of those given, by chance, and its own phase. None given: procedural noise. */
