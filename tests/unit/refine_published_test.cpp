@@ -1,4 +1,5 @@
-// The published scheme: what its rules do as printed, and that the repaired ones come to rest.
+// The adaptive refinement of the reference implementation: its rules as printed, and the repaired
+// rules that reach a stable state.
 #include "mesh/refine/published.h"
 
 #include "core/error.h"
@@ -17,7 +18,7 @@ using Point = std::pair<int, int>;
 struct Outcome {
     uint32_t drawn = 0;
     double twice = 0, missing = 0;  // shares of the finest triangles
-    uint32_t junctions = 0;         // corners on another drawn triangle's side
+    uint32_t junctions = 0;         // corners on the side of another drawn triangle
 };
 
 Point cornerOf(const ArpTriangle& t, int k) { return {t.corner[k % 3][0], t.corner[k % 3][1]}; }
@@ -81,7 +82,7 @@ struct Growth {
     }
 };
 
-TEST(RefinePublished, TheTemplateIsFourWaySplits) {
+TEST(RefinePublished, TheTemplateSplitsInFour) {
     const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
     ASSERT_EQ(1u + 4 + 16 + 64 + 256, arp.size());
     int finest = 0;
@@ -96,7 +97,7 @@ TEST(RefinePublished, TheTemplateIsFourWaySplits) {
     EXPECT_EQ(64 * 64, finest);
 }
 
-TEST(RefinePublished, PrintedRulesCycleAndDrawTwice) {
+TEST(RefinePublished, PrintedRulesCycleAndOverlap) {
     const Growth run(ArpRules::printed, true);
     EXPECT_EQ(15u, run.cycles) << "of 16 radii";
     const uint32_t drawn[4] = {99, 250, 314, 338}, junctions[4] = {46, 110, 136, 147};
@@ -130,17 +131,16 @@ std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
     return drawn;
 }
 
-// The published rules, run serially on one triangle while a fire grows over it, and what we draw:
-// the same finest triangles at every radius, and at the end the same picture, of finest triangles
-// alone.
-TEST(RefinePublished, StatusMachineEndsWhereTheSerialRulesDo) {
+// The rules run serially on one triangle while a fire grows over it, against the drawn triangles:
+// equal finest triangles at every radius and the same final picture of finest triangles.
+TEST(RefinePublished, ParallelRulesMatchSerialRules) {
     auto* memory = std::pmr::new_delete_resource();
     const auto arp = makeArpTemplate(4, memory);
     std::pmr::vector<int8_t> seeds(arp.size(), kArpInitial), ours = seeds, parallel = seeds;
     std::vector<uint8_t> eligible(arp.size());
     for (int radius = 0; radius <= 96; radius += 4) {
         arpMarkCircle(arp, 20, 14, float(radius), eligible);
-        for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules come to no rest
+        for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules reach no stable state
             arpSweep(arp, ArpRules::printed, eligible, true, seeds, memory);
             arpSweep(arp, ArpRules::repaired, eligible, false, parallel, memory);
         }
@@ -192,11 +192,11 @@ TEST(RefinePublished, TwoBurntChildrenHideTheirParent) {
     EXPECT_FALSE(arpHidden(arp, burn, parent));
     burn.assign(burn.size(), 0);
     burn[arp[0].firstChild] = burn[arp[0].firstChild + 1] = 9;
-    EXPECT_FALSE(arpHidden(arp, burn, 0)) << "coarse triangles are shown whatever burns";
+    EXPECT_FALSE(arpHidden(arp, burn, 0)) << "coarse triangles are always shown";
     EXPECT_FALSE(arpHidden(arp, burn, uint32_t(arp.size() - 1))) << "the finest have no children";
 }
 
-// ---- on a whole mesh
+// ---- whole meshes
 
 glm::vec3 placeOf(const RefineModel& model, uint32_t draw) {
     const gpu::RefineSlot& slot = model.slots[model.draws[draw].slot];
@@ -214,7 +214,7 @@ struct Burning {
           settings(arpSettings(model, 0, 0, 0.05f)) {
         state.reset(model);
     }
-    // Times that each of a coarse triangle's finest is covered by the list; -1: not all the same.
+    // How often the list covers each finest triangle; -1: not uniform.
     [[nodiscard]] int covered() const {
         const uint32_t n = 1u << model.depth;
         std::vector<int> covers(size_t(model.triangles()) * n * n * 2, 0);
@@ -243,7 +243,7 @@ struct Burning {
     }
 };
 
-TEST(RefinePublished, WordsNameTheVerticesOfTheirTriangles) {
+TEST(RefinePublished, WordsEncodeTheVerticesOfTheirTriangles) {
     for (const uint32_t depth : {0u, 1u, 2u, 5u}) {
         const Burning b(depth);
         double worst = 0;
@@ -270,7 +270,7 @@ TEST(RefinePublished, WordsNameTheVerticesOfTheirTriangles) {
     }
 }
 
-TEST(RefinePublished, AMeshIsCoveredOnceAtEveryMomentAndDistance) {
+TEST(RefinePublished, AMeshIsCoveredOnceAtEveryTimeAndDistance) {
     Burning b(4);
     ASSERT_EQ(12u, b.model.triangles());
     EXPECT_TRUE(arpAdvance(b.model, b.settings, 1000, {}, false, b.state));
@@ -290,11 +290,11 @@ TEST(RefinePublished, AMeshIsCoveredOnceAtEveryMomentAndDistance) {
     EXPECT_EQ(b.model.most(), b.state.list.size()) << "all of it is finest";
     EXPECT_EQ(b.model.most(), b.state.listed[0]);
     EXPECT_GT(changes, 20u);
-    EXPECT_FALSE(arpAdvance(b.model, b.settings, 1e6, {}, false, b.state)) << "at rest";
+    EXPECT_FALSE(arpAdvance(b.model, b.settings, 1e6, {}, false, b.state)) << "stable";
 }
 
-// A fire of a centimetre in the middle of a triangle, far from its corners.
-TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
+// A fire of 1 cm in the middle of a triangle, far from its corners.
+TEST(RefinePublished, FindsAFireMidTriangleAtOnce) {
     Burning b(5), again(5);
     for (Burning* one : {&b, &again}) {
         arpIgnite(one->model, one->settings, {0.55f, 0.35f, 1.2f}, 4096, one->state);
@@ -305,7 +305,7 @@ TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
     EXPECT_EQ(b.state.list, again.state.list);
     arpIgnite(b.model, b.settings, {0, 0, 0}, 5000, b.state);
     EXPECT_EQ(4096u, b.state.litTick) << "one source";
-    // What is refined lies around the fire.
+    // The refined part lies around the fire.
     const float radius = arpRadius(b.settings, b.state, 4096 + gpu::kStepTicks);
     for (const uint32_t word : b.state.list) {
         if (gpu::arpHalvings(word) < 5) continue;
@@ -318,17 +318,17 @@ TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
     }
 }
 
-TEST(RefinePublished, ConsumedIsTwoOfFourChildren) {
+TEST(RefinePublished, TwoBurntChildrenConsumeTheirParent) {
     EXPECT_FALSE(gpu::arpConsumed(3, true));
     EXPECT_TRUE(gpu::arpConsumed(7, true));
     EXPECT_TRUE(gpu::arpConsumed(7, false));
     EXPECT_FALSE(gpu::arpConsumed(1 | 8 | 32, false)) << "one child";
-    EXPECT_TRUE(gpu::arpConsumed(1 | 8 | 16 | 32, false)) << "that and the middle";
+    EXPECT_TRUE(gpu::arpConsumed(1 | 8 | 16 | 32, false)) << "that child and the middle";
     EXPECT_TRUE(gpu::arpConsumed(1 | 2 | 8 | 16 | 32, false));
     EXPECT_FALSE(gpu::arpConsumed(1 | 2 | 8, false));
 }
 
-TEST(RefinePublished, RefusesWhatIsTooMuch) {
+TEST(RefinePublished, RefusesTooManyTriangles) {
     test::RefineScene scene(test::gridBox(1, 1, 1, 17, 17, 17), arpOptions(0), 16);
     try {
         (void)makeArpModel(scene.domain, scene.model, 5, std::pmr::new_delete_resource());
