@@ -61,11 +61,7 @@ FwWorldDef windy(float x, float pace = 10, uint32_t arrivalTiles = 1024) {
     return def;
 }
 
-FwMaterialDef preset(uint32_t which) {
-    FwMaterialDef def = fwDefaultMaterialDef();
-    EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, which));
-    return def;
-}
+FwMaterialDef preset(uint32_t which) { return materialOf(which); }
 
 TEST(Arrival, PredictionsComeTrueForRealMaterials) {
     for (const uint32_t which : {FW_MATERIAL_PINE, FW_MATERIAL_PAPER, FW_MATERIAL_THATCH}) {

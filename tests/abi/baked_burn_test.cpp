@@ -21,8 +21,7 @@ struct Boards : HostedWorld {  // plywood, side by side; the first of each pair 
         board.flags |= flags;
         const FwMeshDef meshDef = sheet.def(64);
         ok(fwWorld_CreateMesh(world, &meshDef, &board.mesh));
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PLYWOOD));
+        FwMaterialDef material = materialOf(FW_MATERIAL_PLYWOOD);
         ok(fwWorld_CreateMaterial(world, &material, &board.materials[0]));
         for (uint32_t i = 0; i < count; ++i) {
             board.transform[12] = float(i) * gap;

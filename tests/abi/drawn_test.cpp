@@ -11,38 +11,19 @@ using host::created;
 using host::getState;
 using host::Host;
 using host::lastMessage;
+using host::materialOf;
 
 struct Color {
     int r, g, b;
 };
 
 // A world on its own device; null without Vulkan.
-struct DrawnWorld {
-    Host host;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
-
-    explicit DrawnWorld(const FwWorldDef& worldDef = fwDefaultWorldDef()) {
-        FwContextDef def = fwDefaultContextDef();
-        def.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&def, &context, &error) != FW_OK) {
-            EXPECT_EQ(FW_ERROR_UNSUPPORTED_DEVICE, error.result) << error.message;
-            if (std::getenv("FLAMEWRIGHT_REQUIRE_GPU")) ADD_FAILURE() << error.message;
-            return;
-        }
-        EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world)) << lastMessage(context);
-    }
-    DrawnWorld(const DrawnWorld&) = delete;
-    DrawnWorld& operator=(const DrawnWorld&) = delete;
-    ~DrawnWorld() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
+struct DrawnWorld : host::HostedWorld {
+    explicit DrawnWorld(const FwWorldDef& worldDef = fwDefaultWorldDef())
+        : HostedWorld(FW_BACKEND_VULKAN, worldDef) {}
 
     FwMaterialId material(uint32_t preset) {
-        FwMaterialDef def = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, preset));
+        FwMaterialDef def = materialOf(preset);
         return created(fwWorld_CreateMaterial, world, def);
     }
     FwImageId image(uint32_t pixel) {
@@ -60,22 +41,8 @@ struct DrawnWorld {
         FwView& view = def.view;
         // Object x points right. z points down in the picture from above and up from below.
         const float side = below ? -1.0f : 1.0f;
-        const float placed[16] = {1,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  side,
-                                  0,
-                                  0,
-                                  -side,
-                                  0,
-                                  0,
-                                  -0.5f,
-                                  side * 0.25f,
-                                  -side * (below ? -2.0f : 2.0f) * side,
-                                  1};
+        const float placed[16] = {1, 0, 0, 0, 0, 0, side, 0, 0, -side, 0, 0, -0.5f, side * 0.25f,
+                                  0, 1};
         std::copy_n(placed, 16, view.view);
         view.view[14] = -2;
         std::fill_n(view.projection, 16, 0.0f);

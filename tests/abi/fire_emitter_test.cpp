@@ -107,8 +107,7 @@ TEST(AbiFireEmitter, OnAMeshFollowsTheBurningArea) {
     def.smoke = 0;
     const FwFireEmitterId id = created(fwWorld_CreateFireEmitter, panels.world, def);
     const auto alive = [&] {
-        const FwFireEmitterState state = getState(fwWorld_GetFireEmitterState, panels.world, id);
-        return state.particles;
+        return getState(fwWorld_GetFireEmitterState, panels.world, id).particles;
     };
     panels.ignite(other, 3.2f, 0, 0.1f);  // not the emitter's object
     panels.run(1);

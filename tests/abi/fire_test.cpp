@@ -9,6 +9,7 @@ namespace {
 using host::created;
 using host::getState;
 using host::lastMessage;
+using host::materialOf;
 using host::SheetWorld;
 
 constexpr float kRate = 0.02f;  // m/s
@@ -218,10 +219,7 @@ TEST(AbiFire, ShapesAreSharedAndFreedWithTheirLastUser) {
     FwWorldStats stats{};
     stats.structSize = sizeof stats;
     FwBurnableMeshId ids[3] = {};
-    const auto bytes = [&] {
-        const FwContextInfo info = getState(fwContext_GetInfo, w.context);
-        return info.cpuMemoryUsed;
-    };
+    const auto bytes = [&] { return getState(fwContext_GetInfo, w.context).cpuMemoryUsed; };
     const uint64_t none = bytes();
     ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[0])) << lastMessage(w.world);
     const uint64_t one = bytes();
@@ -324,8 +322,7 @@ TEST(AbiFire, FireDoesNotCrossAZeroSpreadMultiplier) {
 }
 
 TEST(AbiFire, NonCombustibleDoesNotBurnAndRaisesNothing) {
-    FwMaterialDef stone = fwDefaultMaterialDef();
-    ASSERT_EQ(FW_OK, fwInitMaterialPreset(&stone, FW_MATERIAL_NONCOMBUSTIBLE));
+    FwMaterialDef stone = materialOf(FW_MATERIAL_NONCOMBUSTIBLE);
     SheetWorld w(stone);
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.05f));
     w.run(3.0);

@@ -66,8 +66,7 @@ struct Camp : HostedWorld {
         std::copy_n(view, 16, picture.view.view);
         std::copy_n(projection, 16, picture.view.projection);
         ok(fwWorld_RenderOffscreen(world, &picture));
-        const FwWorldStats stats = getState(fwWorld_GetStats, world);
-        return stats.flames;
+        return getState(fwWorld_GetStats, world).flames;
     }
 
     FwBurnableMeshId board{};

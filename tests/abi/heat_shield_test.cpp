@@ -20,8 +20,7 @@ struct Kiln : Panels {
         hot.burningFlux = 0.3f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &hot, &material));
         add(0, 0, 0);
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material));
         FwBurnableMeshDef board = upright(0.7f, 0, 0, 1, 0);
         board.flags = FW_BURNABLE_TWO_SIDED;

@@ -11,18 +11,14 @@ namespace {
 using host::created;
 using host::getState;
 using host::lastMessage;
+using host::materialOf;
 
 // A sheet of 0.1 m; `all` acts on the whole of it.
 class AbiHeat : public ::testing::TestWithParam<uint32_t> {
  protected:
     void SetUp() override {
-        FwContextDef def = fwDefaultContextDef();
-        def.backend = GetParam();
-        def.callbacks = host_.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&def, &context_, &error) == FW_OK) return;
-        if (std::getenv("FLAMEWRIGHT_REQUIRE_GPU")) ADD_FAILURE() << error.message;
-        GTEST_SKIP() << "no Vulkan device";
+        context_ = host::createContext(host_, GetParam());
+        if (!context_) GTEST_SKIP() << "no Vulkan device";
     }
     void TearDown() override {
         fwDestroyContext(context_);
@@ -34,8 +30,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         def.paceFactor = pace;
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_)) << lastMessage(context_);
         const host::Sheet sheet(0.1f, 0.1f);
-        const FwMeshDef meshDef = sheet.def(64);
-        const FwMeshId mesh = created(fwWorld_CreateMesh, world_, meshDef);
+        const FwMeshId mesh = created(fwWorld_CreateMesh, world_, sheet.def(64));
         mesh_ = mesh;
         const FwMaterialId id = created(fwWorld_CreateMaterial, world_, material);
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
@@ -63,12 +58,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world_, object_, position, &query));
         FwPointState made{};
         made.structSize = sizeof made;
-        FwResult result = FW_NOT_READY;
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
-            result = fwWorld_FetchPoint(world_, query, &made);
-        }
-        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        host::come(world_, [&] { return fwWorld_FetchPoint(world_, query, &made); });
         return made;
     }
     // Positions of the map's covered texels; `beside` receives the indices of the others.
@@ -92,12 +82,9 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
     uint64_t mapHash() {
         uint64_t hash = 0;
         EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world_, object_));
-        FwResult result = FW_NOT_READY;
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
-            result = fwDebug_FetchBurnMap(world_, object_, nullptr, 0, nullptr, &hash, nullptr);
-        }
-        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        host::come(world_, [&] {
+            return fwDebug_FetchBurnMap(world_, object_, nullptr, 0, nullptr, &hash, nullptr);
+        });
         return hash;
     }
     FwObjectState state() { return getState(fwWorld_GetObjectState, world_, object_); }
@@ -114,11 +101,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
                 last = events[i].tag;
         return last;
     }
-    static FwMaterialDef preset(uint32_t which) {
-        FwMaterialDef def = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, which));
-        return def;
-    }
+    static FwMaterialDef preset(uint32_t which) { return materialOf(which); }
 
     host::Host host_;
     FwContext* context_ = nullptr;

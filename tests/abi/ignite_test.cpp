@@ -80,17 +80,9 @@ TEST(Ignite, ReportsTheNearestObjectAtAnyDistance) {
 TEST(Ignite, WholeObjectEventsAgreeOnBothBackends) {
     std::vector<uint64_t> hashes[2];
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
-        host::Host host;
-        FwContextDef contextDef = fwDefaultContextDef();
-        contextDef.backend = backend;
-        contextDef.callbacks = host.callbacks();
-        FwContext* context = nullptr;
-        FwErrorInfo error{};
-        if (fwCreateContext(&contextDef, &context, &error) != FW_OK)
-            GTEST_SKIP() << "there is no such backend here";
-        FwWorld* world = nullptr;
-        const FwWorldDef def = fwDefaultWorldDef();
-        ASSERT_EQ(FW_OK, fwCreateWorld(context, &def, &world));
+        host::HostedWorld w(backend);
+        if (!w.world) GTEST_SKIP() << "there is no such backend here";
+        FwWorld* const world = w.world;
         const host::Sheet sheet(1, 1);
         const FwMeshDef meshDef = sheet.def(128);
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
@@ -111,18 +103,8 @@ TEST(Ignite, WholeObjectEventsAgreeOnBothBackends) {
         for (int i = 0; i < 8; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
         ball(FW_EXTINGUISH, ids[0], 2);
         for (int i = 0; i < 8; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
-        for (const FwBurnableMeshId id : ids) {
-            ASSERT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id));
-            uint64_t hash = 0;
-            FwResult result = FW_NOT_READY;
-            for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-                ASSERT_EQ(FW_OK, fwWorld_Step(world, 0));
-                result = fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &hash, nullptr);
-            }
-            ASSERT_EQ(FW_OK, result) << lastMessage(world);
-            hashes[backend == FW_BACKEND_VULKAN].push_back(hash);
-        }
-        fwDestroyContext(context);
+        for (const FwBurnableMeshId id : ids)
+            hashes[backend == FW_BACKEND_VULKAN].push_back(w.hash(id));
     }
     EXPECT_EQ(hashes[0], hashes[1]);
     EXPECT_EQ(4u, std::set<uint64_t>(hashes[0].begin(), hashes[0].end()).size());

@@ -10,6 +10,7 @@ using host::created;
 using host::getState;
 using host::Host;
 using host::lastMessage;
+using host::materialOf;
 
 // Null without Vulkan; the test is then skipped or failed.
 FwContext* createOwnDevice(Host& host) {
@@ -46,8 +47,7 @@ DeviceSession play(FwContext* context) {
     FwMeshDef meshDef = sheet.def(64);
     meshDef.noiseAmplitude = 0.15f;
     const FwMeshId mesh = created(fwWorld_CreateMesh, world, meshDef);
-    FwMaterialDef paper = fwDefaultMaterialDef();
-    EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+    FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
     const FwMaterialId material = created(fwWorld_CreateMaterial, world, paper);
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = mesh;

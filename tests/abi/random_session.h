@@ -507,11 +507,9 @@ class SessionWorld {
         static const uint32_t presets[3] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON,
                                             FW_MATERIAL_PLYWOOD};
         for (int i = 0; i < 3; ++i) {
-            FwMaterialDef material = fwDefaultMaterialDef();
-            ok(fwInitMaterialPreset(&material, presets[i]));
+            FwMaterialDef material = materialOf(presets[i]);
             ok(fwWorld_CreateMaterial(world, &material, &materials_[i]));
-            FwMaterialDef thatch = fwDefaultMaterialDef();
-            ok(fwInitMaterialPreset(&thatch, FW_MATERIAL_THATCH));
+            FwMaterialDef thatch = materialOf(FW_MATERIAL_THATCH);
             thatch.spreadRate *= 2;
             thatch.burnTime *= 1.7f;
             if (session.played) ok(fwWorld_CreateMaterial(world, &thatch, &thatch_));

@@ -17,8 +17,7 @@ struct Hearth : Panels {
         hot.burningFlux = 0.1f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &hot, &material));
         add(0, 0, 0);
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material));
     }
     FwBurnableMeshDef paper(float x, float y, float z, bool upright) const {

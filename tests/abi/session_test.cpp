@@ -140,8 +140,7 @@ class TouchingSheets {
         const Sheet sheet(0.3f, 0.3f);
         const FwMeshDef meshDef = sheet.def(64);
         EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh_));
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material_));
         for (int i = 0; i < 2; ++i) ids[i] = make(i);
     }
@@ -170,10 +169,7 @@ class TouchingSheets {
         ids[1] = make(1);
     }
     FwResult load(const Bytes& bytes) { return fwWorld_Load(world, bytes.data(), bytes.size()); }
-    uint32_t ignited(int i) {
-        const FwObjectState state = getState(fwWorld_GetObjectState, world, ids[i]);
-        return state.ignited;
-    }
+    uint32_t ignited(int i) { return getState(fwWorld_GetObjectState, world, ids[i]).ignited; }
 
     FwWorld* world = nullptr;
     FwBurnableMeshId ids[2] = {};

@@ -13,16 +13,11 @@ struct ShiftedWorld : BusyWorld {
     enum Kind { exact, ordinary };
     explicit ShiftedWorld(uint32_t backend, Kind kind = exact)
         : BusyWorld(backend, 12, 10, kind == exact) {}
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void go(uint32_t frames) {
         run(frame, frame + frames);
         frame += frames;
     }
-    std::vector<FwEvent> events() {
-        std::vector<FwEvent> all(256);
-        all.resize(fwWorld_PollEvents(world, all.data(), 256));
-        return all;
-    }
+    std::vector<FwEvent> events() { return poll(); }
     // Sum of all lights: power and mean position.
     FwLight light() {
         FwLight lights[16] = {}, all{};
@@ -40,16 +35,10 @@ struct ShiftedWorld : BusyWorld {
         return getState(fwWorld_GetVolumetricFireState, world, fire);
     }
     FwFireEmitterState emitterState() { return getState(fwWorld_GetFireEmitterState, world, jet); }
-    uint64_t tick() {
-        const FwWorldStats stats = getState(fwWorld_GetStats, world);
-        return stats.tick;
-    }
+    uint64_t tick() { return getState(fwWorld_GetStats, world).tick; }
     uint32_t ignited() {  // texels of all objects
         uint32_t all = 0;
-        for (const FwBurnableMeshId id : ids) {
-            const FwObjectState state = getState(fwWorld_GetObjectState, world, id);
-            all += state.ignited;
-        }
+        for (const FwBurnableMeshId id : ids) all += state(id).ignited;
         return all;
     }
     uint32_t frame = 0;
@@ -258,8 +247,7 @@ TEST(ShiftOrigin, KeepsTheHostsSightAnswers) {
         def.paceFactor = 10;
         def.visibility = Asked::sees;
         def.visibilityData = &asked;
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        ASSERT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         SheetWorld w(paper, 0.5f, 0.25f, 64, def);
         const FwBurnableMeshId second = w.add(8);
         FwBurnableMeshDef at = fwDefaultBurnableMeshDef();

@@ -50,8 +50,7 @@ FwMeshId makePair(Panels& p, float gap) {
         both.uvs.insert(both.uvs.end(), {one.uvs[2 * i], one.uvs[2 * i + 1] + 1});
     }
     for (const uint32_t index : one.indices) both.indices.push_back(index + 4);
-    const FwMeshDef def = both.def(64);
-    return created(fwWorld_CreateMesh, p.world, def);
+    return created(fwWorld_CreateMesh, p.world, both.def(64));
 }
 
 // s until fire arrives; < 0 if it never does.

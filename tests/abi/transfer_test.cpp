@@ -17,8 +17,7 @@ struct Boards : HostedWorld {
           fine(0.6f, 0.4f, 6),
           coarse(0.6f, 0.4f, 1) {
         if (!world) return;
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, preset));
+        FwMaterialDef material = materialOf(preset);
         const FwMaterialId materialId = created(fwWorld_CreateMaterial, world, material);
         for (const bool isFine : {true, false}) {
             FwMeshDef meshDef = (isFine ? fine : coarse).def(isFine ? 96.0f : 40.0f);

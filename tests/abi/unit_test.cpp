@@ -22,6 +22,7 @@ namespace {
 
 using host::Bytes;
 using host::lastMessage;
+using host::materialOf;
 using testing::HasSubstr;
 using Names = std::set<std::string>;
 
@@ -388,8 +389,7 @@ class Session {
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
         def.mesh = mesh;
         def.flags = flags;
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PLYWOOD));
+        FwMaterialDef material = materialOf(FW_MATERIAL_PLYWOOD);
         ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
         transform("FwBurnableMeshDef::transform", def.transform, x, 0.125f, z, space);
         def.ground = give("FwBurnableMeshDef::ground", -16777216);

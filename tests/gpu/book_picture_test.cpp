@@ -278,7 +278,7 @@ TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
             def.smoke = 0;
             def.temperature = i < 3 ? 1800.0f : 1250.0f;
             def.fireBooks[0] = book;
-            const FwFireEmitterId id = created(fwWorld_CreateFireEmitter, world_, def);
+            (void)created(fwWorld_CreateFireEmitter, world_, def);
         }
         for (int i = 0; i < 48; ++i) fwWorld_Step(world_, 1.0f / 32);
         FwView view = frontView({0, 0}, 3, 3);

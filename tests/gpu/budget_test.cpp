@@ -54,8 +54,7 @@ class Budget : public testing::TestWithParam<bool> {
         for (int i = 0; i < 6; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = float(i) - 2.5f;
-            const FwVolumetricFireId id =
-                created(fwWorld_CreateVolumetricFire, panels->world, fire);
+            (void)created(fwWorld_CreateVolumetricFire, panels->world, fire);
         }
         return panels;
     }
@@ -95,7 +94,7 @@ TEST(BudgetOnDevice, KeepsEveryFireAndItsLight) {
         for (int i = 0; i < 5; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = 1.4f * float(i - 2);
-            const FwVolumetricFireId id = created(fwWorld_CreateVolumetricFire, panels.world, fire);
+            (void)created(fwWorld_CreateVolumetricFire, panels.world, fire);
         }
         ASSERT_EQ(FW_OK, setBudget(panels.world, held ? 2 : 0, 100));
         std::vector<unsigned char> pixels(320 * 180 * 4);
@@ -143,12 +142,12 @@ struct Seen {
         for (int i = 0; i < 2; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = 1.5f * float(i) - 3.0f;
-            FwVolumetricFireId id = created(fwWorld_CreateVolumetricFire, panels->world, fire);
+            (void)created(fwWorld_CreateVolumetricFire, panels->world, fire);
         }
         FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
         emitter.position[0] = 0.2f;
         emitter.power = 300;
-        const FwFireEmitterId id = created(fwWorld_CreateFireEmitter, panels->world, emitter);
+        (void)created(fwWorld_CreateFireEmitter, panels->world, emitter);
         panels->ignite(panels->add(2.2f, 0.4f, 0), 2.4f, 0.4f, 0.1f, 0.05f);
         shot.width = kWide, shot.height = kHigh;
         shot.pixels = pixels.data();

@@ -23,7 +23,7 @@ TEST_F(FieldPicture, SheetsOfWaterHaveNoWhiteDottedRims) {
         def.life *= float(cells) / 32;  // speeds are in cells
         def.size[0] = 1.1f;
         def.size[1] = 1.3f;
-        const FwParticleFieldId id = created(fwWorld_CreateParticleField, world, def);
+        (void)created(fwWorld_CreateParticleField, world, def);
         for (int i = 0; i < 4 * 24; ++i) fwWorld_Step(world, 1.0f / 24);
         FwView view = frontView({0, 0.65f}, 1.5f, 1.5f);
         const float sun[3] = {0.28f, 0.58f, 0.76f};

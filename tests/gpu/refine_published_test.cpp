@@ -1,5 +1,5 @@
-// The published scheme's pass on a device against the library: which vertices its triangles name
-// and which of them are consumed, and where vertices lie.
+// The refinement pass of the reference implementation on a device against the library: vertices of
+// its triangles, consumed triangles, vertex positions.
 #include "mesh/refine/published_frame.h"
 #include "support/pass_rig.h"
 #include "support/refine_scene.h"
@@ -32,7 +32,7 @@ class RefinePublishedEquality : public GpuTest {
     }
 };
 
-TEST_F(RefinePublishedEquality, TrianglesAndPlacesAreTheLibrarys) {
+TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     if (!device_) return;
     auto* memory = std::pmr::new_delete_resource();
     const uint32_t depth = 4;

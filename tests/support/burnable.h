@@ -42,6 +42,12 @@ auto getState(FwResult(FW_CALL* get)(Owner*, Parameters...), Owner* owner,
     return state;
 }
 
+inline FwMaterialDef materialOf(uint32_t preset) {
+    FwMaterialDef def = fwDefaultMaterialDef();
+    EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, preset));
+    return def;
+}
+
 // `def`: everything but the mesh and the first material.
 inline FwBurnableMeshId addBurnable(FwWorld* world, const FwMeshDef& mesh,
                                     const FwMaterialDef& material,
@@ -52,9 +58,7 @@ inline FwBurnableMeshId addBurnable(FwWorld* world, const FwMeshDef& mesh,
 }
 inline FwBurnableMeshId addBurnable(FwWorld* world, const FwMeshDef& mesh, uint32_t preset,
                                     const FwBurnableMeshDef& def = fwDefaultBurnableMeshDef()) {
-    FwMaterialDef material = fwDefaultMaterialDef();
-    EXPECT_EQ(FW_OK, fwInitMaterialPreset(&material, preset));
-    return addBurnable(world, mesh, material, def);
+    return addBurnable(world, mesh, materialOf(preset), def);
 }
 
 }  // namespace fw::test

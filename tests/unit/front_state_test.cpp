@@ -126,7 +126,7 @@ bool sameBurn(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const uin
     for (uint32_t t : rigs[0]->ticks()) sources += gpu::isSource(t);
     EXPECT_EQ(rigs[0]->counters().ignited, sources);
     uint64_t runs[2] = {rigs[0]->totalRunTiles, rigs[1]->totalRunTiles};
-    std::printf("P7 seed %u: %u steps equal, %.0f %% burn, dense/sparse %.1fx, hash %016llx\n",
+    std::printf("seed %u: %u steps equal, %.0f %% burn, dense/sparse %.1fx, hash %016llx\n",
                 chaos.seed, chaos.steps, 100.0 * sources / double(reals.size()),
                 double(runs[0]) / double(std::max<uint64_t>(1, runs[1])),
                 (unsigned long long)core::hashWords(rigs[0]->ticks()));
@@ -183,11 +183,11 @@ TEST(Front, EqualityTestCatchesMutants) {
     };
     EXPECT_FALSE(differs(0, true));
     EXPECT_TRUE(differs(FW_DEBUG_NO_SEAM_WAKE, false));
-    std::printf("P18 no seam wake: differs at step %u\n", failedAt);
+    std::printf("no seam wake: differs at step %u\n", failedAt);
     EXPECT_TRUE(differs(FW_DEBUG_WRONG_READERS, false));
-    std::printf("P18 wrong readers: differs at step %u\n", failedAt);
+    std::printf("wrong readers: differs at step %u\n", failedAt);
     EXPECT_TRUE(differs(FW_DEBUG_NO_WIND_WAKE, true));
-    std::printf("P18 no wake on a wind key: differs at step %u\n", failedAt);
+    std::printf("no wake on a wind key: differs at step %u\n", failedAt);
 }
 
 // Gusts on a slow front: filtered wind gives the mean speed, raw wind far more.
@@ -227,7 +227,7 @@ TEST(Front, GustsAverageToTheMeanWind) {
     for (const Case& c : {Case{0.02, 2}, Case{0.1, 10}}) {
         const double raw = speed(c.duty, c.period, false), filtered = speed(c.duty, c.period, true);
         const double mean = rate * (1 + gain * c.duty) * 1000;
-        std::printf("P19 duty %.2f period %2.0f s: raw %.2f, filtered %.2f, time mean %.2f mm/s\n",
+        std::printf("duty %.2f period %2.0f s: raw %.2f, filtered %.2f, time mean %.2f mm/s\n",
                     c.duty, c.period, raw, filtered, mean);
         EXPECT_GT(raw, 1.5 * mean);
         EXPECT_NEAR(filtered, mean, 0.08 * mean);
@@ -311,8 +311,7 @@ TEST(Front, OnlyLiveFireCrossesADryingBand) {
             ++lit;
             first = std::min(first, rig.arrival(i));
         }
-        std::printf("P20 burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit,
-                    beyond);
+        std::printf("burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit, beyond);
         if (burnTime > 0) {
             EXPECT_EQ(lit, 0);  // cold
         } else {

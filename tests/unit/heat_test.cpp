@@ -72,6 +72,7 @@ TEST(Heat, CharDepthAfterAnHourMatchesEurocode5) {
     }
 }
 
+// Without losses: a half-space takes pi / 4 k rho c (dT / q)^2, a thin sheet rho c d dT / q.
 TEST(Heat, IgnitionTimeMatchesTheory) {
     fire::HeatFacts thick = insulated();
     thick.conductivity = 0.2222f;  // k rho c = 0.25 kW^2 s / m^4 K^2

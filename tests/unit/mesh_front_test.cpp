@@ -54,8 +54,8 @@ TEST(MeshFront, ConfettiAtlasesBurnLikeOneChart) {
             sum += e;
             ++count;
         }
-        std::printf("P17 confetti, legs %4.1f texels: unburnt %d, mean %+.2f %%, worst %.2f %%\n",
-                    leg, unburnt, sum / count * 100, worst * 100);
+        std::printf("confetti, legs %4.1f texels: unburnt %d, mean %+.2f %%, worst %.2f %%\n", leg,
+                    unburnt, sum / count * 100, worst * 100);
         EXPECT_EQ(unburnt, 0) << leg;
         EXPECT_LT(std::abs(sum / count), 0.001) << leg;
         EXPECT_LT(worst, 0.006) << leg;
@@ -81,7 +81,7 @@ TEST(MeshFront, ConfettiAtlasesBurnLikeOneChartFromAPoint) {
             sum += e;
             ++count;
         }
-        std::printf("P17 from a point, legs %4.1f texels: mean %+.2f %%, worst %.2f %%\n",
+        std::printf("from a point, legs %4.1f texels: mean %+.2f %%, worst %.2f %%\n",
                     0.5 / cells / h, sum / count * 100, worst * 100);
         EXPECT_LT(std::abs(sum / count), 0.009) << cells;
         EXPECT_LT(worst, 0.02) << cells;
@@ -200,7 +200,7 @@ TEST(MeshFront, SeamDelaysOnRealMeshesAreSmall) {
         FrontRig rig(d, {.rate = kRate});
         lightAt(rig, d, texelNear(d, {0, 0.6, 0.2}));
         const double jump = worstSeamJump(d, rig);
-        std::printf("P3 %s, %s UVs, %3.0f/m: worst seam jump %.2f links\n", c.name,
+        std::printf("%s, %s UVs, %3.0f/m: worst seam jump %.2f links\n", c.name,
                     d.report.usedOwnUv ? "its own" : "our", c.density, jump);
         EXPECT_LE(jump, 0.6) << c.name;
     }
