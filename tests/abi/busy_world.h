@@ -33,8 +33,8 @@ inline void poseAt(float (&at)[16], float x, float y, float z, float turn) {
     at[12] = x, at[13] = y, at[14] = z;
 }
 
-// Boxes and boards of several materials that light each other, gusts and a wind grid, water, a
-// flamethrower, a fixed fire, a wetting field, a wall, occluders of both kinds, a tag.
+// Boxes and boards of several materials light each other. Gusts, a wind grid, water, a flamethrower
+// and a fixed fire act on them, and a wetting field, a wall, occluders of both kinds and a tag.
 // `exact`: all places are whole parts of a metre and no burn depends on float results, so a world
 // with another origin burns identically.
 class BusyWorld : public HostedWorld {

@@ -150,8 +150,8 @@ void bothBackendsAgree(Play play) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// Through a hole and under water a device burns bit for bit the same, although it knows of the hole
-// two to three frames before the CPU.
+// Through a hole and under water both backends burn equally bit for bit. The device knows of the
+// hole two to three frames before the CPU.
 TEST(Jet, BothBackendsAgreeThroughAHole) {
     bothBackendsAgree([](Range& r) {
         FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);

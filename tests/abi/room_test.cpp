@@ -1,5 +1,5 @@
-// Rooms through the C ABI: fire that uses up the oxygen weakens and goes out, a door brings it
-// back, both backends agree bit for bit, and bad values are refused.
+// Rooms through the C ABI: fire that uses up the oxygen goes out, and a door brings it back. Both
+// backends agree bit for bit, and bad values are refused.
 #include "abi/busy_world.h"
 
 #include <algorithm>

@@ -1,6 +1,6 @@
 // A tower defence game played by a script. Figures walk along a road past houses and respawn in the
-// slots of fallen ones. Jets, embers and water aim at them, fans turn, houses flash over and break,
-// one changes its level of detail, and the origin follows the camera. The commands of a frame
+// slots of fallen ones. Jets, embers and water aim at them, fans turn, houses flash over and break.
+// One house changes its level of detail, and the origin follows the camera. The commands of a frame
 // depend only on its number.
 #pragma once
 #include "abi/random_session.h"

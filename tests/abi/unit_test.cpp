@@ -1,6 +1,6 @@
-// The unit of a world. One session in metres and in another unit burns bit for bit the same, and
-// every length that the host gives or gets differs by the unit only. The headers list the numbers:
-// one that is in neither list below, or a length that the session omits, fails.
+// The unit of a world. One session in metres and in another unit burns bit for bit the same. Every
+// length that the host gives or gets differs by the unit only. The headers list the numbers: one
+// that is in neither list below, or a length that the session omits, fails.
 #include "abi/busy_world.h"
 #include "flamewright/flamewright.hpp"
 

@@ -1,7 +1,8 @@
-// The front on the cpu backend, one thread. Rows: front/wide_cpu/1024 (a front 1024 texels wide,
-// about 150 due tiles), front/mapsize_smallfire_cpu/N (one small fire on growing maps), query/eta
-// (a fire in the corner of a 1024 map is predicted until all has burnt; us_tile: a tile of a
-// slice).
+// The front on the cpu backend, one thread.
+// front/wide_cpu/1024: a front 1024 texels wide, about 150 due tiles.
+// front/mapsize_smallfire_cpu/N: one small fire on growing maps.
+// query/eta: a fire in the corner of a 1024 map is predicted until all has burnt; us_tile: a tile
+// of a slice.
 #include "support/front_rig.h"
 
 #include <benchmark/benchmark.h>

@@ -1,5 +1,5 @@
-// A yard of crates through the C ABI: cost of a step on a server without a GPU and on a device,
-// bytes of a network client, and zero cost of objects that do not burn.
+// A yard of crates through the C ABI: cost of a step on a server without a GPU and on a device.
+// Also bytes of a network client, and zero cost of objects that do not burn.
 #include "bench/bench_device.h"
 #include "common/yard.h"
 #include "flamewright/flamewright_debug.h"

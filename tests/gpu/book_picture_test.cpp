@@ -253,8 +253,8 @@ book::Book glow(float hides) {
     return made;
 }
 
-// Additive fire is a sum: the picture is the same in any order but for 8-bit rounding, and it is
-// not sorted, so its order in a frame is the order of creation. Fire that covers is sorted and not
+// Additive fire is a sum, so the picture is the same in any order but for 8-bit rounding. It is not
+// sorted; its order in a frame is the order of creation. Fire that covers is sorted and not
 // additive.
 TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
     const auto picture = [&](const book::Book& made, bool backwards) {

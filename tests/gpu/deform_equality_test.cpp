@@ -250,8 +250,8 @@ TEST_F(DeformEquality, RecedingSolidsAgree) {
                                [](const auto& n) { return n.opposite != mesh::kNone; }));
 }
 
-// The inner skin of a receding solid stays while there is a wall in front, never comes in front of
-// it, and holes open in both at once.
+// The inner skin of a receding solid stays while there is a wall in front and never comes in front
+// of it. Holes open in both at once.
 TEST_F(DeformEquality, InnerSkinsOfRecedingSolidsAgree) {
     constexpr float kWall = 0.004f;
     gpu::DeformObject made = object(gpu::kDeformRecede);

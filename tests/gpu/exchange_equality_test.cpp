@@ -283,8 +283,8 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
     std::printf("%u steps, %u of %zu objects alight\n", steps, mostCaught, both.ids.size());
 }
 
-// Whatever lights them (front, heat, contact, embers, the reference kernel or a flame), no more
-// tiles burn than allowed, per object and per world, and both backends choose the same ones.
+// No more tiles burn than allowed, per object and per world, and both backends choose the same
+// ones. They catch by front, heat, contact, embers, the reference kernel or a flame.
 TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     if (!device_) return;
     constexpr uint32_t kOfWorld = 30, kOfOne = 4;

@@ -283,8 +283,8 @@ TEST_F(HostDraw, KeptCompositesCreateNothing) {
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
 }
 
-// The first object of a material family creates its pipelines, none are created while a frame
-// records (shoot() checks), and the picture equals that of a target with all of them.
+// The first object of a material family creates its pipelines. No pipeline is created while a frame
+// records (shoot() checks). The picture equals that of a target with all of them.
 TEST_F(HostDraw, MaterialFamiliesCreateTheirPipelinesOnFirstUse) {
     if (!device_) return;
     Shot late, all;

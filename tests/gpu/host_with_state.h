@@ -1,5 +1,5 @@
-// A host with its own layouts, pipelines and render passes in which everything dynamic is set, and
-// a world that burns in the middle of its picture. Fixture of host_clobber_test.cpp.
+// A host with its own layouts, pipelines and render passes in which everything dynamic is set. A
+// world burns in the middle of its picture. Fixture of host_clobber_test.cpp.
 #pragma once
 #include "support/burn_scene.h"
 #include "support/host_context.h"

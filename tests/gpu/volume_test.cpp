@@ -398,7 +398,7 @@ class Volume : public GpuTest {
         return picture;
     }
 
-    // Light of a flame summed over a view of this many pixels per side, with rays equally dense at
+    // Light of a flame summed over a view of this many pixels per side. Rays are equally dense at
     // any size of the flame on the screen.
     vec4 lightOf(const gpu::VolumeFlame& flame, uint32_t preset) {
         gpu::ViewInput input;
@@ -876,7 +876,7 @@ TEST_F(Volume, APlaneThroughAFlameAddsNoHardEdge) {
 }
 
 // A fire on the ground with tested depth looks the same as without ground and as with sampled
-// depth, except for light that half-resolution pixels spread. From all sides and above, in both
+// depth. Only light that half-resolution pixels spread differs. From all sides and above, in both
 // projections, for all tiers.
 TEST_F(Volume, StandsOnTestedGround) {
     if (!device_) return;
@@ -1946,7 +1946,7 @@ TEST_F(Volume, BillboardsBlendBetweenTheirMarches) {
     EXPECT_LT(worst, 2.5 * mean);
 }
 
-// Temporal mixing is not needed: although sample offsets change each frame, a still flame changes
+// Temporal mixing is not needed, although sample offsets change each frame. A still flame changes
 // by less than 1 % per frame, and in a dolly by at most 2 % more than rays without grain. Mixing
 // would only smear tongues.
 TEST_F(Volume, FramesNeedNoTemporalMixing) {

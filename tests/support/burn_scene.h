@@ -1,5 +1,5 @@
 // Several objects on several meshes, random plans for them, and a backend on a test device that
-// runs these plans, for the equality tests of the backends.
+// runs these plans. For the equality tests of the backends.
 #pragma once
 #include "core/memory.h"
 #include "gpu/vk/vk_backend.h"

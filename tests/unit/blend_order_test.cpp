@@ -1,4 +1,4 @@
-// Who sorts blended draws.
+// The device or the host sorts blended draws.
 #include "gpu/passes/blend_order.h"
 #include "shared/look.h"
 

@@ -182,7 +182,7 @@ struct Range {
     FwMaterialId material{};
 };
 
-// Conserves every ray's power to the nanowatt except a texel's pending share of 1 W/m^2, over few
+// Conserves every ray's power to the nanowatt except a texel's pending share of 1 W/m^2. Over few
 // and very many texels, at every distance, on any stretch.
 TEST(JetStream, ConservesPowerOnStretchedMeshes) {
     struct Case {

@@ -1,5 +1,5 @@
-// An object is refined again when the front has moved half a pixel, the camera a fiftieth of its
-// distance, or after a fifteenth of a second.
+// An object is refined again when the front has moved half a pixel or the camera a fiftieth of its
+// distance, and after a fifteenth of a second.
 #include "mesh/refine/turns.h"
 
 #include <gtest/gtest.h>

@@ -356,8 +356,8 @@ TEST_F(PlannedWorld, LateReadbacksRaiseEventsAndEndInSleep) {
     EXPECT_EQ(1u, backend.frames.back().steps.size());
 }
 
-// Whatever readbacks are outstanding at a transfer, only the lit object reports its ignition, also
-// if it is already destroyed. The target's fire continues as its own.
+// At a transfer, readbacks may be outstanding. Only the lit object reports its ignition, also if it
+// is already destroyed. The target's fire continues as its own.
 TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
     for (const bool destroys : {false, true}) {
         const FwBurnableMeshId from = world->createBurnableMesh(object);
