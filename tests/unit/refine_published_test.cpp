@@ -23,19 +23,19 @@ struct Outcome {
 
 Point cornerOf(const ArpTriangle& t, int k) { return {t.corner[k % 3][0], t.corner[k % 3][1]}; }
 
-Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>& status) {
+Outcome look(const std::pmr::vector<ArpTriangle>& pattern, const std::vector<int8_t>& status) {
     Outcome o;
     std::set<Point> corners, junctions;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
         if (!arpDrawn(status, i)) continue;
         ++o.drawn;
-        for (int k = 0; k < 3; ++k) corners.insert(cornerOf(arp[i], k));
+        for (int k = 0; k < 3; ++k) corners.insert(cornerOf(pattern[i], k));
     }
     uint32_t finest = 0, twice = 0, missing = 0;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
         if (arpDrawn(status, i))
             for (int k = 0; k < 3; ++k) {
-                const Point a = cornerOf(arp[i], k), b = cornerOf(arp[i], k + 1);
+                const Point a = cornerOf(pattern[i], k), b = cornerOf(pattern[i], k + 1);
                 const int n = std::max(std::abs(b.first - a.first), std::abs(b.second - a.second));
                 for (int q = 1; q < n; ++q) {
                     const Point p{a.first + (b.first - a.first) / n * q,
@@ -43,9 +43,9 @@ Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>
                     if (corners.count(p) != 0) junctions.insert(p);
                 }
             }
-        if (arp[i].setLevel != kArpLevels) continue;
+        if (pattern[i].setLevel != kArpLevels) continue;
         uint32_t covers = 0;
-        for (uint32_t k = i; k != kArpNone; k = arp[k].parent) covers += arpDrawn(status, k);
+        for (uint32_t k = i; k != kArpNone; k = pattern[k].parent) covers += arpDrawn(status, k);
         ++finest;
         twice += covers > 1;
         missing += covers == 0;
@@ -57,18 +57,18 @@ Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>
 }
 
 struct Growth {
-    std::pmr::vector<ArpTriangle> arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    std::vector<int8_t> status = std::vector<int8_t>(arp.size(), kArpInitial);
+    std::pmr::vector<ArpTriangle> pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    std::vector<int8_t> status = std::vector<int8_t>(pattern.size(), kArpInitial);
     uint32_t cycles = 0, mostSweeps = 0;
     std::vector<Outcome> at;  // radius 8, 20, 32, 44
 
     Growth(ArpRules rules, bool serial) {
-        std::vector<uint8_t> eligible(arp.size());
+        std::vector<uint8_t> eligible(pattern.size());
         for (int radius = 0; radius <= 60; radius += 4) {
-            arpMarkCircle(arp, 20, 14, float(radius), eligible);
+            arpMarkCircle(pattern, 20, 14, float(radius), eligible);
             std::set<std::vector<int8_t>> seen;
             uint32_t sweeps = 0;
-            while (arpSweep(arp, rules, eligible, serial, status,
+            while (arpSweep(pattern, rules, eligible, serial, status,
                             std::pmr::new_delete_resource()) != 0) {
                 if (++sweeps > 60) break;
                 if (!seen.insert(status).second) {
@@ -77,22 +77,24 @@ struct Growth {
                 }
             }
             mostSweeps = std::max(mostSweeps, sweeps);
-            if (radius % 12 == 8) at.push_back(look(arp, status));
+            if (radius % 12 == 8) at.push_back(look(pattern, status));
         }
     }
 };
 
 TEST(RefinePublished, TheTemplateSplitsInFour) {
-    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    ASSERT_EQ(1u + 4 + 16 + 64 + 256, arp.size());
+    const auto pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    ASSERT_EQ(1u + 4 + 16 + 64 + 256, pattern.size());
     int finest = 0;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
-        const Point a = cornerOf(arp[i], 0), b = cornerOf(arp[i], 1), c = cornerOf(arp[i], 2);
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
+        const Point a = cornerOf(pattern[i], 0), b = cornerOf(pattern[i], 1),
+                    c = cornerOf(pattern[i], 2);
         const int area = (b.first - a.first) * (c.second - a.second) -
                          (b.second - a.second) * (c.first - a.first);
-        EXPECT_EQ(64 * 64 >> (2 * (arp[i].setLevel - 1)), area);
-        if (arp[i].setLevel == kArpLevels) finest += area;
-        EXPECT_TRUE(arp[i].firstChild == kArpNone || arp[arp[i].firstChild].parent == i);
+        EXPECT_EQ(64 * 64 >> (2 * (pattern[i].setLevel - 1)), area);
+        if (pattern[i].setLevel == kArpLevels) finest += area;
+        EXPECT_TRUE(pattern[i].firstChild == kArpNone ||
+                    pattern[pattern[i].firstChild].parent == i);
     }
     EXPECT_EQ(64 * 64, finest);
 }
@@ -123,11 +125,11 @@ TEST(RefinePublished, RepairedRulesCoverEverythingOnce) {
     }
 }
 
-std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
+std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& pattern,
                                const std::pmr::vector<int8_t>& status) {
     std::set<uint32_t> drawn;
-    for (uint32_t i = 0; i < arp.size(); ++i)
-        if (arp[i].setLevel == kArpLevels && arpDrawn(status, i)) drawn.insert(i);
+    for (uint32_t i = 0; i < pattern.size(); ++i)
+        if (pattern[i].setLevel == kArpLevels && arpDrawn(status, i)) drawn.insert(i);
     return drawn;
 }
 
@@ -135,22 +137,22 @@ std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
 // equal finest triangles at every radius and the same final picture of finest triangles.
 TEST(RefinePublished, ParallelRulesMatchSerialRules) {
     auto* memory = std::pmr::new_delete_resource();
-    const auto arp = makeArpTemplate(4, memory);
-    std::pmr::vector<int8_t> seeds(arp.size(), kArpInitial), ours = seeds, parallel = seeds;
-    std::vector<uint8_t> eligible(arp.size());
+    const auto pattern = makeArpTemplate(4, memory);
+    std::pmr::vector<int8_t> seeds(pattern.size(), kArpInitial), ours = seeds, parallel = seeds;
+    std::vector<uint8_t> eligible(pattern.size());
     for (int radius = 0; radius <= 96; radius += 4) {
-        arpMarkCircle(arp, 20, 14, float(radius), eligible);
+        arpMarkCircle(pattern, 20, 14, float(radius), eligible);
         for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules reach no stable state
-            arpSweep(arp, ArpRules::printed, eligible, true, seeds, memory);
-            arpSweep(arp, ArpRules::repaired, eligible, false, parallel, memory);
+            arpSweep(pattern, ArpRules::printed, eligible, true, seeds, memory);
+            arpSweep(pattern, ArpRules::repaired, eligible, false, parallel, memory);
         }
-        arpSweep(arp, ArpRules::repaired, eligible, true, ours, memory);
-        EXPECT_EQ(finestDrawn(arp, seeds), finestDrawn(arp, ours)) << radius;
+        arpSweep(pattern, ArpRules::repaired, eligible, true, ours, memory);
+        EXPECT_EQ(finestDrawn(pattern, seeds), finestDrawn(pattern, ours)) << radius;
         EXPECT_EQ(ours, parallel) << radius;
     }
-    EXPECT_EQ(256u, finestDrawn(arp, ours).size());
-    for (uint32_t i = 0; i < arp.size(); ++i)
-        EXPECT_EQ(arp[i].setLevel == kArpLevels, arpDrawn(ours, i)) << i;
+    EXPECT_EQ(256u, finestDrawn(pattern, ours).size());
+    for (uint32_t i = 0; i < pattern.size(); ++i)
+        EXPECT_EQ(pattern[i].setLevel == kArpLevels, arpDrawn(ours, i)) << i;
 }
 
 // The boundary's noise is absolute in R^2: a rough edge close in, a smooth one far out.
@@ -180,20 +182,21 @@ TEST(RefinePublished, PointsInsideMakeATriangleEligible) {
 }
 
 TEST(RefinePublished, TwoBurntChildrenHideTheirParent) {
-    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    std::vector<uint32_t> burn(arp.size(), 0);
+    const auto pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    std::vector<uint32_t> burn(pattern.size(), 0);
     uint32_t parent = 0;
-    while (arp[parent].setLevel != kArpLevels - 1) ++parent;
-    burn[arp[parent].firstChild] = 3;
-    EXPECT_FALSE(arpHidden(arp, burn, parent));
-    burn[arp[parent].firstChild + 2] = 1;
-    EXPECT_TRUE(arpHidden(arp, burn, parent));
+    while (pattern[parent].setLevel != kArpLevels - 1) ++parent;
+    burn[pattern[parent].firstChild] = 3;
+    EXPECT_FALSE(arpHidden(pattern, burn, parent));
+    burn[pattern[parent].firstChild + 2] = 1;
+    EXPECT_TRUE(arpHidden(pattern, burn, parent));
     burn[parent] = 1;
-    EXPECT_FALSE(arpHidden(arp, burn, parent));
+    EXPECT_FALSE(arpHidden(pattern, burn, parent));
     burn.assign(burn.size(), 0);
-    burn[arp[0].firstChild] = burn[arp[0].firstChild + 1] = 9;
-    EXPECT_FALSE(arpHidden(arp, burn, 0)) << "coarse triangles are always shown";
-    EXPECT_FALSE(arpHidden(arp, burn, uint32_t(arp.size() - 1))) << "the finest have no children";
+    burn[pattern[0].firstChild] = burn[pattern[0].firstChild + 1] = 9;
+    EXPECT_FALSE(arpHidden(pattern, burn, 0)) << "coarse triangles are always shown";
+    EXPECT_FALSE(arpHidden(pattern, burn, uint32_t(pattern.size() - 1)))
+        << "the finest have no children";
 }
 
 // ---- whole meshes
