@@ -1,5 +1,4 @@
-// Where embers come down. They are rare: each looks through all objects, then through the tiles of
-// one.
+// Landing of embers. They are rare: each tests all objects, then the tiles of one.
 #ifndef FW_LIB_EMBER_GLSL
 #define FW_LIB_EMBER_GLSL
 
@@ -11,7 +10,7 @@ Ember emberFrom(FireSource source) {
     return flyingEmber(source, source.ember, worldUp(), wind);
 }
 
-// The object, and its tile; that is kNoneTexel where it falls on none.
+// Returns the object and sets its tile; kNoneTexel: none.
 uint landsOn(ivec3 at, uint axis, out uint tile) {
     uint object = kNoneTexel;
     tile = kNoneTexel;
@@ -40,7 +39,7 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
     return object;
 }
 
-// The sources of a slot that burns, from x on and before y.
+// Range of sources of a burning slot.
 uvec2 sourcesOf(uint slot) {
     bool burns = (remoteObjects[slot].flags & kRemoteLive) != 0u && objectCounters[slot].burning != 0u;
     uint first = remoteObjects[slot].sourceBase;
