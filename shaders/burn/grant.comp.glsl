@@ -1,6 +1,6 @@
-// Which of the tiles that asked to burn may: as many as there is room for in each object and in the
-// world, in an order of chance (`askOrder`). They join the burn list, and only what is on it is lit
-// afterwards. With the asks switch the front's due tiles that would catch ask here. One group.
+// Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and of the world, in
+// hashed order (askOrder). They join the burn list, and only listed tiles are lit afterwards. With kSwitchAsks the
+// front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -30,7 +30,7 @@ uvec4 orderOf(uint worldTile) {
     return uvec4(askOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
 }
 
-// How many of those with this mark come before; `alike`: of the same object.
+// Number of requests with at least this mark that precede `own`; alike: of the same object.
 uint before(uvec4 own, uint count, uint mark, bool alike) {
     uint sum = 0u;
     for (uint i = 0u; i < count; ++i) {
@@ -52,7 +52,7 @@ void main() {
     barrier();
     uint count = counters[asks].workCount;
     uint room = roomFor(counters[kRowBurn + push.burnParity].listCount, push.tilesMost);
-    // What the host lit meanwhile burns without leave.
+    // Tiles lit by the host meanwhile burn without a request.
     for (uint i = lane; i < count; i += 64u)
         if ((tileState[asked(i)].flag & kTileBurning) != 0u) setMark(asked(i), 0u);
     memoryBarrierBuffer();
@@ -65,7 +65,7 @@ void main() {
         uint objectRoom = roomFor(objectCounters[own.y].burningTiles, most);
         uint fits = 1u;
         if (count > objectRoom) fits = before(own, count, kAsked, true) < objectRoom ? 1u : 0u;
-        // A mark of a lane that is done still counts as one that asked.
+        // Marks of finished lanes still count as requests.
         if (fits != 0u) setMark(own.w, kAsked + kAskedFits);
     }
     memoryBarrierBuffer();

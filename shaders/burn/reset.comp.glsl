@@ -1,4 +1,4 @@
-// A new object's planes: what can burn and what cannot, tiles asleep. One group per tile.
+// Initial state of a new object: receptive and inert texels, tiles asleep. One group per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

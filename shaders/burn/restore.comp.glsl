@@ -1,5 +1,4 @@
-// Tiles of an object that was put back as it once was: into the lists that they were in. Which ones
-// stands where `wake` will be. One thread per tile.
+// Tiles of a restored object: into the lists that contained them, which are stored in `wake`. One thread per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

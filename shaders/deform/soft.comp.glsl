@@ -1,7 +1,6 @@
-// One step of sheets: every node moves to where its links, its bending and its pins allow, and on
-// with the speed that this gives it. It gives way to its own bend now, and to those of its neighbours
-// as they were a step ago: what they will ask of it now they only find out while it moves.
-// kDeformGroup nodes of one object a group.
+// One step of sheets: each particle moves by its links, bending constraints and pins, and on with the resulting velocity.
+// It applies its own bend correction now and those of its neighbours from the last step, since theirs are only known
+// after this step. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -48,9 +47,9 @@ void main() {
         uvec4 ties = soft(own + kSoftTies * sizes.y);
         float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kReachNone;
         bool pinned = pinnedOf(ties.w) != 0u;
-        // Both ends of a link agree on its length.
+        // Both ends of a link use the same length.
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
-        // Charring stiffens what held its shape only loosely.
+        // Charring stiffens loose material.
         float stiff = mix(bend, max(bend, 0.9), charred);
 
         vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), nearSum = vec3(0.0);
@@ -65,7 +64,7 @@ void main() {
                 uvec4 there = soft(places + (two[i] & kDeformNode));
                 vec3 y = placeOf(there), arm = y - x;
                 bool holds = (ties.x >> k & 1u) != 0u;
-                // Who has parted from a node has no share in it: it is not whole.
+                // A particle with a parted link is not whole and gives no share.
                 bending -= holds ? shareOf(there.w) : vec3(0.0);
                 nearSum += holds ? arm : vec3(0.0);
                 nearSquares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
@@ -79,7 +78,7 @@ void main() {
                 reach = holds ? min(reach, wayOf(wayBits(there)) + rest) : reach;
             }
         } while (++turn < turns);
-        // Not turns of the loop: software runs all of its text in each.
+        // Not iterations of the loop: software devices would run the whole body for them.
         vec3 sum = vec3(0.0);
         vec2 squares = vec2(0.0);
         float rise = 0.0;
@@ -95,7 +94,7 @@ void main() {
                              dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
                 sum += holds ? arm : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
-                // What those of the step before asked for; who has no arms asks for nothing.
+                // Corrections requested by the last step's set; particles without constraints request none.
                 uvec4 there = soft(seenAt + (echo[i] & kDeformNode));
                 uint share = item.parity == 0u ? there.z : there.w;
                 bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);
@@ -133,7 +132,7 @@ void main() {
         vec3 last_ = shown(shownAt).xyz;
         vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
                      bending * (relaxAt(1.0, push.step) / kBendUnit);
-        // No farther from the nearest pin than its way there over links that hold.
+        // Limits the distance to the nearest pin to the path length over holding links.
         if (reach < 0.5 * kReachNone) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
             float away = length(moved - anchor.xyz), most = reach * kReachSlack + anchor.w;
@@ -151,7 +150,7 @@ void main() {
         velocity -= up * (9.81 / scale * push.step);
 
         vec3 next = moved + velocity * push.step;
-        if (pinned) moved = next = x;  // where it has been from the first
+        if (pinned) moved = next = x;  // fixed from the start
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
         softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packWay(reach, known)), nearShare);

@@ -1,5 +1,5 @@
-// What holds a sheet's nodes together: which of their links and arms have not parted, which neighbours
-// are pinned, how far they have charred, and which point of a pin is the nearest. Once in kTieSteps steps. kDeformGroup nodes of one object a group.
+// Link cache of sheets: links and bending constraints that hold, pinned neighbours, charred shares, and the nearest pin
+// point. Runs every kTieSteps steps. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -24,7 +24,7 @@ void main() {
 
         uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
         uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kArmWays;
-        do {  // the neighbours, and arms of all ways at last
+        do {  // neighbours, then all bending sets
             bool arms = turn >= turns;
             uint way = turn - turns;
             uvec4 two = deformNode(at + (arms ? kNodeArms + way : kNodeNear + turn) * sizes.y);

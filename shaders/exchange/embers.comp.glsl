@@ -1,5 +1,5 @@
-// Embers that nothing stopped on their way: whether each lights what it lies on. A thread an object
-// slot takes its sources in turn; embers are rare.
+// Landing of the remaining embers: whether each lights its target. A thread per object slot handles its sources; embers
+// are rare.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,4 @@
-// Which objects others may warm now, and by which sources: the strongest 64, found by halving. One
-// thread an object slot.
+// Receivers of this exchange and their 64 strongest sources, found by halving. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,7 +12,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_RECEIVERS writeonly
 #include "lib/buffers.glsl"
 
-// Does a neighbour (an entry of the table) give fire to this object?
+// Does the neighbour of a table entry give fire to this object?
 bool gives(uint slot, uint entry) {
     uint from = entry & 0xFFFFFFu;
     return (entry >> 24u) != 0u && (remoteObjects[from].flags & kRemoteLive) != 0u &&
@@ -23,7 +22,7 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
-// The object's sources, counted by their weight's highest bit.
+// Counts the object's sources by the highest bit of their weight.
 uint weightBits[32];
 uint countSources(uint slot, ivec3 middle) {
     uint first = remoteObjects[slot].neighbourFirst;
@@ -43,8 +42,8 @@ uint countSources(uint slot, ivec3 middle) {
     return count;
 }
 
-// Lists those of weight [low, ...), which are `strong`, and behind them those of half of it, as far
-// as there is room. How many it lists.
+// Lists sources of weight >= low, of which there are `strong`, then those of at least half of it, up to the capacity.
+// Returns the number of listed sources.
 uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
     uint first = remoteObjects[slot].neighbourFirst;
     uint listed = 0u, weak = strong;
@@ -77,7 +76,7 @@ void gather(uint slot) {
     ivec3 middle = boxMiddle(remoteObjects[slot]);
     FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
     uint count = countSources(slot, middle);
-    // The least power of two that so few are not below.
+    // Least power of two above which few enough sources lie.
     uint least = 0u;
     while (count > kSourcesPerReceiver) {
         count -= weightBits[least];

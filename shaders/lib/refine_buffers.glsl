@@ -1,5 +1,5 @@
-// Storage buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs
-// before it includes this; only those are declared. One list entry is one workgroup's share.
+// Buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs before it includes this. One
+// list entry is one workgroup's share.
 #ifndef FW_LIB_REFINE_BUFFERS_GLSL
 #define FW_LIB_REFINE_BUFFERS_GLSL
 #include "shared/burn.h"
@@ -76,7 +76,7 @@ uint cornerList() { return triangleList() + 2u * push.triangleGroups; }
 uint morphJobs() { return push.placeJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
 uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
-// Per object of the list: cut triangles of each material, then the first for which there is no room.
+// Per object of the list: cut triangles of each material, then the first that exceeds the capacity.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
 #endif
 #endif
