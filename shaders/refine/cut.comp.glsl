@@ -1,9 +1,8 @@
-// Holes of the objects near the eye, cut out of their small triangles, in phases with a barrier
-// between: 0 lists the coarse triangles with a hole, and of what has an inside those along open edges,
-// a lane each; 1 a workgroup each: small triangles that a hole crosses leave the index list, and what
-// is left of them is written as vertices, with their inner skin and walls along the hole and along
-// open edges; without room they stay whole; 2 draw arguments. Of objects whose texels tell their holes
-// triangles stay whole until all of them is gone, and have walls along open edges alone.
+// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0 lists coarse triangles with
+// a hole, and those along open edges of closed meshes, one lane each. 1, one workgroup each: small triangles crossed by a
+// hole leave the index list; the rest of them is written as vertices, with inner skin and walls along the hole and along
+// open edges; without capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes keep triangles whole
+// until all of a triangle is gone, and only get walls along open edges.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,13 +21,13 @@ layout(local_size_x = 64) in;
 #include "lib/refine_buffers.glsl"
 #include "lib/refine_arrival.glsl"
 
-const uint kLost = 0x80000000u;  // of a job's triangle: all of it is gone
+const uint kLost = 0x80000000u;  // of a job's triangle: all burnt through
 
 uint slotOf(uint object, uint vertex) {
     return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
 }
 
-// Sides on open edges of what has an inside, a bit each.
+// Sides on open edges, one bit each; meshes with an inner skin only.
 uint openSides(uint object, RefineTriangle t) {
     uint open = 0u;
     for (uint e = 0u; e < 3u; ++e)
@@ -36,12 +35,11 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
-bool isTold(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
+bool hasPerPixelHoles(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
 
 bool isGone(uint object, float hole) { return hole <= refined[object].now; }
 
-// Whether fire has been through all of it, by its corners, the middles of its sides and three places
-// within.
+// Is all of it burnt through? Tests its corners, the middles of its sides and three inner points.
 bool isLost(uint object, RefineTriangle t) {
     bool lost = true;
     for (uint v = 0u; v < 3u; ++v) {
@@ -77,8 +75,8 @@ void find(uint object, uint triangle) {
         if (lost) heat[own] |= kRefineLost;
         asks = false;
     }
-    if (isTold(object) && !lost && open == 0u) return;
-    // Most of what is burnt is gone, and coarse again: no workgroup for that.
+    if (hasPerPixelHoles(object) && !lost && open == 0u) return;
+    // Most burnt triangles are gone and coarse again: no workgroup for those.
     uvec2 packed = levels[refined[object].triangles + triangle];
     if (lost && packed.x == 0u) {
         uint to = refined[object].indices + packed.y * 3u;
@@ -91,7 +89,7 @@ void find(uint object, uint triangle) {
     work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }
 
-// Of the first triangle of material m, and its end.
+// First triangle of material m.
 uint materialStart(uint object, uint m) {
     uvec4 low = refined[object].materialEnd0;
     uvec4 high = refined[object].materialEnd1;
@@ -107,13 +105,13 @@ uint roomBefore(uint object, uint m) {
 struct Point {   // of a kept polygon
     vec3 outer;
     vec3 inner;
-    uvec4 atlas;   // second and third word quads of its vertex, but the last word
+    uvec4 atlas;   // second and third quad of its vertex, without the last word
     uvec4 detail;
     uint normal;
     float left;    // s to the hole
 };
 
-// `at`: see RefineCut::corner.
+// at: see RefineCut::corner.
 Point pointOf(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, uint at) {
     uint i = at & 3u, j = at < 4u ? i : refineNext(i);
     bool ordered = slots_[i] <= slots_[j];
@@ -206,7 +204,7 @@ void cutGroup(uint object, uint triangle, bool lost) {
                          refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
-        if (isTold(object)) solid = 7u;
+        if (hasPerPixelHoles(object)) solid = 7u;
         if (lost) solid = 0u;
         bool whole = solid == 7u;
         uint crossed = solid != 0u && (!whole || border != 0u) ? 1u : 0u;

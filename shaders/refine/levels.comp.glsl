@@ -1,7 +1,6 @@
-// Levels of edges and interiors, in phases with a barrier between: 0 aim (items), 1 what each bias
-// would come to (triangles; only where not all fit), 2 the least that fits (one group, over all that
-// share the budget), 3 move (items), 4 pack (triangles): what changed makes its object emit, what
-// moves is listed to be placed.
+// Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for each bias (only over
+// budget); 2 least bias that fits (one group); 3 move (items); 4 pack (triangles): changed objects emit, moving items are
+// listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -23,7 +22,7 @@ float edgeLod(uint object, RefineEdge edge) {
     return eye.w > 0.0 ? lod : float(kRefineDepth + 1u);
 }
 
-// Numbers of edges and interiors, for the order in which they lose levels.
+// Order in which edges and interiors lose levels.
 uint spreadId(uint item, uint edgeCount) {
     return item < edgeCount ? item * 2u : (item - edgeCount) * 2u + 1u;
 }
@@ -43,7 +42,7 @@ float leastBias() {
 
 uint sumsOf(uint object) { return refined[object].triangles + refined[object].triangleCount; }
 
-// Adds what the triangle comes to with each bias, but for the one that it always is.
+// Adds the triangle's count for each bias, minus the one that it always has.
 void count(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint edgeCount = refined[object].edgeCount;
@@ -56,7 +55,7 @@ void count(uint object, uint triangle) {
     }
     uint sums = sumsOf(object), k = 0u;
     bool more = target != vec4(0.0);
-    while (more) {  // until a bias leaves nothing of it
+    while (more) {  // until a bias leaves nothing
         float bias = float(k) * kRefineBiasStep;
         uvec4 top;
         for (int i = 0; i < 4; ++i) top[i] = refineTop(refineBiased(target[i], bias, spread[i]));
@@ -102,13 +101,13 @@ void aim(uint object, uint item) {
     if (fresh) s = RefineLevel(0.0, 0.0, -kRefineNever, kRefineNever);
     uint seen = heat[at];
     uint warm = seen & 3u;
-    // As long as it opens, and where the rim of a hole stays, it keeps its levels.
+    // Keeps its levels while it opens, and where a hole's rim stays.
     uint rim = kRefineGone | kRefineStays;
     if ((seen & kRefineGoing) != 0u || (seen & rim) == rim) warm |= kRefineHot;
     if (push.full != 0u) warm = kRefineHot | kRefineBurning;
     uint kept = seen & (kRefineGone | kRefineLost);
     heat[at] = kept | (warm << kRefineHeatShift);
-    // Most of a mesh has no heat and nothing left of it.
+    // Most of a mesh is cold and flat.
     uint awake = warm == 0u && s.level == 0.0 && s.target == 0.0 ? 0u : 1u;
     while (awake != 0u) {
         float lod = 0.0;

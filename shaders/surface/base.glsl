@@ -1,8 +1,8 @@
-// Procedural detail of the fresh material, as a factor on its base colour: grain, paint, print,
-// weave, veins, straw. Needs lib/look_noise.glsl. `coarse` and `fine`: the front warp's samples.
+// Procedural detail of the unburnt material, as a factor on its base colour: grain, paint, print, weave, veins, straw. Needs
+// lib/look_noise.glsl. coarse, fine: samples of the front warp.
 
 struct Base {
-    vec3 factor;  // on the base colour, about 1 on average
+    vec3 factor;  // on the base colour, mean about 1
     float rough;
     float delay;   // [-1, 1]
     float cavity;  // 1 exposed
@@ -11,10 +11,10 @@ struct Base {
 
 float plankOf(vec2 d, bool planks) { return planks ? floor(d.x / 0.15 + 64.0) : 3.0; }
 
-// Every plank is cut from another place of the tree.
+// Each plank samples another part of the tree.
 vec2 inTree(vec2 d, float plank) { return d + vec2(plank * 0.77, plank * 1.31); }
 
-// `grown`: noise drawn out along the grain, at `inTree`.
+// grown: noise stretched along the grain, sampled at inTree.
 void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     float plank = plankOf(d, planks);
     float across = fract(d.x / 0.15 + 64.0);
@@ -45,7 +45,7 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
 void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
     float fibre = (b.cavity - 0.6) * 2.5;
     float worn = smoothstep(0.66, 0.70, coarse.r * 0.75 + fibre * 0.2);
-    // Bare wood through the paint: its own colour, whatever the paint's.
+    // Worn paint shows wood in its own colour.
     vec3 wood = vec3(0.41, 0.26, 0.125) * b.factor / max(color, vec3(0.02));
     b.factor = mix(vec3(0.92 + 0.16 * coarse.r) * (b.cavity < 0.5 ? 0.4 : 1.0), wood, worn);
     b.rough = mix(0.28, 0.7, worn);
@@ -91,7 +91,7 @@ void weaveBase(vec2 d, float pixel, vec4 coarse, out Base b) {
 }
 
 void leafBase(vec2 d, float pixel, vec4 coarse, out Base b) {
-    // Blades of about 9 by 16 cm, staggered, each with a midrib and a herringbone of veins.
+    // Blades of about 9 by 16 cm, staggered, with a midrib and herringbone veins.
     vec2 cell = d / vec2(0.09, 0.16) + 64.0;
     cell.y += 0.5 * float(int(floor(cell.x)) & 1);
     vec2 id = floor(cell), q = (fract(cell) - 0.5) * vec2(0.09, 0.16);

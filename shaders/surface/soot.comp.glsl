@@ -1,6 +1,6 @@
-// Soot that flames leave on what stands above them, and that stays: in the low byte of each texel's
-// gradient, 255 a matt black. It grows towards what the fires of the moment would lay there and never
-// fades. One thread per row of a tile, a part of all tiles each frame, in turn. Looks only.
+// Soot that flames leave on surfaces above them, stored in the low byte of each texel's gradient; 255: matt black. It grows
+// towards the current fires' soot and never fades. One thread per tile row; a part of all tiles each frame, round-robin.
+// Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,7 +20,7 @@ layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
-const uint kUnseen = 3u;  // soot of which nothing is seen
+const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 
 vec3 inWorld(uint object, vec3 rest) {
@@ -64,7 +64,7 @@ void sootRow(uint worldTile, uint row) {
     bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {
         uint t = predict[at + x];
-        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word is another thing then
+        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word has another meaning then
         vec3 place = inWorld(object, restOf(object, texels[texelAt + x]) + shift);
         float soot = 0.0;
         for (uint bits = near; bits != 0u; bits &= bits - 1u) {
@@ -80,7 +80,7 @@ void sootRow(uint worldTile, uint row) {
 }
 
 void main() {
-    // `object`: the first tile; `iteration`: how many.
+    // push.object: first tile; push.iteration: number of tiles.
     uint row = gl_LocalInvocationID.x & 7u;
     uint i = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
     if (i >= push.iteration) return;

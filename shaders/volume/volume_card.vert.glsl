@@ -1,15 +1,14 @@
 #version 450
-// A volumetric flame's card: what was marched of it, or of one that is like it, facing the camera,
-// as large as it is now.
+// A flame's billboard impostor: a previous march of it, or of a similar flame, facing the camera at its current size.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
 layout(push_constant) uniform Push { VolumeCard draw; };
 
 layout(location = 0) centroid out vec2 outCell;
-layout(location = 1) flat out vec2 outSlab;    // m along the view: from; 1/m: its depth
-layout(location = 2) flat out ivec4 outTaps;   // cells around a pixel, then all
-layout(location = 3) flat out vec2 outHalf;    // cells, of what a pixel averages
+layout(location = 1) flat out vec2 outSlab;    // m along the view: near distance; 1/m: depth
+layout(location = 2) flat out ivec4 outTaps;   // march pixels around a pixel, then all
+layout(location = 3) flat out vec2 outHalf;    // march pixels, half the averaged square
 layout(location = 4) flat out vec2 outShows;
 layout(location = 5) centroid out vec2 outBase;  // as volume_composite's
 
@@ -19,8 +18,8 @@ vec2 placeOf(vec2 cell) {
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
-    int zero = int(vertex >> 31u);  // not a constant, see volume.frag
-    // As wide as whole pixels, so that each cell counts alike, and as a cell at least.
+    int zero = int(vertex >> 31u);  // not constant, see volume_march
+    // A multiple of whole pixels, so all march pixels count alike, and at least one march pixel.
     vec2 perPixel = vec2(draw.perX, draw.perY);
     outHalf = 0.5 * perPixel * ceil(max(1.0 / perPixel, 1.0));
     ivec2 cells = ivec2(draw.tilesX, draw.tilesY) * int(kVolumeTile);

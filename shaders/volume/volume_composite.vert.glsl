@@ -1,6 +1,5 @@
 #version 450
-// A marched flame's tiles that show anything, slab by slab from the farthest to the nearest, each
-// at its slab's depth.
+// A marched flame's visible tiles, slab by slab from far to near, each at its slab's depth.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -9,9 +8,9 @@ layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { ui
 layout(push_constant) uniform Push { VolumeComposite draw; };
 
 layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first
-layout(location = 1) flat out uint outWords;  // the slab's first
-layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
-layout(location = 3) flat out ivec4 outCells; // first and last that there are
+layout(location = 1) flat out uint outWords;  // first of the slab
+layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance; 1/m: depth
+layout(location = 3) flat out ivec4 outCells; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
 layout(location = 6) centroid out vec2 outBase;  // clip z / w of the plane through the base; VolumeDraw::base.w
@@ -26,9 +25,8 @@ void main() {
     uint slab = draw.slabs - 1u - (quad - listed * draw.slabs);
     uint row = volumeQuotient(tile, draw.tilesX);
     ivec2 at = ivec2(tile - row * draw.tilesX, row);
-    // Cells around a tile reach a little into it: those of its neighbours' nearest rows and columns.
-    // Of small flames each pixel has its own.
-    // Neighbours that were not marched have none, and nothing is near them.
+    // Filters at a tile's edge read the nearest rows and columns of its neighbours; unmarched neighbours contain nothing. A
+    // small flame's pixels read their own tile only.
     uint lit = 0u;
     ivec4 reach = ivec4(-1, -1, 1, 1);
     FW_UNROLL
@@ -43,7 +41,7 @@ void main() {
             bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
                            (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);
             lit |= is && touches && (draw.perPixel == 0u || (x == 0 && y == 0)) ? there : 0u;
-            // Beyond the corner of a flame's cells are none to be read.
+            // Beyond a corner of the flame nothing is read.
             bool may = is || (x != 0 && y != 0 && !inside);
             if (x < 0) reach.x = may ? reach.x : 0;
             if (x > 0) reach.z = may ? reach.z : 0;
@@ -57,7 +55,7 @@ void main() {
     uint cells = tiles * kVolumeTile * kVolumeTile;
     outWords = draw.samples + kVolumeCellWords * cells * slab;
     float front = draw.front + draw.deep * float(slab);
-    outPerPixel = draw.perPixel | (vertex >> 31u);  // not a constant, see volume.frag
+    outPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
     outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
