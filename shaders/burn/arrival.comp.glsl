@@ -95,12 +95,12 @@ void arriveRow(uint work) {
             uint future = pending;  // a source of the ring begins then and may correct the result
             FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
                                     slownessAt(bases.z, texel), m);
-            uint news = kNever;
+            uint settledFrom = kNever;
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
-                                          pending, news);
+                                          pending, settledFrom);
             // Sources that just catch do so within one step before this texel's tick, at the earliest.
             uint own = min(t, candidate);
-            if (news <= own && own - news >= kStepTicks - 1u && candidate >= floorTick &&
+            if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u && candidate >= floorTick &&
                 (isReceptive(t) || t <= end))
                 settled |= 1u << x;
             uint decided = frontDecide(t, candidate, end, floorTick, pending, late);

@@ -73,9 +73,9 @@ void arrive(uint rimWork) {
     if (counts != 0u) {
         FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
                                 m);
-        uint news = kNever;
+        uint settledFrom = kNever;
         uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false,
-                                      pending, news);
+                                      pending, settledFrom);
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {

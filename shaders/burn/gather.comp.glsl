@@ -90,7 +90,7 @@ void gatherRow(uint slot, uint row) {
         chosen = inner & (straight | diagonal);
         // A source from before this iteration was evaluated after an older source beside it caught, so its settled
         // bit is valid.
-        uint settled = (tile.z & kRunNews) != 0u ? settledRows[at >> 3u] : 0u;
+        uint settled = (tile.z & kRunLitBeside) != 0u ? settledRows[at >> 3u] : 0u;
         FW_UNROLL for (int i = 0; i < 8; ++i) {
             uint least = min(min(m.tick[i], m.tick[i + 2]), min(d.tick[i + 1], u.tick[i + 1]));
             if (own[i] > before || least > own[i] || own[i] - least < kStepTicks)

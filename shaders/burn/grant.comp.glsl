@@ -59,23 +59,23 @@ void main() {
     barrier();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
-        if (markOf(own.w) != kAsked) continue;
+        if (markOf(own.w) != kRequested) continue;
         RemoteObject limits = remoteObjects[own.y];
         uint most = (limits.flags & kRemoteLive) != 0u ? limits.tilesMost : kNoneTexel;
         uint objectRoom = roomFor(objectCounters[own.y].burningTiles, most);
         uint fits = 1u;
-        if (count > objectRoom) fits = before(own, count, kAsked, true) < objectRoom ? 1u : 0u;
+        if (count > objectRoom) fits = before(own, count, kRequested, true) < objectRoom ? 1u : 0u;
         // Marks of finished lanes still count as requests.
-        if (fits != 0u) setMark(own.w, kAsked + kAskedFits);
+        if (fits != 0u) setMark(own.w, kRequested + kRequestFitsObject);
     }
     memoryBarrierBuffer();
     barrier();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
-        if (markOf(own.w) != kAsked + kAskedFits) continue;
+        if (markOf(own.w) != kRequested + kRequestFitsObject) continue;
         uint may = 1u;
-        if (count > room) may = before(own, count, kAsked + kAskedFits, false) < room ? 1u : 0u;
-        if (may != 0u) setMark(own.w, kAsked + kAskedMay);
+        if (count > room) may = before(own, count, kRequested + kRequestFitsObject, false) < room ? 1u : 0u;
+        if (may != 0u) setMark(own.w, kRequested + kRequestAllocated);
     }
     memoryBarrierBuffer();
     barrier();
@@ -83,7 +83,7 @@ void main() {
         uint worldTile = asked(i);
         uint mark = markOf(worldTile);
         setMark(worldTile, 0u);
-        if (mark != kAsked + kAskedMay) continue;
+        if (mark != kRequested + kRequestAllocated) continue;
         atomicOr(tileState[worldTile].flag, kTileBurning);
         burnAppend(push.burnParity, worldTile);
         atomicAdd(objectCounters[tileState[worldTile].object].burningTiles, 1u);

@@ -42,7 +42,7 @@ shared uint items[512];  // of eight tiles: lane, and kItem bits
 shared uint kinds[8];    // of eight tiles: materials of their texels, by bits
 shared uint tileChanged[2u * kBlock];
 // Results of eight threads per tile: lit | put out << 8 | work << 16, and heat of the burnt fuel.
-shared uint threadNews[8u * kBlock];
+shared uint threadChanges[8u * kBlock];
 shared uint threadLow[8u * kBlock];
 shared uint threadHigh[8u * kBlock];
 shared float threadWatts[8u * kBlock];
@@ -103,7 +103,7 @@ void listRow(TileRef tile, uint thread, Row r) {
 }
 
 struct Changes {
-    uint bits;       // as threadNews
+    uint bits;       // as threadChanges
     uint low, high;  // 2^-20 J
     float watts;
 };
@@ -177,7 +177,7 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
     uint lit = 0u, gone = 0u, work = fluxWork(tileHeat[worldTile].flux), low = 0u, high = 0u;
     float watts = 0.0;
     for (uint k = slot * 8u; k < slot * 8u + 8u; ++k) {
-        uint changes = threadNews[k];
+        uint changes = threadChanges[k];
         lit += changes & 0xFFu;
         gone += changes >> 8u & 0xFFu;
         work |= changes >> 16u;
@@ -255,7 +255,7 @@ void runEight(uint thread, uint base, uint first, uint all) {
     barrier();
     Changes changes = heatItems(tile, slot, thread, comes, !mayBurn(worldTile));
     uint at = slot * 8u + (thread & 7u);
-    threadNews[at] = changes.bits | row.waits << 16u;
+    threadChanges[at] = changes.bits | row.waits << 16u;
     threadLow[at] = changes.low;
     threadHigh[at] = changes.high;
     threadWatts[at] = changes.watts;

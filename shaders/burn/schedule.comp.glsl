@@ -80,7 +80,7 @@ void schedule(uint worldTile, bool dense) {
     bool litBeside = (flag & kTileNews) != 0u;
     if (touched || litBeside || wake <= end) {
         bool inTime = wake > end - windowTicks(push.stepShift, shift);
-        uint why = litBeside ? kRunNews : inTime ? kRunWoken : 0u;
+        uint why = litBeside ? kRunLitBeside : inTime ? kRunWoken : 0u;
         if (touched || (flag & kTileAhead) != 0u) why = 0u;
         runTile(worldTile, tile, flag, why);
     } else if (wake != kNever) {

@@ -19,7 +19,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.z * kDeformCoatQuads + number;
+        uint at = sizes.z * kDeformEmbeddingQuads + number;
         uvec2 coat = deformCoat(at).xy;
         uvec4 face = deformCoat(at + 3u * sizes.w);
         uint node = shownBase + coat.x;

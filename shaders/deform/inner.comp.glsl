@@ -21,7 +21,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint node = shownBase + deformCoat(sizes.z * kDeformCoatQuads + number).x;
+        uint node = shownBase + deformCoat(sizes.z * kDeformEmbeddingQuads + number).x;
         uint self = shownBase + number, inner = self + sizes.w;
         vec4 outside = shown(self * kShownQuads);
         float receded = shown(node * kShownQuads + 1u).z;
@@ -29,7 +29,7 @@ void main() {
         vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
         // A mesh vertex and a shown vertex have the same size.
         vec3 thin = outside.xyz - unpackDirection(floatBitsToUint(outside.w)) * thinnest;
-        vec3 place = mix(thin, inside, unitF((wall - receded) / thinnest - 1.0));
+        vec3 place = mix(thin, inside, saturateF((wall - receded) / thinnest - 1.0));
         shownOut[inner * kShownQuads] = floatBitsToUint(vec4(place, outside.w));
         shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, offset));
         number += 64u;

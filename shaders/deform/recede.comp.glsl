@@ -20,8 +20,8 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
-        uvec4 facts = deformNode(at), rest = deformNode(at + kNodeRest * sizes.y);
+        uint at = sizes.x * kDeformParticleQuads + number;
+        uvec4 facts = deformNode(at), rest = deformNode(at + kParticleRest * sizes.y);
         uvec2 material = material0, holes = holes0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -31,7 +31,7 @@ void main() {
 
         float sum = 0.0, known = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformTexels / 4u; ++q) {
-            uvec4 texels = deformNode(at + (kNodeTexels + q) * sizes.y);
+            uvec4 texels = deformNode(at + (kParticleTexels + q) * sizes.y);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 bool there = texels[k] != kNoneTexel;
                 uint t = state[bases.y + (there ? texels[k] : 0u)];
@@ -52,16 +52,16 @@ void main() {
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
-            vec4 out_ = uintBitsToFloat(deformNode(at + kNodeOut * sizes.y));
+            vec4 out_ = uintBitsToFloat(deformNode(at + kParticleRecession * sizes.y));
             kept = recession(burnt, depth, item.crosses ? 1e9 : out_.w);
             place += out_.xyz * kept;
         }
         // The solver owns positions: this pass reports burnt shares to it, and the rest pose at first.
         if (moves) {
-            uint own = softBase * kSoftQuads + number, seenAt = own + kSoftSeen * sizes.y;
+            uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
             uint placeAt = own + item.parity * sizes.y;
             uvec4 seen = soft(seenAt);
-            float way = wayOf(wayBits(soft(placeAt)));
+            float way = unpackPathLength(wayBits(soft(placeAt)));
             if (item.reset) {
                 way = kReachNone;
                 for (uint i = 0u; i < bases.w; ++i) {

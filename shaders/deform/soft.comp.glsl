@@ -29,7 +29,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
+        uint at = sizes.x * kDeformParticleQuads + number;
         uvec4 facts = deformNode(at);
         uvec4 material = material0, more = more0;
         if ((facts.y & 7u) != 0u) {
@@ -41,10 +41,10 @@ void main() {
         float bend = uintBitsToFloat(more.z), drag = uintBitsToFloat(more.w);
 
         uint own = softBase * kSoftQuads + number, places = own - number + item.parity * sizes.y;
-        uint seenAt = own - number + kSoftSeen * sizes.y;
+        uint seenAt = own - number + kSoftFacts * sizes.y;
         uvec4 self = soft(places + number);
         vec3 x = placeOf(self);
-        uvec4 ties = soft(own + kSoftTies * sizes.y);
+        uvec4 ties = soft(own + kSoftLinkCache * sizes.y);
         float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kReachNone;
         bool pinned = pinnedOf(ties.w) != 0u;
         // Both ends of a link use the same length.
@@ -57,11 +57,11 @@ void main() {
         vec2 nearSquares = vec2(0.0);  // of rest lengths, and how many
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {  // the neighbours
-            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y);
+            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = turn * kDeformLinks + i;
                 float rest = unpackHalf2x16(two.z)[i];
-                uvec4 there = soft(places + (two[i] & kDeformNode));
+                uvec4 there = soft(places + (two[i] & kDeformLinkIndex));
                 vec3 y = placeOf(there), arm = y - x;
                 bool holds = (ties.x >> k & 1u) != 0u;
                 // A particle with a parted link is not whole and gives no share.
@@ -73,9 +73,9 @@ void main() {
                 before = arm;
                 float theirs = float(ties.y >> (4u * k) & 15u);
                 vec3 p = linkPush(x, y, rest * (1.0 - shrunk * (mine + theirs)),
-                                  (ties.x >> (kTiesPinned + k) & 1u) != 0u ? 1.0 : 0.5);
+                                  (ties.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
-                reach = holds ? min(reach, wayOf(wayBits(there)) + rest) : reach;
+                reach = holds ? min(reach, unpackPathLength(wayBits(there)) + rest) : reach;
             }
         } while (++turn < turns);
         // Not iterations of the loop: software devices would run the whole body for them.
@@ -84,18 +84,18 @@ void main() {
         float rise = 0.0;
         bool reaches = nodeArms(facts.y) != 0u;
         if (reaches) {
-            uvec4 arms = deformNode(at + (kNodeArms + way) * sizes.y);
-            uvec4 echo = deformNode(at + (kNodeArms + echoed) * sizes.y);
+            uvec4 arms = deformNode(at + (kParticleBends + way) * sizes.y);
+            uvec4 echo = deformNode(at + (kParticleBends + echoed) * sizes.y);
             rise = uintBitsToFloat(arms.w);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 float rest = unpackHalf2x16(arms.z)[i];
-                vec3 arm = placeOf(soft(places + (arms[i] & kDeformNode))) - x;
-                bool holds = (ties.x >> (kTiesArms + way * kDeformLinks + i) & 1u) != 0u &&
+                vec3 arm = placeOf(soft(places + (arms[i] & kDeformLinkIndex))) - x;
+                bool holds = (ties.x >> (kLinkCacheBends + way * kDeformLinks + i) & 1u) != 0u &&
                              dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
                 sum += holds ? arm : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 // Corrections requested by the last step's set; particles without constraints request none.
-                uvec4 there = soft(seenAt + (echo[i] & kDeformNode));
+                uvec4 there = soft(seenAt + (echo[i] & kDeformLinkIndex));
                 uint share = item.parity == 0u ? there.z : there.w;
                 bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);
             }
@@ -109,7 +109,7 @@ void main() {
         vec3 b = bendOf(nearSum * mean, normal,
                         uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
                         stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
-        uint nearShare = packShare((ties.x & kTiesWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        uint nearShare = packShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
         bending += shareOf(nearShare) * count;
         if (reaches) {
             uint ends = ties.z >> (way * kDeformLinks * 4u);
@@ -122,9 +122,9 @@ void main() {
             else softOut[seenAt + number].z = armShare;
         }
 
-        float was = wayOf(wayBits(self));
+        float was = unpackPathLength(wayBits(self));
         if (was == 0.0 && !pinned) was = kReachNone;
-        bool knew = (wayBits(self) & kWayKnown) != 0u;
+        bool knew = (wayBits(self) & kPathKnown) != 0u;
         bool known = knew || reachKnown(reach, was);
         reach = pinned ? 0.0 : reachNext(reach, was, knew);
 

@@ -19,7 +19,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
+        uint at = sizes.x * kDeformParticleQuads + number;
         uvec2 facts = deformNode(at).xy;
         uint vertex = facts.x;
         uint own = softBase * kSoftQuads + number, shownAt = (shownBase + vertex) * kShownQuads;
@@ -30,17 +30,17 @@ void main() {
         vec3 pull = vec3(0.0), turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0);
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {
-            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y),
-                  over = deformNode(at + (kNodeFar + turn) * sizes.y);
+            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y),
+                  over = deformNode(at + (kParticleFarLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
-                uint other = two[i] & kDeformNode;
+                uint other = two[i] & kDeformLinkIndex;
                 float rest = unpackHalf2x16(two.z)[i];
                 vec3 y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
                 turned += cross(before, y - x);
                 if (turn + i == 0u) first = y - x;
                 before = y - x;
-                other = over[i] & kDeformNode;
+                other = over[i] & kDeformLinkIndex;
                 rest = unpackHalf2x16(over.z)[i];
                 y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);

@@ -37,15 +37,15 @@ bool before(uint a, uint b) {
     if (at.y != other.y) return at.y < other.y;
     return at.z != other.z ? at.z < other.z : a < b;
 }
-const uint kMostTies = 64u;  // quads of one depth that are compared; more keep their places
+const uint kMaxTies = 64u;  // quads of one depth that are compared; more keep their places
 
 // Writes the places of sorted quads from `to` on, with ties ordered by before().
 #define FW_ORDER_TIES(depthAt, placeAt, to)                                                              \
     for (uint i = me; i < count; i += kThreads) {                                                        \
         uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;                   \
-        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMostTies) --first;             \
-        while (end < count && depthAt(end) == depth && end - first <= kMostTies) ++end;                  \
-        if (end - first > kMostTies) {                                                                   \
+        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;             \
+        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;                  \
+        if (end - first > kMaxTies) {                                                                   \
             drawArgs[(to) + i] = place;                                                                  \
             continue;                                                                                    \
         }                                                                                                \

@@ -26,8 +26,8 @@ layout(local_size_x = 64) in;
 #include "lib/skin.glsl"
 
 const float kLeastPixels = 20.0;  // of a flame's height
-const float kMostMerged = 1.6;    // height factor of merged flames
-const float kMostClear = 0.9;     // half widths, see clearance
+const float kMaxMerged = 1.6;    // height factor of merged flames
+const float kMaxClear = 0.9;     // half widths, see clearance
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
@@ -43,7 +43,7 @@ vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
     float facing = dot(normal, toEye);
     if ((object.flags & kObjectTwoSided) != 0u) return vec3(0.0);
     float slant = sqrt(max(1.0 - facing * facing, 0.0)) / max(abs(facing), 0.2);
-    float before = clamp(slant - 0.15, kQuadNearer, kMostClear);
+    float before = clamp(slant - 0.15, kQuadNearer, kMaxClear);
     return toEye * (mix(-before, before, smoothstep(-0.3, 0.0, facing)) - kQuadNearer);
 }
 
@@ -120,7 +120,7 @@ void main() {
         // Merges flames below kLeastPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
         float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
-        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMostMerged);
+        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
         float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames still has a row of them.

@@ -166,7 +166,7 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_BOOKS
-    bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadBook & 0xFFu) != 0u;
+    bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 frame = showBook(uv);
     if (booked) {
@@ -206,7 +206,7 @@ void main() {
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
 #ifdef FW_BOOKS
-        if ((inKind >> kQuadBook & 0xFFu) != 0u) body = frame.y * opacity;
+        if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
         // Compressed: the true radiance falls a thousandfold during the flight.
         color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);

@@ -42,12 +42,12 @@ vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u));
 
 // Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame. pixels: width on the screen.
 vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
-    uint book = (quad.kind >> kQuadBook & 0xFFu) - 1u;
+    uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
     BookRecord b = bookOf(book);
     BookPlace p = bookPlace(quad.phase, b.frames, (b.flags & kBookLoops) != 0u);
     vec2 texels = halves(b.size);
     uint level = bookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
-    uint smaller = books[book * kBookRecordWords + kBookLevelWord + level];
+    uint smaller = books[book * kBookRecordWords + kFlipbookLevelWord + level];
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
@@ -94,14 +94,14 @@ void main() {
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     // A small quad that is empty outside a circle is drawn as one triangle.
     if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue &&
-        (quad.kind >> kQuadBook & 0xFFu) == 0u) {
+        (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
         place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }
 #ifdef FW_BOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    if ((quad.kind >> kQuadBook & 0xFFu) != 0u) place = openBook(quad, place, pixels);
+    if ((quad.kind >> kQuadFlipbookShift & 0xFFu) != 0u) place = openBook(quad, place, pixels);
 #endif
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
     bool smoke = (quad.kind & 3u) == kQuadSmoke;

@@ -83,7 +83,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
     // A flipbook, too, begins as a shapeless ball.
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    showByBook(quad, particleBook(e.books, 3u, seed), shown, age, t.own);
+    showByBook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
@@ -97,7 +97,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
     smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    showByBook(smoke, particleBook(e.otherBooks, 2u, seed),
+    showByBook(smoke, particleFlipbook(e.otherBooks, 2u, seed),
          (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 

@@ -75,9 +75,9 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
     quad.opacity = sparkFades(a) * strength * smoothstep(kNearFade, kNearFade + 0.8, far) *
                    shareShows(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
-    quad.phase = s.book != 0u ? bookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
+    quad.phase = s.book != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
-    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
+    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadFlipbookShift | kQuadSpark;
     // Hides sparks that would be wide on the screen.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameLights], 1u);

@@ -24,7 +24,7 @@ void main() {
         ivec2 step = ivec2(i & 1, i >> 1), texel = clamp(first + step, ivec2(0), last);
         vec2 share = mix(1.0 - part, part, vec2(step));
         shares[i] = share.x * share.y;
-        apart[i] = halfApart(away, volumeMetres(push.clip, texelFetch(halfDepth, texel, 0).r));
+        apart[i] = halfApart(away, metresOfDepth(push.clip, texelFetch(halfDepth, texel, 0).r));
         four[i] = texelFetch(halfColor, texel, 0);
         least = min(least, four[i]);
         greatest = max(greatest, four[i]);
@@ -39,7 +39,7 @@ void main() {
         ivec2 step = ivec2(i < 4 ? i - 1 : i < 6 ? 2 : i < 10 ? 8 - i : -1,
                            i < 4 ? -1 : i < 6 ? i - 4 : i < 10 ? 2 : 11 - i);
         ivec2 texel = clamp(first + step, ivec2(0), last);
-        float off = halfApart(away, volumeMetres(push.clip, texelFetch(halfDepth, texel, 0).r));
+        float off = halfApart(away, metresOfDepth(push.clip, texelFetch(halfDepth, texel, 0).r));
         if (off < best) {
             best = off;
             other = texelFetch(halfColor, texel, 0);

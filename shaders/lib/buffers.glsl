@@ -70,7 +70,7 @@ FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
 FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinkQuadsBuffer, uvec4, linkQuads);
 #endif
 #ifdef FW_USE_READERS
-FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, ReadersBuffer, uint, readers);
+FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, DependentsBuffer, uint, readers);
 #endif
 #ifdef FW_USE_TILES
 // Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
@@ -110,7 +110,7 @@ FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 // of `tiles`.
 FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
 const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
-const uint kRunNews = 2u;   // due because texels just caught: settled ones need no run
+const uint kRunLitBeside = 2u;   // due because texels just caught: settled ones need no run
 const uint kRunBits = 3u;
 #endif
 #ifdef FW_USE_SCRATCH
@@ -202,10 +202,10 @@ FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
 #endif
 
 #ifdef FW_USE_REMOTE_OBJECTS
-FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, RemoteObjectsBuffer, RemoteObject, remoteObjects);
+FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, ExchangeObjectsBuffer, RemoteObject, remoteObjects);
 #endif
 #ifdef FW_USE_REMOTE_TILES
-FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, RemoteTilesBuffer, RemoteTile, remoteTiles);
+FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, ExchangeTilesBuffer, RemoteTile, remoteTiles);
 #endif
 #ifdef FW_USE_SOURCES
 FW_BUFFER(FW_BIND_SOURCES, FW_USE_SOURCES, SourcesBuffer, FireSource, sources);
@@ -217,10 +217,10 @@ FW_BUFFER(FW_BIND_NEIGHBOURS, readonly, NeighboursBuffer, uint, neighbours);
 FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
 #endif
 #ifdef FW_USE_BLOCKERS
-FW_BUFFER(FW_BIND_BLOCKERS, readonly, BlockersBuffer, Blocker, blockers);
+FW_BUFFER(FW_BIND_BLOCKERS, readonly, HeatOccludersBuffer, Blocker, blockers);
 #endif
 #ifdef FW_USE_SHIELD
-FW_BUFFER(FW_BIND_SHIELD, readonly, ShieldBuffer, uint, shield);
+FW_BUFFER(FW_BIND_SHIELD, readonly, OcclusionBuffer, uint, shield);
 #endif
 #ifdef FW_USE_ROOMS
 #include "shared/room.h"

@@ -24,14 +24,14 @@ void readBeforeWritten() {}
 FW_BUFFER(FW_BIND_DEFORM_OBJECTS, readonly, DeformObjectsBuffer, uvec4, deformObjects);
 FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGroups);
 #ifdef FW_USE_DEFORM_NODES
-FW_QUADS(FW_BIND_DEFORM_NODES, DeformNodesBuffer, nodeQuads);
+FW_QUADS(FW_BIND_DEFORM_NODES, DeformParticlesBuffer, nodeQuads);
 uvec4 deformNode(uint quad) { return FW_QUAD(nodeQuads, quad); }
 // Loops over links test at their end. All particles of a run have the same number of passes, so no lane leaves early.
 uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
 uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // 0 or 1 additional passes
 #endif
 #ifdef FW_USE_DEFORM_COATS
-FW_QUADS(FW_BIND_DEFORM_COATS, DeformCoatsBuffer, coatQuads);
+FW_QUADS(FW_BIND_DEFORM_COATS, DeformEmbeddingsBuffer, coatQuads);
 uvec4 deformCoat(uint quad) { return FW_QUAD(coatQuads, quad); }
 #endif
 #ifdef FW_USE_SHOWN
@@ -53,7 +53,7 @@ FW_QUADS(FW_BIND_SOFT, SoftBuffer, softQuads);
 FW_BUFFER(FW_BIND_SOFT, writeonly, SoftOutBuffer, uvec4, softOut);
 #endif
 uvec4 soft(uint quad) { return FW_QUAD(softQuads, quad); }
-const uint kSoftTies = 2u, kSoftSeen = 3u, kSoftAnchor = 4u;
+const uint kSoftLinkCache = 2u, kSoftFacts = 3u, kSoftAnchor = 4u;
 uvec3 softPlace(vec3 place, uint way) {
     uvec3 p = floatBitsToUint(place);
     return uvec3(packPlace(p.x, way, kWayLow), packPlace(p.y, way >> 5u, kWayLow),
@@ -65,7 +65,7 @@ uint wayBits(uvec4 quad) {
 }
 // First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding bending constraints, two
 // per set, below 24. Then charred shares of neighbours and of constraint ends; own facts.
-const uint kTiesPinned = 8u, kTiesArms = 16u, kTiesWhole = 0x1000000u;  // no neighbour has parted
+const uint kLinkCachePinned = 8u, kLinkCacheBends = 16u, kLinkCacheWhole = 0x1000000u;  // no neighbour has parted
 #endif
 
 layout(push_constant) uniform DeformPushBlock { DeformPush push; };

@@ -103,18 +103,18 @@ void addEnergy(uint object, uint low, uint high) {
 // requests tiles, then it lights those that `grant` put on the list in between; all else stays unchanged. Requests use
 // storage that is free meanwhile: the predict list that the frame's prediction will write, and, as marks per world tile,
 // the burn list that the next reduction will write.
-const uint kAsked = 0xFFFFFFF0u;  // exceeds any world tile
-const uint kAskedFits = 1u;       // + these: fits the object's limit, the world's
-const uint kAskedMay = 2u;
+const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
+const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
+const uint kRequestAllocated = 2u;
 bool asksOnly() { return (push.switches & kSwitchAsks) != 0u; }
 bool mayBurn(uint worldTile) {
     return (push.switches & kSwitchCapped) == 0u ||
            (tileState[worldTile].flag & kTileBurning) != 0u;
 }
 void askToBurn(uint worldTile) {
-    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kAsked)
-                                     : atomicExchange(burnA[worldTile], kAsked);
-    if (had == kAsked) return;
+    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kRequested)
+                                     : atomicExchange(burnA[worldTile], kRequested);
+    if (had == kRequested) return;
     uint slot = atomicAdd(counters[kRowBurn + (push.burnParity ^ 1u)].workCount, 1u);
     if (push.predictParity == 0u) predictB[slot] = worldTile;
     else predictA[slot] = worldTile;
@@ -130,7 +130,7 @@ uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
 }
 // r-th dependent tile over seams. The switches serve the tests.
-uint readerTile(uint object, uint readerStart, uint r) {
+uint dependentTile(uint object, uint readerStart, uint r) {
     uint reader = readers[objects[object].readerBase + readerStart + r];
     return (push.switches & kSwitchWrongReaders) != 0u ? 0u : reader;
 }
@@ -150,7 +150,7 @@ void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uin
     uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
-        touchTile(parity, row, worldTileBase + readerTile(object, seam.z, r), bits);
+        touchTile(parity, row, worldTileBase + dependentTile(object, seam.z, r), bits);
 }
 // Texels of this mask of a tile changed between iterations: touches the tile and all tiles that depend on them.
 void touchReaders(uint object, uint local, uvec2 mask) {

@@ -62,13 +62,13 @@ FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);
 #endif
 #ifdef FW_USE_ARP
 #include "shared/arp.h"
-FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, ArpGroupsBuffer, uvec2, groups);
-FW_BUFFER(FW_BIND_ARP_LIST, readonly, ArpListBuffer, uint, arpList);
+FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, PatternGroupsBuffer, uvec2, groups);
+FW_BUFFER(FW_BIND_ARP_LIST, readonly, PatternListBuffer, uint, arpList);
 layout(push_constant) uniform Push { ArpPush push; };
 #else
 layout(push_constant) uniform Push { RefinePush push; };
 
-const uint kMostGroups = 65535u;  // of a dispatch; the rest is strided over
+const uint kMaxGroups = 65535u;  // of a dispatch; the rest is strided over
 
 uint edgeList() { return kRefineWorkLists; }
 uint triangleList() { return edgeList() + 2u * push.edgeGroups; }

@@ -57,7 +57,7 @@ bool isLost(uint object, RefineTriangle t) {
         RefineSlot slot = slots[refined[object].meshSlots + s];
         float behind;
         lost = lost &&
-               isGone(object, refineNow(object, slot, push.nowTick, push.recede, behind).hole);
+               isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
     }
     return lost;
 }
@@ -84,7 +84,7 @@ void find(uint object, uint triangle) {
         return;
     }
     uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
-    atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
+    atomicMax(work[kRefineWorkCut], min(job + 1u, kMaxGroups));
     work[push.cutJobs + 2u * job] = object;
     work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }

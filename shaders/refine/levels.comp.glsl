@@ -139,7 +139,7 @@ void move(uint object, uint item) {
     heat[at] |= kRefineMoving;
     if (item >= refined[object].edgeCount) return;
     uint job = atomicAdd(work[kRefineWorkEdges + 3u], 1u);
-    atomicMax(work[kRefineWorkEdges], min(job / 64u + 1u, kMostGroups));
+    atomicMax(work[kRefineWorkEdges], min(job / 64u + 1u, kMaxGroups));
     work[edgeJobs() + 2u * job] = object;
     work[edgeJobs() + 2u * job + 1u] = item;
 }
@@ -161,13 +161,13 @@ void pack(uint object, uint triangle) {
     uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
     if (m >= 2u && (changed || (moving & kRefineMoving) != 0u)) {
         uint job = atomicAdd(work[kRefineWorkPlace + 3u], 1u);
-        atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMostGroups));
+        atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMaxGroups));
         work[push.placeJobs + 2u * job] = object;
         work[push.placeJobs + 2u * job + 1u] = triangle;
         float level = items[own].level;
         if (refineTop(level) != m || refineAge(level, m) >= 1.0) return;
         job = atomicAdd(work[kRefineWorkMorph + 3u], 1u);
-        atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMostGroups));
+        atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMaxGroups));
         work[morphJobs() + 2u * job] = object;
         work[morphJobs() + 2u * job + 1u] = triangle;
     }

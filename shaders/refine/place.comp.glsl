@@ -24,7 +24,7 @@ uint fateOf(uint object, float hole) {
 uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float behind;
-    RefineVertex v = refineNow(object, slot, push.nowTick, push.recede, behind);
+    RefineVertex v = evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
     vertices[refined[object].vertices + s] = v;
     uint inner = refined[object].inner;
     while (inner != 0u) {

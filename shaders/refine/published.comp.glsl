@@ -17,7 +17,7 @@ void place(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float behind;
     vertices[refined[object].vertices + s] =
-        refineNow(object, slot, push.nowTick, push.recede, behind);
+        evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
 }
 
 void name(uint object, uint entry) {

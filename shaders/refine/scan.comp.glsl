@@ -42,7 +42,7 @@ void scan(uint object, uint ordinal) {
         work[objectList() + 2u * ordinal + 1u] = total;
         objectCounters[object].refined = total;
         firstJob = atomicAdd(work[kRefineWorkEmit + 3u], jobs);
-        atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMostGroups));
+        atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMaxGroups));
     }
     if (lane < kMaterialsPerObject) {
         uvec4 low = refined[object].materialEnd0;

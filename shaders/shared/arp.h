@@ -2,8 +2,8 @@
 // vertices, and the rule that consumes its children. The host chooses the drawn triangles
 // (runtime/mesh/refine). The product's scheme is in refine.h.
 // clang-format off
-#ifndef FW_SHARED_ARP_H
-#define FW_SHARED_ARP_H
+#ifndef FW_SHARED_REFERENCE_PATTERN_H
+#define FW_SHARED_REFERENCE_PATTERN_H
 #include "shared/refine.h"
 
 FW_SHARED_BEGIN

@@ -1,7 +1,7 @@
 // Flipbooks: frame selection, motion-compensated blending of two frames, and the meaning of a texel.
 // clang-format off
-#ifndef FW_SHARED_BOOK_H
-#define FW_SHARED_BOOK_H
+#ifndef FW_SHARED_FLIPBOOK_H
+#define FW_SHARED_FLIPBOOK_H
 #include "shared/types.h"
 
 FW_SHARED_BEGIN
@@ -33,7 +33,7 @@ struct BookRecord {
 };
 FW_SHARED_SIZE(BookRecord, 64)
 FW_SHARED_CONST uint kBookLevels = 4u;
-FW_SHARED_CONST uint kBookLevelWord = 8u;  // word of the record where at1 follows
+FW_SHARED_CONST uint kFlipbookLevelWord = 8u;  // word of the record where at1 follows
 // Mip for a quad of `pixels` that shows frames of `texels`. `own`, [0, 1), dithers the switch per quad,
 // so that the quads of a fire do not change mips at the same distance.
 FW_SHARED_FN uint bookLevel(float texels, float pixels, float own) {
@@ -51,7 +51,7 @@ FW_SHARED_FN uvec2 bookMotionCell(BookRecord b, uint frame) {
 }
 
 // Playback time of a particle. Once: `life`, [0, 1]. Loop: `age` in s, with the phase `own`, [0, 1).
-FW_SHARED_FN float bookTime(bool loops, float seconds, float life, float age, float own) {
+FW_SHARED_FN float flipbookTime(bool loops, float seconds, float life, float age, float own) {
     return loops ? age / seconds + 7.0f * own : clamp(life, 0.0f, 1.0f);
 }
 

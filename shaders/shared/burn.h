@@ -313,7 +313,7 @@ FW_SHARED_CONST uint kAirFull = 256u;
 FW_SHARED_CONST uint kAirKnown = 0x200u;
 // Set for embers of the last exchange: the highest texel wins, so the order does not matter.
 FW_SHARED_CONST uint kSpotFresh = 0x80000000u;
-FW_SHARED_CONST uint kHeldFull = 1u;     // burning tiles are at their limit: no new tile catches
+FW_SHARED_CONST uint kHeldByLimit = 1u;     // burning tiles are at their limit: no new tile catches
 FW_SHARED_CONST uint kHeldStopped = 2u;  // its lifetime is over
 FW_SHARED_CONST uint kHeldWarm = 4u;     // not held, but heated by others
 

@@ -18,14 +18,14 @@ FW_SHARED_CONST uint kDeformLinks = 2u;       // links read at a time
 FW_SHARED_CONST uint kDeformTurns = 4u;       // passes over the links: kDeformRing in all
 FW_SHARED_CONST uint kArmWays = 4u;           // bending sets: two directions, long and short; each step uses one
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
-FW_SHARED_CONST uint kDeformNodeQuads = 20u;  // quads of a DeviceNode; offsets of its parts:
-FW_SHARED_CONST uint kNodeNear = 1u;          // neighbours, one quad per pass
-FW_SHARED_CONST uint kNodeArms = 5u;          // bending constraints, one quad per set
-FW_SHARED_CONST uint kNodeRest = 9u;
-FW_SHARED_CONST uint kNodeFar = 10u;          // neighbours two steps away, one quad per pass; spring model
-FW_SHARED_CONST uint kNodeTexels = 14u;
-FW_SHARED_CONST uint kNodeOut = 18u;
-FW_SHARED_CONST uint kDeformCoatQuads = 4u;
+FW_SHARED_CONST uint kDeformParticleQuads = 20u;  // quads of a DeviceNode; offsets of its parts:
+FW_SHARED_CONST uint kParticleLinks = 1u;          // neighbours, one quad per pass
+FW_SHARED_CONST uint kParticleBends = 5u;          // bending constraints, one quad per set
+FW_SHARED_CONST uint kParticleRest = 9u;
+FW_SHARED_CONST uint kParticleFarLinks = 10u;          // neighbours two steps away, one quad per pass; spring model
+FW_SHARED_CONST uint kParticleTexels = 14u;
+FW_SHARED_CONST uint kParticleRecession = 18u;
+FW_SHARED_CONST uint kDeformEmbeddingQuads = 4u;
 FW_SHARED_CONST uint kDeformObjectQuads = 36u; // quads of a DeformObject: materials from 4, pins from 20
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
 FW_SHARED_CONST uint kMaxPins = 8u;
@@ -36,7 +36,7 @@ FW_SHARED_CONST uint kDeformOdd = 0x40000000u;    // reads the second positions
 FW_SHARED_CONST uint kDeformCrosses = 0x20000000u; // walls may cross and open
 FW_SHARED_CONST uint kDeformWoke = 0x10000000u;   // it did not move in the frame before
 FW_SHARED_CONST uint kDeformItem = 0x0FFFFFFFu;
-FW_SHARED_CONST uint kDeformNode = 0xFFFFFFu; // particle index of a link
+FW_SHARED_CONST uint kDeformLinkIndex = 0xFFFFFFu; // particle index of a link
 FW_SHARED_CONST uint kSoftQuads = 5u;         // quads per particle: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // ticks of a step: 1/128 s
 FW_SHARED_CONST uint kMostSoftSteps = 6u;     // steps of a frame; a longer frame drops the rest
@@ -176,10 +176,10 @@ inline float deformFloor(float x) { return std::floor(x); }
 #else
 float deformFloor(float x) { return floor(x); }
 #endif
-FW_SHARED_FN float leastF(float a, float b) { return a < b ? a : b; }
-FW_SHARED_FN float mostF(float a, float b) { return a > b ? a : b; }
+FW_SHARED_FN float minF(float a, float b) { return a < b ? a : b; }
+FW_SHARED_FN float maxF(float a, float b) { return a > b ? a : b; }
 FW_SHARED_FN float mixF(float a, float b, float t) { return a + (b - a) * t; }
-FW_SHARED_FN float unitF(float x) { return x < 0.0f ? 0.0f : (x > 1.0f ? 1.0f : x); }
+FW_SHARED_FN float saturateF(float x) { return x < 0.0f ? 0.0f : (x > 1.0f ? 1.0f : x); }
 
 // Eq. (9) with areas: mip of a burn map in which about k texels cover a ring of `texels`.
 FW_SHARED_FN uint mipOfRing(uint texels, uint k) {
@@ -195,12 +195,12 @@ FW_SHARED_FN uint mipOfRing(uint texels, uint k) {
 FW_SHARED_FN float burntShare(uint t, uint now, float more, uint charTicks) {
     if (!isSource(t) || now < t) return 0.0f;
     if (charTicks == kNoneTexel || charTicks == 0u) return 0.0f;
-    return leastF((float(now - t) + more) / float(charTicks), 1.0f);
+    return minF((float(now - t) + more) / float(charTicks), 1.0f);
 }
 
 // Recession in m, limited so that neither walls nor neighbouring triangles cross.
 FW_SHARED_FN float recession(float burnt, float depth, float limit) {
-    return leastF(burnt * depth, limit);
+    return minF(burnt * depth, limit);
 }
 
 // Least wall thickness, as a share, that a fully receded wall keeps above the inner skin.
@@ -213,7 +213,7 @@ FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
     if (c < -0.99f) return b;  // inverted: the shortest rotation is not defined
     vec3 sum = a + b;
     vec3 turned = n - sum * (dot(sum, n) / (1.0f + c)) + b * (2.0f * dot(a, n));
-    return turned * inversesqrt(mostF(dot(turned, turned), 1e-20f));
+    return turned * inversesqrt(maxF(dot(turned, turned), 1e-20f));
 }
 
 // ---- sheets: position-based dynamics, Jacobi: each particle corrects itself by its neighbours' last state
@@ -222,17 +222,17 @@ FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin:
 // A known path to a pin that grew has either been replaced by another one, which the next steps find, or
 // is gone and neighbours report it to each other in circles. It grows faster than such circles, so a
 // falling piece is not held back and a held piece yields little.
-FW_SHARED_CONST float kReachGrows = 1.03f;
+FW_SHARED_CONST float kPathGrowth = 1.03f;
 FW_SHARED_FN bool reachKnown(float way, float before) { return way <= before * 1.004f; }
 FW_SHARED_FN float reachNext(float way, float before, bool known) {
-    return leastF(known && !reachKnown(way, before) ? way * kReachGrows : way, kReachNone);
+    return minF(known && !reachKnown(way, before) ? way * kPathGrowth : way, kReachNone);
 }
 FW_SHARED_CONST float kReachSlack = 1.001f;   // tolerance of half-float storage
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // packed bends, per m
 FW_SHARED_CONST float kCharredSteps = 15.0f;  // resolution of the charred share that neighbours see
-// The link cache is updated every kTieSteps steps: fire takes seconds.
-FW_SHARED_CONST uint kTieSteps = 4u;
-FW_SHARED_FN bool tiesAt(uint way) { return way % kTieSteps == 0u; }
+// The link cache is updated every kLinkCacheSteps steps: fire takes seconds.
+FW_SHARED_CONST uint kLinkCacheSteps = 4u;
+FW_SHARED_FN bool tiesAt(uint way) { return way % kLinkCacheSteps == 0u; }
 // Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4 times
 // the second factor. With velocities this is stable below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
@@ -247,12 +247,12 @@ FW_SHARED_FN uint linkOdds(uint a, uint b) {
     return ((h ^ (h >> 15u)) * 0x2C1B3C6Du) >> 24u;
 }
 FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint odds) {
-    return leastF(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
+    return minF(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
 }
 
 // Shrink and curl progress. It reaches 1 before links part.
 FW_SHARED_FN float charredShare(float burnt) {
-    float x = unitF(burnt * 1.8f);
+    float x = saturateF(burnt * 1.8f);
     return x * x * (3.0f - 2.0f * x);
 }
 
@@ -266,11 +266,11 @@ FW_SHARED_FN uint charredOf(uint facts) { return (facts >> 8u) & 15u; }
 FW_SHARED_FN uint pinnedOf(uint facts) { return (facts >> 12u) & 1u; }
 
 // The path length to a pin is stored in the low bits of the position: an error of a millionth.
-FW_SHARED_CONST uint kWayKnown = 0x8000u;  // the path once had this length
+FW_SHARED_CONST uint kPathKnown = 0x8000u;  // the path once had this length
 FW_SHARED_FN uint packWay(float way, bool known) {
-    return (packHalf2x16(vec2(way, 0.0f)) & 0x7FFFu) | (known ? kWayKnown : 0u);
+    return (packHalf2x16(vec2(way, 0.0f)) & 0x7FFFu) | (known ? kPathKnown : 0u);
 }
-FW_SHARED_FN float wayOf(uint bits) { return unpackHalf2x16(bits & 0x7FFFu).x; }
+FW_SHARED_FN float unpackPathLength(uint bits) { return unpackHalf2x16(bits & 0x7FFFu).x; }
 FW_SHARED_CONST uint kWayLow = 31u;   // mask of the bits in x and y
 FW_SHARED_CONST uint kWayHigh = 63u;  // mask of the bits in z
 FW_SHARED_FN uint packPlace(uint word, uint bits, uint mask) {
@@ -302,9 +302,9 @@ FW_SHARED_FN float sheetDamping(float charred, float dt) {
 
 // A burnt ring stretched beyond this square ratio has torn: no skin is left between its ends.
 FW_SHARED_CONST float kTornSquare = 2.6f;  // of squared rest lengths
-FW_SHARED_CONST float kTornLead = 1000.0f; // s of appearance time
+FW_SHARED_CONST float kTornOffset = 1000.0f; // s of appearance time
 FW_SHARED_FN float tornLead(float square, float longest, float burnt) {
-    return burnt > 0.5f && square > kTornSquare * longest ? kTornLead : 0.0f;
+    return burnt > 0.5f && square > kTornSquare * longest ? kTornOffset : 0.0f;
 }
 
 // Air at a particle, in object units: wind with gusts, and updraft where it burns.
@@ -314,7 +314,7 @@ FW_SHARED_FN float gustAt(vec3 x, float scale, float time) {
     return 0.7f + 0.3f * sin(2.3f * time + phase) + 0.25f * sin(5.9f * time - 1.7f * phase);
 }
 FW_SHARED_FN float updraftAt(float burnt) {
-    float a = unitF((burnt - 0.02f) / 0.18f), b = unitF((burnt - 0.7f) / 0.3f);
+    float a = saturateF((burnt - 0.02f) / 0.18f), b = saturateF((burnt - 0.7f) / 0.3f);
     return kUpdraft * a * a * (3.0f - 2.0f * a) * (1.0f - b * b * (3.0f - 2.0f * b));
 }
 
@@ -322,7 +322,7 @@ FW_SHARED_FN float updraftAt(float burnt) {
 FW_SHARED_FN vec3 linkPush(vec3 x, vec3 y, float rest, float share) {
     vec3 d = y - x;
     float l = length(d);
-    return d * (share * (l - rest) / mostF(l, 1e-9f));
+    return d * (share * (l - rest) / maxF(l, 1e-9f));
 }
 
 // Curl direction along the normal: towards the side that flames lick, from below.
@@ -343,7 +343,7 @@ FW_SHARED_CONST float kArmCurls = 1.4f;  // relative to a ring of the same reach
 // the charred shares behind and ahead. Material charred on both sides has no shape to keep.
 FW_SHARED_FN float armCurl(float behind, float ahead) {
     float d = ahead - behind;
-    return leastF(4.0f * d * d, 1.0f);
+    return minF(4.0f * d * d, 1.0f);
 }
 FW_SHARED_FN float armFirm(float stiff, float charred, float across) {
     return kArmRelax * stiff * (1.0f - charred * (1.0f - across));
@@ -361,7 +361,7 @@ FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours,
 // Rise of the neighbours' mean caused by a curl, in m; `square`: mean of the squared distances. Limited so
 // that neighbours do not fold onto each other.
 FW_SHARED_FN float curlRise(float curl, float square) {
-    float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(mostF(square, 1e-20f));
+    float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(maxF(square, 1e-20f));
     return rise > most ? most : (rise < -most ? -most : rise);
 }
 
@@ -373,7 +373,7 @@ FW_SHARED_FN vec3 noFasterThan(vec3 v, float most) {
 // Nearest point on a pin's segment.
 FW_SHARED_FN vec3 pinPoint(vec3 x, vec3 from, vec3 to) {
     vec3 d = to - from;
-    return from + d * unitF(dot(x - from, d) / mostF(dot(d, d), 1e-12f));
+    return from + d * saturateF(dot(x - from, d) / maxF(dot(d, d), 1e-12f));
 }
 
 // ---- spring model of the reference, eqs. (3) to (8)
@@ -405,7 +405,7 @@ FW_SHARED_FN uint packDirection(vec3 n) {  // signed 11:11:10
 FW_SHARED_FN vec3 unpackDirection(uint packed) {
     int n = int(packed);
     vec3 v = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0f);
-    return v * inversesqrt(mostF(dot(v, v), 1e-20f));
+    return v * inversesqrt(maxF(dot(v, v), 1e-20f));
 }
 
 FW_SHARED_END

@@ -164,7 +164,7 @@ FW_SHARED_FN ivec3 tileMiddle(FW_IN(RemoteTile) t) {
 FW_SHARED_FN uint tileCell(FW_IN(RemoteTile) t) { return (t.z >> 16u) & 0xFFu; }
 FW_SHARED_FN uint tileMaterial(FW_IN(RemoteTile) t) { return t.z >> 24u; }
 
-FW_SHARED_FN bool withinReach(ivec3 d) {
+FW_SHARED_FN bool isWithinExchangeRange(ivec3 d) {
     return d.x <= kExchangeFar && d.x >= -kExchangeFar && d.y <= kExchangeFar &&
            d.y >= -kExchangeFar && d.z <= kExchangeFar && d.z >= -kExchangeFar;
 }
@@ -180,7 +180,7 @@ FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
     uint reach = mostOf(mostOf(absolute(d.x), absolute(d.y)), absolute(d.z));
     if (far > 131071u || reach > 65535u) return false;
     // The last 6 cm at each end do not count, so a box does not block what is attached to it.
-    uint length = isqrtNear(squareSum(d / 4)) * 4u;
+    uint length = isqrtNear(squaredLength(d / 4)) * 4u;
     uint spare = leastOf(60u, length / 2u);
     int kept = length == 0u ? 0 : int(divide((length - spare) << 12u, length));  // Q12
     d = (d / 4 * kept) / 1024;
@@ -203,9 +203,9 @@ FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
 FW_SHARED_CONST uint kShieldStays = 0x80000000u;  // | slot | material << 24: it never gives way
 FW_SHARED_CONST uint kShieldSlot = 0xFFFFFFu;
 
-FW_SHARED_FN uint shieldSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
+FW_SHARED_FN uint occlusionSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
 FW_SHARED_FN uint shieldWords(uint counts) {  // of one bit per cell
-    return (shieldSide(counts, 0u) * shieldSide(counts, 1u) * shieldSide(counts, 2u) + 31u) >> 5u;
+    return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) + 31u) >> 5u;
 }
 
 struct ShieldWalk {  // visits the cells that a segment crosses, face by face, to 3 mm
@@ -220,15 +220,15 @@ struct ShieldWalk {  // visits the cells that a segment crosses, face by face, t
     uvec3 way;       // mm along the axis, whole segment
 };
 
-struct ShieldAxis {
+struct OcclusionAxis {
     int cell;
     int stride;
     int room;
     uint ahead;
 };
 // begins, at: mm in the grid, start of the segment and entry point.
-FW_SHARED_FN ShieldAxis shieldAxis(int begins, int at, int d, int cells, int side) {
-    ShieldAxis a;
+FW_SHARED_FN OcclusionAxis makeOcclusionAxis(int begins, int at, int d, int cells, int side) {
+    OcclusionAxis a;
     int inside = at < 0 ? 0 : (at >= cells * side ? cells * side - 1 : at);
     a.cell = int(divide(uint(inside), uint(side)));
     a.stride = d > 0 ? 1 : (d < 0 ? -1 : 0);
@@ -238,7 +238,7 @@ FW_SHARED_FN ShieldAxis shieldAxis(int begins, int at, int d, int cells, int sid
     return a;
 }
 // Position on the segment, Q14, where it enters the slab of an axis; above 16384: never.
-FW_SHARED_FN uint shieldEnters(int begins, int d, int size) {
+FW_SHARED_FN uint occlusionEntry(int begins, int d, int size) {
     uint outside = begins < 0 ? uint(-begins) : (begins >= size ? uint(begins - size + 1) : 0u);
     if (outside == 0u) return 0u;
     bool comes = begins < 0 ? d > 0 : d < 0;
@@ -258,24 +258,24 @@ FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
     w.ahead = uvec3(1u, 1u, 1u);
     w.way = uvec3(0u, 0u, 0u);
     ivec3 d = b - a;
-    if (g.shieldCell == 0u || !withinReach(d)) return w;
+    if (g.shieldCell == 0u || !isWithinExchangeRange(d)) return w;
     ivec3 low = ivec3(g.shieldX, g.shieldY, g.shieldZ);
     ivec3 off = a / 2 - low / 2;  // halves: positions and grid may be 3e9 mm apart
     uint far = mostOf(mostOf(absolute(off.x), absolute(off.y)), absolute(off.z));
     if (far > 1500000u) return w;
     ivec3 s = a - low;
     int side = int(g.shieldCell);
-    ivec3 n = ivec3(int(shieldSide(g.shieldCounts, 0u)), int(shieldSide(g.shieldCounts, 1u)),
-                    int(shieldSide(g.shieldCounts, 2u)));
-    uint enters = mostOf(mostOf(shieldEnters(s.x, d.x, n.x * side), shieldEnters(s.y, d.y, n.y * side)),
-                         shieldEnters(s.z, d.z, n.z * side));
+    ivec3 n = ivec3(int(occlusionSide(g.shieldCounts, 0u)), int(occlusionSide(g.shieldCounts, 1u)),
+                    int(occlusionSide(g.shieldCounts, 2u)));
+    uint enters = mostOf(mostOf(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
+                         occlusionEntry(s.z, d.z, n.z * side));
     if (enters > 16384u) return w;
     int t = int(enters);
     ivec3 at = s + d * t / 16384;
-    ShieldAxis x = shieldAxis(s.x, at.x, d.x, n.x, side);
-    ShieldAxis y = shieldAxis(s.y, at.y, d.y, n.y, side);
-    ShieldAxis z = shieldAxis(s.z, at.z, d.z, n.z, side);
-    w.whole = isqrtNear(squareSum(d));
+    OcclusionAxis x = makeOcclusionAxis(s.x, at.x, d.x, n.x, side);
+    OcclusionAxis y = makeOcclusionAxis(s.y, at.y, d.y, n.y, side);
+    OcclusionAxis z = makeOcclusionAxis(s.z, at.z, d.z, n.z, side);
+    w.whole = isqrtNear(squaredLength(d));
     w.passed = enters;
     w.cell = uint((z.cell * n.y + y.cell) * n.x + x.cell);
     w.strides = ivec3(x.stride, y.stride * n.x, z.stride * n.x * n.y);
@@ -341,9 +341,9 @@ FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, iv
                                    uint side) {
     ShieldEnds e = emberEnds(s, to, side);
     ivec3 d = flame - at;
-    if (!withinReach(d)) return e;
+    if (!isWithinExchangeRange(d)) return e;
     uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
-    uint leaves = divide(side * isqrtNear(squareSum(d)), mostOf(over, 1u));  // mm until one cell above it
+    uint leaves = divide(side * isqrtNear(squaredLength(d)), mostOf(over, 1u));  // mm until one cell above it
     e.toSpare = mostOf(e.toSpare, leastOf(leaves + leaves / 2u, side * 6u));
     return e;
 }
@@ -408,8 +408,8 @@ FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
 // Radiation from one point of a flame. normal: Q12; nearest: mm.
 FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
     ivec3 d = flame - at;
-    if (!withinReach(d)) return 0u;
-    uint length = mostOf(isqrtNear(squareSum(d)), 1u);
+    if (!isWithinExchangeRange(d)) return 0u;
+    uint length = mostOf(isqrtNear(squaredLength(d)), 1u);
     int along = (normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z;  // Q10
     if (along <= 0 && !both) return 0u;
     uint cosine = leastOf(divide(absolute(along), length) >> 2u, 256u);
@@ -422,9 +422,9 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
     uint nearest = mostOf(s.diameter, kNearest) / 2u;
     ivec3 middle = alongFlame(s, up, 4);
     ivec3 d = middle - at;
-    if (!withinReach(d)) return 0u;
+    if (!isWithinExchangeRange(d)) return 0u;
     uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
-    bool row = size >= 65535u || squareSum(d) <= size * size;  // near: four points along the flame
+    bool row = size >= 65535u || squaredLength(d) <= size * size;  // near: four points along the flame
     // A loop, not a branch: a software device would execute both sides of a branch.
     uint part = row ? s.watts / 4u : s.watts, sum = 0u;
     int end = row ? 8 : 5, apart = row ? 2 : 4, eighths = row ? 1 : 4;
@@ -462,12 +462,12 @@ struct FlameFrame {  // a receiver in a flame's frame
 FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
     FlameFrame f;
     ivec3 d = at - ivec3(s.place.x, s.place.y, s.place.z);
-    f.near = withinReach(d);
+    f.near = isWithinExchangeRange(d);
     f.above = 0;
     f.beside2 = 0xFFFFFFFFu;
     if (!f.near) return f;
     f.above = (up.x * d.x + up.y * d.y + up.z * d.z) / 4096;
-    uint square = squareSum(d), high = absolute(f.above) * absolute(f.above);
+    uint square = squaredLength(d), high = absolute(f.above) * absolute(f.above);
     f.beside2 = square - leastOf(high, square);
     return f;
 }
@@ -519,8 +519,8 @@ FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient
 // Weight of a source at a position, to choose among many; about W/cm^2.
 FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
     ivec3 d = ivec3(s.place.x, s.place.y, s.place.z) - at;
-    if (s.watts == 0u || !withinReach(d)) return 0u;
-    uint square = mostOf(divide(squareSum(d), 100u), 100u);
+    if (s.watts == 0u || !isWithinExchangeRange(d)) return 0u;
+    uint square = mostOf(divide(squaredLength(d), 100u), 100u);
     return divide(leastOf(s.watts, 0xFFFFFFu) << 8u, square) + 1u;
 }
 
@@ -534,8 +534,8 @@ FW_SHARED_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E377
 FW_SHARED_FN bool mayJump(uint seed, uint from, uint to, uint caught, uint chance) {
     return drawn(mixed(mixed(mixed(seed, from), to), caught), chance);
 }
-FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint worldHopsMost) {
-    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, worldHopsMost);
+FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint maxWorldHops) {
+    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, maxWorldHops);
 }
 
 // Updates an object's lit and stop ticks at an exchange.
@@ -566,22 +566,22 @@ FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
 
 FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && now >= stopTick; }
 // Is a tile that does not burn held back by a limit? Counts are those before the iteration.
-FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint worldMost, uint objectBurning,
-                            uint objectFlags, uint objectMost) {
+FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
+                            uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
-    return burning >= worldMost ||
-           ((objectFlags & kRemoteLive) != 0u && objectBurning >= objectMost);
+    return burning >= maxWorld ||
+           ((objectFlags & kRemoteLive) != 0u && objectBurning >= maxObject);
 }
 // kHeld bits of an object at an exchange.
-FW_SHARED_FN uint heldBits(uint burning, uint worldMost, uint objectBurning, uint objectMost,
+FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject,
                            uint stopTick, uint now) {
-    uint held = (burning >= worldMost || objectBurning >= objectMost) ? kHeldFull : 0u;
+    uint held = (burning >= maxWorld || objectBurning >= maxObject) ? kHeldByLimit : 0u;
     return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
 }
 // May another object light a tile with this flag?
 FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
     return (held & kHeldStopped) == 0u &&
-           ((held & kHeldFull) == 0u || (tileFlag & kTileBurning) != 0u);
+           ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
 }
 
 // Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt at
@@ -602,7 +602,7 @@ FW_SHARED_FN uint partFrom(uint link, uint block) {
 }
 // Ticks over such a link: those of an ordinary link of that length, in position units, in still air.
 FW_SHARED_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
-    return mulShift(to.sigma0, isqrtNear(squareSum(gap)) * 8u, 22u);
+    return mulShift(to.sigma0, isqrtNear(squaredLength(gap)) * 8u, 22u);
 }
 // Has fire crossed it? t: state of the source texel, lit before the last exchange, as for a contact.
 FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
@@ -653,7 +653,7 @@ FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ive
     ivec3 p = remotePlace(o, tileMiddle(tile));
     ivec3 d = acrossUp(p - at, axis);
     if (absolute(d.x) > 2000u || absolute(d.y) > 2000u || absolute(d.z) > 2000u) return kMisses;
-    uint beside = isqrtNear(squareSum(d));
+    uint beside = isqrtNear(squaredLength(d));
     int below = top - heightOf(p, axis);
     uint miss = beside * 2u + uint(below < 0 ? 0 : (below > 16000 ? 16000 : below)) / 2u;
     return leastOf(miss, kMisses);
@@ -709,7 +709,7 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
 FW_SHARED_FN uint besidePlace(FW_IN(RemoteObject) o, ivec3 position, ivec3 at, uint axis) {
     ivec3 p = remotePlace(o, position);
     ivec3 d = acrossUp(p - at, axis);
-    return withinReach(d) ? isqrtNear(squareSum(d)) : 65535u;
+    return isWithinExchangeRange(d) ? isqrtNear(squaredLength(d)) : 65535u;
 }
 // Is `other` in the disc that an ember on `lane` of the same tile lights?
 FW_SHARED_FN bool besideLane(uint lane, uint other) {

@@ -49,7 +49,7 @@ FW_SHARED_FN bool flames(uint t, uint now, uint flameTicks) {
 }
 
 // Modulo 2^32: exact while the sum fits, and never undefined.
-FW_SHARED_FN uint squareSum(ivec3 a) {
+FW_SHARED_FN uint squaredLength(ivec3 a) {
     return uint(a.x) * uint(a.x) + uint(a.y) * uint(a.y) + uint(a.z) * uint(a.z);
 }
 FW_SHARED_FN int dotInt(ivec3 a, ivec3 b) {
@@ -122,7 +122,7 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14),
                     drive.y - ((along * normal.y + 8192) >> 14),
                     drive.z - ((along * normal.z + 8192) >> 14));
-    uint s = isqrtNear(squareSum(u));
+    uint s = isqrtNear(squaredLength(u));
     uint capped = s < m.driveMax ? s : m.driveMax;
     uint head = 1024u + ((m.headGain * capped) >> 8u);  // Q10
     uint back = 1024u + ((m.backGain * s) >> 8u);
@@ -155,7 +155,7 @@ FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontPrep) p) {
 }
 // link8: own position minus the source's, 1/8 units.
 FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
-    return travelTime(squareSum(link8), uint(dotInt(link8, p.e)), p);
+    return travelTime(squaredLength(link8), uint(dotInt(link8, p.e)), p);
 }
 
 // Start time of fire at the point between two sources: a with weight w/64, b with the rest.
@@ -186,7 +186,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
                             FW_IN(FrontPrep) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
-    uint bb = squareSum(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squareSum(d) * 4u;
+    uint bb = squaredLength(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squaredLength(d) * 4u;
     uint be = uint(dotInt(b, p.e)) * 8u, de = uint(dotInt(d, p.e)) * 2u;
     int g1 = pairStart(ra, rb, 16) + travelTime(bb + bd + dd, be + de, p);
     int g2 = pairStart(ra, rb, 32) + travelTime(bb + bd * 2u + dd * 4u, be + de * 2u, p);
@@ -267,11 +267,11 @@ ivec3 pickLink(FrontRing ring, int k) {
 
 // Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it could
 // light this texel is dropped. `wake` is then lowered to the tick after which it cannot count again under
-// another wind: until then the texel's tile stays listed. settles: also computes `news`, the tick from
+// another wind: until then the texel's tile stays listed. settles: also computes `settledFrom`, the tick from
 // which another source of this ring would not change the result; kNever: unknown. It needs all eight links.
 FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
-                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) news) {
+                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
     int cost[8];
     uint base = kNever;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
@@ -319,7 +319,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int a = hasA || settles ? (bestK + 7) & 7 : bestK;
     int relB = pick(rel, bestK), relC = pick(rel, c), relA = pick(rel, a);
     ivec3 linkB = pickLink(ring, bestK), linkC = pickLink(ring, c), linkA = pickLink(ring, a);
-    uint l = isqrtNear(squareSum(linkB) * 64u);
+    uint l = isqrtNear(squaredLength(linkB) * 64u);
     int changeC = hasC || settles ? pairChange(linkB, linkC, l, p) : 0;
     int changeA = hasA || settles ? pairChange(linkB, linkA, l, p) : 0;
     bool byC = hasC && changeC < relB - relC;
@@ -333,7 +333,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
         bound = !hasA && soonA > bound ? soonA : bound;
         int ticks = (bound + 15) >> 4;
         uint before = uint(ticks < 0 ? -ticks : 0);
-        news = ticks >= 0 ? base + uint(ticks) : base - (before < base ? before : base);
+        settledFrom = ticks >= 0 ? base + uint(ticks) : base - (before < base ? before : base);
     }
     if (byC) {
         int g = bestOfPair(relB, relC, hop, pick(cost, c), linkB, linkC, p);

@@ -1,8 +1,8 @@
 // Burn budget: which of the tiles that request to burn may do so. Integers, equal on all devices. The
 // mechanism is in lib/lists.glsl and runtime/ARCHITECTURE.md.
 // clang-format off
-#ifndef FW_SHARED_GRANT_H
-#define FW_SHARED_GRANT_H
+#ifndef FW_SHARED_BURN_BUDGET_H
+#define FW_SHARED_BURN_BUDGET_H
 #include "shared/exchange.h"
 
 FW_SHARED_BEGIN

@@ -21,14 +21,14 @@ FW_SHARED_CONST uint kFilmMost = 1023u;         // g/m^2
 FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
 FW_SHARED_CONST uint kSoaksOut = 3u;            // steps of flaming under a film before the flame dies, minus one
 FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K from ambient that still count as asleep
-FW_SHARED_CONST uint kDozes = 32u;              // steps from one update to the next of a tile that only has cold water
+FW_SHARED_CONST uint kColdWaterSteps = 32u;              // steps from one update to the next of a tile that only has cold water
 // Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to char, and
 // a flux too small to heat it much (wood needs 10 kW/m^2 to catch).
-FW_SHARED_CONST uint kRestsShift = 3u;
-FW_SHARED_CONST uint kRests = 1u << kRestsShift;
-FW_SHARED_CONST uint kRestFlux = 4096u;         // W/m^2: from here on it is updated every step
+FW_SHARED_CONST uint kSleepShift = 3u;
+FW_SHARED_CONST uint kRests = 1u << kSleepShift;
+FW_SHARED_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
 // The longer interval below a flux of noon sun.
-FW_SHARED_CONST uint kNapsShift = 5u;
+FW_SHARED_CONST uint kLongSleepShift = 5u;
 FW_SHARED_CONST uint kNapFlux = 1024u;          // W/m^2
 
 // HeatTexel::phase
@@ -196,8 +196,8 @@ FW_SHARED_FN HeatMaterial heatInAir(FW_IN(HeatMaterial) m, uint strength) {
     weak.flags |= (kAirFull - strength) << kHeatLacksShift;
     return weak;
 }
-FW_SHARED_FN uint heatLacks(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
-FW_SHARED_FN bool heatChokes(FW_IN(HeatMaterial) m) { return heatLacks(m) >= kAirFull; }
+FW_SHARED_FN uint airDeficit(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
+FW_SHARED_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= kAirFull; }
 
 // Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow; ash has a
 // quarter of that. rise: 1/16 K from ambient; size: W/m^2, net flux.
@@ -276,7 +276,7 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
         if (x.fuel == 0u) {
             x.phase = kPhaseBurnt;
             result |= kHeatBurnsOut;
-        } else if (heat < m.diesAt || x.soaked > kSoaksOut || heatChokes(m)) {
+        } else if (heat < m.diesAt || x.soaked > kSoaksOut || isSmothered(m)) {
             x.phase = kPhaseOut;
             result |= kHeatExtinguishes;
         }
@@ -284,7 +284,7 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     } else {
         x.soaked = 0u;
         bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
-                     x.film == 0u && x.moist < m.moistDies && !heatChokes(m);
+                     x.film == 0u && x.moist < m.moistDies && !isSmothered(m);
         if (ready && heat >= (pilot ? m.ignitesAt : m.ignitesAlone)) {
             if (x.phase == kPhaseOut) x.epoch = (x.epoch + 1u) & 3u;
             x.phase = kPhaseBurning;
@@ -325,7 +325,7 @@ FW_SHARED_FN HeatTexel heatRests(FW_IN(HeatMaterial) m, bool burns) {
 }
 
 // A jet gives `flux` W/m^2 for one step, in addition to the step itself: first to the water, then to the skin.
-FW_SHARED_FN void heatBlows(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
+FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
     uint size = (leastOf(flux, kFluxMost) * m.absorbs) >> 8u;
     uint rise = x.heat > m.ambient ? x.heat - m.ambient : 0u;
     uint resists = heatResistance(x, m, skinCapacity(x, m, rise, size));
@@ -364,7 +364,7 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
     if (kind == kEventWet) heatWets(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
     if (kind == kEventHeat) {
-        heatBlows(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
+        applyJetHeat(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
         t = wetState(t, heatClosed(x, m));
         bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
                      !heatClosed(x, m);
@@ -387,13 +387,13 @@ FW_SHARED_CONST uint kWorkDozes = 1u;
 FW_SHARED_CONST uint kWorkRests = 2u;
 FW_SHARED_CONST uint kWorkAlways = 4u;
 FW_SHARED_FN uint fluxWork(uint flux) {
-    return flux == 0u ? 0u : flux < kRestFlux ? kWorkRests : kWorkAlways;
+    return flux == 0u ? 0u : flux < kSleepFlux ? kWorkRests : kWorkAlways;
 }
 FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
     uint off = x.heat > ambient ? x.heat - ambient : ambient - x.heat;
     bool warm = off > kLukewarm || flux != 0u;
     bool flames = x.phase == kPhaseBurning || (isSource(t) && x.phase != kPhaseBurnt);
-    if (flames || x.heat > kPyrolysisBegins || flux >= kRestFlux || (warm && x.film != 0u))
+    if (flames || x.heat > kPyrolysisBegins || flux >= kSleepFlux || (warm && x.film != 0u))
         return kWorkAlways;
     return x.film != 0u ? kWorkDozes : warm ? kWorkRests : 0u;
 }
@@ -411,7 +411,7 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     }
     // Bad air slows its clock: consumption, appearance, and the front's wait for it.
     uint passes = kHeatSteps * kStepTicks;
-    uint waits = (passes * heatLacks(m)) >> 8u;
+    uint waits = (passes * airDeficit(m)) >> 8u;
     if (lit && x.phase == kPhaseBurning) t += leastOf(waits, now - t);
     uint gone = 0u;
     if (lit && x.phase == kPhaseBurning && (m.flags & kHeatThick) == 0u) {
@@ -435,9 +435,9 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
 }
 
 // The material over all steps of a sleep interval at once; a burning texel takes one step.
-FW_SHARED_FN uint restShift(uint flux) { return flux < kNapFlux ? kNapsShift : kRestsShift; }
+FW_SHARED_FN uint sleepShift(uint flux) { return flux < kNapFlux ? kLongSleepShift : kSleepShift; }
 FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
-    uint shift = rests ? restShift(flux) : 0u;
+    uint shift = rests ? sleepShift(flux) : 0u;
     HeatMaterial long_ = m;
     long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> shift, 1u);
     long_.capacityLeast = m.capacityLeast >> shift;
@@ -447,9 +447,9 @@ FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, bool rests, uint flux)
     long_.airDries = m.airDries << shift;
     return long_;
 }
-// The same for cold water, once in kDozes steps.
+// The same for cold water, once in kColdWaterSteps steps.
 FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
-    uint dries = m.airDries * kDozes;
+    uint dries = m.airDries * kColdWaterSteps;
     uint dried = (dries >> 16u) + ((dries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
     x.film -= leastOf(dried, x.film);
     return wetState(t, heatClosed(x, m));
@@ -460,15 +460,15 @@ FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
 // never, equally often.
 FW_SHARED_FN bool restEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
-    return ((turn - tile) & ((1u << restShift(flux)) - 1u)) == 0u;
+    return ((turn - tile) & ((1u << sleepShift(flux)) - 1u)) == 0u;
 }
-FW_SHARED_FN bool dozeEnds(uint object, uint tile, uint now) {
+FW_SHARED_FN bool coldWaterTurn(uint object, uint tile, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
-    return (turn & (kDozes - 1u)) == 0u;
+    return (turn & (kColdWaterSteps - 1u)) == 0u;
 }
 FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint flux, uint now) {
     return (warm ? kWorkAlways : 0u) | (restEnds(tile, flux, now) ? kWorkRests : 0u) |
-           (dozeEnds(object, tile, now) ? kWorkDozes : 0u);
+           (coldWaterTurn(object, tile, now) ? kWorkDozes : 0u);
 }
 // Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an ordinary
 // one. The texel is due if (work & turn) is not 0.

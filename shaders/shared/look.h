@@ -205,7 +205,7 @@ FW_SHARED_CONST uint kQuadSmoke = 1u;
 FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
 FW_SHARED_CONST uint kQuadSpark = 3u;
 FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
-FW_SHARED_CONST uint kQuadBook = 18u;
+FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
 FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 
 // Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are

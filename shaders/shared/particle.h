@@ -160,7 +160,7 @@ FW_SHARED_FN uint particleSeed(uint seed, uint serial) {
 }
 
 // Flipbook of a particle, + 1, from up to `most` bytes of a word; 0: none.
-FW_SHARED_FN uint particleBook(uint bytes, uint most, uint seed) {
+FW_SHARED_FN uint particleFlipbook(uint bytes, uint most, uint seed) {
     uint count = 0u;
     for (uint i = 0u; i < most; ++i) count += (bytes >> (8u * i) & 0xFFu) != 0u ? 1u : 0u;
     uint one = count > 0u ? particleBits(seed + 31u) % count : 0u;

@@ -24,7 +24,7 @@ FW_SHARED_CONST float kPublishedGravity = 0.1f;          // C_G
 FW_SHARED_CONST float kPublishedUnit = 4.4703484e-10f;   // C_D / 32 * C_G / 2^21
 // Smaller values are set to 0. Far above the smallest normal float, and too small to affect a front's speed:
 // the front's tail has shrunk by e^69 there.
-FW_SHARED_CONST float kPublishedLeast = 1e-30f;
+FW_SHARED_CONST float minKPublished = 1e-30f;
 
 // Texels of a lane: a column of eights.
 FW_SHARED_CONST uint kPublishedBlockX = 8u;
@@ -46,10 +46,10 @@ FW_SHARED_FN FW_TAPS publishedNext(FW_TAPS q, FW_TAPS d, FW_TAPS nearTaps, FW_TA
     FW_PRECISE FW_TAPS next = q + d * sum;
 #ifdef __cplusplus
     next = next < d ? next : d;
-    return next < kPublishedLeast ? 0.0f : next;
+    return next < minKPublished ? 0.0f : next;
 #else
     next = min(next, d);
-    return mix(next, vec4(0.0), lessThan(next, vec4(kPublishedLeast)));
+    return mix(next, vec4(0.0), lessThan(next, vec4(minKPublished)));
 #endif
 }
 

@@ -65,7 +65,7 @@ FW_SHARED_SIZE(RefineSlot, 32)
 struct RefineVertex {    // a vertex in this frame
     float x, y, z;       // m, object space
     float hole;          // s since the object's epoch: burnt through; kRefineNever: unknown. On the inner skin:
-                         // when the opposite wall was lit, see refineNow
+                         // when the opposite wall was lit, see evaluateSlotNow
 };
 FW_SHARED_SIZE(RefineVertex, 16)
 

@@ -10,7 +10,7 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST uint kMaxRooms = 64u;
 // Oxygen by volume, 2^-32 of the air.
 FW_SHARED_CONST uint kAirOutside = 899795648u;  // 20.95 %
-FW_SHARED_CONST uint kAirLeast = 515396076u;    // 12 %: nothing burns below
+FW_SHARED_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
 FW_SHARED_CONST uint kAirStep = 503316u;        // burning strength grows by 1/256 per step; 3 % to full
 FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;  // of room steps, which precede heat steps
 
@@ -52,7 +52,7 @@ FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_I
 }
 
 // Updates the mean and the flashover state. A flashover is reported again only after the mean fell to half.
-FW_SHARED_FN void roomFlashes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     air.power += (joules < kFlashMost ? joules : kFlashMost);
     air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);
     bool over = (air.flash & 1u) != 0u;
@@ -82,14 +82,14 @@ FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint jou
     comes = comes < off ? comes : off;
     air.oxygen = less ? air.oxygen + comes : air.oxygen - comes;
     air.drawn = joules;
-    roomFlashes(air, room, joules, now);
+    updateFlashover(air, room, joules, now);
     air.stirs = joules != 0u || air.oxygen != before || air.power != power ? 1u : 0u;
 }
 
 // Burning strength, Q8.
 FW_SHARED_FN uint roomStrength(uint oxygen) {
-    if (oxygen <= kAirLeast) return 0u;
-    uint strength = divide(oxygen - kAirLeast, kAirStep);
+    if (oxygen <= minKAir) return 0u;
+    uint strength = divide(oxygen - minKAir, kAirStep);
     return strength < kAirFull ? strength : kAirFull;
 }
 

@@ -39,10 +39,10 @@ FW_SHARED_SIZE(VolumeDraw, 128)
 // ---- depth test without reading depth
 
 // clip z / w of a distance along the view, and its inverse, m. clip: VolumeDraw::clip.
-FW_SHARED_FN float volumeDepth(vec4 clip, float metres) {
+FW_SHARED_FN float depthOfMetres(vec4 clip, float metres) {
     return (clip.x * metres + clip.y) / (clip.z * metres + clip.w);
 }
-FW_SHARED_FN float volumeMetres(vec4 clip, float depth) {
+FW_SHARED_FN float metresOfDepth(vec4 clip, float depth) {
     float per = clip.x - depth * clip.z;
     float at = (depth * clip.w - clip.y) / (abs(per) > 1e-12f ? per : 1e-12f);
     return at > 0.0f ? at : 1e9f;  // far end of an infinite view
@@ -56,22 +56,22 @@ FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) { return base.x + base.y 
 // A slab from `front` to `front + deep` m is tested at one depth: its middle, or, where the base plane cuts it, the
 // middle of the part on the flame's side. So ground in the plane never hides it, and objects in front do. whole, cut:
 // those depths; the nearest counts, or the farthest if turn is -1.
-struct VolumeTest { float whole; float cut; float turn; };
-FW_SHARED_FN VolumeTest volumeTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
-    VolumeTest test;
-    test.whole = volumeDepth(clip, front + 0.5f * deep);
-    float end = clamp(volumeDepth(clip, front + (0.5f - 0.5f * base.w) * deep), 0.0f, 1.0f);
+struct DepthTest { float whole; float cut; float turn; };
+FW_SHARED_FN DepthTest volumeTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+    DepthTest test;
+    test.whole = depthOfMetres(clip, front + 0.5f * deep);
+    float end = clamp(depthOfMetres(clip, front + (0.5f - 0.5f * base.w) * deep), 0.0f, 1.0f);
     test.cut = 0.5f * (end + volumeBaseDepth(base, at));
     test.turn = (clip.x * clip.w - clip.y * clip.z) * base.w < 0.0f ? -1.0f : 1.0f;
     return test;
 }
 // Depth of a corner. Interpolation between corners is linear, so the ground stays behind.
-FW_SHARED_FN float volumeTested(VolumeTest test) {
+FW_SHARED_FN float testedDepth(DepthTest test) {
     return clamp(test.turn * min(test.turn * test.whole, test.turn * test.cut), 0.0f, 1.0f);
 }
 // Negative where the base plane cuts the slab; linear over the view.
-FW_SHARED_FN float volumeOver(vec4 base, vec4 clip, float front, float deep, vec2 at) {
-    VolumeTest test = volumeTest(base, clip, front, deep, at);
+FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+    DepthTest test = volumeTest(base, clip, front, deep, at);
     return test.turn * (test.cut - test.whole);
 }
 
@@ -104,7 +104,7 @@ FW_SHARED_FN vec2 volumeSplit(vec4 over, uint vertex) {
 
 FW_SHARED_CONST uint kVolumeTile = 8u;          // march pixels per side; a workgroup marches a tile
 FW_SHARED_CONST uint kVolumeCellWords = 4u;     // per march pixel and slab: half floats red and green, blue and alpha;
-                                                // volumeLies; unused
+                                                // packSlabRange; unused
 
 // Indirect arguments of a flame's march and draw, one tile each. Zeroed before the probe.
 struct VolumeWork {
@@ -115,13 +115,13 @@ FW_SHARED_SIZE(VolumeWork, 32)
 
 // Tile data of a flame, array by array, zeroed before the probe. First a word per tile: one bit per visible slab, then
 // whether its first and last column, first and last row are visible.
-FW_SHARED_CONST uint kVolumeListed = 1u;        // 1: the tile is marched
-FW_SHARED_CONST uint kVolumeList = 2u;          // marched tiles
-FW_SHARED_CONST uint kVolumeQuarter = 4u;       // march pixels per side of a tile's quarter; per quarter, by volumeQuarter:
-FW_SHARED_CONST uint kVolumeBegins = 3u;        // all samples minus the first that is marched
-FW_SHARED_CONST uint kVolumeEnds = 7u;          // last marched sample + 1; 0: none
+FW_SHARED_CONST uint kMarchTileListed = 1u;        // 1: the tile is marched
+FW_SHARED_CONST uint kMarchTileList = 2u;          // marched tiles
+FW_SHARED_CONST uint kMarchQuarterSide = 4u;       // march pixels per side of a tile's quarter; per quarter, by marchQuarter:
+FW_SHARED_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
+FW_SHARED_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
 FW_SHARED_CONST uint kVolumeTileWords = 12u;    // pixels begin after whole texels of these
-FW_SHARED_FN uint volumeQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // quarter x, y
+FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // quarter x, y
 
 // Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a small flame; its ray
 // passes through its middle (but see volumeShift). A flame's march pixels are tiles from its origin, row by row over all
@@ -148,13 +148,13 @@ struct VolumeMarch {
 FW_SHARED_SIZE(VolumeMarch, 112)
 
 // n / d, exact below 2^22: software devices divide integers lane by lane.
-FW_SHARED_FN uint volumeQuotient(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
+FW_SHARED_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
 
 // Sample refinement where only `few` (> 0) samples are worth a march. A thin flame would otherwise appear as a row of
 // beads, as it alternately meets and misses the samples.
 FW_SHARED_CONST uint kVolumeClosest = 4u;
 FW_SHARED_FN uint volumeCloser(uint few, uint least) {
-    uint closer = volumeQuotient(least + few / 2u, few);
+    uint closer = quotient22(least + few / 2u, few);
     return closer < 1u ? 1u : closer < kVolumeClosest ? closer : kVolumeClosest;
 }
 
@@ -170,7 +170,7 @@ struct VolumeComposite {
     uint tilesX; uint tilesY;
     uint flags; uint samples;
     uint perPixel;        // march pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more
-    float from; float to; // see volumeTurned
+    float from; float to; // see passesDither
     uint reserved0; uint reserved1;
     vec4 window;          // low x, y, high x, y, march pixels from the origin: a finer march shows the flame there
     vec4 base;            // as VolumeDraw's
@@ -190,7 +190,7 @@ struct VolumeCard {
     float perX; float perY; // march pixels per pixel
     uint tilesX; uint tilesY;
     uint samples;         // first word of its march pixels
-    float from; float to; // see volumeTurned
+    float from; float to; // see passesDither
     float upX; float upY;
     uint reserved0;
     vec4 base;            // as VolumeDraw's
@@ -203,7 +203,7 @@ struct VolumeSlices {
     float front;          // m along the view, near distance of the nearest slice
     float spacing;        // m along the view, per slice
     uint slices;          // [1, kVolumeSlices]
-    float from; float to; // see volumeTurned
+    float from; float to; // see passesDither
     uint reserved0; uint reserved1; uint reserved2;
 };
 FW_SHARED_SIZE(VolumeSlices, 48)
@@ -220,7 +220,7 @@ FW_SHARED_SIZE(VolumeHaze, 96)
 
 // Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors that share a
 // range interleave; blended over each other, both would be too faint.
-FW_SHARED_FN bool volumeTurned(uint x, uint y, float from, float to) {
+FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
     uint a = (x ^ y) & 3u;
     uint b = y & 3u;
     uint order = ((a & 1u) << 3) | ((b & 1u) << 2) | (a & 2u) | ((b & 2u) >> 1);
@@ -252,13 +252,13 @@ FW_SHARED_FN float volumeWeight(int step, float off) {
 
 // Packs the range of a march pixel's light within a slab, and the transmittance of the slabs in front.
 #ifndef __cplusplus
-uint volumeLies(vec2 reach, float through) {
+uint packSlabRange(vec2 reach, float through) {
     uvec2 ends = uvec2(clamp(reach, 0.0, 1.0) * 255.0 + 0.5);
     return ends.x | (ends.y << 8u) | (uint(clamp(through, 0.0, 1.0) * 65535.0 + 0.5) << 16u);
 }
-float volumeThrough(uint lies) { return float(lies >> 16u) * (1.0 / 65535.0); }
+float slabTransmittance(uint lies) { return float(lies >> 16u) * (1.0 / 65535.0); }
 // Share of its light nearer than `cut` slabs beyond this slab's front.
-float volumeNearer(uint lies, float cut) {
+float slabShareNearer(uint lies, float cut) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
 }

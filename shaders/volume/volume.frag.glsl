@@ -68,7 +68,7 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     // Limits samples to the flame's side of the base plane, as dense as where the ground is known.
     float base = inBase + off.x * perPixel.x * draw.base.y + off.y * perPixel.y * draw.base.z;
     float beyond = 0.5 - 0.5 * draw.base.w;
-    base = volumeMetres(draw.clip, base) * perDepth;
+    base = metresOfDepth(draw.clip, base) * perDepth;
     spans.xz = max(spans.xz, vec2(beyond * base));
     spans.yw = min(spans.yw, vec2(base + beyond * 1e9));
 #endif

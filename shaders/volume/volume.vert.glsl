@@ -17,14 +17,14 @@ void main() {
     // The outermost slabs include everything beyond.
     outSlab.x = slab == 0u ? -1e9 : near;
     outSlab.y = gl_InstanceIndex == 0 ? 1e9 : near + draw.deep;
-    vec4 over = vec4(volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.xy),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.zy),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.zw),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.xw));
+    vec4 over = vec4(baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.xy),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zy),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zw),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.xw));
     vec2 place = mix(draw.rect.xy, draw.rect.zw, volumeSplit(over, vertex));
     outRay = draw.rayO.xyz + place.x * draw.rayX.xyz + place.y * draw.rayY.xyz;
     outZero = vertex >> 31u;
     outBase = volumeBaseDepth(draw.base, place);
-    float depth = volumeTested(volumeTest(draw.base, draw.clip, near, draw.deep, place));
+    float depth = testedDepth(volumeTest(draw.base, draw.clip, near, draw.deep, place));
     gl_Position = vec4(place, depth, 1.0);
 }

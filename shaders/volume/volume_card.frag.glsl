@@ -24,11 +24,11 @@ layout(location = 0) out vec4 outColor;
 
 void main() {
     outColor = vec4(0.0);
-    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
 #ifdef FW_SOFT
     float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
 #else
-    float cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
+    float cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     vec2 low = inCell - inHalf, high = inCell + inHalf;
     ivec2 first = ivec2(floor(low));
@@ -45,7 +45,7 @@ void main() {
             if (x < 0 || x >= inTaps.z) weight = 0.0;
             uvec4 cell = cellAt(draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
 #ifdef FW_SOFT
-            weight *= volumeNearer(cell.z, cut);
+            weight *= slabShareNearer(cell.z, cut);
 #else
             // March pixels smaller than a pixel have bases of their own.
             weight *= max(volumeBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));

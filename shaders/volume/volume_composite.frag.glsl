@@ -30,10 +30,10 @@ float cut = 0.0;  // slabs from this slab's front to the scene, or to the base
 // slabs neither lose nor create light.
 void add(uint at, float weight, inout vec4 color, inout float through) {
     uvec4 cell = cellAt(at);
-    weight *= volumeThrough(cell.z);
+    weight *= slabTransmittance(cell.z);
     through += weight;
 #ifdef FW_SOFT
-    weight *= volumeNearer(cell.z, cut);
+    weight *= slabShareNearer(cell.z, cut);
 #else
     // March pixels smaller than a pixel have bases of their own.
     weight *= inPerPixel > 1u ? 1.0 : volumeBeside(cell.z, cut, inBase.y);
@@ -44,14 +44,14 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
 void main() {
     outColor = vec4(0.0);
     bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
-    if (elsewhere || !volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0;
 #ifdef FW_SOFT
     cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
 #else
-    cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
+    cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     if (inPerPixel > 1u) {
         uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;

@@ -20,10 +20,10 @@ void main() {
     uint quad = vertex / 6u, corner = vertex % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
     uint tiles = draw.tilesX * draw.tilesY;
-    uint listed = volumeQuotient(quad, draw.slabs);
-    uint tile = rays[draw.flags + kVolumeList * tiles + listed];
+    uint listed = quotient22(quad, draw.slabs);
+    uint tile = rays[draw.flags + kMarchTileList * tiles + listed];
     uint slab = draw.slabs - 1u - (quad - listed * draw.slabs);
-    uint row = volumeQuotient(tile, draw.tilesX);
+    uint row = quotient22(tile, draw.tilesX);
     ivec2 at = ivec2(tile - row * draw.tilesX, row);
     // Filters at a tile's edge read the nearest rows and columns of its neighbours; unmarched neighbours contain nothing. A
     // small flame's pixels read their own tile only.
@@ -36,7 +36,7 @@ void main() {
             ivec2 near = at + ivec2(x, y);
             bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
             uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
-            bool is = inside && rays[of + kVolumeListed * tiles] != 0u;
+            bool is = inside && rays[of + kMarchTileListed * tiles] != 0u;
             uint there = rays[of], edges = there >> kVolumeSlabs;
             bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
                            (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);
@@ -60,6 +60,6 @@ void main() {
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
-    float depth = volumeTested(volumeTest(draw.base, draw.clip, front, draw.deep, place));
+    float depth = testedDepth(volumeTest(draw.base, draw.clip, front, draw.deep, place));
     gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }

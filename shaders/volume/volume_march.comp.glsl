@@ -35,14 +35,14 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
-    rays[at + 2u] = volumeLies(reach, 1.0 - before.a);
+    rays[at + 2u] = packSlabRange(reach, 1.0 - before.a);
     return color;
 }
 
 void nothing(uint s, uint cell, float through) {
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
     rays[at] = rays[at + 1u] = 0u;
-    rays[at + 2u] = volumeLies(vec2(0.0, 1.0), through);
+    rays[at + 2u] = packSlabRange(vec2(0.0, 1.0), through);
 }
 
 bool shows(vec4 color) { return max(max(color.r, color.g), max(color.b, color.a)) > 1e-4; }
@@ -52,16 +52,16 @@ void main() {
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
     uint tiles = march.cells / (kVolumeTile * kVolumeTile);
-    uint tile = rays[march.tiles + kVolumeList * tiles + gl_WorkGroupID.x];
+    uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;
     // Lanes of a quarter, or half, of the tile run the same number of iterations.
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 2u) & 4u), ((lane >> 2u) & 3u) | ((lane >> 3u) & 4u));
-    uint quarter = volumeQuarter(in_.x / kVolumeQuarter, in_.y / kVolumeQuarter);
+    uint quarter = marchQuarter(in_.x / kMarchQuarterSide, in_.y / kMarchQuarterSide);
     // Samples from `begin` to `end` along the view.
-    uint begin = all - rays[march.tiles + (kVolumeBegins + quarter) * tiles + tile];
-    uint end = max(rays[march.tiles + (kVolumeEnds + quarter) * tiles + tile], 1u) - 1u;
+    uint begin = all - rays[march.tiles + (kMarchQuarterBegins + quarter) * tiles + tile];
+    uint end = max(rays[march.tiles + (kMarchQuarterEnds + quarter) * tiles + tile], 1u) - 1u;
     bool burns = begin < end;
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
@@ -73,7 +73,7 @@ void main() {
     all *= closer;
     turns *= closer;
 
-    uint row = volumeQuotient(tile, march.tilesX);
+    uint row = quotient22(tile, march.tilesX);
     uvec2 place = uvec2(tile - row * march.tilesX, row) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
     place += uvec2(march.originX, march.originY);
@@ -89,7 +89,7 @@ void main() {
     float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
     stride /= float(closer);
     // As many knots per metre as over the whole flame.
-    uint intervals = min(volumeQuotient(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
+    uint intervals = min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
     RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
                            direction, intervals);
 
@@ -112,11 +112,11 @@ void main() {
 #endif
 
     vec3 lit = white * view.sunDirection.w;
-    uint encoding = march.encoding | zero, last = volumeQuotient(end - 1u, turns), bits = 0u;
+    uint encoding = march.encoding | zero, last = quotient22(end - 1u, turns), bits = 0u;
     FlameRay one = smoke.front;
     vec3 scattered = one.radiance;
     vec4 before = vec4(0.0);
-    uint s = volumeQuotient(begin, turns), k = begin;
+    uint s = quotient22(begin, turns), k = begin;
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
         for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);

@@ -29,7 +29,7 @@ void main() {
     uint blocksX = volumeProbeBlocks(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
-    uint row = volumeQuotient(gl_WorkGroupID.x, blocksX);
+    uint row = quotient22(gl_WorkGroupID.x, blocksX);
     uvec2 probe = uvec2(gl_WorkGroupID.x - row * blocksX, row) * 8u + in_;
     vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
     ViewRay way = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
@@ -85,18 +85,18 @@ void main() {
     uint end = 1u + (fire ? uint(min(farthest + 2.0, most)) : 0u);
     uint begin = fire ? uint(most - max(nearest - 1.0, 0.0)) : 0u;
     uint tiles = march.cells / (kVolumeTile * kVolumeTile);
-    if (all(lessThan(at, kVolumeQuarter * uvec2(quarters))) && (fire || smokes)) {
+    if (all(lessThan(at, kMarchQuarterSide * uvec2(quarters))) && (fire || smokes)) {
         // Its own quarter tile and the eight around it.
         for (uint j = 0u; j < 9u; ++j) {
-            ivec2 it = ivec2(at / kVolumeQuarter) + ivec2(j % 3u, j / 3u) - 1;
+            ivec2 it = ivec2(at / kMarchQuarterSide) + ivec2(j % 3u, j / 3u) - 1;
             if (any(lessThan(it, ivec2(0))) || any(greaterThanEqual(it, quarters))) continue;
             uint t = uint(it.y / 2) * march.tilesX + uint(it.x / 2);
-            uint quarter = volumeQuarter(uint(it.x), uint(it.y));
-            atomicMax(rays[march.tiles + (kVolumeBegins + quarter) * tiles + t], begin);
-            atomicMax(rays[march.tiles + (kVolumeEnds + quarter) * tiles + t], end);
-            if (atomicOr(rays[march.tiles + kVolumeListed * tiles + t], 1u) == 0u) {
+            uint quarter = marchQuarter(uint(it.x), uint(it.y));
+            atomicMax(rays[march.tiles + (kMarchQuarterBegins + quarter) * tiles + t], begin);
+            atomicMax(rays[march.tiles + (kMarchQuarterEnds + quarter) * tiles + t], end);
+            if (atomicOr(rays[march.tiles + kMarchTileListed * tiles + t], 1u) == 0u) {
                 uint place_ = atomicAdd(work[march.flame].groups, 1u);
-                rays[march.tiles + kVolumeList * tiles + place_] = t;
+                rays[march.tiles + kMarchTileList * tiles + place_] = t;
                 atomicAdd(work[march.flame].vertices, 6u * march.slabs);
                 work[march.flame].groupsY = work[march.flame].groupsZ = 1u;
                 work[march.flame].instances = 1u;

@@ -30,7 +30,7 @@ layout(location = 0) out vec4 outColor;
 
 void main() {
     outColor = vec4(0.0);
-    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     FlameRecord f = flame.record;
     addZero(f, inZero);
     bool perspective = view.forward.w > 0.5;
