@@ -71,11 +71,9 @@ void arrive(uint rimWork) {
     }
     uint decided = t;
     if (counts != 0u) {
-        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
-                                m);
+        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
         uint settledFrom = kNever;
-        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false,
-                                      pending, settledFrom);
+        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false, pending, settledFrom);
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {

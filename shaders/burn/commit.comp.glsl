@@ -45,8 +45,7 @@ void commitTile(uint slot) {
             return;
         }
     uint object = tile.y;
-    uint end = iterationEnd(push.now, push.iteration, push.stepShift,
-                            objects[object].substepShift);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, objects[object].substepShift);
     tileState[worldTile].lastChange = end;
     uint lit = uint(bitCount(mask.z) + bitCount(mask.w));
     uint touched = (tileState[worldTile].flag & kTileUneven) != 0u ? kTileTouched : kTileNews;

@@ -70,8 +70,7 @@ void applyRun(uint first, uint texel) {
             bool lets = !hasGates(kind_) || gatesLet(kind_);
             uint was = now;
             if (lets)
-                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick,
-                                push.now);
+                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick, push.now);
             byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
         } while (continuesRun(last, object, addressed));
@@ -79,8 +78,7 @@ void applyRun(uint first, uint texel) {
         warms = has != had || now != before;
     } else {
         do {
-            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick,
-                             push.now);
+            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick, push.now);
             ++last;
         } while (continuesRun(last, object, addressed));
     }

@@ -1,7 +1,7 @@
-// Finds the texels of due tiles that may change and lists their rows densely for `arrival`: few rows of a tile have any,
-// and a software device pays for idle lanes. Rim texels go to `arrival_rim` unseen. A tile that woke for a known arrival
-// needs no kernel: its other arrivals are known too. Where texels just caught, settled texels are skipped. One thread
-// per row.
+// Finds the texels of due tiles that may change and lists their rows densely for `arrival`: few rows of a tile have
+// any, and a software device pays for idle lanes. Rim texels go to `arrival_rim` unseen. A tile that woke for a known
+// arrival needs no kernel: its other arrivals are known too. Where texels just caught, settled texels are skipped. One
+// thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -83,13 +83,11 @@ void gatherRow(uint slot, uint row) {
         uint openDown = ~(d.walls >> 1u);
         uint openLeft = ~m.walls;
         uint openRight = ~(m.walls >> 2u);
-        uint diagonal = (u.sources & (openUp | openLeft)) |
-                        ((u.sources >> 2u) & (openUp | openRight)) |
-                        (d.sources & (openDown | openLeft)) |
-                        ((d.sources >> 2u) & (openDown | openRight));
+        uint diagonal = (u.sources & (openUp | openLeft)) | ((u.sources >> 2u) & (openUp | openRight)) |
+                        (d.sources & (openDown | openLeft)) | ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
-        // A source from before this iteration was evaluated after an older source beside it caught, so its settled
-        // bit is valid.
+        // A source from before this iteration was evaluated after an older source beside it caught, so its settled bit
+        // is valid.
         uint settled = (tile.z & kRunLitBeside) != 0u ? settledRows[at >> 3u] : 0u;
         FW_UNROLL for (int i = 0; i < 8; ++i) {
             uint least = min(min(m.tick[i], m.tick[i + 2]), min(d.tick[i + 1], u.tick[i + 1]));
@@ -103,8 +101,7 @@ void gatherRow(uint slot, uint row) {
             column[i] = min(m.future[i], min(d.future[i], u.future[i]));
         FW_UNROLL for (int i = 0; i < 8; ++i)
             if ((quiet & (1u << uint(i))) != 0u)
-                pending = min(pending, min(min(column[i], column[i + 2]),
-                                           min(d.future[i + 1], u.future[i + 1])));
+                pending = min(pending, min(min(column[i], column[i + 2]), min(d.future[i + 1], u.future[i + 1])));
         if (pending != kNever) atomicOr(tileState[tile.x].flag, kTileAhead);
         if (woken) {
             uvec4 pa = pendingQuads[at >> 2u];

@@ -1,8 +1,8 @@
-// A heat step of the hot tiles: temperature, fuel and water of each texel, and its state in the front. Cooled tiles leave
-// the list. Most other tiles are only warm or wet and are due at intervals: a group scans the list until it has 64 due
-// tiles, runs them by eight with eight threads each, and finishes them with one thread each. A thread scans a row for due
-// texels, which are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended together, to
-// reduce contention on the list's counter.
+// A heat step of the hot tiles: temperature, fuel and water of each texel, and its state in the front. Cooled tiles
+// leave the list. Most other tiles are only warm or wet and are due at intervals: a group scans the list until it has
+// 64 due tiles, runs them by eight with eight threads each, and finishes them with one thread each. A thread scans a
+// row for due texels, which are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended
+// together, to reduce contention on the list's counter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

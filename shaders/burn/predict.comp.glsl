@@ -1,5 +1,5 @@
-// Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's horizon. One thread per
-// gathered row, along which a ring moves as in `arrival`; predict_commit writes the times. Single hops, no pairs.
+// Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's horizon. One thread
+// per gathered row, along which a ring moves as in `arrival`; predict_commit writes the times. Single hops, no pairs.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -72,11 +72,9 @@ void predictRow(uint work) {
                     held = material;
                     m = burnMaterial(materialBase + held);
                 }
-                FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
-                                        slownessAt(bases.z, texel), m);
+                FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
                 ivec3 mine = decodePosition(middle.place[1]);
-                now = min(hop(middle.time[0], middle.place[0], mine, p),
-                          hop(middle.time[2], middle.place[2], mine, p));
+                now = min(hop(middle.time[0], middle.place[0], mine, p), hop(middle.time[2], middle.place[2], mine, p));
                 FW_UNROLL for (int i = 0; i < 3; ++i)
                     now = min(now, min(hop(left.time[i], left.place[i], mine, p),
                                        hop(right.time[i], right.place[i], mine, p)));

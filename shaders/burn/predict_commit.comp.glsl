@@ -39,8 +39,7 @@ void main() {
         uint height = objectSizes(item.w).y;
         for (; changed != 0u; changed &= changed - 1u) {
             uint i = uint(findLSB(changed)), time = predict[at + i];
-            gradient[at + i] = hasTime(time)
-                                   ? gradientOf(at + i, x + i, y, bases.w, height, time)
+            gradient[at + i] = hasTime(time) ? gradientOf(at + i, x + i, y, bases.w, height, time)
                                    : gradient[at + i] & 0xFFu;
         }
     }

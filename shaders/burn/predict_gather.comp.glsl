@@ -1,6 +1,6 @@
-// Finds the texels of the predict list's tiles whose predicted arrival may change and lists their rows for `predict`, rim
-// texels for `predict_rim`; updates the fire's distance to wet texels. Known arrivals are revisited about every eighth
-// frame. Skips objects that no view shows. Writes only what the next round reads. One thread per row.
+// Finds the texels of the predict list's tiles whose predicted arrival may change and lists their rows for `predict`,
+// rim texels for `predict_rim`; updates the fire's distance to wet texels. Known arrivals are revisited about every
+// eighth frame. Skips objects that no view shows. Writes only what the next round reads. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -124,8 +124,7 @@ void gatherRow(uint slot, uint row) {
     if (fresh != 0u) {
         bool left = tileX > 0u;
         bool right = tileX + 1u < sizes.z;
-        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb,
-                             right ? predict[at + 8u] : kNever);
+        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
         if (tileY > 0u || row > 0u) {
             uint down = at - bases.w;
             times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],

@@ -39,8 +39,7 @@ void predictTexel(uint rimWork) {
     if (now == kNever) {
         uvec2 me = texels[bases.x + texel];
         uint other[8] = rimRing(object, sizes.x + worldTile - objects[object].worldTileBase, lane);
-        FrontPrep p = frontPrep(
-            decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
             burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
         FW_UNROLL for (int k = 0; k < 8; ++k) {
             if (other[k] != kNoneTexel) {

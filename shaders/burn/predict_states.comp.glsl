@@ -1,6 +1,6 @@
-// Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict list's tiles. For an object
-// that no view shows, burning texels are copied, too; an object that a view shows again drops its predictions. A thread
-// writes its own row only.
+// Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict list's tiles. For an
+// object that no view shows, burning texels are copied, too; an object that a view shows again drops its predictions. A
+// thread writes its own row only.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-// One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes a column of eights row
-// by row and keeps the five rows around it, as taps overlap and loads dominate on a software device.
+// One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes a column of eights
+// row by row and keeps the five rows around it, as taps overlap and loads dominate on a software device.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -23,8 +23,7 @@ layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4
 // False: the tile may not burn.
 bool light(uint object, int x, int y, uint at) {
     uint end = push.now + kStepTicks;
-    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX +
-                     uint(x >> 3);
+    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX + uint(x >> 3);
     if (asksOnly() && !mayBurn(worldTile)) askToBurn(worldTile);
     if (asksOnly() || !mayBurn(worldTile)) return false;
     state[at] = end;
@@ -102,13 +101,10 @@ void runBlock(uint object, int x, int y) {
         vec4 dLeft = quads[spread + at];
         vec4 dRight = quads[spread + at + 1];
         vec4 left = publishedNext(centre.left, dLeft, (below1.left + above1.left) + centre.oneLeft,
-                                  below1.oneLeft + above1.oneLeft,
-                                  (below1.twoLeft + above1.twoLeft) +
+                                  below1.oneLeft + above1.oneLeft, (below1.twoLeft + above1.twoLeft) +
                                       (below2.oneLeft + above2.oneLeft));
-        vec4 right = publishedNext(centre.right, dRight,
-                                   (below1.right + above1.right) + centre.oneRight,
-                                   below1.oneRight + above1.oneRight,
-                                   (below1.twoRight + above1.twoRight) +
+        vec4 right = publishedNext(centre.right, dRight, (below1.right + above1.right) + centre.oneRight,
+                                   below1.oneRight + above1.oneRight, (below1.twoRight + above1.twoRight) +
                                        (below2.oneRight + above2.oneRight));
         quads[to + at] = left;
         quads[to + at + 1] = right;

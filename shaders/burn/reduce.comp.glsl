@@ -1,6 +1,6 @@
-// Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without burnt-out tiles. 64 list
-// entries per group. kSwitchShows: BurnTiles only; after a load the first frame shows flames while counts stay those of
-// the save.
+// Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without burnt-out tiles. 64
+// list entries per group. kSwitchShows: BurnTiles only; after a load the first frame shows flames while counts stay
+// those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -52,8 +52,7 @@ void reduceTile(uint worldTile, uint parity) {
             uint phase = heat[heatBase + texel].y >> 30u;
             burns = t <= push.now && phase != kPhaseBurnt;
             // Thick fuel's power is its loss, once a heat step has run; thin fuel shows its mean.
-            nominal = phase != kPhaseBurning ||
-                      materials[material].burnTicks == materials[material].flameTicks;
+            nominal = phase != kPhaseBurning || materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
         ++count;
@@ -88,8 +87,7 @@ void reduceTile(uint worldTile, uint parity) {
     }
     float area = objects[object].tint.w;
     vec4 rest = vec4(objects[object].originQuantum.xyz +
-                         objects[object].originQuantum.w * vec3(position) / float(count),
-                     1.0);
+                         objects[object].originQuantum.w * vec3(position) / float(count), 1.0);
     vec4 row0 = objects[object].worldRow0;
     vec4 row1 = objects[object].worldRow1;
     vec4 row2 = objects[object].worldRow2;
@@ -104,13 +102,11 @@ void reduceTile(uint worldTile, uint parity) {
     vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
     float size = length(world);
     BurnTile b;
-    b.positionArea =
-        vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
+    b.positionArea = vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
     float fire = heats ? tileFire[worldTile] : 0.0;
     power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
-    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
-                         power * area + fire);
+    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0), power * area + fire);
     b.object = object;
     b.tile = tile.local;
     b.texels = count;

@@ -56,8 +56,7 @@ void resetTile(uint local, uint lane) {
     int rise = dotInt(n, ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
     published[base] = 0.0;
     published[base + plane] = 0.0;
-    published[base + 2u * plane] =
-        burns ? publishedSpread(slow, -rise >> 12) : 0.0;
+    published[base + 2u * plane] = burns ? publishedSpread(slow, -rise >> 12) : 0.0;
 }
 
 void main() {

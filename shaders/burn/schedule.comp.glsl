@@ -37,8 +37,7 @@ void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag =
-        flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
 }
 
 void schedule(uint worldTile, bool dense) {

@@ -1,7 +1,7 @@
-// Cosmetic collapse: a tile's distance, over standing tiles, to a support (unburnt texels or the ground). A piece without
-// a path to one falls to ash: its displayed age runs ahead. One thread per tile, in two phases: 0 computes from the
-// neighbours' last values what 1 writes, so the order of threads does not matter. Distances converge by one tile per
-// frame; cycles count up to the limit. Not part of the simulation, which has no gravity.
+// Cosmetic collapse: a tile's distance, over standing tiles, to a support (unburnt texels or the ground). A piece
+// without a path to one falls to ash: its displayed age runs ahead. One thread per tile, in two phases: 0 computes from
+// the neighbours' last values what 1 writes, so the order of threads does not matter. Distances converge by one tile
+// per frame; cycles count up to the limit. Not part of the simulation, which has no gravity.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -111,15 +111,13 @@ uint supported(uint worldTile, TileRef ref) {
     uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);
     if (spent && holeTicks != 0u && found >= limit) falls = true;
     flag &= ~(kTileSolid | kTileFalling | (kFar << kTileDistanceShift));
-    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
-           (min(found, kFar) << kTileDistanceShift);
+    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) | (min(found, kFar) << kTileDistanceShift);
 }
 
 // Advances the displayed age of a falling piece.
 void fall(uint worldTile, TileRef ref, uint flag) {
     float fallTicks = materials[materialOf(ref.object, flag)].baseColor.w;
-    if ((flag & kTileFalling) == 0u ||
-        float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
+    if ((flag & kTileFalling) == 0u || float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
         return;
     uvec4 bases = objectBases(ref.object);
     uvec4 sizes = objectSizes(ref.object);

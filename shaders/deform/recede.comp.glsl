@@ -46,8 +46,7 @@ void main() {
 
         float behind = 0.0;
         if (facts.w != kNoneTexel && !item.crosses)
-            behind = uintBitsToFloat(holes.y) *
-                   burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
+            behind = uintBitsToFloat(holes.y) * burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
 
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
@@ -75,8 +74,7 @@ void main() {
                 softOut[placeAt] = uvec4(sheet ? softPlace(place, packWay(way, false)) : rest.xyz, 0u);
             }
         // Bend shares from before it slept belong to another bending set.
-            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u,
-                                    item.reset || item.woke ? uvec2(0u) : seen.zw);
+            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u, item.reset || item.woke ? uvec2(0u) : seen.zw);
             if (!item.reset) place = shown(vertex).xyz;
             // Recession since the last frame, in equal parts for the steps.
             float steps = float(push.parity >> 1u);

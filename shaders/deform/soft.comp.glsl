@@ -1,6 +1,6 @@
-// One step of sheets: each particle moves by its links, bending constraints and pins, and on with the resulting velocity.
-// It applies its own bend correction now and those of its neighbours from the last step, since theirs are only known
-// after this step. kDeformGroup particles of one object per group.
+// One step of sheets: each particle moves by its links, bending constraints and pins, and on with the resulting
+// velocity. It applies its own bend correction now and those of its neighbours from the last step, since theirs are
+// only known after this step. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -106,8 +106,7 @@ void main() {
         vec3 normal = size > 1e-18 ? turned / size : up;
         curl *= curlSide(normal, up) * scale * charred;
         float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
-        vec3 b = bendOf(nearSum * mean, normal,
-                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+        vec3 b = bendOf(nearSum * mean, normal, uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
                         stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
         uint nearShare = packShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
         bending += shareOf(nearShare) * count;
@@ -130,8 +129,7 @@ void main() {
 
         uint shownAt = (bases.x + facts.x) * kShownQuads;
         vec3 last_ = shown(shownAt).xyz;
-        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
-                     bending * (relaxAt(1.0, push.step) / kBendUnit);
+        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) + bending * (relaxAt(1.0, push.step) / kBendUnit);
         // Limits the distance to the nearest pin to the path length over holding links.
         if (reach < 0.5 * kReachNone) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));

@@ -1,5 +1,6 @@
-// One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to the neighbours, flexion
-// springs across, and the force of decomposition. Semi-implicit Euler. kDeformGroup particles of one object per group.
+// One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to the neighbours,
+// flexion springs across, and the force of decomposition. Semi-implicit Euler. kDeformGroup particles of one object per
+// group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -56,8 +57,7 @@ void main() {
         vec3 velocity = (x - from) * ((1.0 - kSpringDamping) / push.step) + force * push.step;
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(x, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] =
-            uvec4(floatBitsToUint(x + velocity * push.step), self.w);
+        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(floatBitsToUint(x + velocity * push.step), self.w);
         number += 64u;
     } while (number < last);
 }

@@ -1,5 +1,5 @@
-// Buffers of flame quads, particles and their display. A shader defines FW_EMITTER_<NAME> as the access it needs before it
-// includes this.
+// Buffers of flame quads, particles and their display. A shader defines FW_EMITTER_<NAME> as the access it needs before
+// it includes this.
 #ifndef FW_EMITTER_BUFFERS_GLSL
 #define FW_EMITTER_BUFFERS_GLSL
 #include "shared/burn.h"

@@ -1,5 +1,5 @@
-// Sorts the quads that hide what is behind them, farthest first, of burning tiles and particles together. One group: few
-// quads use a bitonic sort in shared memory, more a stable radix sort (a third of the work for 2,500 on a software
+// Sorts the quads that hide what is behind them, farthest first, of burning tiles and particles together. One group:
+// few quads use a bitonic sort in shared memory, more a stable radix sort (a third of the work for 2,500 on a software
 // device). Emissive quads may come in any order: placeLights interleaves them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -26,8 +26,8 @@ float depthOf(uint place) {
     return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
 }
 
-// Is quad a drawn before b of the same depth? Buffer places depend on thread order and would change the picture from run
-// to run. Equal quads keep their order.
+// Is quad a drawn before b of the same depth? Buffer places depend on thread order and would change the picture from
+// run to run. Equal quads keep their order.
 bool before(uint a, uint b) {
     uint kindA = flameQuad[a].kind, kindB = flameQuad[b].kind;
     if (kindA != kindB) return kindA < kindB;
@@ -87,8 +87,8 @@ void sortFew(uint me, uint count, uint tiles) {
 #undef FW_PLACE
 }
 
-// 16 bits of the depth range, but at most 12 bits of mantissa, so that close quads do not swap from frame to frame. Four
-// bits per pass; each thread keeps a run in order.
+// 16 bits of the depth range, but at most 12 bits of mantissa, so that close quads do not swap from frame to frame.
+// Four bits per pass; each thread keeps a run in order.
 void sortMany(uint me, uint count, uint tiles) {
     uint other = half_(), each = (count + kThreads - 1u) / kThreads;
     uint begin = me * each, end = min(begin + each, count);

@@ -1,5 +1,6 @@
-// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of ignition ticks: nothing
-// is stored, and nothing pops. Each of a tile's slots shows one short life after another, fixed by the state at its birth.
+// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of ignition ticks:
+// nothing is stored, and nothing pops. Each of a tile's slots shows one short life after another, fixed by the state at
+// its birth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -35,9 +36,9 @@ vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
 }
 
-// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces the camera and its wall
-// does not, so one side would intersect the wall. Quads on walls facing away are offset behind them, or they would show
-// through thin walls. Sheets need none.
+// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces the camera and its
+// wall does not, so one side would intersect the wall. Quads on walls facing away are offset behind them, or they would
+// show through thin walls. Sheets need none.
 vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
     vec3 toEye = view.forward.w > 0.5 ? normalize(view.eye.xyz - place) : -view.forward.xyz;
     float facing = dot(normal, toEye);
@@ -75,15 +76,12 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (!isSource(t) || t > view.now) continue;
         float age = float(view.now - t) + view.ambientGround.w;
         if (age < ago) continue;  // it caught later
-        uint material = tile.object * kMaterialsPerObject +
-                        (texels[object.texelBase + texel].y >> 16u & 7u);
+        uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
         MaterialLook look = looks[materials[material].look];
-        float lasts = materials[material].flameTicks == kNoneTexel
-                          ? 1e9 : float(materials[material].flameTicks);
+        float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
         // Thin materials burn at hole edges while the hole grows.
         if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
-                                   materials[material].timeScale);
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 / materials[material].timeScale);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
         if (age - ago < foot.age) {
@@ -153,10 +151,8 @@ void main() {
             BurnObject object = objects[tile.object];
             MaterialLook look = looks[materials[foot.material].look];
             uvec2 packedTexel = texels[object.texelBase + foot.texel];
-            vec4 rest = vec4(object.originQuantum.xyz +
-                                 object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
-                                                               packedTexel.x >> 16u,
-                                                               packedTexel.y & 0xFFFFu), 1.0);
+            vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
+                                                               packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;
             SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
@@ -164,8 +160,7 @@ void main() {
                 rest.xyz = moved.place;
                 n = moved.normal;
             }
-            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
-                              dot(object.worldRow2, rest));
+            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest), dot(object.worldRow2, rest));
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
@@ -186,8 +181,7 @@ void main() {
                 quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
                                            axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
-                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *
-                               (1.0 - smoothstep(0.62, 1.0, a));
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) * (1.0 - smoothstep(0.62, 1.0, a));
                 quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
                 quad.kelvin = 1570.0 + 90.0 * r3;
             } else {

@@ -1,7 +1,7 @@
 #version 450
-// A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced height (zero-mean noise that
-// scrolls upwards and narrows with height); soot glows in thin sheets where the noise is zero. Fireball: noise advected by
-// two vortices, eroded with age. Output is premultiplied: colour, and coverage.
+// A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced height (zero-mean noise
+// that scrolls upwards and narrows with height); soot glows in thin sheets where the noise is zero. Fireball: noise
+// advected by two vortices, eroded with age. Output is premultiplied: colour, and coverage.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -58,8 +58,8 @@ const float kSunStep = 0.18;    // of a puff's radius, towards the light
 const float kSmokeRolls = 0.5;  // of a fireball's life: age of the roll in smoke
 const vec2 kAcross = vec2(0.6, 0.8);  // rotation between octaves: cosine, sine
 
-// A fireball's soot at a temperature: share that has not burnt away, and its coverage. Cooling soot burns or becomes smoke,
-// which has its own quads. Without this its rest would be dark red outlines on sunlit ground.
+// A fireball's soot at a temperature: share that has not burnt away, and its coverage. Cooling soot burns or becomes
+// smoke, which has its own quads. Without this its rest would be dark red outlines on sunlit ground.
 float sootLeft(float kelvin) { return smoothstep(1120.0, 1400.0, kelvin); }
 float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin); }
 
@@ -94,20 +94,18 @@ void main() {
     vec2 c = vec2(x, 2.0 * y - 1.0);
     float r = length(c);
 
-    // Shared samples for all branches: software devices execute every branch. A fireball rolls up about two rising vortices;
-    // smoke keeps that shape.
+    // Shared samples for all branches: software devices execute every branch. A fireball rolls up about two rising
+    // vortices; smoke keeps that shape.
     float rolls = smoke ? kSmokeRolls : phase;
     Roll roll;
     roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
-    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y,
-                      -(0.25 + rolls) * (1.2 - seed.y));
+    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y, -(0.25 + rolls) * (1.2 - seed.y));
     float mirror = seed.x < 0.5 ? -1.0 : 1.0;
     vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
     // Each puff has its own orientation.
     vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
-             : smoke ? turnedBy(m, way) * 0.15
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? turnedBy(m, way) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
@@ -140,12 +138,10 @@ void main() {
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
         float narrow = sqrt(max(1.0 - yy, 0.0));
-        float halfWidth = 0.78 * narrow * sqrt(narrow) *
-                          (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
+        float halfWidth = 0.78 * narrow * sqrt(narrow) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
-        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
-                (1.0 - smoothstep(0.90, 1.0, y)) *
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
                 (1.0 - smoothstep(0.60, 0.98, abs(x)));
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
@@ -181,8 +177,7 @@ void main() {
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Smoke: separate billows; thin smoke is eroded more.
-    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
-                 mix(0.4, 0.0, saturate(3.0 * opacity));
+    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) - mix(0.4, 0.0, saturate(3.0 * opacity));
     if (smoke) {
         float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
         alpha = body * opacity;
@@ -199,8 +194,7 @@ void main() {
         float crest = saturate(0.45 + 0.9 * billow + 0.25 * c.y);
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
                    view.sunColor.rgb * (0.45 * crest * crest);
-        vec3 fire = vec3(1.0, 0.38, 0.10) *
-                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+        vec3 fire = vec3(1.0, 0.38, 0.10) * (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
     if (spark) {
@@ -213,11 +207,10 @@ void main() {
         alpha = 0.0;
     }
 #ifdef FW_SOFT
-    // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad, so thin objects do not
-    // cut it.
+    // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad, so thin objects do
+    // not cut it.
     float gap = gapToScene();
-    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
-                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
+    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap) : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif
@@ -225,8 +218,8 @@ void main() {
     if (alpha < 0.002 && !emits) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
-        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red, not
-        // grey. Saturated light hides what is behind it, or overlapping flames would sum up to white.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
+        // not grey. Saturated light hides what is behind it, or overlapping flames would sum up to white.
         float whole = smoke ? max(alpha, 1e-6) : 1.0;
         color = encodeOutput(color / whole, kEncoding) * whole;
         float brightest = max(max(color.r, color.g), color.b);

@@ -1,6 +1,6 @@
 #version 450
-// A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the camera (see billboard). All
-// quads are one draw of six vertices each: some devices pay per instance.
+// A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the camera (see billboard).
+// All quads are one draw of six vertices each: some devices pay per instance.
 #extension GL_GOOGLE_include_directive : require
 #define FW_EMITTER_FLAMES readonly
 #define FW_EMITTER_DRAW_ARGS readonly
@@ -40,7 +40,8 @@ BookRecord bookOf(uint i) {
 }
 vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
 
-// Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame. pixels: width on the screen.
+// Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame. pixels: width on the
+// screen.
 vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
     uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
     BookRecord b = bookOf(book);
@@ -93,8 +94,7 @@ void main() {
     float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     // A small quad that is empty outside a circle is drawn as one triangle.
-    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue &&
-        (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
+    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue && (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
         place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }

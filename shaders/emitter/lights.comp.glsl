@@ -1,5 +1,5 @@
-// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power of all cells: no watt
-// is lost. One group; integer sums make the result independent of order.
+// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power of all cells: no
+// watt is lost. One group; integer sums make the result independent of order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -62,8 +62,7 @@ vec3 cellPlace(uint slot) {
     float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
     vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
                        cells[cellWord(slot, 4u)]) / (64.0 * float(cells[cellWord(slot, 1u)]));
-    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)],
-                       cells[cellWord(slot, 9u)]);
+    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)], cells[cellWord(slot, 9u)]);
     return (vec3(cell) + within) * side;
 }
 
@@ -142,8 +141,7 @@ void main() {
         }
         barrier();
         for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore &&
-                cells[cellWord(candidate[i], 0u)] == bestKey)
+            if (floatBitsToUint(score[i]) == bestScore && cells[cellWord(candidate[i], 0u)] == bestKey)
                 bestAt = i;
         }
         barrier();
@@ -171,8 +169,8 @@ void main() {
         barrier();
     }
 
-    // Each cell gives its power to the nearest light. The last light, which comes or goes, only gets a share; the rest goes
-    // to the next nearest.
+    // Each cell gives its power to the nearest light. The last light, which comes or goes, only gets a share; the rest
+    // goes to the next nearest.
     float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
@@ -187,8 +185,7 @@ void main() {
             next = d2 < leastNext && !last ? light : next;
             leastNext = last ? leastNext : min(leastNext, d2);
         }
-        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)],
-                          cells[cellWord(slot, 5u)]);
+        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)], cells[cellWord(slot, 5u)]);
         float share = nearest + 1u == found ? lastShare : 1.0;
         uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
         give(slot, nearest, own);
@@ -208,8 +205,7 @@ void main() {
             float weight = float(lightNear[light]);
             float side = lightPlace[light * 4u + 3u];
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
-                             float(lightOffset[light * 3u + 2u])) *
-                        (side / (64.0 * max(weight, 1.0)));
+                             float(lightOffset[light * 3u + 2u])) * (side / (64.0 * max(weight, 1.0)));
             uint key = cells[cellWord(lightSlot[light], 0u)];
             float area = float(lightArea[light]) * 1e-5;
             uint homeless = light == 0u ? homelessPower : 0u;
@@ -233,8 +229,7 @@ void main() {
     // Requested quads, for the share of the available ones.
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
-        vec2 near = vec2(float(cells[cellWord(slot, 1u)]),
-                         float(cells[cellWord(slot, 5u)]) * 1e-5);
+        vec2 near = vec2(float(cells[cellWord(slot, 1u)]), float(cells[cellWord(slot, 5u)]) * 1e-5);
         float large = clamp(4.0 * uintBitsToFloat(cells[cellWord(slot, 6u)]), 0.5, 4.0);
         vec2 around = cellFire(cellKey(ivec3(floor(cellPlace(slot) / large)), large));
         float quads = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));

@@ -19,8 +19,8 @@ layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer Groups
 #include "emitter/kept.glsl"
 layout(push_constant) uniform Push { ParticlePush push; };
 
-// Loads the emitter data that every particle needs; the rest is loaded where it is used. A software device loads each word
-// for each lane.
+// Loads the emitter data that every particle needs; the rest is loaded where it is used. A software device loads each
+// word for each lane.
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
     e.from.w = emitters[i].from.w;
@@ -66,8 +66,7 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
         normal = there;
         place = burnTiles[tile].positionArea;
     }
-    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)),
-                       place.w);
+    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)), place.w);
     p.placeAge.w = met > 0u ? p.placeAge.w : 1e6;
     return p;
 }
@@ -87,8 +86,7 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
         uint k = 0u;
         for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
             k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
-        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz,
-                            emitters[i].patches[2u * k + 1u].xyz);
+        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz, emitters[i].patches[2u * k + 1u].xyz);
     }
     if (e.object != 0u) p = bornOnTile(e, p, seed);
     return p;

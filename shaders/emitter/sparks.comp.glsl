@@ -1,5 +1,5 @@
-// Sparks and embers of all sources to quads of the frame's view: from a source's slots, or from slots of burning tiles. No
-// state is stored: see shared/spark.h.
+// Sparks and embers of all sources to quads of the frame's view: from a source's slots, or from slots of burning tiles.
+// No state is stored: see shared/spark.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -55,11 +55,9 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     return b;
 }
 
-void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried,
-          float strength) {
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried, float strength) {
     SparkKind kind = sparkKind(slot.seed);
-    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz,
-                            slot.age);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz, slot.age);
     vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
     vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
     float a = slot.age / kind.life;
@@ -109,8 +107,7 @@ void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
         vec3 at = tile.positionArea.xyz + normal * 0.01 +
                   sparkOff(normal, 0.8 * sqrt(tile.positionArea.w), vec3(0.0), now.seed);
         if (chance > 0.0)
-            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0),
-                 clamp(chance / fades, 0.0, 1.0));
+            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0), clamp(chance / fades, 0.0, 1.0));
     }
 }
 

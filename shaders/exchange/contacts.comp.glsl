@@ -19,11 +19,9 @@ uint linkTick(uint i, out uint by) {
     if ((remoteObjects[from].flags & kRemoteLive) == 0u || objectCounters[from].burning == 0u ||
         !mayGive(remoteObjects[from], hops, push.hopsMost))
         return kNever;
-    uint tick = contactTick(state[objects[from].stateBase + texel],
-                            materials[materialOfTexel(from, texel)].flameTicks,
+    uint tick = contactTick(state[objects[from].stateBase + texel], materials[materialOfTexel(from, texel)].flameTicks,
                             contacts[i].delay, contacts[i].since, push.now);
-    if (tick == kNever ||
-        !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
+    if (tick == kNever || !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
                  bothChances(push.chance, remoteObjects[from].chance)))
         return kNever;
     by = litBy(hops, from);

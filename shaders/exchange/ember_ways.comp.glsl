@@ -20,11 +20,9 @@ bool stopped(FireSource source) {
     uint object = landsOn(ember.landing, upAxis(worldUp()), tile);
     if (tile == kNoneTexel) return true;
     ivec3 flame = alongFlame(source, worldUp(), 8);
-    ivec3 place = remotePlace(remoteObjects[object],
-                              tileMiddle(remoteTiles[objects[object].tileBase + tile]));
+    ivec3 place = remotePlace(remoteObjects[object], tileMiddle(remoteTiles[objects[object].tileBase + tile]));
     for (uint b = 0u; b < push.blockers; ++b)
-        if (blockerCuts(blockers[b], flame, ember.landing) ||
-            blockerCuts(blockers[b], ember.landing, place))
+        if (blockerCuts(blockers[b], flame, ember.landing) || blockerCuts(blockers[b], ember.landing, place))
             return true;
     if (push.shieldCell == 0u) return false;
     ShieldEnds ends = emberEnds(source, object, push.shieldCell);

@@ -89,8 +89,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= push.count) return;
     for (bool warm = objectCounters[slot].until >= push.now; warm; warm = false)
-        if ((remoteObjects[slot].flags & kRemoteLive) != 0u &&
-            (objects[slot].flags & kObjectHeat) != 0u) {
+        if ((remoteObjects[slot].flags & kRemoteLive) != 0u && (objects[slot].flags & kObjectHeat) != 0u) {
             objectCounters[slot].held |= kHeldWarm;
             gather(slot);
         }

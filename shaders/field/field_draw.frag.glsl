@@ -1,6 +1,6 @@
-// A particle field: density by cubic splines between cells, fine structure by tiled noise that the motion advects in two
-// phases. Emission uses the volumetric fires' profile; absorption takes sun and sky; refraction has a specular surface.
-// Output is premultiplied: colour, and coverage.
+// A particle field: density by cubic splines between cells, fine structure by tiled noise that the motion advects in
+// two phases. Emission uses the volumetric fires' profile; absorption takes sun and sky; refraction has a specular
+// surface. Output is premultiplied: colour, and coverage.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/black_body.h"
@@ -126,8 +126,8 @@ void main() {
     float alpha = 0.0;
 
     if (kVariant <= 1u) {  // emits
-        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot would only hide, and a
-        // flame would end in a stump.
+        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot would only hide, and
+        // a flame would end in a stump.
         float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
         float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
                   detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
@@ -174,8 +174,7 @@ void main() {
         float facingN = clamp(dot(n, toEye), 0.0, 1.0);
         float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
         vec3 back = reflect(-toEye, n);
-        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
-                       smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
+        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb, smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
         vec3 half_ = normalize(view.sunDirection.xyz + toEye);
         float gleam = pow(max(dot(n, half_), 0.0), 60.0);
         // Foam where it breaks.

@@ -1,5 +1,5 @@
-// Displayed cells of particle fields: density between the last two steps, advected by each cell's motion so that nothing
-// jumps, and the share of sunlight. kFieldShowGroups groups per field. Cosmetic.
+// Displayed cells of particle fields: density between the last two steps, advected by each cell's motion so that
+// nothing jumps, and the share of sunlight. kFieldShowGroups groups per field. Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -33,8 +33,7 @@ float particlesAt(uint first, vec2 at) {
     vec2 low = floor(at), part = at - low;
     int x = int(low.x), y = int(low.y);
     vec4 n = vec4(fieldNumber(cells[first + cellIndex(x, y)]), fieldNumber(cells[first + cellIndex(x + 1, y)]),
-                  fieldNumber(cells[first + cellIndex(x, y + 1)]),
-                  fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
+                  fieldNumber(cells[first + cellIndex(x, y + 1)]), fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
     vec2 rows = mix(n.xz, n.yw, part.x);
     return mix(rows.x, rows.y, part.y);
 }

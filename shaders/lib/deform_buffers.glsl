@@ -1,7 +1,7 @@
 // Buffers of the deformation passes, as quads of words. As in lib/buffers.glsl a shader defines FW_USE_<NAME>. With
-// FW_TEXELS per-particle data is read through texel buffers: a software device reads a texel faster than four words of a
-// storage buffer, and writes words faster than texels. Particles, embeddings and soft state lie quad by quad: first quad
-// of all, then the second. So neighbouring reads are close, and unread quads cost nothing.
+// FW_TEXELS per-particle data is read through texel buffers: a software device reads a texel faster than four words of
+// a storage buffer, and writes words faster than texels. Particles, embeddings and soft state lie quad by quad: first
+// quad of all, then the second. So neighbouring reads are close, and unread quads cost nothing.
 #ifndef FW_LIB_DEFORM_BUFFERS_GLSL
 #define FW_LIB_DEFORM_BUFFERS_GLSL
 #include "lib/buffers.glsl"
@@ -63,8 +63,8 @@ vec3 placeOf(uvec4 quad) { return uintBitsToFloat(quad.xyz & ~uvec3(kWayLow, kWa
 uint wayBits(uvec4 quad) {
     return (quad.x & kWayLow) | (quad.y & kWayLow) << 5u | (quad.z & kWayHigh) << 10u;
 }
-// First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding bending constraints, two
-// per set, below 24. Then charred shares of neighbours and of constraint ends; own facts.
+// First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding bending constraints,
+// two per set, below 24. Then charred shares of neighbours and of constraint ends; own facts.
 const uint kLinkCachePinned = 8u, kLinkCacheBends = 16u, kLinkCacheWhole = 0x1000000u;  // no neighbour has parted
 #endif
 
@@ -98,8 +98,7 @@ DeformItem deformItem() {
 // World directions in object axes. facts: third quad of the DeformObject, which holds the object slot.
 vec3 rowOf(uvec4 facts, uint row) { return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz); }
 vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
-    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) /
-           uintBitsToFloat(facts.z);
+    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) / uintBitsToFloat(facts.z);
 }
 vec3 upHere(uvec4 facts) { return toObject(facts, push.up.xyz); }
 vec4 heightHere(uvec4 facts) {  // m, world, along up: dot with (position, 1)

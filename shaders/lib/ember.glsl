@@ -5,8 +5,7 @@
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
 
 Ember emberFrom(FireSource source) {
-    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
-                 unpackWind(uint(remoteObjects[source.object].high.w));
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) + unpackWind(uint(remoteObjects[source.object].high.w));
     return flyingEmber(source, source.ember, worldUp(), wind);
 }
 

@@ -101,15 +101,14 @@ void addEnergy(uint object, uint low, uint high) {
 #include "shared/grant.h"
 // Where burning tiles are limited, no tile is lit that is not on the burn list. A lighting pass runs twice: first it
 // requests tiles, then it lights those that `grant` put on the list in between; all else stays unchanged. Requests use
-// storage that is free meanwhile: the predict list that the frame's prediction will write, and, as marks per world tile,
-// the burn list that the next reduction will write.
+// storage that is free meanwhile: the predict list that the frame's prediction will write, and, as marks per world
+// tile, the burn list that the next reduction will write.
 const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
 const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
 const uint kRequestAllocated = 2u;
 bool asksOnly() { return (push.switches & kSwitchAsks) != 0u; }
 bool mayBurn(uint worldTile) {
-    return (push.switches & kSwitchCapped) == 0u ||
-           (tileState[worldTile].flag & kTileBurning) != 0u;
+    return (push.switches & kSwitchCapped) == 0u || (tileState[worldTile].flag & kTileBurning) != 0u;
 }
 void askToBurn(uint worldTile) {
     uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kRequested)

@@ -31,8 +31,7 @@ float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
 
 // As packGradient; keeps the soot.
 uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
-    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) |
-           (gradient[at] & 0xFFu);
+    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) | (gradient[at] & 0xFFu);
 }
 
 // A round reads the times of the round before and nothing that it writes, so the result does not depend on the order of
@@ -63,8 +62,7 @@ void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY
     uvec4 places = objectPlaces(object);
     uvec4 sizes = objectSizes(object);
     for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
-        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY),
-                                uint(findLSB(beside)));
+        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY), uint(findLSB(beside)));
         if (other != kNoneTexel) predictTouch(parity, places.x + other);
     }
     uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];

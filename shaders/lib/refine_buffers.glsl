@@ -18,8 +18,7 @@ FW_BUFFER(FW_BIND_REFINE_WORDS, FW_USE_WORDS, RefineWordsBuffer, uint, words);
 uint tableToken(uint entry) { return (words[entry >> 1u] >> (16u * (entry & 1u))) & 0xFFFFu; }
 #endif
 #ifdef FW_USE_TRIANGLES
-FW_BUFFER(FW_BIND_REFINE_TRIANGLES, FW_USE_TRIANGLES, RefineTrianglesBuffer, RefineTriangle,
-          triangles);
+FW_BUFFER(FW_BIND_REFINE_TRIANGLES, FW_USE_TRIANGLES, RefineTrianglesBuffer, RefineTriangle, triangles);
 #endif
 #ifdef FW_USE_EDGES
 FW_BUFFER(FW_BIND_REFINE_EDGES, FW_USE_EDGES, RefineEdgesBuffer, RefineEdge, edges);
@@ -53,8 +52,7 @@ FW_BUFFER(FW_BIND_REFINE_CUTS, FW_USE_CUTS, RefineCutsBuffer, uvec4, cuts);
 FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cutDraws);
 #endif
 #ifdef FW_USE_OBJECT_COUNTERS
-FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters,
-          objectCounters);
+FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters, objectCounters);
 #endif
 #ifdef FW_USE_PREDICT
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);

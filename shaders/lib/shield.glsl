@@ -12,8 +12,7 @@ bool shieldStands(uint what, uint texel) {
         uint t = state[objects[slot].stateBase + texel];
         bool gone = isSource(t) && t <= push.now && push.now - t >= holes;
         if (gone && (objects[slot].flags & kObjectHeat) != 0u)
-            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t,
-                            push.now);
+            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t, push.now);
         stands = !gone;
     }
     return stands;
@@ -39,8 +38,7 @@ bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
                     texel = shield[3u * words + 2u * i + 1u];
                 }
                 uint slot = what & kShieldSlot;
-                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot,
-                                      push.shieldCell);
+                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot, push.shieldCell);
             }
             shieldStep(w, push.shieldCell);
         }

@@ -1,8 +1,8 @@
-// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0 lists coarse triangles with
-// a hole, and those along open edges of closed meshes, one lane each. 1, one workgroup each: small triangles crossed by a
-// hole leave the index list; the rest of them is written as vertices, with inner skin and walls along the hole and along
-// open edges; without capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes keep triangles whole
-// until all of a triangle is gone, and only get walls along open edges.
+// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0 lists coarse triangles
+// with a hole, and those along open edges of closed meshes, one lane each. 1, one workgroup each: small triangles
+// crossed by a hole leave the index list; the rest of them is written as vertices, with inner skin and walls along the
+// hole and along open edges; without capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes
+// keep triangles whole until all of a triangle is gone, and only get walls along open edges.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -56,8 +56,7 @@ bool isLost(uint object, RefineTriangle t) {
             s = refineInnerSlot(t, side == 1u ? 2u : 1u, side == 2u ? 2u : 1u, 2u);
         RefineSlot slot = slots[refined[object].meshSlots + s];
         float behind;
-        lost = lost &&
-               isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
+        lost = lost && isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
     }
     return lost;
 }
@@ -98,8 +97,7 @@ uint materialStart(uint object, uint m) {
     return m == 0u ? 0u : start;
 }
 uint roomBefore(uint object, uint m) {
-    return refineCutShare(refined[object].cutTriangles, materialStart(object, m),
-                          refined[object].triangleCount);
+    return refineCutShare(refined[object].cutTriangles, materialStart(object, m), refined[object].triangleCount);
 }
 
 struct Point {   // of a kept polygon
@@ -138,8 +136,7 @@ Point pointOf(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, uint at) {
     uvec4 a1 = meshVertices[first + 1u], b1 = meshVertices[second + 1u];
     uvec4 a2 = meshVertices[first + 2u], b2 = meshVertices[second + 2u];
     p.atlas = floatBitsToUint(mix(uintBitsToFloat(a1), uintBitsToFloat(b1), share));
-    p.detail.xy =
-        floatBitsToUint(mix(uintBitsToFloat(a2.xy), uintBitsToFloat(b2.xy), share));
+    p.detail.xy = floatBitsToUint(mix(uintBitsToFloat(a2.xy), uintBitsToFloat(b2.xy), share));
     p.detail.z = near ? a2.z : b2.z;
     p.detail.w = 0u;
     return p;
@@ -152,8 +149,7 @@ void writeVertex(uint at, Point p, bool inner, float left) {
     cuts[at * 3u + 2u] = uvec4(p.detail.xyz, floatBitsToUint(left));
 }
 
-void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
-                 uint first) {
+void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole, uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
@@ -200,8 +196,7 @@ void cutGroup(uint object, uint triangle, bool lost) {
         }
         uint border = 0u;
         for (uint v = 0u; v < 3u; ++v) {
-            uint sides = refineSidesOf(packed.x, codes[v]) &
-                         refineSidesOf(packed.x, codes[refineNext(v)]);
+            uint sides = refineSidesOf(packed.x, codes[v]) & refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
         if (hasPerPixelHoles(object)) solid = 7u;
@@ -216,8 +211,7 @@ void cutGroup(uint object, uint triangle, bool lost) {
                 atomicMin(work[counts + 8u], at);
                 whole = true;
             } else {
-                cutTriangle(object, drawn, slots_, fields, cut, whole,
-                            refined[object].cuts + 3u * (before + at));
+                cutTriangle(object, drawn, slots_, fields, cut, whole, refined[object].cuts + 3u * (before + at));
             }
             crossed = 0u;
         }

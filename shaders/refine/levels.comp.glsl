@@ -1,6 +1,6 @@
 // Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for each bias (only over
-// budget); 2 least bias that fits (one group); 3 move (items); 4 pack (triangles): changed objects emit, moving items are
-// listed to be placed.
+// budget); 2 least bias that fits (one group); 3 move (items); 4 pack (triangles): changed objects emit, moving items
+// are listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -31,8 +31,7 @@ float wanted(uint object, uint item, float bias) {
     uint at = refined[object].items + item;
     float target = items[at].target;
     if (target == 0.0 || bias == 0.0) return target;
-    return refineBiased(target, bias,
-                        refineSpread(spreadId(item, refined[object].edgeCount),
+    return refineBiased(target, bias, refineSpread(spreadId(item, refined[object].edgeCount),
                                      heat[at] >> kRefineHeatShift));
 }
 
@@ -59,8 +58,7 @@ void count(uint object, uint triangle) {
         float bias = float(k) * kRefineBiasStep;
         uvec4 top;
         for (int i = 0; i < 4; ++i) top[i] = refineTop(refineBiased(target[i], bias, spread[i]));
-        uint sum = refineCount(
-            refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
+        uint sum = refineCount(refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
         if ((k & 1u) == 0u)
             atomicAdd(levels[sums + (k >> 1u)].x, sum);
         else
@@ -154,8 +152,7 @@ void pack(uint object, uint triangle) {
     uint m = refineFit(a, b, c, refineTop(items[own].level));
     uint packed = refinePack(a, b, c, m);
     uint at = refined[object].triangles + triangle;
-    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u ||
-                   levels[at].x != packed;
+    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u || levels[at].x != packed;
     levels[at].x = packed;
     if (changed) atomicOr(work[objectList() + 2u * refined[object].ordinal + 1u], 1u);
     uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];

@@ -9,8 +9,8 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST float kBookCold = 800.0f;   // K where a texel's red is 0
 FW_SHARED_CONST float kBookHot = 2000.0f;   // K where it is 1
 
-// Device layout: all frames and motion vectors share one texture. The flipbook buffer holds kMaxBooks
-// records (BookRecord), then two words per frame: left | low << 16, right | high << 16.
+// Device layout: all frames and motion vectors share one texture. The flipbook buffer holds kMaxBooks records
+// (BookRecord), then two words per frame: left | low << 16, right | high << 16.
 FW_SHARED_CONST uint kMaxBooks = 32u;         // of a world
 FW_SHARED_CONST uint kMostBookFrames = 256u;
 FW_SHARED_CONST uint kBookRecordWords = 16u;
@@ -34,8 +34,8 @@ struct BookRecord {
 FW_SHARED_SIZE(BookRecord, 64)
 FW_SHARED_CONST uint kBookLevels = 4u;
 FW_SHARED_CONST uint kFlipbookLevelWord = 8u;  // word of the record where at1 follows
-// Mip for a quad of `pixels` that shows frames of `texels`. `own`, [0, 1), dithers the switch per quad,
-// so that the quads of a fire do not change mips at the same distance.
+// Mip for a quad of `pixels` that shows frames of `texels`. `own`, [0, 1), dithers the switch per quad, so that the
+// quads of a fire do not change mips at the same distance.
 FW_SHARED_FN uint bookLevel(float texels, float pixels, float own) {
     float off = log2(max(texels / max(pixels, 1e-3f), 1.0f)) + 0.25f + 0.5f * own;
     return uint(min(off, float(kBookLevels - 1u)));

@@ -1,5 +1,5 @@
-// Buffers, records, texel codes and lists of the burn simulation, for every backend and shader. Times
-// are ticks of 2^-12 s. The front's arithmetic is in front.h.
+// Buffers, records, texel codes and lists of the burn simulation, for every backend and shader. Times are ticks of
+// 2^-12 s. The front's arithmetic is in front.h.
 // clang-format off
 #ifndef FW_SHARED_BURN_H
 #define FW_SHARED_BURN_H
@@ -160,8 +160,8 @@ FW_SHARED_CONST uint kTileFalling = 0x40000u;
 FW_SHARED_CONST uint kTileMarked = 0x200000u; // fire, heat, water or soot has shown on it; never cleared
 FW_SHARED_CONST uint kTileDistanceShift = 22u; // 10 bits
 
-// Rows of IterationCounters. The first rows belong to persistent lists. list*: indirect groups of 64
-// tiles (burn, hot) or of 8 (predict).
+// Rows of IterationCounters. The first rows belong to persistent lists. list*: indirect groups of 64 tiles (burn, hot)
+// or of 8 (predict).
 FW_SHARED_CONST uint kRowBurn = 0u;          // + parity of the burn list; run*: its BurnTiles / 64
 FW_SHARED_CONST uint kRowPredict = 2u;       // + parity of the predict list
 FW_SHARED_CONST uint kRowHot = 4u;           // + parity of the hot list
@@ -186,18 +186,18 @@ FW_SHARED_CONST uint kEventIgnite = 0u;
 FW_SHARED_CONST uint kEventWet = 1u;
 FW_SHARED_CONST uint kEventDry = 2u;
 FW_SHARED_CONST uint kEventExtinguish = 3u;
-// Internal: a jet heats the texel for one heat step if its gates let it pass. Index of the first gate,
-// plus 1, above kEventKindBits.
+// Internal: a jet heats the texel for one heat step if its gates let it pass. Index of the first gate, plus 1, above
+// kEventKindBits.
 FW_SHARED_CONST uint kEventHeat = 4u;
-// Internal: a texel on a jet's path, stored unordered after the batch's other events. Changes nothing.
-// tick: from ignition until the texel gives way.
+// Internal: a texel on a jet's path, stored unordered after the batch's other events. Changes nothing. tick: from
+// ignition until the texel gives way.
 FW_SHARED_CONST uint kEventGate = 5u;
-// Baked burn: kEventPlay lights the texel if its object plays back. kEventPlays (texel: kNoneTexel)
-// starts playback (tick: kNever) or ends it at `tick` at the latest.
+// Baked burn: kEventPlay lights the texel if its object plays back. kEventPlays (texel: kNoneTexel) starts playback
+// (tick: kNever) or ends it at `tick` at the latest.
 FW_SHARED_CONST uint kEventPlay = 6u;
 FW_SHARED_CONST uint kEventPlays = 7u;
-// Copies the state of another object's texel; tick: that texel. Its object slot plus 1 is stored above
-// kEventKindBits. No other event of the step addresses either object.
+// Copies the state of another object's texel; tick: that texel. Its object slot plus 1 is stored above kEventKindBits.
+// No other event of the step addresses either object.
 FW_SHARED_CONST uint kEventCarry = 8u;
 FW_SHARED_CONST uint kEventKindBits = 8u;
 FW_SHARED_CONST uint kGateShut = 0x100u;  // of a gate's kind: the texel must still stand, else be gone
@@ -376,8 +376,8 @@ FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kO
 FW_SHARED_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
 FW_SHARED_FN bool hasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
 
-// A disturbance lowers `playsUntil` to the end of the step or exchange, so all work of one step sees
-// the same value in any order.
+// A disturbance lowers `playsUntil` to the end of the step or exchange, so all work of one step sees the same value in
+// any order.
 FW_SHARED_FN bool playsAt(uint playsUntil, uint now) { return playsUntil > now; }
 // The event's kind for an object that does or does not play back.
 FW_SHARED_FN uint playedKind(uint kind, uint playsUntil, uint now) {

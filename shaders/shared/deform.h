@@ -1,6 +1,6 @@
-// Deformation of burning meshes: records of its buffers, and arithmetic for C++ and shaders. Cosmetic
-// floats, derived from the authoritative burn state. A particle stands for all drawn vertices at one
-// position; one of these vertices stores its state.
+// Deformation of burning meshes: records of its buffers, and arithmetic for C++ and shaders. Cosmetic floats, derived
+// from the authoritative burn state. A particle stands for all drawn vertices at one position; one of these vertices
+// stores its state.
 // clang-format off
 #ifndef FW_SHARED_DEFORM_H
 #define FW_SHARED_DEFORM_H
@@ -219,9 +219,9 @@ FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
 // ---- sheets: position-based dynamics, Jacobi: each particle corrects itself by its neighbours' last state
 
 FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin: no path known
-// A known path to a pin that grew has either been replaced by another one, which the next steps find, or
-// is gone and neighbours report it to each other in circles. It grows faster than such circles, so a
-// falling piece is not held back and a held piece yields little.
+// A known path to a pin that grew has either been replaced by another one, which the next steps find, or is gone and
+// neighbours report it to each other in circles. It grows faster than such circles, so a falling piece is not held back
+// and a held piece yields little.
 FW_SHARED_CONST float kPathGrowth = 1.03f;
 FW_SHARED_FN bool reachKnown(float way, float before) { return way <= before * 1.004f; }
 FW_SHARED_FN float reachNext(float way, float before, bool known) {
@@ -233,8 +233,8 @@ FW_SHARED_CONST float kCharredSteps = 15.0f;  // resolution of the charred share
 // The link cache is updated every kLinkCacheSteps steps: fire takes seconds.
 FW_SHARED_CONST uint kLinkCacheSteps = 4u;
 FW_SHARED_FN bool tiesAt(uint way) { return way % kLinkCacheSteps == 0u; }
-// Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4 times
-// the second factor. With velocities this is stable below 4/3.
+// Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4 times the second
+// factor. With velocities this is stable below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
 FW_SHARED_CONST float kBendRelax = 0.08f;
 FW_SHARED_CONST float kSheetDamping = 0.01f;  // of the velocity, per 1/128 s
@@ -277,12 +277,11 @@ FW_SHARED_FN uint packPlace(uint word, uint bits, uint mask) {
     return ((word + (mask + 1u) / 2u) & ~mask) | (bits & mask);
 }
 
-// Share of a bend correction for each neighbour, stored once per particle. Half floats, shortened to 11,
-// 11 and 10 bits, so that all neighbours see the same value.
+// Share of a bend correction for each neighbour, stored once per particle. Half floats, shortened to 11, 11 and 10
+// bits, so that all neighbours see the same value.
 FW_SHARED_FN uint packShare(vec3 share) {
     uint xy = packHalf2x16(vec2(share.x, share.y)), z = packHalf2x16(vec2(share.z, 0.0f));
-    return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u |
-           (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
+    return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u | (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
 }
 FW_SHARED_FN vec3 shareOf(uint bits) {
     vec2 xy = unpackHalf2x16((bits & 0x7FFu) << 5u | (bits & 0x3FF800u) << 10u);
@@ -332,15 +331,15 @@ FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
 }
 
 // ---- bending constraints
-// Constraints between neighbours barely resist wide bends, so a fine mesh would hang like a rag. Each
-// particle therefore has a partner at a fixed distance behind and one ahead, in two directions, whose
-// middle is its target. Partners are mutual. Short sets damp the waves that long sets cannot see. A step
-// uses one set. A particle whose constraints have parted has none.
+// Constraints between neighbours barely resist wide bends, so a fine mesh would hang like a rag. Each particle
+// therefore has a partner at a fixed distance behind and one ahead, in two directions, whose middle is its target.
+// Partners are mutual. Short sets damp the waves that long sets cannot see. A step uses one set. A particle whose
+// constraints have parted has none.
 FW_SHARED_CONST float kArmRelax = 0.17f;
 FW_SHARED_CONST float kArmTears = 1.1f;  // stretch at which a constraint parts
 FW_SHARED_CONST float kArmCurls = 1.4f;  // relative to a ring of the same reach
-// Curl acts across a burning edge, not along it, since a sheet cannot do both. Its strength follows from
-// the charred shares behind and ahead. Material charred on both sides has no shape to keep.
+// Curl acts across a burning edge, not along it, since a sheet cannot do both. Its strength follows from the charred
+// shares behind and ahead. Material charred on both sides has no shape to keep.
 FW_SHARED_FN float armCurl(float behind, float ahead) {
     float d = ahead - behind;
     return minF(4.0f * d * d, 1.0f);
@@ -349,8 +348,8 @@ FW_SHARED_FN float armFirm(float stiff, float charred, float across) {
     return kArmRelax * stiff * (1.0f - charred * (1.0f - across));
 }
 
-// Correction for the neighbours' mean to lie `rise` above the particle. An even particle takes all of it
-// (the gradient of an energy); others take the part along the normal.
+// Correction for the neighbours' mean to lie `rise` above the particle. An even particle takes all of it (the gradient
+// of an energy); others take the part along the normal.
 FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float relax, bool even) {
     vec3 off = even ? toMean - normal * rise : normal * (dot(toMean, normal) - rise);
     off *= relax * neighbours / (neighbours + 1.0f);
@@ -358,8 +357,8 @@ FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours,
     return square > 1e-4f ? off * (1e-2f * inversesqrt(square)) : off;
 }
 
-// Rise of the neighbours' mean caused by a curl, in m; `square`: mean of the squared distances. Limited so
-// that neighbours do not fold onto each other.
+// Rise of the neighbours' mean caused by a curl, in m; `square`: mean of the squared distances. Limited so that
+// neighbours do not fold onto each other.
 FW_SHARED_FN float curlRise(float curl, float square) {
     float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(maxF(square, 1e-20f));
     return rise > most ? most : (rise < -most ? -most : rise);
@@ -390,8 +389,8 @@ FW_SHARED_FN vec3 springPull(vec3 x, vec3 y, float rest, float stiffness) {
 FW_SHARED_FN vec3 decayPull(vec3 normal, float depth, float dt) {
     return normal * (-2.0f * depth / (dt * dt));
 }
-// Stiffness at `share` of the stability bound of semi-implicit Euler: dt < 2 / w, w^2 <= 2 * springs *
-// stiffness (Gershgorin).
+// Stiffness at `share` of the stability bound of semi-implicit Euler: dt < 2 / w, w^2 <= 2 * springs * stiffness
+// (Gershgorin).
 FW_SHARED_FN float springsAt(float share, float dt, float springs) {
     float w = 2.0f * share / dt;
     return w * w / (2.0f * springs);

@@ -1,6 +1,6 @@
-// Inter-object heat transfer: radiation and plume at a receiver, ignition rules between objects, and
-// ember flight. Integers only, for C++ and GLSL; it accesses no buffer. The receiver's response is in
-// heat.h. World positions are mm; a pair further apart than kExchangeFar does not interact.
+// Inter-object heat transfer: radiation and plume at a receiver, ignition rules between objects, and ember flight.
+// Integers only, for C++ and GLSL; it accesses no buffer. The receiver's response is in heat.h. World positions are mm;
+// a pair further apart than kExchangeFar does not interact.
 // clang-format off
 #ifndef FW_SHARED_EXCHANGE_H
 #define FW_SHARED_EXCHANGE_H
@@ -191,15 +191,14 @@ FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
     uint hx = absolute(h.x), hy = absolute(h.y), hz = absolute(h.z);
     if (absolute(o.x) > ex + hx || absolute(o.y) > ey + hy || absolute(o.z) > ez + hz) return false;
     return absolute(o.y * h.z - o.z * h.y) <= ey * hz + ez * hy &&
-           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz &&
-           absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
+           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz && absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
 }
 
 // ---- heat-occlusion grid: cells that stop radiation, plumes and embers
 //
-// Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those
-// that objects fill and the number of such cells before these. Then two words for each of them:
-// object key and texel. A cell of an object is solid while that texel stands.
+// Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those that objects fill
+// and the number of such cells before these. Then two words for each of them: object key and texel. A cell of an object
+// is solid while that texel stands.
 FW_SHARED_CONST uint kShieldStays = 0x80000000u;  // | slot | material << 24: it never gives way
 FW_SHARED_CONST uint kShieldSlot = 0xFFFFFFu;
 
@@ -283,8 +282,7 @@ FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
     w.ahead = uvec3(x.ahead, y.ahead, z.ahead);
     w.way = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
     // Rounding may place the entry beside the grid: then it never is within.
-    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side &&
-               at.z <= n.z * side;
+    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side && at.z <= n.z * side;
     return w;
 }
 
@@ -319,8 +317,8 @@ struct ShieldEnds {  // objects at both ends, and the distance within which thei
     uint fromSpare;  // mm
     uint toSpare;
 };
-// Is the current cell too near to an end? Everything within one cell of an end is, so what supports a
-// fire does not block it. slot: owner of the cell; kNoneTexel: the host, which counts as either end.
+// Is the current cell too near to an end? Everything within one cell of an end is, so what supports a fire does not
+// block it. slot: owner of the cell; kNoneTexel: the host, which counts as either end.
 FW_SHARED_FN bool shieldSpares(FW_IN(ShieldWalk) w, FW_IN(ShieldEnds) e, uint slot, uint side) {
     uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
     uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
@@ -335,10 +333,9 @@ FW_SHARED_FN ShieldEnds emberEnds(FW_IN(FireSource) s, uint to, uint side) {
     e.toSpare = side * 2u;
     return e;
 }
-// From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a
-// grazing angle crosses many cells of its own surface.
-FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal,
-                                   uint side) {
+// From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a grazing angle
+// crosses many cells of its own surface.
+FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal, uint side) {
     ShieldEnds e = emberEnds(s, to, side);
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return e;
@@ -447,10 +444,8 @@ FW_SHARED_FN uint plumeRise(uint z, uint scale) {
         rise = (rise * 20643u) >> 16u;
     }
     uint x = q - 200u;  // [0, 200): piecewise linear, Q12
-    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u)
-                : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
-                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u)
-                           : 1612u - (((x - 150u) * 322u) / 50u);
+    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u) : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
+                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u) : 1612u - (((x - 150u) * 322u) / 50u);
     return (rise * part) >> 20u;
 }
 
@@ -539,8 +534,7 @@ FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint maxWorldHops) {
 }
 
 // Updates an object's lit and stop ticks at an exchange.
-FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o,
-                           FW_IN(ExchangePush) rules) {
+FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o, FW_IN(ExchangePush) rules) {
     c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
         // An object that heats it may light it by the next exchange.
@@ -569,23 +563,20 @@ FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && 
 FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
                             uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
-    return burning >= maxWorld ||
-           ((objectFlags & kRemoteLive) != 0u && objectBurning >= maxObject);
+    return burning >= maxWorld || ((objectFlags & kRemoteLive) != 0u && objectBurning >= maxObject);
 }
 // kHeld bits of an object at an exchange.
-FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject,
-                           uint stopTick, uint now) {
+FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject, uint stopTick, uint now) {
     uint held = (burning >= maxWorld || objectBurning >= maxObject) ? kHeldByLimit : 0u;
     return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
 }
 // May another object light a tile with this flag?
 FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
-    return (held & kHeldStopped) == 0u &&
-           ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
+    return (held & kHeldStopped) == 0u && ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
 }
 
-// Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt at
-// the exchange before, so texels lit in the current one do not count, in any order.
+// Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt at the exchange
+// before, so texels lit in the current one do not count, in any order.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
     uint begins = mostOf(t, since);
@@ -594,8 +585,8 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
     return arrives + kExchangeTicks < now ? now : arrives;
 }
 
-// Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target is
-// `link` % kPartTexels.
+// Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target is `link` %
+// kPartTexels.
 FW_SHARED_FN uint partFrom(uint link, uint block) {
     uint lane = link >> 28u;
     return ((block >> 1u) * 4u + (lane >> 2u)) * 8u + (block & 1u) * 4u + (lane & 3u);
@@ -644,8 +635,7 @@ FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
 }
 // How badly a tile matches a landing position, [0, kMisses]: least wins.
 FW_SHARED_CONST uint kMisses = 16383u;
-FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top,
-                              uint axis) {
+FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top, uint axis) {
     if (tile.texels == 0u) return kMisses;
     int facing = heightOf(remoteTurn(o, decodeNormal(tile.normal)), axis);
     if ((o.flags & kRemoteTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
@@ -680,8 +670,7 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
     uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
     uint thick = (a & 3u);
     uint falls = thick == 0u ? 1410u : thick == 1u ? 2000u : thick == 2u ? 2450u : 2830u;  // mm/s
-    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u,
-                        30000u);
+    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
     uint seconds = leastOf(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
     e.flight = seconds;
     // Lateral spread: a quarter of the loft. Wind carries it 28 m at most.

@@ -1,8 +1,8 @@
-// 2D particle field: what a cell gives to its eight neighbours, and its state after a step. Integers
-// only, so no particle is lost or created. It accesses no buffer.
+// 2D particle field: what a cell gives to its eight neighbours, and its state after a step. Integers only, so no
+// particle is lost or created. It accesses no buffer.
 //
-// Units: cell side and step; a speed of 1 is one cell per step. Directions are a ring as in front.h:
-// counter-clockwise from +x, odd ones diagonal, +y up.
+// Units: cell side and step; a speed of 1 is one cell per step. Directions are a ring as in front.h: counter-clockwise
+// from +x, odd ones diagonal, +y up.
 // clang-format off
 #ifndef FW_SHARED_FIELD_H
 #define FW_SHARED_FIELD_H
@@ -92,8 +92,8 @@ FW_SHARED_FN uint fieldKey(uint step, uint seed, uint salt) {
 }
 FW_SHARED_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
 
-// Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of an axis
-// by the first terms of sine and cosine.
+// Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of an axis by the first
+// terms of sine and cosine.
 FW_SHARED_FN ivec2 fieldChaos(uint h) {
     int a = int(h & 255u) - 128;
     a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no bias to one side
@@ -183,8 +183,8 @@ FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
     return p;
 }
 
-// A giving cell: terms common to all directions. The masks tell the compiler value ranges: some devices
-// multiply 16 bits faster than 32.
+// A giving cell: terms common to all directions. The masks tell the compiler value ranges: some devices multiply 16
+// bits faster than 32.
 struct FieldGiver {
     uint n;
     uint own;        // particles times spread
@@ -210,8 +210,8 @@ FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint ine
     g.behind = 32767u - dither;
     return g;
 }
-// Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times spread
-// (walls and cells beyond a border count as full); room: what the neighbour can take.
+// Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times spread (walls and
+// cells beyond a border count as full); room: what the neighbour can take.
 FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
     int v = (k & 3u) == 0u ? g.v0 : ((k & 3u) == 1u ? g.v1 : ((k & 3u) == 2u ? g.v2 : g.v3));
     uint share = push + uint(k < 4u ? fieldLobe(v) : fieldLobe(v) - v);
@@ -220,16 +220,16 @@ FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint r
     uint flow = g.n * (share & 0x7FFFu) + spreads;
     return flow < room ? flow : room;
 }
-// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to the
-// next direction, and both first dithers sum up to one. So no more is given than exists, and each
-// direction gets its flow on average. sum: of the arc so far, starting with its dither.
+// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to the next direction,
+// and both first dithers sum up to one. So no more is given than exists, and each direction gets its flow on average.
+// sum: of the arc so far, starting with its dither.
 FW_SHARED_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
 
 // Flow that a cell of n particles takes per direction, Q15: an eighth of its free capacity.
 FW_SHARED_FN uint fieldRoom(uint n) { return ((kFieldCellMost - n) << 12u) & ~32767u; }
 
-// Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a cell of
-// this motion: memory and displacement. Q7.
+// Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a cell of this motion:
+// memory and displacement. Q7.
 FW_SHARED_FN uint fieldCarried(uint motion, int u, uint memory) {
     return motion * memory + uint(kFieldStill + u) * (128u - memory);
 }

@@ -31,8 +31,8 @@ struct FieldDraw {
 };
 FW_SHARED_SIZE(FieldDraw, 128)
 
-// A displayed cell: density (0 to 2: root of its particles over kFieldFull), motion (cells per step,
-// within 1.3), and the share of sunlight that reaches it.
+// A displayed cell: density (0 to 2: root of its particles over kFieldFull), motion (cells per step, within 1.3), and
+// the share of sunlight that reaches it.
 FW_SHARED_FN uint fieldShownPacked(float density, vec2 motion, float sun) {
     uint d = uint(clamp(density, 0.0f, 2.0f) * 511.5f + 0.5f);
     uint x = uint(clamp(motion.x * 48.0f + 64.5f, 0.0f, 127.0f));

@@ -1,8 +1,8 @@
-// Front kernel: when a texel catches fire from the eight texels of its ring. Integers only, for C++ and
-// GLSL. It accesses no buffer. Lists and tiles are driven by shaders/burn and runtime/gpu/cpu.
+// Front kernel: when a texel catches fire from the eight texels of its ring. Integers only, for C++ and GLSL. It
+// accesses no buffer. Lists and tiles are driven by shaders/burn and runtime/gpu/cpu.
 //
-// Slowness along a unit vector v is A * (1 - e.v), exactly an ellipse. Times inside the kernel are
-// 1/16 tick after the earliest counting source of the ring.
+// Slowness along a unit vector v is A * (1 - e.v), exactly an ellipse. Times inside the kernel are 1/16 tick after the
+// earliest counting source of the ring.
 // clang-format off
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H
@@ -108,8 +108,7 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
     uint s0 = mulShift(m.sigma0, noise, 7u);
     if (m.ceiling != 0u) {
-        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)),
-                            n12) >> 12);  // Q10
+        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)), n12) >> 12);  // Q10
         if (down > 0) {
             uint faster = 1024u + ((m.ceiling * uint(down < 1024 ? down : 1024)) >> 8u);
             s0 = mulShift(s0, divide(1u << 30u, faster), 20u);
@@ -119,8 +118,7 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     p.e = ivec3(0, 0, 0);
     if ((m.driveX | m.driveY | m.driveZ) == 0) return p;
     int along = dotInt(drive, n12) >> 12;
-    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14),
-                    drive.y - ((along * normal.y + 8192) >> 14),
+    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14), drive.y - ((along * normal.y + 8192) >> 14),
                     drive.z - ((along * normal.z + 8192) >> 14));
     uint s = isqrtNear(squaredLength(u));
     uint capped = s < m.driveMax ? s : m.driveMax;
@@ -164,8 +162,8 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
-// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way. Arrival is
-// convex along it: if the slope does not outweigh the delay of b, a alone is best. l: length of a, 1/8 units.
+// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way. Arrival is convex along
+// it: if the slope does not outweigh the delay of b, a alone is best. l: length of a, 1/8 units.
 FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
 FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
@@ -180,10 +178,9 @@ FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     return y < 0 ? -change : change;
 }
 
-// Best arrival over the segment between two sources: three weights, one parabola step, one more. The ends
-// cost ga and gb.
-FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
-                            FW_IN(FrontPrep) p) {
+// Best arrival over the segment between two sources: three weights, one parabola step, one more. The ends cost ga and
+// gb.
+FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
     uint bb = squaredLength(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squaredLength(d) * 4u;
@@ -214,8 +211,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
         off = num < 0 ? -off : off;
         if (off != 0) {
             int weight = w + off;
-            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3),
-                                b.y * 8 + ((weight * d.y + 4) >> 3),
+            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3), b.y * 8 + ((weight * d.y + 4) >> 3),
                                 b.z * 8 + ((weight * d.z + 4) >> 3));
             int g = pairStart(ra, rb, weight) + linkCost(link8, p);
             best = g < best ? g : best;
@@ -224,11 +220,10 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
     return best;
 }
 
-// Sources of the ring that count: burning by the window's end, and not diagonals cut off by two barriers.
-// Bit k of `present`: the ring has a k-th texel. `wake` is lowered to the tick of a coming source; it
-// matters for receptive texels only, here and in frontArrival.
-FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
-                               FW_INOUT(uint) wake) {
+// Sources of the ring that count: burning by the window's end, and not diagonals cut off by two barriers. Bit k of
+// `present`: the ring has a k-th texel. `wake` is lowered to the tick of a coming source; it matters for receptive
+// texels only, here and in frontArrival.
+FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd, FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
@@ -265,10 +260,10 @@ ivec3 pickLink(FrontRing ring, int k) {
 }
 #endif
 
-// Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it could
-// light this texel is dropped. `wake` is then lowered to the tick after which it cannot count again under
-// another wind: until then the texel's tile stays listed. settles: also computes `settledFrom`, the tick from
-// which another source of this ring would not change the result; kNever: unknown. It needs all eight links.
+// Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it could light this
+// texel is dropped. `wake` is then lowered to the tick after which it cannot count again under another wind: until then
+// the texel's tile stays listed. settles: also computes `settledFrom`, the tick from which another source of this ring
+// would not change the result; kNever: unknown. It needs all eight links.
 FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
                                bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
@@ -354,8 +349,8 @@ FW_SHARED_FN bool frontEligible(uint t, uint floorTick) {
     return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
 }
 
-// State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending arrival.
-// late: 1 if the candidate came too late and was moved to the window's floor.
+// State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending arrival. late: 1 if the
+// candidate came too late and was moved to the window's floor.
 FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floorTick,
                               FW_INOUT(uint) wake, FW_OUT(uint) late) {
     late = 0u;
@@ -373,8 +368,8 @@ FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floor
     return candidate;
 }
 
-// Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in every
-// 2^(stepShift - shift)-th iteration.
+// Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in every 2^(stepShift -
+// shift)-th iteration.
 FW_SHARED_FN bool takesPart(uint k, uint stepShift, uint shift) {
     uint skip = stepShift - (shift < stepShift ? shift : stepShift);
     return (k & ((1u << skip) - 1u)) == 0u;
@@ -389,8 +384,8 @@ FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift)
     return stepNow + ((k >> (stepShift - own)) + 1u) * (kStepTicks >> own);
 }
 
-// Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that may still
-// be corrected is younger than the window, so its tile changed since. Unsigned: kFarPast is far in the past.
+// Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that may still be
+// corrected is younger than the window, so its tile changed since. Unsigned: kFarPast is far in the past.
 FW_SHARED_FN bool latchTouches(bool listed, uint lastChange, uint now, uint window) {
     return listed || now - lastChange <= window + kStepTicks;
 }

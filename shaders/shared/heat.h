@@ -1,9 +1,9 @@
-// Heat, fuel and water of one texel over one heat step. Integers only, for C++ and GLSL; no buffer access
-// and no neighbours. Arrival of the front is in front.h.
+// Heat, fuel and water of one texel over one heat step. Integers only, for C++ and GLSL; no buffer access and no
+// neighbours. Arrival of the front is in front.h.
 //
-// One temperature stands for a surface skin. The skin of thick fuel deepens as heat soaks in: pi/2 *
-// k * (T - Ta) / |net flux|, the exact solution of a half-space at constant flux, without a stored profile.
-// Fractions below a unit are rounded by a hash, so sums stay true.
+// One temperature stands for a surface skin. The skin of thick fuel deepens as heat soaks in: pi/2 * k * (T - Ta) /
+// |net flux|, the exact solution of a half-space at constant flux, without a stored profile. Fractions below a unit are
+// rounded by a hash, so sums stay true.
 // clang-format off
 #ifndef FW_SHARED_HEAT_H
 #define FW_SHARED_HEAT_H
@@ -22,8 +22,8 @@ FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
 FW_SHARED_CONST uint kSoaksOut = 3u;            // steps of flaming under a film before the flame dies, minus one
 FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K from ambient that still count as asleep
 FW_SHARED_CONST uint kColdWaterSteps = 32u;              // steps from one update to the next of a tile that only has cold water
-// Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to char, and
-// a flux too small to heat it much (wood needs 10 kW/m^2 to catch).
+// Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to char, and a flux too
+// small to heat it much (wood needs 10 kW/m^2 to catch).
 FW_SHARED_CONST uint kSleepShift = 3u;
 FW_SHARED_CONST uint kRests = 1u << kSleepShift;
 FW_SHARED_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
@@ -88,8 +88,7 @@ struct HeatMaterial {     // one material for one step length and pace, baked by
 FW_SHARED_SIZE(HeatMaterial, 96)
 
 FW_SHARED_FN uvec2 packHeat(FW_IN(HeatTexel) x) {
-    return uvec2(x.fuel | (x.heat << 16u),
-                 x.film | (x.soaked << 10u) | (x.moist << 12u) | (x.charred << 20u) |
+    return uvec2(x.fuel | (x.heat << 16u), x.film | (x.soaked << 10u) | (x.moist << 12u) | (x.charred << 20u) |
                      (x.epoch << 28u) | (x.phase << 30u));
 }
 FW_SHARED_FN HeatTexel unpackHeat(uvec2 words) {
@@ -149,8 +148,7 @@ FW_SHARED_FN uint pyrolysis(uint heat) {
     return (((y * y) >> 12u) * (12288u - 2u * y)) >> 12u;
 }
 
-// Fuel left of thin material after `age` ticks of flaming, of `burnTicks`: 1 - smoothstep, so its rate
-// rises and falls.
+// Fuel left of thin material after `age` ticks of flaming, of `burnTicks`: 1 - smoothstep, so its rate rises and falls.
 FW_SHARED_FN uint thinFuel(uint age, uint burnTicks) {
     if (age >= burnTicks) return 0u;
     uint shift = 0u;
@@ -171,15 +169,14 @@ FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
     return low;
 }
 
-// Flux from a point source at a receiver, W/m^2: share * power * cosine / (4 pi d^2). power: W; share:
-// radiated fraction / (4 pi), Q16; cosine: Q8; distance2: cm^2, not 0.
+// Flux from a point source at a receiver, W/m^2: share * power * cosine / (4 pi d^2). power: W; share: radiated
+// fraction / (4 pi), Q16; cosine: Q8; distance2: cm^2, not 0.
 FW_SHARED_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2) {
     uint sent = mulShift(power, share, 16u);  // W per sr
     uint whole = divide(sent, distance2);     // W/cm^2
     if (whole >= 0x10000u) return cosine == 0u ? 0u : kFluxMost;
     uint rest = sent - whole * distance2;
-    uint part = distance2 < 0x100000u ? divide(rest << 12u, distance2)
-                                      : divide(rest, distance2 >> 12u);
+    uint part = distance2 < 0x100000u ? divide(rest << 12u, distance2) : divide(rest, distance2 >> 12u);
     return leastOf(mulShift((whole << 12u) + part, 10000u * cosine, 20u), kFluxMost);
 }
 
@@ -199,8 +196,8 @@ FW_SHARED_FN HeatMaterial heatInAir(FW_IN(HeatMaterial) m, uint strength) {
 FW_SHARED_FN uint airDeficit(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
 FW_SHARED_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= kAirFull; }
 
-// Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow; ash has a
-// quarter of that. rise: 1/16 K from ambient; size: W/m^2, net flux.
+// Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow; ash has a quarter of
+// that. rise: 1/16 K from ambient; size: W/m^2, net flux.
 FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint rise, uint size) {
     uint least = m.capacityLeast >> (x.phase == kPhaseBurnt ? 2u : 0u);
     if (m.inertia == 0u || x.phase == kPhaseBurnt || (x.film != 0u && x.heat > kBoiling)) return least;
@@ -223,9 +220,9 @@ FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spa
     return spent + units * m.moistFlux;
 }
 
-// One step. flux: W/m^2 from other objects; air: wind gain of the burning rate, Q8, 256 = still; pilot: a
-// flame is near; chance: hash of texel and step. burnt: fuel units lost; evaporated: g/m^2 of film
-// evaporated by fire. Returns kHeat bits, already applied to x.
+// One step. flux: W/m^2 from other objects; air: wind gain of the burning rate, Q8, 256 = still; pilot: a flame is
+// near; chance: hash of texel and step. burnt: fuel units lost; evaporated: g/m^2 of film evaporated by fire. Returns
+// kHeat bits, already applied to x.
 FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint air,
                            bool pilot, uint chance, FW_OUT(uint) burnt, FW_OUT(uint) evaporated) {
     burnt = 0u;
@@ -253,8 +250,7 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
         uint spent = boilOff(x, m, spare, chance, evaporated);
         if (wet && x.film == 0u) result |= kHeatDries;
         uint cooled = divide(leastOf(spent, 0x7FFFFFFu) << 5u, mostOf(resists >> 7u, 1u));
-        heat = (x.film | x.moist) != 0u ? kBoiling
-                                        : mostOf(heat - leastOf(cooled, heat), kBoiling);
+        heat = (x.film | x.moist) != 0u ? kBoiling : mostOf(heat - leastOf(cooled, heat), kBoiling);
     }
     x.heat = heat;
     if (x.film != 0u) {
@@ -339,11 +335,10 @@ FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uin
     x.heat = heat;
 }
 
-// Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change the
-// answer: neither phase nor ignition of a burnt-out texel changes.
+// Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change the answer: neither
+// phase nor ignition of a burnt-out texel changes.
 FW_SHARED_FN bool gateLets(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
-    bool gone = x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now &&
-                now - t >= holeTicks;
+    bool gone = x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now && now - t >= holeTicks;
     return gone == ((gateKind & kGateShut) == 0u);
 }
 
@@ -356,18 +351,16 @@ FW_SHARED_FN HeatTexel heatCarried(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m)
 // Can states be copied between these texels? Both can burn, or neither can.
 FW_SHARED_FN bool carries(uint from, uint to) { return from != kInert && to != kInert; }
 
-// Effect of one event on a texel and its state. Water alone does not extinguish: heat steps do, when it
-// takes more than the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of the step.
-FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
-                            uint tick, uint now) {
+// Effect of one event on a texel and its state. Water alone does not extinguish: heat steps do, when it takes more than
+// the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of the step.
+FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind, uint tick, uint now) {
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
     if (kind == kEventWet) heatWets(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
     if (kind == kEventHeat) {
         applyJetHeat(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
         t = wetState(t, heatClosed(x, m));
-        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
-                     !heatClosed(x, m);
+        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u && !heatClosed(x, m);
         return ready && x.heat >= m.ignitesAt ? applyEvent(t, kEventIgnite, now, now) : t;
     }
     if (kind == kEventExtinguish && isSource(t) && x.phase != kPhaseBurnt) {
@@ -381,8 +374,8 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
 // Random number per texel and step; `step`: a hash of the step's tick.
 FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
 
-// How often heat steps update a texel: never (0), at intervals if it has cold water (kWorkDozes) or is only
-// warm (kWorkRests), or always (kWorkAlways).
+// How often heat steps update a texel: never (0), at intervals if it has cold water (kWorkDozes) or is only warm
+// (kWorkRests), or always (kWorkAlways).
 FW_SHARED_CONST uint kWorkDozes = 1u;
 FW_SHARED_CONST uint kWorkRests = 2u;
 FW_SHARED_CONST uint kWorkAlways = 4u;
@@ -400,8 +393,7 @@ FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) 
 
 // One heat step at tick `now` of a texel with state t. Returns the new state. burnt: fuel units.
 FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint now,
-                                uint flux, bool pilot, uint air, uint chance,
-                                FW_OUT(uint) burnt) {
+                                uint flux, bool pilot, uint air, uint chance, FW_OUT(uint) burnt) {
     bool lit = isSource(t) && t <= now;
     bool fresh = lit && (x.phase == kPhaseFresh || x.phase == kPhaseOut);  // the front lit it
     if (fresh) {
@@ -455,9 +447,8 @@ FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
     return wetState(t, heatClosed(x, m));
 }
 
-// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of kRests
-// steps ends, so the interval has one flux. Where a change alters the interval, some steps count twice or
-// never, equally often.
+// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of kRests steps ends,
+// so the interval has one flux. Where a change alters the interval, some steps count twice or never, equally often.
 FW_SHARED_FN bool restEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
     return ((turn - tile) & ((1u << sleepShift(flux)) - 1u)) == 0u;
@@ -470,8 +461,8 @@ FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint flux, uint no
     return (warm ? kWorkAlways : 0u) | (restEnds(tile, flux, now) ? kWorkRests : 0u) |
            (coldWaterTurn(object, tile, now) ? kWorkDozes : 0u);
 }
-// Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an ordinary
-// one. The texel is due if (work & turn) is not 0.
+// Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an ordinary one. The
+// texel is due if (work & turn) is not 0.
 FW_SHARED_FN uint workInTurn(uint work, uint turn) {
     return work == kWorkDozes && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
 }

@@ -1,5 +1,5 @@
-// Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths in m,
-// times in appearance seconds (see BurnMaterial::timeScale), temperatures in K.
+// Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths in m, times in
+// appearance seconds (see BurnMaterial::timeScale), temperatures in K.
 // clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H
@@ -125,8 +125,8 @@ struct ViewParams {          // uniform block, one per view
 };
 FW_SHARED_SIZE(ViewParams, 240)
 
-// Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1, with a
-// short fade so that no item pops.
+// Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1, with a short fade so
+// that no item pops.
 FW_SHARED_FN float shareShows(float share, float own) {
     float shows = (share - own) * 12.0f + share;
     return shows < 0.0f ? 0.0f : shows > 1.0f ? 1.0f : shows;
@@ -137,16 +137,16 @@ FW_SHARED_CONST float kWhiteLuminance = 40.0f;
 
 FW_SHARED_CONST uint kLookRows = 16u; // of the appearance table
 
-// kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their corners:
-// no point is farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most kColdReach.
+// kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their corners: no point is
+// farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most kColdReach.
 FW_SHARED_CONST float kColdReach = 12.0f;
 FW_SHARED_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
 
 // Only the strongest lights light surfaces.
 FW_SHARED_CONST uint kSurfaceLights = 16u;
 
-// Push constants of the surface pass: one object, one material. Per-draw constants never come from storage
-// buffers: software devices gather those word by word and lane by lane.
+// Push constants of the surface pass: one object, one material. Per-draw constants never come from storage buffers:
+// software devices gather those word by word and lane by lane.
 struct SurfaceDraw {
     vec4 row0;               // object to world
     vec4 row1;
@@ -208,10 +208,9 @@ FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
 FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
 FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 
-// Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are
-// first those of burning tiles (at most kFlameCapacity), then of particles, then emissive ones: sparks, and
-// flipbook fire that hides nothing. Emissive quads are not sorted but placed between those that hide,
-// farthest first.
+// Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are first those of
+// burning tiles (at most kFlameCapacity), then of particles, then emissive ones: sparks, and flipbook fire that hides
+// nothing. Emissive quads are not sorted but placed between those that hide, farthest first.
 FW_SHARED_CONST uint kFlameTiles = 4u;       // word: requested quads of tiles
 FW_SHARED_CONST uint kFlameParticles = 5u;   // word: quads of particles that hide
 FW_SHARED_CONST uint kFlameLights = 6u;      // word: emissive quads
@@ -221,8 +220,8 @@ FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
 FW_SHARED_CONST uint kMostQuads = 65536u;    // of all
 FW_SHARED_CONST uint kMostFewQuads = 2048u;  // capacity of the sort in shared memory
 
-// Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are as thin
-// as a pixel and are drawn at full resolution.
+// Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are as thin as a pixel
+// and are drawn at full resolution.
 FW_SHARED_CONST uint kPartAll = 0u;
 FW_SHARED_CONST uint kPartSoft = 1u;
 FW_SHARED_CONST uint kPartSparks = 2u;

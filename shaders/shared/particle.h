@@ -1,5 +1,5 @@
-// Particles of fire emitters: emitter record of a frame, birth, motion, ageing from fire to smoke, and
-// display. Sparks are in spark.h. Cosmetic. SI units, kelvin.
+// Particles of fire emitters: emitter record of a frame, birth, motion, ageing from fire to smoke, and display. Sparks
+// are in spark.h. Cosmetic. SI units, kelvin.
 // clang-format off
 #ifndef FW_SHARED_PARTICLE_H
 #define FW_SHARED_PARTICLE_H
@@ -8,8 +8,8 @@
 
 FW_SHARED_BEGIN
 
-// An emitter's particles form a ring: the k-th spawned particle lies at k mod `ring` after `first`. Nothing
-// is allocated or freed, and every device makes the same particles.
+// An emitter's particles form a ring: the k-th spawned particle lies at k mod `ring` after `first`. Nothing is
+// allocated or freed, and every device makes the same particles.
 FW_SHARED_CONST uint kParticleGroup = 1024u;  // ring slots that a group of 64 threads handles
 FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several steps
@@ -95,8 +95,7 @@ FW_SHARED_FN float particleHash(uint x) { return float(hash32(x) >> 8) * (1.0f /
 // Standard deviation 1, at most 3.
 FW_SHARED_FN float particleGauss(uint x) {
     uint a = particleBits(x), b = particleBits(x + 0x9e3779b9u);
-    return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) *
-           (2.0f / 65535.0f);
+    return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) * (2.0f / 65535.0f);
 }
 
 FW_SHARED_FN uint particleSpeedBits(float v) {
@@ -127,8 +126,7 @@ FW_SHARED_FN vec4 particleHitOf(uint bits) {
     x += x < 0.0f ? fold : -fold;
     y += y < 0.0f ? fold : -fold;
     vec3 n = normalize(vec3(x, y, z));
-    return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f)
-                           : vec4(n, float(since) * (1.0f / 1024.0f));
+    return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f) : vec4(n, float(since) * (1.0f / 1024.0f));
 }
 FW_SHARED_FN ParticleWords particlePacked(Particle p) {
     ParticleWords w;
@@ -188,8 +186,7 @@ FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
 }
 
 FW_SHARED_FN vec3 particleAcross(vec3 d) {
-    return normalize(cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f)
-                                                          : vec3(1.0f, 0.0f, 0.0f)));
+    return normalize(cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f)));
 }
 // Point of a disc of radius `away` about n, at angle `turn`.
 FW_SHARED_FN vec3 particleDisc(vec3 n, float turn, float away) {
@@ -219,8 +216,7 @@ FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
 }
 
 // Moves it to a flaming tile of `area` m^2 around `at`.
-FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n,
-                                     float area) {
+FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n, float area) {
     float turn = 6.2831853f * particleHash(seed + 41u);
     float away = 0.8f * sqrt(area * particleHash(seed + 42u));
     p.placeAge = p.placeAge + vec4(at + particleDisc(n, turn, away) + n * (0.1f * e.size.x), 0.0f);
@@ -239,8 +235,7 @@ FW_SHARED_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, 
     float away = 0.25f * sqrt(particleHash(seed + 63u));
     p.placeAge = vec4(at + (r * cos(turn) + u * sin(turn)) * away + n * 0.08f, 0.2f * e.life.x);
     p.speedPath = vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +
-                           up * (0.5f + 0.5f * particleHash(seed + 65u)),
-                       0.9f);
+                           up * (0.5f + 0.5f * particleHash(seed + 65u)), 0.9f);
     p.hit = vec4(n, 0.0f);
     return p;
 }
@@ -262,17 +257,14 @@ FW_SHARED_FN vec3 particleEddies(vec3 x) {
     return v * 0.63f;
 }
 
-FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path,
-                                float own) {
+FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path, float own) {
     float a = age / t.life;
-    float s = e.size.x + (e.size.y * path + e.size.z * age) *
-                             mix(1.0f, 0.8f + 0.45f * own, particleUnit(a * 3.0f));
+    float s = e.size.x + (e.size.y * path + e.size.z * age) * mix(1.0f, 0.8f + 0.45f * own, particleUnit(a * 3.0f));
     return s * (1.0f + 0.5f * particleUnit((a - 1.0f) / 2.0f));
 }
 
 // State `dt` later, at most kMostParticleStep. now: s, cosmetic.
-FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now,
-                                   float dt) {
+FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now, float dt) {
     float a = p.placeAge.w / t.life, torn = smoothstep(0.15f, 0.6f, a);
     vec3 up = vec3(e.up), v = vec3(p.speedPath), at = vec3(p.placeAge);
     vec3 wind = vec3(e.wind), n = vec3(p.hit);
@@ -303,8 +295,8 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
 }
 
 FW_SHARED_CONST float kSplashOff = 0.35f;  // m off the surface it hit, at most
-// Collision at c with a surface of unit normal n: the tangential part continues, the rest turns into a sheet
-// that prefers the direction of arrival and up.
+// Collision at c with a surface of unit normal n: the tangential part continues, the rest turns into a sheet that
+// prefers the direction of arrival and up.
 FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
                                      vec3 c, vec3 n, float size) {
     vec3 v = vec3(p.speedPath), up = vec3(e.up);
@@ -315,13 +307,11 @@ FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Partic
     vec3 side = r * cos(turn) + s * sin(turn) + (up - n * dot(up, n)) * 0.35f + along * 0.06f;
     side = side / max(length(side), 1e-4f);
     bool first = p.hit.w < 0.0f;
-    float out_ = min(into * (0.25f + 0.65f * sqrt(t.other)) +
-                     0.28f * length(along) * (0.3f + t.other), 4.5f);
+    float out_ = min(into * (0.25f + 0.65f * sqrt(t.other)) + 0.28f * length(along) * (0.3f + t.other), 4.5f);
     vec3 sheet = along * 0.75f + side * out_ + n * (into * (0.03f + 0.10f * t.own));
     v = first ? sheet : along + n * 0.2f;
     float off = min(0.30f * size, kSplashOff);
-    float age = first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f))
-                      : p.placeAge.w;
+    float age = first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f)) : p.placeAge.w;
     p.placeAge = vec4(c + n * off, p.placeAge.w > t.life ? p.placeAge.w : age);
     p.speedPath = vec4(v, p.speedPath.w + (first ? 0.5f : 0.0f));
     p.hit = vec4(n, first ? 0.0f : p.hit.w);
@@ -350,11 +340,10 @@ FW_SHARED_FN bool particleLands(ParticleEmitter e, Particle p, float size, float
 FW_SHARED_FN float particleSunk(ParticleEmitter e, float above) {
     return (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
 }
-// Collision in a step from `from`: with an obstacle of its jet (at `share` of the step, at `disc` with
-// normal n) or, if share > 1, with the ground.
+// Collision in a step from `from`: with an obstacle of its jet (at `share` of the step, at `disc` with normal n) or, if
+// share > 1, with the ground.
 FW_SHARED_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
-                                  vec3 from, float share, vec4 disc, vec3 n, float size,
-                                  float above) {
+                                  vec3 from, float share, vec4 disc, vec3 n, float size, float above) {
     vec3 up = vec3(e.up), at = vec3(p.placeAge);
     vec3 c = at - up * above, normal = up;
     if (share <= 1.0f) {
@@ -373,24 +362,22 @@ FW_SHARED_FN float particleKelvin(ParticleEmitter e, float a, float own) {
            120.0f * own * smoothstep(0.15f, 0.7f, a);
 }
 FW_SHARED_FN float particleFire(float a, float own) {
-    return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) *
-           (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
+    return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) * (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
 }
 FW_SHARED_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^1.25
 FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
-    return smoothstep(0.65f, 1.05f, a) *
-           particleQuarter(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
+    return smoothstep(0.65f, 1.05f, a) * particleQuarter(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
 }
 FW_SHARED_CONST float kPuffReach = 0.55f;  // of its particle's size, from its middle
-// m by which a puff keeps off the wall that its particle hit: inside the wall it would end in a straight
-// line. It detaches as it begins to show. (The ground is handled by its height.)
+// m by which a puff keeps off the wall that its particle hit: inside the wall it would end in a straight line. It
+// detaches as it begins to show. (The ground is handled by its height.)
 FW_SHARED_FN float particleOffWall(Particle p, vec3 up, float size, float a) {
     float upright = dot(vec3(p.hit), up);
     float wall = p.hit.w >= 0.0f ? 1.0f - upright * upright : 0.0f;
     return wall * smoothstep(0.5f, 0.8f, a) * max(kPuffReach * size - kSplashOff * 0.5f, 0.0f);
 }
-// Length over width, and how far the quad follows the flight direction (1) or its own rotation (0).
-// across: m/s on the screen.
+// Length over width, and how far the quad follows the flight direction (1) or its own rotation (0). across: m/s on the
+// screen.
 FW_SHARED_FN float particleStretch(ParticleEmitter e, float a, float across, float hit) {
     float k = particleUnit(across / max(e.half_.w, 0.1f));
     return hit >= 0.0f ? 1.0f + 0.7f * particleUnit(across / 5.0f) * exp(-hit * 3.0f)
@@ -398,8 +385,7 @@ FW_SHARED_FN float particleStretch(ParticleEmitter e, float a, float across, flo
 }
 FW_SHARED_FN float particleFollows(ParticleEmitter e, float a, float across, float hit) {
     float k = particleUnit(across / max(e.half_.w, 0.1f));
-    return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit)
-                        : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *
+    return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit) : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *
            smoothstep(0.02f, 0.12f, k);
 }
 

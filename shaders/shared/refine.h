@@ -1,5 +1,5 @@
-// Adaptive refinement per lane, for C++ and GLSL: motion of levels and position of a vertex; with
-// refine_pattern.h and refine_cut.h. It accesses no buffer. Cosmetic floats.
+// Adaptive refinement per lane, for C++ and GLSL: motion of levels and position of a vertex; with refine_pattern.h and
+// refine_cut.h. It accesses no buffer. Cosmetic floats.
 // clang-format off
 #ifndef FW_SHARED_REFINE_H
 #define FW_SHARED_REFINE_H
@@ -25,8 +25,7 @@ FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels
 }
 
 // Updates the heat times and sets the target. cool: s that a level outlives its heat.
-FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now,
-                            float cool) {
+FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now, float cool) {
     if ((heat & kRefineHot) != 0u) s.lastHot = now;
     if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
     bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
@@ -35,8 +34,7 @@ FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float
 
 // Order in which items lose levels: burning items last, then by number.
 FW_SHARED_FN float refineSpread(uint id, uint heat) {
-    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) +
-           0.45f * float(hash32(id) >> 8u) / 16777216.0f;
+    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * float(hash32(id) >> 8u) / 16777216.0f;
 }
 FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
     float less = bias - spread;
@@ -57,10 +55,9 @@ FW_SHARED_FN float refineAge(float level, uint top) {
     return f < 1.0f ? f : 1.0f;
 }
 
-// Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per s. grace: s
-// of burning after which a surface is no longer flat.
-FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate,
-                             float grace) {
+// Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per s. grace: s of
+// burning after which a surface is no longer flat.
+FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate, float grace) {
     float step = rate * dt;
     bool flatStill = now - s.burningSince < grace;
     if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
@@ -73,12 +70,11 @@ FW_SHARED_FN vec3 refineOffset(uint offset) {
     int x = int(offset << 21u) >> 21;
     int y = int(offset << 10u) >> 21;
     int z = int(offset) >> 22;
-    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f),
-                float(z) * (2.0f / 511.0f));
+    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f), float(z) * (2.0f / 511.0f));
 }
 
-// Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks). Ticks may
-// lie before the world began.
+// Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks). Ticks may lie
+// before the world began.
 FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
     float sum = 0.0f, weight = 0.0f;
     for (int k = 0; k < 4; ++k) {

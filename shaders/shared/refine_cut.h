@@ -1,5 +1,5 @@
-// Holes and open borders of refined triangles: the kept part of a small triangle, walls along its rim and
-// along open edges, and the inner skin.
+// Holes and open borders of refined triangles: the kept part of a small triangle, walls along its rim and along open
+// edges, and the inner skin.
 // clang-format off
 #ifndef FW_SHARED_REFINE_CUT_H
 #define FW_SHARED_REFINE_CUT_H
@@ -14,8 +14,8 @@ FW_SHARED_FN float refineField(float hole, float now) {
     float f = hole - now;
     return f < kRefineUnlit ? f : kRefineUnlit;
 }
-// Cut position between the low slot (fa) and the high one (fb), one of them burnt through: a function of the
-// small edge, equal for both triangles, and never on a vertex.
+// Cut position between the low slot (fa) and the high one (fb), one of them burnt through: a function of the small
+// edge, equal for both triangles, and never on a vertex.
 FW_SHARED_FN float refineCutAt(float fa, float fb) {
     float t = fa / (fa - fb);
     t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
@@ -66,8 +66,8 @@ FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
     uint fan = cut.points - 2u;
     return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
 }
-// Triangles drawn in addition to the index list; the k-th is refineCutTriangle(refineCutDrawn(k)). A whole
-// triangle is in the index list and only adds walls; sheets have no inner skin.
+// Triangles drawn in addition to the index list; the k-th is refineCutTriangle(refineCutDrawn(k)). A whole triangle is
+// in the index list and only adds walls; sheets have no inner skin.
 FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut, bool inner, bool whole) {
     if (cut.points == 0u) return 0u;
     uint fan = cut.points - 2u;

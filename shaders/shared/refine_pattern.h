@@ -1,5 +1,5 @@
-// Patterns of refined triangles: the k-th triangle of a pattern, and the vertices at its corners, for any
-// levels around it.
+// Patterns of refined triangles: the k-th triangle of a pattern, and the vertices at its corners, for any levels around
+// it.
 // clang-format off
 #ifndef FW_SHARED_REFINE_PATTERN_H
 #define FW_SHARED_REFINE_PATTERN_H
@@ -49,8 +49,7 @@ FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
     RefinePlace place;
     uint m = refineInterior(levels);
     if (m < 2u) {
-        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) |
-                    (refineSide(levels, 2u) << 2u);
+        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) | (refineSide(levels, 2u) << 2u);
         place.entry = kRefineHand + mask * 4u + k;
         place.part = 4u;
         place.k = k;
@@ -90,18 +89,16 @@ FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token
         uint a = token & 31u;
         uint b = (token >> 5u) & 31u;
         if ((token & 1024u) != 0u)
-            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u),
-                         refineInside(a + 1u, b + 2u));
-        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u),
-                     refineInside(a + 1u, b + 2u));
+            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u), refineInside(a + 1u, b + 2u));
+        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u), refineInside(a + 1u, b + 2u));
     }
     uint e = place.part, f = refineNext(e), p = refineBefore(e);
     uint m = refineInterior(levels), n = 1u << m;
     uint l = refineSide(levels, e), steps = 1u << l;
     uint i = (token >> 1u) & 63u, j = token >> 7u;
     uint row = refineRowPoint(e, j, n);
-    // Corners use the other diagonal where both sides have the lattice's level: with l = m everywhere the
-    // result is the regular lattice, and levels nest.
+    // Corners use the other diagonal where both sides have the lattice's level: with l = m everywhere the result is the
+    // regular lattice, and levels nest.
     if (place.k == 0u && l == m && refineSide(levels, p) == m)
         return uvec3(refineOnSide(e, 1u), row, refineOnSide(p, (1u << refineSide(levels, p)) - 1u));
     if (place.k == steps + n - 4u && l == m && refineSide(levels, f) == m)

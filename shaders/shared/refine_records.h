@@ -1,6 +1,6 @@
-// Records of adaptive refinement, and the packed levels of a triangle. A coarse triangle has a level per edge
-// (0..5: 2^l segments) and one for its interior (m). Edge levels are shared by all owners, so no crack can
-// open. The interior is a lattice of 2^m steps; a strip joins each edge to it. m < 2: a small table instead.
+// Records of adaptive refinement, and the packed levels of a triangle. A coarse triangle has a level per edge (0..5:
+// 2^l segments) and one for its interior (m). Edge levels are shared by all owners, so no crack can open. The interior
+// is a lattice of 2^m steps; a strip joins each edge to it. m < 2: a small table instead.
 // clang-format off
 #ifndef FW_SHARED_REFINE_RECORDS_H
 #define FW_SHARED_REFINE_RECORDS_H
@@ -90,8 +90,8 @@ struct RefineCorner {    // corner of the cut shell
     uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
 };
 
-// An object in the frame's passes, rewritten in each frame that refines it (see isDue). Bases are record
-// indices of the buffers; mesh...: shared by objects.
+// An object in the frame's passes, rewritten in each frame that refines it (see isDue). Bases are record indices of the
+// buffers; mesh...: shared by objects.
 struct RefineObject {
     uint items;          // edges, then interiors
     uint triangles;
@@ -133,8 +133,8 @@ FW_SHARED_CONST uint kRefineIsTold = 32u;  // cut, but coarser than its size req
                                            // per-pixel holes are used
 FW_SHARED_CONST uint kRefineIsCounted = 16u;  // counts against the budget in every frame
 
-// A word of the heat buffer: heat from the tile lists for the next frame, then for this one, and whether this
-// frame places the item again.
+// A word of the heat buffer: heat from the tile lists for the next frame, then for this one, and whether this frame
+// places the item again.
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
@@ -146,8 +146,7 @@ FW_SHARED_CONST uint kRefineWorkEdges = 12u;  // x, y, z, jobs: edges that move,
 FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: items with morphing points
 FW_SHARED_CONST uint kRefineWorkBias = 20u;   // least bias, in steps, that fits the budget
 FW_SHARED_CONST uint kRefineWorkLists = 24u;
-// Behind an object's triangles in the level buffer: triangle sum for each bias, two per record, from its last
-// turn.
+// Behind an object's triangles in the level buffer: triangle sum for each bias, two per record, from its last turn.
 FW_SHARED_CONST uint kRefineSums = 8u;
 
 struct RefinePush {

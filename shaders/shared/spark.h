@@ -1,5 +1,5 @@
-// Sparks and embers of fire emitters. Each is a function of the clock, its number and its source's record.
-// Nothing is stored per spark, so any moment can be shown without those before it. Cosmetic. SI units, kelvin.
+// Sparks and embers of fire emitters. Each is a function of the clock, its number and its source's record. Nothing is
+// stored per spark, so any moment can be shown without those before it. Cosmetic. SI units, kelvin.
 // clang-format off
 #ifndef FW_SHARED_SPARK_H
 #define FW_SHARED_SPARK_H
@@ -77,8 +77,8 @@ FW_SHARED_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
     s.seed = particleBits(own + (turn + (x >= 1.0f ? 1u : 0u)) * 2654435761u);
     return s;
 }
-// Chance that a slot has a spark now, > 0: it has. The first slots always have one, up to the rate's integral
-// part; the next has the remaining probability: the mean is exactly the rate.
+// Chance that a slot has a spark now, > 0: it has. The first slots always have one, up to the rate's integral part; the
+// next has the remaining probability: the mean is exactly the rate.
 FW_SHARED_FN float sparkChance(float rate, uint slot, uint seed) {
     return rate * kSparkTurn - float(slot) - particleHash(seed + 1u);
 }
@@ -118,14 +118,12 @@ struct SparkLeg {  // flight from one collision to the next
 FW_SHARED_FN vec3 sparkArc(SparkLeg leg, vec3 up, float tau, float t) {
     float slow = tau * kSparkPlume;
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
-    return leg.from + leg.settled * t +
-           (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
+    return leg.from + leg.settled * t + (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
            carried * (slow * (1.0f - exp(-t / slow)));
 }
 FW_SHARED_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
-    return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) +
-           carried * exp(-t / (tau * kSparkPlume));
+    return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) + carried * exp(-t / (tau * kSparkPlume));
 }
 
 // Collision geometry of a source.
@@ -156,9 +154,7 @@ FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
     float here = mix(cell.x, cell.y, x), next = mix(cell.z, cell.w, x);
     vec3 n = normalize(vec3(mix(cell.x - cell.y, cell.z - cell.w, z), side, here - next));
     float over = (p.y - mix(here, next, z)) * n.y;
-    return b.grid.w > 0.5f && over < above
-               ? vec4(n, over)
-               : vec4(b.ground.x, b.ground.y, b.ground.z, above);
+    return b.grid.w > 0.5f && over < above ? vec4(n, over) : vec4(b.ground.x, b.ground.y, b.ground.z, above);
 }
 FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
     vec3 d = p - vec3(b.wall.x, b.wall.y, b.wall.z);
@@ -169,8 +165,8 @@ FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
 }
 FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) { return min(sparkGround(b, p).w, sparkBefore(b, p)); }
 
-// s into the leg until a collision; `most`: none. Sampled at the same places for any moment shown, so a bounce
-// stays in place; densely at first, while it is fast.
+// s into the leg until a collision; `most`: none. Sampled at the same places for any moment shown, so a bounce stays in
+// place; densely at first, while it is fast.
 FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
     float low = most, high = most;
     bool met = false;

@@ -1,6 +1,5 @@
-// Volumetric flames: records, coordinates along a curve, noise, emission and absorption at a point. The
-// includer runs the march and samples the profile between flameLookup and flameMedium. Lengths m, times s,
-// temperatures K.
+// Volumetric flames: records, coordinates along a curve, noise, emission and absorption at a point. The includer runs
+// the march and samples the profile between flameLookup and flameMedium. Lengths m, times s, temperatures K.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_H
 #define FW_SHARED_VOLUME_H
@@ -172,8 +171,8 @@ FW_SHARED_FN vec3 flameCornerSlope(uint h) {
     return vec3(float(int(h)), float(int(h << 11)), float(int(h << 21)));
 }
 
-// Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its weight, dw:
-// slope of the weight.
+// Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its weight, dw: slope of the
+// weight.
 FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
     uint h = flameCorner(key);
     vec3 g = flameCornerSlope(h);
@@ -217,8 +216,8 @@ FW_SHARED_FN vec3 flameCurl(vec3 x) {
 
 // ---- rise
 
-// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of tau - t moves
-// with the gas and stretches with it.
+// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of tau - t moves with
+// the gas and stretches with it.
 FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
     float a = clamp(s, 0.0f, tauFree);
     return (2.0f / 6.84f) * (sqrt(a + tauStart) - sqrt(tauStart)) +
@@ -231,8 +230,8 @@ FW_SHARED_FN float flamePlane(vec3 x, FlameNode node) {
     return dot(x - vec3(node.centre), vec3(node.along));
 }
 
-// Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before
-// the second. Continuous across segments.
+// Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before the
+// second. Continuous across segments.
 FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
     float w = da / max(da - db, 1e-9f);
     vec4 centre = mix(a.centre, b.centre, w);
@@ -311,8 +310,7 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     } while (o < f.octaves);
     // The foot stays lit for any noise.
     look.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
-    look.rho = length(p) * narrow / radius *
-               (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
+    look.rho = length(p) * narrow / radius * (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
     look.erode = f.erode * smoothstep(0.2f, 1.2f, y);
     // Soot lies in sheets where the advected noise is 0, the crests of the displacement.
     float thin = 0.7f * size / (f.lambda * narrow);
@@ -346,8 +344,7 @@ FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profi
     m.soot = f.soot * f.air.w * soot;
     m.smoke = 0.0f; m.smokeShade = 0.5f;
     m.emission = m.soot * flameRadiance(f, 1000.0f * profile.x);
-    float foot = smoothstep(0.0f, 0.02f, look.y) *
-                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
+    float foot = smoothstep(0.0f, 0.02f, look.y) * (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
     float gas = clamp(profile.x, 0.0f, 1.0f) * foot * look.guard * (1.0f - 0.8f * min(soot, 1.0f));
     m.emission += f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
     return m;
@@ -368,8 +365,7 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     if (body < 0.01f) return vec2(0.0f, 0.5f);
     float scale = 0.55f * diameter * (0.7f + 0.35f * y);  // lateral only: along, it would shear
     vec3 x = vec3(at.p.x / scale + f.place.x,
-                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll +
-                      f.place.y,
+                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll + f.place.y,
                   at.p.y / scale + f.place.z);
     float billow = -0.5f * 1.875f; float weight = 2.0f;
     uint o = 0u;
@@ -417,8 +413,8 @@ FW_SHARED_FN float flameErfc(float x) {
     return t * (0.3480242f - t * (0.0958798f - t * 0.7478556f)) * exp(-x * x);
 }
 
-// Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a bell across the
-// axis, whose integral is known in closed form. Width and density are those of the position.
+// Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a bell across the axis,
+// whose integral is known in closed form. Width and density are those of the position.
 FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own, reduced by billows
 FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float y = at.s / f.high.w;

@@ -1,5 +1,5 @@
-// Drawing of volumetric flames: push constants and sample positions of rays. Emission is in volume.h; uniform data
-// in volume_flame.h.
+// Drawing of volumetric flames: push constants and sample positions of rays. Emission is in volume.h; uniform data in
+// volume_flame.h.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_DRAW_H
 #define FW_SHARED_VOLUME_DRAW_H
@@ -16,8 +16,8 @@ FW_SHARED_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminan
 
 FW_SHARED_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
 
-// Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view: perspective: depth *
-// (rayO + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth * forward.
+// Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view: perspective: depth * (rayO
+// + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth * forward.
 struct VolumeDraw {
     vec4 rect;            // low x, low y, high x, high y, [-1, 1] over the viewport
     vec4 rayX;            // m, from the camera
@@ -75,8 +75,8 @@ FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 
     return test.turn * (test.cut - test.whole);
 }
 
-// Splits a quad into two polygons along a line. Returns the place of vertex [0, kVolumeSplit) in the unit square.
-// over: negative on the first polygon's side, at 0 0, 1 0, 1 1 and 0 1.
+// Splits a quad into two polygons along a line. Returns the place of vertex [0, kVolumeSplit) in the unit square. over:
+// negative on the first polygon's side, at 0 0, 1 0, 1 1 and 0 1.
 FW_SHARED_CONST uint kVolumeSplit = 18u;  // three triangles each, some degenerate
 FW_SHARED_FN vec2 volumeSplit(vec4 over, uint vertex) {
     float side = vertex < 9u ? 1.0f : -1.0f;
@@ -124,8 +124,8 @@ FW_SHARED_CONST uint kVolumeTileWords = 12u;    // pixels begin after whole texe
 FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // quarter x, y
 
 // Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a small flame; its ray
-// passes through its middle (but see volumeShift). A flame's march pixels are tiles from its origin, row by row over all
-// tiles, slab by slab. Samples lie in planes across the view, equally many per slab.
+// passes through its middle (but see volumeShift). A flame's march pixels are tiles from its origin, row by row over
+// all tiles, slab by slab. Samples lie in planes across the view, equally many per slab.
 struct VolumeMarch {
     vec4 rayX;            // w: m, width of a march pixel at depth 1 (perspective)
     vec4 rayY;            // w: m along the view, between samples
@@ -218,8 +218,8 @@ struct VolumeHaze {
 };
 FW_SHARED_SIZE(VolumeHaze, 96)
 
-// Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors that share a
-// range interleave; blended over each other, both would be too faint.
+// Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors that share a range
+// interleave; blended over each other, both would be too faint.
 FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
     uint a = (x ^ y) & 3u;
     uint b = y & 3u;
@@ -228,16 +228,16 @@ FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
     return threshold >= from && threshold < to;
 }
 
-// Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical neighbours differ by half a
-// step: an upright tongue may be one march pixel wide and would appear dashed otherwise. The phase is constant over
+// Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical neighbours differ by half
+// a step: an upright tongue may be one march pixel wide and would appear dashed otherwise. The phase is constant over
 // frames, so a frame needs no history.
 FW_SHARED_FN float volumePhase(uint x, uint y) {
     uint quarter = (x & 1u) | (2u * (y & 1u));
     return 0.085f + 0.25f * float(quarter);
 }
 
-// Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame is then sampled at as
-// many places as it has march pixels.
+// Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame is then sampled at
+// as many places as it has march pixels.
 FW_SHARED_FN vec2 volumeShift(uint x, uint y) {
     float across = 0.61803399f * float(y);
     float along = 0.61803399f * float(x);

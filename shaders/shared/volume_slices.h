@@ -28,8 +28,8 @@ FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
     return vec3(a.centre) + u * side + v * across;
 }
 
-// Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice piece, in order around
-// it. With fewer corners: the last one.
+// Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice piece, in order
+// around it. With fewer corners: the last one.
 FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward, float depth,
                                     uint vertex) {
     float reachA = sliceReach(f, a);

@@ -1,6 +1,6 @@
-// Soot that flames leave on surfaces above them, stored in the low byte of each texel's gradient; 255: matt black. It grows
-// towards the current fires' soot and never fades. One thread per tile row; a part of all tiles each frame, round-robin.
-// Cosmetic.
+// Soot that flames leave on surfaces above them, stored in the low byte of each texel's gradient; 255: matt black. It
+// grows towards the current fires' soot and never fades. One thread per tile row; a part of all tiles each frame,
+// round-robin. Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -29,8 +29,7 @@ vec3 inWorld(uint object, vec3 rest) {
                 dot(objects[object].worldRow2, at));
 }
 vec3 restOf(uint object, uvec2 texel) {
-    return objects[object].originQuantum.xyz +
-           objects[object].originQuantum.w *
+    return objects[object].originQuantum.xyz + objects[object].originQuantum.w *
                vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
 }
 
@@ -49,17 +48,14 @@ void sootRow(uint worldTile, uint row) {
     if ((texel.y & (kTexelReal << 16u)) == 0u) return;
     vec3 middle = restOf(object, texel);
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved =
-        skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
+    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
     vec3 shift = skinned ? moved.place - middle : vec3(0.0);
     middle = inWorld(object, middle + shift);
     float reach = 9.0 * sqrt(max(objects[object].tint.w, 0.0));  // m
     uint near = 0u;
     uint count = min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count && lights[i].power > 0.0; ++i)
-        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach)
-                    ? 1u << i
-                    : 0u;
+        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach) ? 1u << i : 0u;
     uint most = uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
     bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {

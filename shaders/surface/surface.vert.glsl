@@ -1,6 +1,6 @@
 #version 450
-// Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far from the world's origin.
-// Lights small triangles per vertex.
+// Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far from the world's
+// origin. Lights small triangles per vertex.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -38,8 +38,8 @@ layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas;
 layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
 layout(location = 6) centroid out vec2 outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
-                                            // kDrawCut the last word of a cut vertex, in s; with kSurfaceCold
-                                            // x: 1 near traces of fire
+                                            // kDrawCut the last word of a cut vertex, in s; with kSurfaceCold x: 1 near
+                                            // traces of fire
 #ifdef FW_MULTISAMPLED
 // At pixels' middles, which form a grid, so differences between them are safe.
 layout(location = 7) out vec3 outMiddle;    // as outPosition

@@ -1,5 +1,5 @@
-// A ray through a volumetric flame: its tube and the medium at a sample. Sample loops are in the shaders. Needs `profiles`,
-// `view` and FW_FLAME_NODE.
+// A ray through a volumetric flame: its tube and the medium at a sample. Sample loops are in the shaders. Needs
+// `profiles`, `view` and FW_FLAME_NODE.
 #include "shared/volume_march.h"
 
 struct RayTube {
@@ -22,8 +22,7 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     uint i = 0u;
     // Uniform loops test at their end: see lib/stride.glsl.
     do {
-        vec4 next = flameKnot(tube.pieces,
-                              from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
+        vec4 next = flameKnot(tube.pieces, from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
         FW_UNROLL
         for (uint k = 0u; k < kFlameIntervals; ++k)
             tube.delta[k] = i == k ? next - knot : tube.delta[k];
@@ -37,8 +36,7 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
 
 // Medium of a lookup.
 FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
-    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
-                      look.y * float(kProfileHeight));
+    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach), look.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
     vec2 uv = clamp(texel, vec2(0.5), texels - 0.5) / texels;
     FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
@@ -84,8 +82,8 @@ ViewRay viewRay(vec3 way) {
     return ray;
 }
 
-// Makes branches depend on `zero`, which is 0 but not constant: a software device recompiles a shader, in milliseconds per
-// draw, for each set of constants that alone decide its branches.
+// Makes branches depend on `zero`, which is 0 but not constant: a software device recompiles a shader, in milliseconds
+// per draw, for each set of constants that alone decide its branches.
 void addZero(inout FlameRecord f, uint zero) {
     f.octaves |= zero;
     f.tint.w += float(zero);
@@ -101,12 +99,11 @@ vec4 flameShown(FlameRay ray, vec3 scattered, vec3 white, uint encoding) {
     float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
     vec3 color = ray.radiance * white;
     if (encoding != 0u) {
-        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red, not
-        // grey.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
+        // not grey.
         vec3 grey = scattered * white;
         float cover = max(alpha, 1e-4);
-        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) +
-                encodeOutput(grey / cover, encoding) * cover;
+        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) + encodeOutput(grey / cover, encoding) * cover;
     }
     return vec4(min(color, vec3(60000.0)), alpha);
 }

@@ -1,7 +1,7 @@
 #version 450
-// A volumetric flame along one ray, or many for a small flame, or the part in one slab, for views without a previous march.
-// Emission and absorption are exact per step, so brightness depends neither on the number of steps nor of slabs. Output is
-// premultiplied: light, and coverage.
+// A volumetric flame along one ray, or many for a small flame, or the part in one slab, for views without a previous
+// march. Emission and absorption are exact per step, so brightness depends neither on the number of steps nor of slabs.
+// Output is premultiplied: light, and coverage.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"

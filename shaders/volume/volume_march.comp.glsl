@@ -1,6 +1,6 @@
 #version 450
-// March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a slab's contribution does
-// not depend on the scene, whose depth is known later per pixel and selects slabs. A workgroup is a tile listed by
+// March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a slab's contribution
+// does not depend on the scene, whose depth is known later per pixel and selects slabs. A workgroup is a tile listed by
 // volume_probe. FW_SMOKE (volume_smoke): with smoke, which would cost a sixth of the march on devices that do not skip
 // branches.
 #extension GL_GOOGLE_include_directive : require
@@ -21,9 +21,9 @@ layout(push_constant) uniform Push { VolumeMarch march; };
 
 FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 
-// Stores what slab `s` adds to the light without it and those behind; where_: light, and its first and second moment in the
-// slab. The nearest slabs then compose to exactly what one ray would show. Also stores the transmittance in front, which is
-// the march pixel's weight among its neighbours.
+// Stores what slab `s` adds to the light without it and those behind; where_: light, and its first and second moment in
+// the slab. The nearest slabs then compose to exactly what one ray would show. Also stores the transmittance in front,
+// which is the march pixel's weight among its neighbours.
 vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float left = 1.0 / max(1.0 - before.a, 1e-4);
     vec4 color = max((shown - before) * left, 0.0);
@@ -90,8 +90,7 @@ void main() {
     stride /= float(closer);
     // As many knots per metre as over the whole flame.
     uint intervals = min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
-    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
-                           direction, intervals);
+    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from, direction, intervals);
 
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
 #ifdef FW_SMOKE

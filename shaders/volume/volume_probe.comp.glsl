@@ -1,6 +1,6 @@
 #version 450
-// Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart, with a margin around what
-// they meet. Lists the tiles to march, each with its range of samples.
+// Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart, with a margin around
+// what they meet. Lists the tiles to march, each with its range of samples.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -48,8 +48,7 @@ void main() {
     float nearest = 1e9, farthest = -1.0;
     while (k < last) {
         float t = first + stride * (k + 0.5);
-        FlamePlace at =
-            flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
+        FlamePlace at = flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
         FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
         // Here, and slightly closer to the axis and the base.
         vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(look.rho, look.y);
