@@ -47,6 +47,15 @@ bool continuesRun(uint i, uint object, uint texel) {
            eventKind(events[i].kind) != kEventPlays;
 }
 
+// True: the texel is a source now.
+bool writeState(uint object, uint at, uint worldTile, uint before, uint now) {
+    state[at] = now;
+    if (isSource(now) != isSource(before))
+        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
+    if (isSource(now)) nowBurns(object, worldTile, push.now + kStepTicks);
+    return isSource(now);
+}
+
 // Applies the run of events that begins at `first` to one of its texels.
 void applyRun(uint first, uint texel) {
     uint object = events[first].object;
@@ -95,14 +104,7 @@ void applyRun(uint first, uint texel) {
     if (heats) heat[objects[object].heatBase + texel] = has;
     if (warms) hotTouch(push.hotParity, p.worldTile);
     if (now == before) return;
-    state[at] = now;
-
-    if (isSource(now) != isSource(before))
-        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
-    if (isSource(now)) {
-        nowBurns(object, p.worldTile, push.now + kStepTicks);
-        if (!isSource(before)) litFrom(object, kLitByHand);
-    }
+    if (writeState(object, at, p.worldTile, before, now) && !isSource(before)) litFrom(object, kLitByHand);
     texelChanged(object, texel, p, isSource(now));
 }
 
@@ -140,11 +142,7 @@ void carryTexel(uint i) {
         hotTouch(push.hotParity, p.worldTile);
     }
     if (now == before) return;
-    state[at] = now;
-    if (isSource(now) != isSource(before))
-        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
-    if (isSource(now)) {
-        nowBurns(object, p.worldTile, push.now + kStepTicks);
+    if (writeState(object, at, p.worldTile, before, now)) {
         atomicMax(objectCounters[object].litBy, objectCounters[from].litBy);
         atomicMax(objectCounters[object].litTick, objectCounters[from].litTick);
         atomicMax(objectCounters[object].stopTick, objectCounters[from].stopTick);

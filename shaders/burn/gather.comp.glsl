@@ -21,6 +21,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/gather.glsl"
+#include "lib/stride.glsl"
 
 // Ten texels of a row, from the one left of a tile to the one right of it.
 struct Row {
@@ -126,13 +127,4 @@ void gatherRow(uint slot, uint row) {
     gatherItem(push.row, uvec4(slot * 8u + row, chosen | (lit << 8u), texel, tile.y), rim);
 }
 
-void main() {
-    uint count = counters[push.row].runCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (slot >= count) return;
-    do {
-        gatherRow(slot, row);
-        slot += gl_NumWorkGroups.x * 8u;
-    } while (slot < count);
-}
+void main() { FW_STRIDE_ROWS(counters[push.row].runCount, gatherRow) }

@@ -21,6 +21,7 @@ layout(local_size_x = 64) in;
 #include "lib/lists.glsl"
 #include "lib/predict.glsl"
 #include "lib/gather.glsl"
+#include "lib/stride.glsl"
 
 // Bit i: column i - 1 of the row has a time.
 uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
@@ -143,13 +144,4 @@ void gatherRow(uint slot, uint row) {
     gatherItem(counterRow, uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, texel, object), rim & chosen);
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].listCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (slot >= count) return;
-    do {
-        gatherRow(slot, row);
-        slot += gl_NumWorkGroups.x * 8u;
-    } while (slot < count);
-}
+void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, gatherRow) }

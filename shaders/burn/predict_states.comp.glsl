@@ -13,8 +13,10 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "lib/gradient.glsl"
 #include "shared/front.h"
+#include "lib/stride.glsl"
 
-void passRow(uint worldTile, uint row) {
+void passRow(uint slot, uint row) {
+    uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
     uint flag = tileState[worldTile].flag;
     if ((flag & kTileFalling) != 0u) return;  // `support` writes what it shows
     uint object = tileState[worldTile].object;
@@ -51,10 +53,4 @@ void passRow(uint worldTile, uint row) {
     if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].listCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    for (; slot < count; slot += gl_NumWorkGroups.x * 8u)
-        passRow(push.predictParity == 0u ? predictA[slot] : predictB[slot], row);
-}
+void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, passRow) }

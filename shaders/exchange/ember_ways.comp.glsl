@@ -29,11 +29,4 @@ bool stopped(FireSource source) {
     return shieldCuts(ends, flame, ember.landing) || shieldCuts(ends, ember.landing, place);
 }
 
-void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= push.count) return;
-    uvec2 range = sourcesOf(slot);
-    for (uint at = range.x; at < range.y; ++at)
-        for (bool sent = sendsEmber(at); sent; sent = false)
-            if (stopped(sources[at])) sources[at].ember = 0u;
-}
+void main() { FW_EACH_EMBER(if (stopped(sources[at])) sources[at].ember = 0u;) }

@@ -53,10 +53,4 @@ void land(FireSource source) {
     atomicAdd(objectCounters[object].spots, lit);
 }
 
-void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= push.count) return;
-    uvec2 range = sourcesOf(slot);
-    for (uint at = range.x; at < range.y; ++at)
-        for (bool sent = sendsEmber(at); sent; sent = false) land(sources[at]);
-}
+void main() { FW_EACH_EMBER(land(sources[at]);) }

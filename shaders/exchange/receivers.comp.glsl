@@ -22,46 +22,36 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
+// Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry` and a `weight`.
+#define FW_EACH_SOURCE(statement)                                                                     \
+    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {                                  \
+        uint entry = neighbours[remoteObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
+        if (!gives(slot, entry)) continue;                                                            \
+        uint base = remoteObjects[from].sourceBase, end = base + remoteObjects[from].sourceCount;     \
+        for (uint source = base; source < end; ++source) {                                            \
+            uint weight = sourceWeight(sources[source], middle);                                      \
+            if (weight == 0u) continue;                                                               \
+            statement                                                                                 \
+        }                                                                                             \
+    }
+
 // Counts the object's sources by the highest bit of their weight.
 uint weightBits[32];
 uint countSources(uint slot, ivec3 middle) {
-    uint first = remoteObjects[slot].neighbourFirst;
     uint count = 0u;
-    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
-        uint entry = neighbours[first + n];
-        if (!gives(slot, entry)) continue;
-        uint from = entry & 0xFFFFFFu;
-        uint base = remoteObjects[from].sourceBase;
-        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
-            uint weight = sourceWeight(sources[base + cell], middle);
-            if (weight == 0u) continue;
-            weightBits[topBit(weight)] += 1u;
-            ++count;
-        }
-    }
+    FW_EACH_SOURCE(weightBits[topBit(weight)] += 1u; ++count;)
     return count;
 }
 
+void listSource(uint slot, uint place, uint source, uint entry) {
+    if (place < kSourcesPerReceiver)
+        receivers[slot * kReceiverWords + 2u + place] = source | (entry & 0xFF000000u);
+}
 // Lists sources of weight >= low, of which there are `strong`, then those of at least half of it, up to the capacity.
 // Returns the number of listed sources.
 uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
-    uint first = remoteObjects[slot].neighbourFirst;
     uint listed = 0u, weak = strong;
-    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
-        uint entry = neighbours[first + n];
-        if (!gives(slot, entry)) continue;
-        uint from = entry & 0xFFFFFFu;
-        uint base = remoteObjects[from].sourceBase;
-        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
-            uint weight = sourceWeight(sources[base + cell], middle);
-            if (weight == 0u || weight < low / 2u) continue;
-            uint at = weight >= low ? listed : weak;
-            if (at < kSourcesPerReceiver)
-                receivers[slot * kReceiverWords + 2u + at] = (base + cell) | (entry & 0xFF000000u);
-            listed += weight >= low ? 1u : 0u;
-            weak += weight >= low ? 0u : 1u;
-        }
-    }
+    FW_EACH_SOURCE(if (weight >= low / 2u) listSource(slot, weight >= low ? listed++ : weak++, source, entry);)
     return min(weak, kSourcesPerReceiver);
 }
 

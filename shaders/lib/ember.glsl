@@ -45,4 +45,12 @@ uvec2 sourcesOf(uint slot) {
     return uvec2(first, burns ? first + remoteObjects[slot].sourceCount : first);
 }
 bool sendsEmber(uint at) { return sources[at].ember != 0u && sources[at].watts != 0u; }
+
+// Runs a statement for each ember, at source `at`. One thread per object slot.
+#define FW_EACH_EMBER(statement)                                       \
+    uint slot = gl_GlobalInvocationID.x;                               \
+    if (slot >= push.count) return;                                    \
+    uvec2 range = sourcesOf(slot);                                     \
+    for (uint at = range.x; at < range.y; ++at)                        \
+        for (bool sent = sendsEmber(at); sent; sent = false) statement
 #endif

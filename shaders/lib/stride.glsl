@@ -8,3 +8,14 @@
         function(strideItem);                        \
         strideItem += gl_NumWorkGroups.x * 64u;      \
     } while (strideItem < strideCount);
+
+// The same for tiles of a list, eight per group: function(slot, row), one thread per row of eight texels.
+#define FW_STRIDE_ROWS(number, function)                                                  \
+    uint strideCount = number;                                                            \
+    uint strideRow = gl_LocalInvocationID.x & 7u;                                         \
+    uint strideSlot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);             \
+    if (strideSlot >= strideCount) return;                                                \
+    do {                                                                                  \
+        function(strideSlot, strideRow);                                                  \
+        strideSlot += gl_NumWorkGroups.x * 8u;                                            \
+    } while (strideSlot < strideCount);

@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "lib/skin.glsl"
 #include "shared/look.h"
+#include "lib/stride.glsl"
 #include "surface/plume.glsl"
 
 layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
@@ -33,7 +34,8 @@ vec3 restOf(uint object, uvec2 texel) {
                vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
 }
 
-void sootRow(uint worldTile, uint row) {
+void sootRow(uint i, uint row) {
+    uint worldTile = push.object + i;
     TileRef tile = tileRef(worldTile);
     if (!tile.alive) return;
     uint object = tile.object;
@@ -75,13 +77,5 @@ void sootRow(uint worldTile, uint row) {
     if (marks) atomicOr(tileState[worldTile].flag, kTileMarked);
 }
 
-void main() {
-    // push.object: first tile; push.iteration: number of tiles.
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint i = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (i >= push.iteration) return;
-    do {
-        sootRow(push.object + i, row);
-        i += gl_NumWorkGroups.x * 8u;
-    } while (i < push.iteration);
-}
+// push.object: first tile; push.iteration: number of tiles.
+void main() { FW_STRIDE_ROWS(push.iteration, sootRow) }
