@@ -20,7 +20,7 @@ using game::TowerKind;
 
 namespace {
 
-// Dark timber, thin brass, parchment ink; one accent for each tower.
+// Dark timber, thin brass, parchment ink; one accent per tower.
 constexpr ImU32 kTimber = hex(0x1B130E, 222), kTimberLit = hex(0x33241A, 235),
                 kBrass = hex(0x9E7847);
 constexpr ImU32 kInk = hex(0xF5E6C7), kDim = hex(0xB39E85), kGold = hex(0xFFC74D),
@@ -33,7 +33,7 @@ constexpr const char* kIcons[game::kTowerKinds] = {"", fwui::icons::flame, fwui:
                                                    fwui::icons::water, fwui::icons::wind};
 constexpr const char* kNames[game::kTowerKinds] = {"", "FLAME", "MORTAR", "WATER", "WIND"};
 
-// Its panels stand beside each other from these on, of dp(1).
+// Minimum size, in dp(1), at which the panels fit side by side.
 constexpr float kLayoutWidth = 920, kLayoutHeight = 290;
 
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
@@ -51,7 +51,7 @@ glm::vec3 onGround(village::Vec2 p, float above) {
     return {p.x, village::groundHeight(p) + above, p.y};
 }
 
-// One frame's drawing and answering.
+// Draws one frame and collects its requests.
 struct Board {
     ImDrawList* list;
     const Lens& lens;
@@ -60,8 +60,8 @@ struct Board {
     const FireNumbers& fires;
     Player& player;
     const game::State& state = siege.state();
-    Wishes wishes{};
-    bool overPanel = false;  // the mouse is on one of them
+    HudRequests requests{};
+    bool overPanel = false;  // the mouse is over a panel
 
     void panel(const Rect& r, ImU32 fill = kTimber, ImU32 rim = kBrass) {
         fwui::drawBox(list, r.low(), r.high(), fill, 7, rim);
@@ -82,7 +82,7 @@ struct Board {
                                 {x0 + (x1 - x0) * std::min(share, 1.0f), y + thick}, color, thick);
     }
     void order(game::Order::Type type) {
-        wishes.orders.push_back({type, player.plot, player.chosen});
+        requests.orders.push_back({type, player.plot, player.chosen});
     }
 
     void ring(village::Vec2 centre, float radius, ImU32 color, float thick, bool dashed);
@@ -113,8 +113,7 @@ void Board::ring(village::Vec2 centre, float radius, ImU32 color, float thick, b
         if (!dashed || i % 3 != 2) list->AddLine(at(i), at(i + 1), color, thick);
 }
 
-// The plots that are free glow while a tower is chosen; the one under the mouse is taken by a
-// click.
+// Free plots glow while a tower is chosen. A click takes the one under the mouse.
 void Board::plots() {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     int32_t under = -1;
@@ -122,7 +121,7 @@ void Board::plots() {
         const glm::vec3 at = lens.ground({mouse.x, mouse.y}, 0.6f);
         for (size_t i = 0; i < game::kPlots; ++i) {
             const village::Vec2 p = metres(field.ground.plots[i]);
-            constexpr float kTaken = 2.0f;  // m about its middle
+            constexpr float kTaken = 2.0f;  // m from its centre
             if (village::length(village::Vec2{at.x - p.x, at.z - p.y}) < kTaken) under = int32_t(i);
         }
     }
@@ -162,7 +161,7 @@ void Board::ranges() {
          true);
 }
 
-// What of an enemy has not burnt, of what it may lose.
+// Shows the unburnt share of an enemy, relative to the share at which it falls.
 void Board::healthBars() {
     constexpr float kHeads[game::kEnemyKinds] = {3.2f, 2.8f, 3.5f, 6.4f};
     for (size_t i = 0; i < game::kEnemySlots; ++i) {
@@ -214,7 +213,7 @@ void Board::villageBar() {
         stands > 700   ? kGreen
         : stands > 400 ? kOrange
                        : kRed);
-    // Each house: what is left of it; lit from within once it flashed over, and without its roof.
+    // Each house: its unburnt share; lit from inside after flashover; without a roof once broken.
     const float apart = (r.width() - dp(28)) / float(game::kHouses);
     for (size_t house = 0; house < game::kHouses; ++house)
         pip(r.x0 + dp(14) + apart * (float(house) + 0.5f), r.y0 + dp(41), house);
@@ -282,10 +281,10 @@ void Board::speeds() {
         fwui::drawIcon(list, fonts().icon20, {b.midX(), b.midY()}, lit ? kGold : kDim, glyph);
         return pressed(b, name);
     };
-    wishes.rewind |= icon(6, fwui::icons::history, "rewind", false);
-    wishes.pause |=
+    requests.rewind |= icon(6, fwui::icons::history, "rewind", false);
+    requests.pause |=
         icon(42, player.paused ? fwui::icons::play : fwui::icons::pause, "pause", player.paused);
-    wishes.faster |= icon(78, fwui::icons::toEnd, "faster", player.speed > 1);
+    requests.faster |= icon(78, fwui::icons::toEnd, "faster", player.speed > 1);
     put(fonts().semi, r.x0 + dp(114), r.midY(), player.speed > 1 ? kGold : kDim,
         text("%dx", player.speed));
     const Rect call{r.x1 - dp(122), r.y0 + dp(9), r.x1 - dp(10), r.y1 - dp(9)};
@@ -311,19 +310,20 @@ void Board::numbers() {
         text("%d felled, %d s", state.felled, state.tick / game::kTicksPerSecond));
 }
 
-// Where every joule of the fuel is. The sum is taken here, of what is shown.
+// Shows where the fuel's energy went. The sum is computed from the displayed values.
 void Board::energy() {
-    if (!player.books) return;
-    const FwEnergyBook& book = fires.book;
-    const bool any = book.objects > 0;
+    if (!player.showsLedger) return;
+    const FwEnergyBook& ledger = fires.ledger;
+    const bool any = ledger.objects > 0;
     const Rect r{dp(12), dp(70), dp(262), any ? dp(204) : dp(128)};
     panel(r);
     put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
     if (!any) {
-        put(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim, "no thing here keeps a book");
+        put(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim, "no object has an energy ledger");
         return;
     }
-    const auto apart = int64_t(book.fuel) - int64_t(book.unburnt + book.radiated + book.convected);
+    const auto apart =
+        int64_t(ledger.fuel) - int64_t(ledger.unburnt + ledger.radiated + ledger.convected);
     fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), r.y0 + dp(15),
                         apart == 0 ? kGreen : kRed,
                         text("closes to %.6g J", std::ldexp(double(apart), -20)).c_str());
@@ -331,22 +331,23 @@ void Board::energy() {
         const char* name;
         uint64_t units;
         ImU32 color;
-    } rows[] = {{"in fuel", book.unburnt, kGreen},
-                {"radiated", book.radiated, kOrange},
-                {"in hot gas", book.convected, kRed}};
+    } rows[] = {{"in fuel", ledger.unburnt, kGreen},
+                {"radiated", ledger.radiated, kOrange},
+                {"in hot gas", ledger.convected, kRed}};
     float y = r.y0 + dp(38);
     for (const auto& row : rows) {
         put(fonts().small, r.x0 + dp(14), y, kDim, row.name);
         fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), y, kInk,
                             text("%.3f MJ", 1e-6 * std::ldexp(double(row.units), -20)).c_str());
-        const double share = book.fuel ? double(row.units) / double(book.fuel) : 0;
+        const double share = ledger.fuel ? double(row.units) / double(ledger.fuel) : 0;
         bar(r.x0 + dp(14), r.x1 - dp(14), y + dp(12), dp(2), float(share), row.color);
         y += dp(26);
     }
-    put(fonts().small, r.x0 + dp(14), y, kDim, text("%u things keep a book", book.objects));
+    put(fonts().small, r.x0 + dp(14), y, kDim,
+        text("%u objects have an energy ledger", ledger.objects));
 }
 
-// Beside the selected tower: what it is, and what to do with it.
+// Describes the selected tower and offers its actions.
 void Board::plotMenu() {
     if (player.plot < 0) return;
     const game::Tower& tower = state.towers[size_t(player.plot)];
@@ -414,12 +415,12 @@ void keys(const std::vector<int>& pressed, Board& board) {
             const auto kind = TowerKind(key - '0');
             player.chosen = player.chosen == kind ? TowerKind::kNone : kind;
         }
-        board.wishes.pause ^= key == ' ';
-        board.wishes.faster ^= key == 'F';
-        board.wishes.rewind |= key == 'R';
-        board.wishes.light ^= key == 'N';
-        player.books ^= key == 'E';
-        constexpr int kEnter = 257;  // as GLFW numbers it
+        board.requests.pause ^= key == ' ';
+        board.requests.faster ^= key == 'F';
+        board.requests.rewind |= key == 'R';
+        board.requests.light ^= key == 'N';
+        player.showsLedger ^= key == 'E';
+        constexpr int kEnter = 257;  // GLFW's code
         if (key == kEnter) board.order(game::Order::Type::kCallWave);
         if (key == 'U' && player.plot >= 0) board.order(game::Order::Type::kUpgrade);
         if (key == 'X' && player.plot >= 0) board.order(game::Order::Type::kSell);
@@ -433,7 +434,7 @@ Hud::Hud(const sample::VulkanHost& host, sample::Stage& stage) : stage_(stage) {
     ImGui::GetIO().IniFilename = nullptr;
     renderer_ =
         std::make_unique<fwui::UiRenderer>(host, stage.outputPass(), stage.made.framesInFlight);
-    fwui::theme().scale = 0;  // of no window yet
+    fwui::theme().scale = 0;  // no scale yet
     stage.overlay = [this](VkCommandBuffer commands) {
         if (shown_) renderer_->drawOver(commands, slot_, *ImGui::GetDrawData());
     };
@@ -445,8 +446,8 @@ Hud::~Hud() {
     ImGui::DestroyContext();
 }
 
-// As wide as the window allows: laid out for 1280 pixels, legible down to some 700. In smaller ones
-// it shrinks as it must for its panels to stand beside each other.
+// Scales with the window: designed for 1280 pixels, legible down to about 700. Smaller windows
+// shrink it until the panels fit side by side.
 void Hud::fit(VkExtent2D extent) {
     const float wide = float(extent.width), high = float(extent.height);
     const float scale =
@@ -467,14 +468,14 @@ void Hud::takeInput(const sample::StageFrame& frame) {
     io.MouseDown[0] = frame.input.held;
 }
 
-Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
-                 const Siege& siege, const FireNumbers& fires, Player& player) {
+HudRequests Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
+                      const Siege& siege, const FireNumbers& fires, Player& player) {
     slot_ = frame.slot;
     shown_ = frame.extent.width >= kLeastWidth && frame.extent.height >= kLeastHeight;
     if (!shown_) {
         Board blind{nullptr, lens, field, siege, fires, player};
         keys(frame.input.keys, blind);
-        return std::move(blind.wishes);
+        return std::move(blind.requests);
     }
     fit(frame.extent);
     takeInput(frame);
@@ -502,7 +503,7 @@ Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battle
     board.over();
     ImGui::End();
     ImGui::Render();
-    return std::move(board.wishes);
+    return std::move(board.requests);
 }
 
 }  // namespace tower

@@ -27,7 +27,7 @@ fail() {
 program=$!
 port=
 for _ in $(seq 600); do
-    port=$(sed -n 's/.*awaited on port \([0-9]*\).*/\1/p' "$work/log")
+    port=$(sed -n 's/.*on local port \([0-9]*\).*/\1/p' "$work/log")
     [[ -z $port ]] || break
     sleep 0.1
 done

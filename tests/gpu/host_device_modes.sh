@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs 01_lent_device with every combination of its switches under core and synchronization
+# Runs 01_host_device with every combination of its switches under core and synchronization
 # validation: primary and secondary command buffers, one and four samples, normal and reversed depth,
 # both kinds of pacing, three encodings, one view and two. Each run must be silent and leave a picture.
 set -euo pipefail
@@ -17,9 +17,9 @@ for secondary in "" --secondary; do
                 for switch in $secondary $msaa $reversed $pacing; do switches+=("$switch"); done
                 [[ $target != srgb ]] || switches+=(--split)
                 switches+=(--target "$target")
-                echo "01_lent_device ${switches[*]}"
+                echo "01_host_device ${switches[*]}"
                 status=0
-                "$here/sample.sh" 01_lent_device headless "${switches[@]}" || status=$?
+                "$here/sample.sh" 01_host_device headless "${switches[@]}" || status=$?
                 [[ $status -eq 0 ]] || exit "$status"
             done
         done
