@@ -30,8 +30,17 @@ struct Story {
     }
 };
 
+// A texel at rest. K; kg/kg.
+gpu::HeatTexel atRest(float ambient, float moisture) {
+    gpu::HeatTexel x{};
+    x.fuel = gpu::kFuelFull;
+    x.heat = fire::fixed(double(ambient), 16, 16000);
+    x.moist = fire::fixed(double(moisture), 128, gpu::kMoistMost);
+    return x;
+}
+
 Story storyOf(const fire::HeatFacts& facts, double seconds = kHeatStep, float ambient = 293) {
-    return {fire::heatAtRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
+    return {atRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
 }
 
 // No losses: what P11 asks for.
@@ -187,7 +196,7 @@ TEST(Heat, MoistureDelaysIgnitionAndDampWoodDoesNotCatch) {
     double before = 0;
     for (const float moisture : {0.0f, 0.12f, 0.3f}) {
         Story story = storyOf(wood);
-        story.texel = fire::heatAtRest(293, moisture);
+        story.texel = atRest(293, moisture);
         while (!(story.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(story.step, 32u * 600);
         const double seconds = story.step * kHeatStep;
         std::printf("wood of moisture %.2f at 30 kW/m^2: %.1f s\n", double(moisture), seconds);
