@@ -236,7 +236,7 @@ int run(const sample::Options& options, const Settings& settings) {
                           info.texelsPerMetre);
             summary.rows.emplace_back("burn map", line);
             summary.rows.emplace_back("", bakeNote);
-            std::snprintf(line, sizeof line, "%s, %.0f times as fast as real; %.0f %% caught fire",
+            std::snprintf(line, sizeof line, "%s, %.0f times real speed; %.0f %% ignited",
                           settings.material.c_str(), pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
             if (dropped > 0) {

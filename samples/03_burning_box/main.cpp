@@ -194,7 +194,7 @@ int run(const sample::Options& options, const Settings& settings) {
             sample::Summary summary;
             summary.title = "A box of twelve triangles";
             summary.rows.emplace_back("device", host.properties.deviceName);
-            std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
+            std::snprintf(line, sizeof line, "%.0f times real speed; %.0f %% ignited",
                           settings.pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
             for (int i = 0; i < (settings.published ? 2 : 1); ++i) {

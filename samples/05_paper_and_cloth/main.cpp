@@ -197,7 +197,7 @@ int run(const sample::Options& options, float seconds, bool compare) {
             for (size_t i = 0; i < 2; ++i) {
                 const FwObjectState state = fire.objectState(objects[i]);
                 char line[96];
-                std::snprintf(line, sizeof line, "%.0f %% caught fire",
+                std::snprintf(line, sizeof line, "%.0f %% ignited",
                               static_cast<double>(100.0f * state.burntFraction));
                 summary.rows.emplace_back(exhibits[i].name, line);
             }

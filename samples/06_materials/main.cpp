@@ -172,7 +172,7 @@ int run(const sample::Options& options, float seconds, int only) {
                 if (objects[i].index1 == 0) continue;
                 const FwObjectState state = fire.objectState(objects[i]);
                 char line[160];
-                std::snprintf(line, sizeof line, "%s; %.0f %% caught fire",
+                std::snprintf(line, sizeof line, "%s; %.0f %% ignited",
                               fwMaterialPresetName(kExhibits[i].preset),
                               static_cast<double>(100.0f * state.burntFraction));
                 static const char* const kPlaces[] = {

@@ -194,9 +194,9 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
                 const FwObjectState state = fire.objectState(boards.boards[i]);
                 const bool dry = i == 1, caught = state.ignited > 0, burns = state.burning > 0;
                 summary.rows.emplace_back(dry ? "dry board" : "board under water",
-                                          std::string(!caught ? "did not catch"
+                                          std::string(!caught ? "did not ignite"
                                                       : burns ? "burns"
-                                                              : "caught and went out") +
+                                                              : "ignited and went out") +
                                               (caught && burns == dry ? "" : ": WRONG"));
             }
             filming.finish(summary, fire);

@@ -186,7 +186,7 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
     note = "baked";
     if (!request.cache.empty())
         note += fwmodel::keepBake(request.cache, key, bytes)
-                    ? ", kept in " + (request.cache / (key + ".fwburn")).string()
+                    ? ", cached in " + (request.cache / (key + ".fwburn")).string()
                     : " (the cache cannot be written)";
     return id;
 }

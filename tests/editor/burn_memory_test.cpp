@@ -47,7 +47,7 @@ struct Remembered {
     }
     // Frames after the burn went to sleep.
     void rest() {
-        for (int i = 0; i < 4 && memory.waits(); ++i) {
+        for (int i = 0; i < 4 && memory.isPending(); ++i) {
             memory.beforeFrame(*burn, 0);
             ASSERT_EQ(FW_OK, fwWorld_Step(burn->world, 0));
             memory.afterFrame(*burn);
@@ -66,7 +66,7 @@ size_t litOf(const std::vector<uint8_t>& ages) {
 
 TEST(BurnMemory, IsEmptyBeforeTheFirstFrame) {
     Remembered one;
-    EXPECT_FALSE(one.memory.knows(0));
+    EXPECT_FALSE(one.memory.isKnown(0));
     std::vector<uint8_t> values;
     EXPECT_FALSE(one.memory.agesAt(*one.burn, one.board, *one.surface, 0, values));
     EXPECT_FALSE(one.memory.timesOf(*one.burn, one.board, values));
@@ -77,10 +77,10 @@ TEST(BurnMemory, AgesGrowWithTimeAndMatchTheWholeBurn) {
     Remembered one;
     one.runTo(6);
     one.rest();
-    EXPECT_FALSE(one.memory.waits());
+    EXPECT_FALSE(one.memory.isPending());
     EXPECT_NEAR(6, one.memory.known(), 1e-6);
-    EXPECT_TRUE(one.memory.knows(3));
-    EXPECT_FALSE(one.memory.knows(7));
+    EXPECT_TRUE(one.memory.isKnown(3));
+    EXPECT_FALSE(one.memory.isKnown(7));
     EXPECT_EQ(0u, litOf(one.ages(-0.1)));
     const auto early = one.ages(2), late = one.ages(5);
     EXPECT_GT(litOf(early), 20u);
@@ -140,7 +140,7 @@ TEST(BurnMemory, RestoresTheLatestKeyframeAndContinues) {
     ASSERT_TRUE(one.memory.restore(*one.burn, 8));
     EXPECT_GT(one.burn->time, 0);  // not from the start
     EXPECT_LE(one.burn->time, 8);
-    EXPECT_TRUE(one.memory.knows(12));  // the seen history stays
+    EXPECT_TRUE(one.memory.isKnown(12));  // the seen history stays
     EXPECT_EQ(before, one.ages(12));
     one.runTo(12);
     one.rest();
@@ -153,9 +153,9 @@ TEST(BurnMemory, CanBeCleared) {
     Remembered one;
     one.runTo(2);
     one.rest();
-    EXPECT_TRUE(one.memory.knows(1));
+    EXPECT_TRUE(one.memory.isKnown(1));
     one.memory.forget();
-    EXPECT_FALSE(one.memory.knows(0));
+    EXPECT_FALSE(one.memory.isKnown(0));
     EXPECT_FALSE(one.memory.restore(*one.burn, 1));
 }
 

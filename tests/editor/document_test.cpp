@@ -149,7 +149,7 @@ TEST(EditorCommands, RefusalsNameTheWordAndTheChoices) {
     EXPECT_THAT(refusal(document, "set \"Torch\" sticks_to \"Torch\""), HasSubstr("sticks to it"));
     EXPECT_THAT(refusal(document, "add source \"x"), HasSubstr("quote is not closed"));
     EXPECT_THAT(refusal(document, "move \"Torch\" 0 0"), HasSubstr("line ends"));
-    EXPECT_THAT(refusal(document, "remove \"Torch\" now"), HasSubstr("one word too many"));
+    EXPECT_THAT(refusal(document, "remove \"Torch\" now"), HasSubstr("an extra word"));
     EXPECT_THAT(refusal(document, "fill \"Torch\" value 1"), HasSubstr("no layer"));
 }
 
@@ -733,7 +733,7 @@ TEST(EditorFile, RefusalsNameTheCause) {
     EXPECT_THAT(why(""), HasSubstr("x.fwscene was not opened"));
     EXPECT_THAT(why("{\"fwscene\": 1"), HasSubstr("line 1"));
     EXPECT_THAT(why("[]"), HasSubstr("a list"));
-    EXPECT_THAT(why("{}"), HasSubstr("which version"));
+    EXPECT_THAT(why("{}"), HasSubstr("has no scene version"));
     EXPECT_THAT(why("{\"fwscene\": 3}"), HasSubstr("fwscene is 3; this program reads up to 2"));
     EXPECT_THAT(why(std::string(200000, '[')), HasSubstr("not opened"));
     EXPECT_THAT(why("\x89PNG\r\n"), HasSubstr("not opened"));

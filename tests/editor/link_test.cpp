@@ -92,7 +92,7 @@ TEST(EditorLink, InvalidMessagesAreRefused) {
         EXPECT_FALSE(reader.next(message, later));
         return error;
     };
-    EXPECT_THAT(refused(0, 'G'), HasSubstr("no message of a live link"));
+    EXPECT_THAT(refused(0, 'G'), HasSubstr("not a message of a live link"));
     EXPECT_THAT(refused(4, 9), HasSubstr("speaks version 9, this one 1"));
     EXPECT_THAT(refused(6, 77), HasSubstr("kind 77; there are 3"));
     EXPECT_THAT(refused(11, 0x7f), HasSubstr("it may have 33554432"));
