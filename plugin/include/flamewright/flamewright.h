@@ -1288,7 +1288,8 @@ typedef struct FwEvent {        /* frozen, 64 bytes */
 /* Writes events, oldest first, and returns how many; 0: none left. Each event is written once: poll from one place. At most
  * 4096 events wait; if more come, the oldest are dropped and the log counts them. Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwWorld_PollEvents(FwWorld*, FwEvent* events, uint32_t capacity);
-/* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, [-1e6, 1e6], world) burns. [world] */
+/* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, [-1e6, 1e6], world) burns. At most 4096 points of a
+ * world may wait. [world] */
 FW_API FwResult FW_CALL fwWorld_TagPoint(FwWorld*, FwBurnableMeshId id, const float position[3], uint32_t tag);
 /* Cancels all points of the object with this tag that the front has not reached. FW_OK if there are none. [world] */
 FW_API FwResult FW_CALL fwWorld_UntagPoint(FwWorld*, FwBurnableMeshId id, uint32_t tag);

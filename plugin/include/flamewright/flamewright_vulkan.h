@@ -198,8 +198,9 @@ FW_API FwResult FW_CALL fwWorld_RecordOutside(FwWorld*, const FwVulkanFrame* fra
  * replaces the one that was absent longest. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld*, const FwVulkanFrame* frame, const FwView* views,
                                                   uint32_t viewCount);
-/* Draws into the host's pass. Begins no barrier, dispatch, copy or pass. Shows the last fwWorld_RecordOutside, which need not be
- * of the same frame. The viewport is in px. FW_NOT_READY: nothing was recorded. [record] */
+/* Draws into the host's pass. Begins no barrier, dispatch, copy or pass. Shows the last fwWorld_RecordOutside, which need not
+ * be of the same frame. The viewport is in px. At most 16 views a frame, and 16 draws a frame with a
+ * sampled depth. FW_NOT_READY: nothing was recorded. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordInside(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
                                             const FwView* view, const VkViewport* viewport);
 
@@ -225,10 +226,10 @@ static inline FwVulkanComposite fwDefaultVulkanComposite(void) {
     FwVulkanComposite d; fwInitDef(FW_DEF_VULKAN_COMPOSITE, &d, (uint32_t)sizeof d); return d;
 }
 /* Draws in a pass of the library over host images: primary buffer, outside any pass. Records the barriers from `...Before` to
- * its use and to `...After`. An extent of 0 records nothing. Without FW_COMPOSITE_KEEP each call creates a framebuffer, which is
- * freed when its frame has finished. With it nothing is created after warm-up: 16 framebuffers are kept. The library then
- * remembers the views until the target is unregistered or a call on it comes without the flag. Do one of these before you
- * destroy views, for example on a resize. [record] */
+ * its use and to `...After`. An extent of 0 records nothing. Without FW_COMPOSITE_KEEP each call creates a framebuffer, which
+ * is freed when its frame has finished: at most 8 calls a frame. With it nothing is created after warm-up: 16 framebuffers are
+ * kept. The library then remembers the views until the target is unregistered or a call on it comes without the flag. Do one
+ * of these before you destroy views, for example on a resize. [record] */
 FW_API FwResult FW_CALL fwWorld_RecordComposite(FwWorld*, const FwVulkanFrame* frame, FwTargetId target,
                                                const FwView* view, const FwVulkanComposite* images);
 typedef struct FwVulkanVertices { /* skinned vertices in a host buffer, in the order of the mesh */
