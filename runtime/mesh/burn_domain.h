@@ -1,7 +1,7 @@
-// The burn domain: what the bake makes of a triangle mesh. A unique-UV atlas of texels with rest
-// positions, normals and areas, links across chart borders, tiles and who reads them. Immutable,
-// shared by all objects that use the mesh; integers wherever the simulation reads. Doubles and
-// floats are for the bake, drawing and queries only.
+// The burn domain of a triangle mesh, made by the bake: a unique-UV atlas of texels with rest
+// positions, normals and areas, links across chart borders, tiles and their readers. Immutable and
+// shared by all objects of the mesh. The simulation reads integers only; doubles and floats serve
+// the bake, drawing and queries.
 #pragma once
 #include "core/assert.h"
 
