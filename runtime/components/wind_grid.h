@@ -1,5 +1,5 @@
-// Wind that the host gives on a grid of points: trilinear between them, none of it outside. Whole
-// numbers once the def is read, as zones are; not a solver of any wind.
+// The host's wind on a grid of points: trilinear inside, without effect outside. Integers once the
+// def is read, like zones. Solves nothing.
 #pragma once
 #include "components/wind_zone.h"
 
@@ -10,7 +10,7 @@ namespace fw::components {
 
 constexpr uint32_t kMostGridPoints = 32768, kMostGridSide = 64;
 
-struct WindGridShape {  // where its points are; no counts: there is no grid
+struct WindGridShape {  // places of the points; counts of 0: there is no grid
     uint32_t blend = 0;
     std::array<uint32_t, 3> counts{};
     std::array<int64_t, 3> origin{};  // mm, of the first point
@@ -27,16 +27,16 @@ struct WindGrid {
     std::pmr::vector<WindPoint> points;  // x runs fastest, then y, then z
 };
 
-// What these throw is a core::Error that names the field.
+// Throw core::Error naming the field.
 [[nodiscard]] WindGridShape makeWindGridShape(const FwWindGridDef& def);
 void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& points);
-// m/s, of the point of that number.
+// velocity: m/s. point: its number, for the message.
 [[nodiscard]] WindPoint makeWindPoint(const float velocity[3], uint32_t point);
 
-// Is it one that makeWindGridShape may have made?
+// Whether makeWindGridShape may have made it.
 [[nodiscard]] bool plausible(const WindGridShape& shape) noexcept;
 
-// What blows at a place where `wind` blows around the grid.
+// The wind at a place. `wind`: around the grid.
 [[nodiscard]] fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,
                                           const WindPlace& place) noexcept;
 

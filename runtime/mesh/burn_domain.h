@@ -126,6 +126,11 @@ struct BurnDomain {
     std::pmr::vector<uint32_t> indices;       // 3 per triangle
     BakeReport report;
 
+    // m^2, mean over the real texels, at scale 1.
+    [[nodiscard]] double texelArea() const noexcept {
+        return report.realTexels ? report.texelArea / double(report.realTexels)
+                                 : double(texelSide) * double(texelSide);
+    }
     [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
     [[nodiscard]] uint32_t tileCount() const noexcept { return tilesX * tilesY; }
     [[nodiscard]] bool real(uint32_t texel) const noexcept {
