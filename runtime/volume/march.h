@@ -8,20 +8,19 @@
 
 namespace fw::volume {
 
-// m along the curve to which anything shows.
+// m along the curve, end of the visible flame and smoke.
 float topOf(const gpu::FlameRecord& flame) noexcept;
-// Of everything that shows. Conservative: outside there is nothing.
+// Conservative bounds of the visible flame and smoke.
 Bounds flameBounds(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes) noexcept;
 
-// Where the curve is looked up along a ray.
+// Samples of the curve along a ray.
 struct RayKnots {
     float from = 0.0f, gap = 0.0f;  // m along the ray
     vec4 first{0.0f};
     vec4 delta[gpu::kFlameIntervals]{};
-    uint32_t broken =
-        0;  // a bit per interval in which the nearest place jumps: nothing burns there
+    uint32_t broken = 0;  // bit per interval in which the nearest place jumps: nothing burns there
 };
-// From where to where something may burn, m along the ray; empty where x >= y.
+// The part of a ray in which the flame may burn, m along the ray; empty where x >= y.
 vec2 flameChord(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
                 vec3 direction, float farthest, uint32_t intervals, RayKnots& out) noexcept;
 

@@ -1,7 +1,7 @@
 // Particle fields on a device equal the library's step cell by cell: presets, sizes, walls, paint,
 // rings, many fields in one dispatch.
-#include "field/field.h"
 #include "gpu/passes/field_units.h"
+#include "reference/field_scene.h"
 #include "support/pass_rig.h"
 #include "support/sanitized.h"
 

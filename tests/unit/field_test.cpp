@@ -1,6 +1,6 @@
 // Particle fields: conservation, displacement by forces and spreading, isotropy, flatness.
-#include "field/field.h"
 #include "core/error.h"
+#include "reference/field_scene.h"
 #include "support/sanitized.h"
 
 #include <gtest/gtest.h>
@@ -249,30 +249,6 @@ TEST(Field, PresetsRiseAndFall) {
     EXPECT_GT(height[1], height[0] + 5);
     EXPECT_LT(height[2], 32);
     for (const double sum : lit) EXPECT_GT(sum, 1000);
-}
-
-TEST(Field, RefusesBadDefsByName) {
-    const auto said = [](FieldDef def) {
-        try {
-            checkField(def);
-        } catch (const fw::core::Error& error) {
-            return std::string(error.message);
-        }
-        return std::string();
-    };
-    FieldDef def;
-    EXPECT_EQ(said(def), "");
-    def.width = 3;
-    EXPECT_EQ(said(def), "width is 3; it must lie in [4, 256].");
-    def = {};
-    def.look.life = 0;
-    EXPECT_EQ(said(def), "look.life is 0; it must lie in [0.01, 1e+06].");
-    def = {};
-    def.look.chaos = std::nanf("");
-    EXPECT_NE(said(def).find("look.chaos is"), std::string::npos);
-    def = {};
-    def.open = 32;
-    EXPECT_EQ(said(def), "open is 32; it holds five bits, up to 31.");
 }
 
 }  // namespace

@@ -62,7 +62,7 @@ TEST(Fire, PaperSpreadsAtMeasuredRates) {
     for (const Case& c :
          {Case{45, 7.8, 12.4}, Case{80, 4.4, 7.0}, Case{160, 2.2, 3.5}, Case{300, 1.2, 1.9}}) {
         FwMaterialDef def = fire::presetDef(FW_MATERIAL_PAPER);
-        def.spreadRate = fire::paperSpreadRate(c.mass);
+        def.spreadRate = 0.44f / c.mass;  // paper burns 0.44 g/m/s (0.35 to 0.56 measured)
         def.burnTime = 0;
         const double speed = measuredSpeed(d, def, still) * 1000;
         std::printf("paper %3.0f g/m^2: %.2f mm/s\n", double(c.mass), speed);

@@ -31,8 +31,17 @@ struct TexelBurn {
     }
 };
 
+// A texel at rest. K; kg/kg.
+gpu::HeatTexel atRest(float ambient, float moisture) {
+    gpu::HeatTexel x{};
+    x.fuel = gpu::kFuelFull;
+    x.heat = fire::fixed(double(ambient), 16, 16000);
+    x.moist = fire::fixed(double(moisture), 128, gpu::kMoistMost);
+    return x;
+}
+
 TexelBurn texelOf(const fire::HeatFacts& facts, double seconds = kHeatStep, float ambient = 293) {
-    return {fire::heatAtRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
+    return {atRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
 }
 
 // Without losses, as the analytic ignition times assume.
@@ -189,7 +198,7 @@ TEST(Heat, MoistureDelaysOrPreventsIgnition) {
     double before = 0;
     for (const float moisture : {0.0f, 0.12f, 0.3f}) {
         TexelBurn burn = texelOf(wood);
-        burn.texel = fire::heatAtRest(293, moisture);
+        burn.texel = atRest(293, moisture);
         while (!(burn.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(burn.step, 32u * 600);
         const double seconds = burn.step * kHeatStep;
         std::printf("wood of moisture %.2f at 30 kW/m^2: %.1f s\n", double(moisture), seconds);
