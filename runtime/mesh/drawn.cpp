@@ -49,7 +49,7 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
 }  // namespace
 
 uint32_t packNormal(glm::dvec3 normal) {
-    FW_ASSERT(!(glm::length(normal) > 1.01), "length %g", glm::length(normal));
+    FW_ASSERT(normal == normal, "a component is NaN");
     const auto field = [](double v, int one) {
         return uint32_t(std::clamp(int(std::floor(v * one + 0.5)), -one, one));
     };
