@@ -1,4 +1,4 @@
-// See app.h: what the pages' acts do.
+// The actions of app.h that pages, menus and keys share.
 #include "app/app.h"
 
 #include <algorithm>

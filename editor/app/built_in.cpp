@@ -1,4 +1,3 @@
-// See built_in.h.
 #include "app/built_in.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See cards.h.
 #include "app/cards.h"
 
 #include "import/image_decode.h"

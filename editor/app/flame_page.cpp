@@ -1,4 +1,3 @@
-// See flame_page.h.
 #include "app/flame_page.h"
 
 #include <algorithm>

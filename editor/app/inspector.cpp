@@ -1,4 +1,3 @@
-// See inspector.h.
 #include "app/inspector.h"
 
 #include <algorithm>

@@ -251,7 +251,7 @@ class Program {
     }
 
  private:
-    // See document/command.h.
+    // Runs document commands, see document/command.h.
     void runLines() {
         std::istringstream lines(start_.lines);
         std::string message;

@@ -1,4 +1,3 @@
-// See output_page.h.
 #include "app/output_page.h"
 
 #include <algorithm>

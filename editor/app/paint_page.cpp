@@ -1,4 +1,3 @@
-// See paint_page.h.
 #include "app/paint_page.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See user_state.h.
 #include "app/user_state.h"
 
 #include <signal.h>

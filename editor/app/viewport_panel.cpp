@@ -1,4 +1,3 @@
-// See viewport_panel.h.
 #include "app/viewport_panel.h"
 
 #include <algorithm>

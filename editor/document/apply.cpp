@@ -1,4 +1,3 @@
-// See apply.h.
 #include "document/apply.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See burn.h.
 #include "document/burn.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See burn_memory.h.
 #include "document/burn_memory.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See clipboard.h.
 #include "document/clipboard.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See command.h.
 #include "document/command.h"
 
 #include <algorithm>

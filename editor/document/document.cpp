@@ -1,4 +1,3 @@
-// See document.h.
 #include "document/document.h"
 
 #include <algorithm>

@@ -256,7 +256,7 @@ bool saveDocument(Document& document, const fs::path& file, std::string& error) 
                 layer.size = now->size;
             }
     });
-    // Remove our images that the file no longer uses.
+    // Remove images that the file does not use any more.
     if (from == to && document.file.stem() == file.stem())
         for (const std::string& image : before)
             if (!image.empty() && !kept.contains(image) &&

@@ -1,4 +1,4 @@
-// See fields.h. The tables come first: to give an object a field, add a line there.
+// The field tables come first. To give an object a field, add a line there.
 #include "document/fields.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See flame_curve.h.
 #include "document/flame_curve.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See flame_paint.h.
 #include "document/flame_paint.h"
 
 #include <algorithm>

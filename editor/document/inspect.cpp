@@ -1,4 +1,3 @@
-// See inspect.h.
 #include "document/inspect.h"
 
 #include <algorithm>

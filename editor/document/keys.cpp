@@ -1,4 +1,3 @@
-// See keys.h.
 #include "document/keys.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See paint.h.
 #include "document/paint.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See scene.h.
 #include "document/scene.h"
 
 #include <algorithm>

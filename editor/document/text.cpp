@@ -1,4 +1,3 @@
-// See text.h.
 #include "document/text.h"
 
 #include <charconv>

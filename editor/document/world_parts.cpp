@@ -1,4 +1,3 @@
-// See world_parts.h.
 #include "document/world_parts.h"
 
 #include <algorithm>

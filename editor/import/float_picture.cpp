@@ -1,4 +1,3 @@
-// See float_picture.h.
 #include "import/float_picture.h"
 
 #include <OpenImageIO/imageio.h>

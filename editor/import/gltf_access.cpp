@@ -1,4 +1,3 @@
-// See gltf_access.h.
 #include "import/gltf_access.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
-// See gltf_import.h. The scene of a file as one mesh: nodes, instances, skins, morph targets;
-// gltf_access.h reads and checks its numbers, gltf_material.h its materials.
+// Merges a file's scene into one mesh: nodes, instances, skins, morph targets. gltf_access.h reads
+// and validates numbers, gltf_material.h materials.
 #include "import/gltf_import.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See gltf_json.h.
 #include "import/gltf_json.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See gltf_left_out.h.
 #include "import/gltf_left_out.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See gltf_material.h.
 #include "import/gltf_material.h"
 
 #include <algorithm>

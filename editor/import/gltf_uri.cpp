@@ -1,4 +1,3 @@
-// See gltf_uri.h.
 #include "import/gltf_uri.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See image_decode.h.
 #include "import/image_decode.h"
 
 #include <OpenImageIO/filesystem.h>

@@ -1,4 +1,4 @@
-// See mesh_codecs.h. FW_IMPORT_DRACO and FW_IMPORT_MESHOPT say what the build has.
+// FW_IMPORT_DRACO and FW_IMPORT_MESHOPT are set if the build has these libraries.
 #include "import/mesh_codecs.h"
 
 #include <algorithm>

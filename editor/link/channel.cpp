@@ -1,4 +1,3 @@
-// See channel.h.
 #include "link/channel.h"
 
 #include <arpa/inet.h>

@@ -1,4 +1,3 @@
-// See message.h.
 #include "link/message.h"
 
 #include <algorithm>

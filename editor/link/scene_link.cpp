@@ -1,4 +1,3 @@
-// See scene_link.h.
 #include "link/scene_link.h"
 
 #include <algorithm>

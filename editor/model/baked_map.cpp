@@ -1,4 +1,3 @@
-// See baked_map.h.
 #include "model/baked_map.h"
 
 #include <cstdio>

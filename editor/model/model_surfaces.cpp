@@ -1,4 +1,3 @@
-// See model_surfaces.h.
 #include "model/model_surfaces.h"
 
 #include <algorithm>

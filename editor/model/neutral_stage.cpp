@@ -1,4 +1,3 @@
-// See neutral_stage.h.
 #include "model/neutral_stage.h"
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// See output.h: what a game loads.
+// Writes the files that a game loads.
 #include <algorithm>
 #include <cctype>
 #include <set>

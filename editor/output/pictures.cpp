@@ -1,4 +1,4 @@
-// See output.h: pictures for people.
+// Writes film strips, turntables and flipbooks.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>

@@ -1,6 +1,6 @@
-// See output.h: a scene as code. One function for each object, as a programmer would write it; what
-// burns when is asked before each frame. Numbers are printed so that they read back the same, and
-// are put together as burn.cpp does, so that the game's fire is the editor's.
+// Exports a scene as code, with one function per object. Timed events are applied before each
+// frame. Numbers print without loss and are combined as in burn.cpp, so that the game's fire equals
+// the editor's.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -753,7 +753,7 @@ class Writer {
         return text;
     }
 
-    // See water() in burn.cpp.
+    // Equals water() in burn.cpp.
     std::string pour() const {
         const auto call = [&](const char* name) {
             return is_.cpp ? std::string("std::") + name

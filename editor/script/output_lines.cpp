@@ -1,4 +1,3 @@
-// See output_lines.h.
 #include "script/output_lines.h"
 
 #include <charconv>

@@ -1,4 +1,3 @@
-// See script.h.
 #include "script/script.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See draw.h.
 #include "shell/draw.h"
 
 #include <algorithm>

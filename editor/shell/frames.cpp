@@ -1,4 +1,3 @@
-// See frames.h.
 #include "shell/frames.h"
 
 #include <algorithm>

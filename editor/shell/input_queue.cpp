@@ -1,4 +1,3 @@
-// See input_queue.h.
 #include "shell/input_queue.h"
 
 #define GLFW_INCLUDE_NONE

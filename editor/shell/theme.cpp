@@ -1,4 +1,3 @@
-// See theme.h.
 #include "shell/theme.h"
 
 #include <imgui_freetype.h>

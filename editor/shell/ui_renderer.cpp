@@ -1,4 +1,3 @@
-// See ui_renderer.h.
 #include "shell/ui_renderer.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See widgets.h.
 #include "shell/widgets.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See film_strip.h.
 #include "viewport/film_strip.h"
 
 #include <algorithm>

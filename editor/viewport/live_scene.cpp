@@ -1,4 +1,3 @@
-// See live_scene.h.
 #include "viewport/live_scene.h"
 
 #include <algorithm>

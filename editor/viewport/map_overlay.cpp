@@ -1,4 +1,3 @@
-// See map_overlay.h.
 #include "viewport/map_overlay.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See outline.h.
 #include "viewport/outline.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See picture_drawing.h.
 #include "viewport/picture_drawing.h"
 
 namespace fwview {

@@ -1,4 +1,3 @@
-// See scene_target.h.
 #include "viewport/scene_target.h"
 
 #include <algorithm>

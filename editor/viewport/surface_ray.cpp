@@ -1,4 +1,3 @@
-// See surface_ray.h.
 #include "viewport/surface_ray.h"
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// See crate.h.
 #include "crate.h"
 
 #include <glm/glm.hpp>

@@ -1,4 +1,3 @@
-// See panel.h.
 #include "panel.h"
 
 #include <cmath>

@@ -1,4 +1,3 @@
-// See film.h.
 #include "common/film.h"
 
 #include <algorithm>

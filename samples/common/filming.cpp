@@ -1,4 +1,3 @@
-// See filming.h.
 #include "common/filming.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See fire_host.h.
 #include "common/fire_host.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See options.h.
 #include "common/options.h"
 
 #include <algorithm>

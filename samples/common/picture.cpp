@@ -1,4 +1,4 @@
-// See picture.h. The still pictures go through OpenImageIO; the animation is PNG chunks of our own.
+// OpenImageIO writes still pictures; animations are assembled from PNG chunks here.
 #include "common/picture.h"
 
 #include <OpenImageIO/imageio.h>

@@ -1,4 +1,3 @@
-// See pipeline.h.
 #include "common/pipeline.h"
 
 namespace sample {

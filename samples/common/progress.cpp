@@ -1,4 +1,3 @@
-// See progress.h.
 #include "common/progress.h"
 
 #include <unistd.h>

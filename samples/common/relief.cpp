@@ -1,4 +1,3 @@
-// See relief.h.
 #include "common/relief.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See relief_maps.h.
 #include "common/relief_maps.h"
 
 #include <algorithm>

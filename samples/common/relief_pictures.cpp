@@ -1,4 +1,3 @@
-// See relief_pictures.h.
 #include "common/relief_pictures.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See stage.h.
 #include "common/stage.h"
 
 #include <algorithm>

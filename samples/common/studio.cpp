@@ -1,4 +1,3 @@
-// See studio.h.
 #include "common/studio.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See subject.h.
 #include "common/subject.h"
 
 #include <algorithm>

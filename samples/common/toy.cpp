@@ -1,4 +1,3 @@
-// See toy.h.
 #include "common/toy.h"
 
 #include <algorithm>

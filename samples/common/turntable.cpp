@@ -1,4 +1,3 @@
-// See turntable.h.
 #include "common/turntable.h"
 
 #include "common/studio.h"

@@ -1,4 +1,3 @@
-// See vulkan_host.h.
 #include "common/vulkan_host.h"
 
 #define GLFW_INCLUDE_NONE

@@ -1,4 +1,3 @@
-// See window.h.
 #include "common/window.h"
 
 #define GLFW_INCLUDE_NONE

@@ -1,4 +1,3 @@
-// See battlefield.h.
 #include "battlefield.h"
 
 #include <algorithm>

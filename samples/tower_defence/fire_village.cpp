@@ -1,4 +1,3 @@
-// See fire_village.h.
 #include "fire_village.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See hud.h.
 #include "hud.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See rays.h.
 #include "rays.h"
 
 #include <algorithm>

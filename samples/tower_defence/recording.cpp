@@ -1,4 +1,4 @@
-// See recording.h. A line a frame, of words: floats as hexadecimal ones, which come back exactly.
+// One line of text per frame. Floats are hexadecimal, so that they parse exactly.
 #include "recording.h"
 
 #include <cstdio>

@@ -1,5 +1,5 @@
-// See renderer.h. One vertex and one index buffer for everything, one instance stream per frame
-// slot, one descriptor set per painted surface.
+// One vertex and one index buffer for all models, one instance stream per frame slot, one
+// descriptor set per painted surface.
 #include "renderer.h"
 
 #include <algorithm>

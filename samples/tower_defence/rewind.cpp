@@ -1,4 +1,3 @@
-// See rewind.h.
 #include "rewind.h"
 
 #include <chrono>

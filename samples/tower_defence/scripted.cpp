@@ -1,4 +1,3 @@
-// See scripted.h.
 #include "scripted.h"
 
 #include <cinttypes>

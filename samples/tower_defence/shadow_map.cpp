@@ -1,4 +1,3 @@
-// See shadow_map.h.
 #include "shadow_map.h"
 
 #include <array>

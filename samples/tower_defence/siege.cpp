@@ -1,4 +1,3 @@
-// See siege.h.
 #include "siege.h"
 
 #include <algorithm>

@@ -1,4 +1,3 @@
-// See soak.h.
 #include "soak.h"
 
 #include <unistd.h>

@@ -1,4 +1,3 @@
-// See finish.h.
 #include "finish.h"
 
 #include "shared/black_body.h"

@@ -1,4 +1,3 @@
-// See sheet.h.
 #include "sheet.h"
 
 #include <algorithm>

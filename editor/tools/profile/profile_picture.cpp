@@ -1,4 +1,3 @@
-// See profile_picture.h.
 #include "profile_picture.h"
 
 #include "core/error.h"

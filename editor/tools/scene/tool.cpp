@@ -1,4 +1,3 @@
-// See tool.h.
 #include "scene/tool.h"
 
 #include <unistd.h>

@@ -1,4 +1,3 @@
-// See bot.h.
 #include "bot.h"
 
 namespace game {

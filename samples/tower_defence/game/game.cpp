@@ -1,4 +1,3 @@
-// See game.h.
 #include "game.h"
 
 #include <algorithm>
