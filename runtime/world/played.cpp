@@ -255,9 +255,9 @@ void World::turnPlay(const Object& object) noexcept {
         if (entry.object == &object && entry.play.began != 0) entry.play.ends = true;
 }
 
-void World::settlePlays(SavedWorld& saved) {
+void World::settlePlays(Snapshot& saved) {
     size_t events = saved.pending.size(), count = 0;
-    for (SavedObject& object : saved.objects) {
+    for (ObjectSnapshot& object : saved.objects) {
         Play& play = object.play;
         if (play.burn1 == 0) continue;
         const core::Owned<Burn>* burn =

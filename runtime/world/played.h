@@ -36,6 +36,11 @@ struct Play {
     uint32_t began = 0;  // end of the step that began it; 0: that is the next
     uint32_t most = 0;   // texels that may catch in a frame; follows from the rest
     bool ends = false;   // with the next step: its wind or pose turned, or the host asks
+    template <class A>
+    void serialize(A& a) {
+        a(burn1);
+        if (burn1 != 0) a(first, rate, began, ends);
+    }
     [[nodiscard]] uint64_t tickOf(uint32_t recorded) const noexcept {
         return first + uint64_t(recorded) * kPlayRate / rate;
     }

@@ -104,10 +104,10 @@ void World::planTimeline(uint64_t after) noexcept {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     const core::Owned<Save>& save = saves_[size_t(SaveFor::timeline)];
-    if (!save || save->wished || save->pending || after < timeline.end) return;
+    if (!save || save->requested || save->pending || after < timeline.end) return;
     if (!timeline.moments.empty() && after < timeline.moments.back().tick + timeline.apart) return;
     if (unsavable() != 0) return;
-    save->wished = true;
+    save->requested = true;
     save->ready = false;
 }
 
@@ -127,7 +127,7 @@ void World::keepMoment() noexcept {
     Timeline& timeline = *timeline_;
     try {
         timeline.moments.push_back(
-            {save.saved.clock.tick, timeline.captured,
+            {save.snapshot.clock.tick, timeline.captured,
              std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), memory_)});
     } catch (...) {  // there will be another one
         return;
