@@ -3,6 +3,7 @@
 // Reader turns bytes into fields, a Hasher sums them, and a Checker (world/save.cpp) refuses values
 // out of range.
 #pragma once
+#include "core/hash.h"
 #include "core/owned.h"
 #include "core/stream.h"
 #include "save/plane.h"
@@ -11,13 +12,18 @@
 #include <concepts>
 #include <cstring>
 
+// A serialize() that visits these fields in order.
+#define FW_SERIALIZE(...)  \
+    template <class A>     \
+    void serialize(A& a) { \
+        a(__VA_ARGS__);    \
+    }
+
 namespace fw::save {
 
 template <class Derived>
 class Archive {
  public:
-    static constexpr bool kChecks = false;
-
     template <class... T>
     void operator()(T&... values) {
         (visit(values), ...);
@@ -111,6 +117,20 @@ class Writer : public core::Writer, public Archive<Writer> {
     std::pmr::vector<uint32_t> values_;
 };
 
+class Hasher : public Archive<Hasher> {
+ public:
+    template <core::Number T>
+    void number(const T& value) noexcept {
+        const auto word = std::bit_cast<core::WordOf<T>>(value);
+        const uint32_t words[] = {uint32_t(word), uint32_t(uint64_t(word) >> 32)};
+        hash_ = core::hashWords(words, hash_);
+    }
+    [[nodiscard]] uint64_t hash() const noexcept { return hash_; }
+
+ private:
+    uint64_t hash_ = core::kFnvOffset;
+};
+
 class Reader : public core::Reader, public Archive<Reader> {
  public:
     Reader(std::span<const std::byte> bytes, const char* what, std::pmr::memory_resource* memory)
@@ -153,7 +173,9 @@ class Reader : public core::Reader, public Archive<Reader> {
         }
     }
     void require(bool good, const char* name) {
-        if (!good) core::fail(FW_ERROR_BAD_DATA, "The save's %s is out of its limits.", name);
+        if (!good)
+            core::fail(FW_ERROR_BAD_DATA, "The %s's %s is out of its limits.", core::Reader::name(),
+                       name);
     }
 
  private:

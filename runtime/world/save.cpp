@@ -252,12 +252,12 @@ void World::commitSave(uint64_t frameIndex) noexcept {
         } catch (...) {
             save.failed = true;
         }
-        if (who == size_t(SaveFor::host)) noteSaveInLog();
-        if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->done;
-        if (who != size_t(SaveFor::net) || !journal_) continue;
-        journal_->captured = true;
-        journal_->capturedAt = clock_.tick;
-        journal_->capturedBehind = journal_->deeds.size();
+        if (who == size_t(SaveFor::host)) recordSave();
+        if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->applied;
+        if (who != size_t(SaveFor::net) || !recording_) continue;
+        recording_->captured = true;
+        recording_->capturedAt = clock_.tick;
+        recording_->capturedBehind = recording_->commands.size();
     }
 }
 
@@ -350,7 +350,7 @@ void World::takeSaves(const gpu::Readback& readback) noexcept {
             save->failed = true;
         }
     }
-    keepMoment();
+    keepKeyframe();
 }
 
 void World::takeSave(Save& save, const gpu::Readback& readback) {
@@ -695,13 +695,13 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
         if (restarts) timeline_->restart(clock_.tick);
         saves_[size_t(SaveFor::timeline)]->requested = restarts;
     }
-    if (journal_) {
-        journal_->loaded = true;
-        journal_->captured = false;
-        journal_->deeds.clear();
-        journal_->hashes.clear();
+    if (recording_) {
+        recording_->loaded = true;
+        recording_->captured = false;
+        recording_->commands.clear();
+        recording_->hashes.clear();
     }
-    // What was asked of frames before is asked anew.
+    // Requests to earlier frames are made again.
     for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;

@@ -101,10 +101,7 @@ struct ObjectSnapshot : ObjectState {
 struct ReadbackStats {  // as of the readback
     uint32_t frontTiles = 0, burningTiles = 0, hotTiles = 0, receivers = 0, lateClamps = 0;
 
-    template <class A>
-    void serialize(A& a) {
-        a(frontTiles, burningTiles, hotTiles, receivers, lateClamps);
-    }
+    FW_SERIALIZE(frontTiles, burningTiles, hotTiles, receivers, lateClamps)
 };
 
 struct SavedEvent : FwEvent {  // that was not polled yet
@@ -119,6 +116,13 @@ struct SavedEvent : FwEvent {  // that was not polled yet
         a.range("event's value", value, -3.5e38, 3.5e38);
     }
 };
+
+// The fields of a def that two worlds must share to follow each other.
+template <class A, class Def>
+void serializeRules(A& a, Def& def) {
+    a(def.paceFactor, def.up, def.spreadChance, def.timeToLive, def.seed, def.maxHops,
+      def.maxBurningTiles);
+}
 
 struct Snapshot {
     explicit Snapshot(std::pmr::memory_resource* memory)
@@ -171,8 +175,7 @@ struct Snapshot {
 
     template <class A>
     void serialize(A& a) {
-        a(rules.paceFactor, rules.up, rules.spreadChance, rules.timeToLive, rules.seed,
-          rules.maxHops, rules.maxBurningTiles);
+        serializeRules(a, rules);
         a(clock, steps, droppedSteps, order, wind, flags, warms, blockersDue, fades, idle,
           lastStimulus, gustsShown, roomsStirred, stats);
         a.range("wind", wind, -double(fire::kMostWind), double(fire::kMostWind));

@@ -153,7 +153,7 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     shiftBy(by);
     if (remote_.rebuild) remote_.loadedSeen.swap(seen);
     if (applied) std::copy_n(whole, 3, applied);
-    noteMove(Deed::Kind::shiftOrigin, 0, whole, 3);
+    record(ShiftOrigin{{int32_t(by[0]), int32_t(by[1]), int32_t(by[2])}});
 }
 
 // Places in a readback of a frame before `lastFrame_` + 1 are relative to the old origin.

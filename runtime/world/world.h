@@ -24,12 +24,12 @@
 #include "mesh/remote_tiles.h"
 #include "volume/depth_picture.h"
 #include "world/clock.h"
-#include "world/deed_log.h"
+#include "world/command_log.h"
 #include "world/event_queue.h"
 #include "world/governor.h"
-#include "world/journal.h"
 #include "world/neighbours.h"
 #include "world/played.h"
+#include "world/recording.h"
 #include "world/timeline.h"
 
 #include <algorithm>
@@ -437,7 +437,7 @@ struct ShieldBook {
     explicit ShieldBook(std::pmr::memory_resource* memory)
         : grid(memory), told(memory), words(memory), fallen(memory) {}
     components::HeatShield grid;
-    std::pmr::vector<uint32_t> told;   // slots that deeds named so far
+    std::pmr::vector<uint32_t> told;   // slots that commands named so far
     std::pmr::vector<uint32_t> words;  // as the backend gets it
     std::pmr::vector<uint8_t> fallen;  // scratch
     gpu::ShieldUpdate update;
@@ -525,10 +525,16 @@ class World {
     void setWindGrid(const FwWindGridDef& def);      // of structSize 0: none any more
     void setGusts(const FwGustDef& def);
     FwWindZoneId createWindZone(const FwWindZoneDef& def);
-    void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
+    void setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
+        setWindZone(id, components::makeWindZone(def));
+    }
+    void setWindZone(FwWindZoneId id, const components::WindZone& zone);
     void destroyWindZone(FwWindZoneId id);
     FwRoomId createRoom(const FwRoomDef& def);
-    void setRoom(FwRoomId id, const FwRoomDef& def);
+    void setRoom(FwRoomId id, const FwRoomDef& def) {
+        setRoom(id, components::makeRoom(def), (def.flags & FW_ROOM_REFILL) != 0);
+    }
+    void setRoom(FwRoomId id, const components::Room& room, bool refills);
     void destroyRoom(FwRoomId id);
     void roomState(FwRoomId id, FwRoomState& state);
     void energyBook(FwEnergyBook& book) noexcept;
@@ -644,15 +650,16 @@ class World {
     void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
     void stopBurn(FwBurnableMeshId id);
 
-    // journal.cpp
-    Journal& keepJournal(bool follows);  // from here on
-    void dropJournal() noexcept { journal_ = {}; }
-    // deed_log.cpp
+    // recording.cpp
+    Recording& startRecording(bool follows);
+    void stopRecording() noexcept { recording_ = {}; }
+    // command_log.cpp
     void startLog();
     void stopLog() noexcept;
     const std::pmr::vector<std::byte>& fetchLog();  // until the next call
     void openLog(std::span<const std::byte> bytes);
-    // Does what comes before the next step; s that the world may go then. 0: `untilTick` is there.
+    // Applies the commands before the next step; s that the world may go then. 0: `untilTick` is
+    // there.
     float playLog(uint64_t untilTick);
     // timeline.cpp
     void startTimeline(const FwTimelineDef& def);
@@ -669,9 +676,9 @@ class World {
                      std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out);
     void mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
                      std::pmr::vector<std::byte>& out);
-    // Another world's deed, before this one's next step. Throws where it is none for this world.
-    void perform(const Deed& deed);
-    void performLoad(std::span<const std::byte> bytes);  // of its save
+    // Another world's command, before this one's next step. Throws unless this world can apply it.
+    void apply(const Command& command);
+    void applyLoad(std::span<const std::byte> bytes);  // of its save
     [[nodiscard]] uint64_t tick() const noexcept { return clock_.tick; }
     [[nodiscard]] double seconds() const noexcept;  // since its beginning
     // s from the present to the beginning of a later tick.
@@ -900,19 +907,19 @@ class World {
     components::ShieldObject shieldObjectOf(uint32_t slot) noexcept;
     void bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
                         std::pmr::vector<components::ShieldCell>& baked);
-    void noteShield(const FwHeatShieldDef& def, const components::HeatShield& made,
-                    std::span<const uint32_t> slots) noexcept;
-    void takeShield(const Deed& deed);
-    void takeShieldCells(const Deed& deed);
-    void takeShieldObject(const Deed& deed);
+    void recordShield(const components::HeatShield& made, std::span<const uint32_t> slots) noexcept;
+    void applyShield(const SetHeatShield& command);
+    void applyShieldCells(const SetShieldCells& command);
+    void applyShieldObject(const AddShieldObject& command);
     void adoptShield(components::HeatShield& made) noexcept;  // takes its cells
     void shieldChanged() noexcept;
     void dropFromShield(uint32_t slot) noexcept;
     void packHeatShield();
     components::ShieldView shieldView();
     void planShield(gpu::StepPlan& step, bool awake);
-    void takeWindGrid(const Deed& deed);
-    void takeWindPoints(const Deed& deed);
+    void applyWindGrid(const SetWindGrid& command);
+    void applyWindPoints(const SetWindPoints& command);
+    void applyGusts(const SetGusts& command);
     void windTurns() noexcept;
     void zoneTurns(const components::WindZone& zone) noexcept;
     void settleWind() noexcept;
@@ -1020,31 +1027,25 @@ class World {
     // timeline.cpp
     void planTimeline(uint64_t after) noexcept;
     void commitTimeline(uint64_t before) noexcept;
-    void keepMoment() noexcept;
-    void noteInTimeline(const Deed& deed) noexcept;
+    void keepKeyframe() noexcept;
+    void recordInTimeline(const Command& command) noexcept;
     void capture(Snapshot& to);
     void captureObject(Object& object, ObjectSnapshot& to) noexcept;
     void takeSave(Save& save, const gpu::Readback& readback);
     void captureEvents(Save& save);
     static void forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept;
-    // journal.cpp
-    void mayChange() const;  // throws where another machine's deeds alone count
-    [[nodiscard]] bool notes() const noexcept { return journal_ || noted_ || timeline_; }
-    void note(const Deed& deed) noexcept;
-    void noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
-                  uint32_t word = 0) noexcept;
-    template <class Def>
-    void noteDef(Deed::Kind kind, uint32_t slot, const Def& def) noexcept {
-        if (!notes()) return;
-        Deed deed = deedOf(def);
-        deed.kind = kind;
-        deed.slot = slot;
-        note(deed);
-    }
-    void notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept;
+    // recording.cpp
+    void mayChange() const;  // throws where another machine's commands alone count
+    [[nodiscard]] bool records() const noexcept { return recording_ || commandLog_ || timeline_; }
+    void record(const Command& command) noexcept;
+    void recordTexels(size_t first) noexcept;
+    void checkCommandTick(uint32_t tick) const;
+    void igniteTexels(const IgniteTexels& command);
+    void igniteObjects(const IgniteObjects& command);
+    void addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels);
     void planHashes(const ClockAdvance& time);
-    void noteSaveInLog() noexcept;
-    void noteHash(const gpu::BurnMap& map, const gpu::Readback& readback);
+    void recordSave() noexcept;
+    void recordHash(const gpu::BurnMap& map, const gpu::Readback& readback);
     class SnapshotChecker;
     // Throws unless the snapshot fits this world, whose ids it then has.
     void checkSnapshot(Snapshot& snapshot);
@@ -1215,8 +1216,8 @@ class World {
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
-    core::Owned<Journal> journal_;                                 // null: nobody asks
-    core::Owned<DeedLog> noted_, played_;                          // null: none
+    core::Owned<Recording> recording_;                             // null: nobody asks
+    core::Owned<CommandLog> commandLog_, playedLog_;               // null: none
     core::Owned<Timeline> timeline_;                               // null: none is kept
     uint64_t loadedFrame_ = 0;     // readbacks up to this frame are of another past
     uint64_t loadedTick_ = ~0ull;  // of the save that was loaded last

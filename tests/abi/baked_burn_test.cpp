@@ -327,7 +327,7 @@ TEST(BakedBurn, WhoeverDisturbsItMakesItLive) {
     }
 }
 
-// The same deeds on both backends, at other rates of frames: one hash at all moments.
+// The same commands on both backends, at other rates of frames: one hash at all moments.
 TEST(BakedBurn, BothBackendsPlayAndGoLiveAlike) {
     const Baked baked = bakeBoard(kAll);
     for (const Disturbance& one : kDisturbances) {

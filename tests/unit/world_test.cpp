@@ -395,14 +395,9 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceHoweverLateReadbacksCome) {
 
 // Commands of a log or of a server: one shield names each object once.
 TEST_F(PlannedWorld, ShieldCommandsNameNoMoreObjectsThanThereAre) {
-    world::Deed command;
-    command.kind = world::Deed::Kind::shieldObject;
-    command.slot = id.index1;
-    world->perform(command);
-    EXPECT_THROW(world->perform(command), core::Error);
-    command.slot = 0;
-    command.word = 1;
-    world->perform(command);
+    world->apply(world::AddShieldObject{id.index1, false});
+    EXPECT_THROW(world->apply(world::AddShieldObject{id.index1, false}), core::Error);
+    world->apply(world::AddShieldObject{0, true});
 }
 
 TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirOwnFrame) {

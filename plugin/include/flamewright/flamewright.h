@@ -337,8 +337,8 @@ static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
  * Cells of the host's stop jets, too, which strike meshes by themselves. What is within a cell of a flame or of what it
  * warms is not between them; of the cells of the two's own, and of the host's, what is within some cells: nothing shades
  * itself. What has burnt away lets fire pass by itself; what moved is where it was until the next call; what is destroyed
- * is gone. At most 262144 cells are objects'. The same on every backend, in saves, logs and networks: these have 57 bytes
- * for every 288 cells in a row of which one of the host's changed (all that are solid, where the grid is another), and 9
+ * is gone. At most 262144 cells are objects'. The same on every backend, in saves, logs and networks: these have 58 bytes
+ * for every 384 cells in a row of which one of the host's changed (all that are solid, where the grid is another), and 9
  * for each object. Takes some 5 ns per cell, the callback's own time and some 40 ns per texel of the objects. [world] */
 FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
 
@@ -399,8 +399,8 @@ static inline FwWindGridDef fwDefaultWindGridDef(void) {
     FwWindGridDef d; fwInitDef(FW_DEF_WIND_GRID, &d, (uint32_t)sizeof d); return d;
 }
 /* In place of the grid that was; null: none any more. Rounded to 1/128 m/s. Counts from the next step on, filtered like
- * the world's wind; meant for a few times a second: a log or a network has some 55 bytes for every four points in a row
- * of which one changed, where the grid stays where it is, else for all that are not calm. [world] */
+ * the world's wind; meant for a few times a second: a log or a network has some 58 bytes for every eight points in a
+ * row of which one changed, where the grid stays where it is, else for all that are not calm. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWindGrid(FwWorld*, const FwWindGridDef* def);
 /* Gusts: the world's wind and that of its grid are stronger here and weaker there, by noise that drifts with the wind.
  * They reach fronts, embers, plumes, flames, volumetric fires and emitters, a quarter of a second at a time, the same on
