@@ -1,10 +1,10 @@
 #!/bin/bash
-# Runs the README's commands on a machine that has nothing: a bare Debian 12 in a folder (minbase, and
-# then what our own scripts install). It shows a package that every developer's machine has and that
-# no list names. tests/run --bare calls it; its last line is "N passed, N failed, N skipped".
+# Runs the README's commands on a bare Debian 12 in a folder (minbase plus the packages that our
+# scripts install), which shows packages that our lists lack. Called by tests/run --bare; its last line
+# is "N passed, N failed, N skipped".
 #
-# The folder lies at this checkout's own path inside and shares the cache of ccache, so that it costs
-# minutes rather than a second build. It needs root, for mounts, and a mirror of Debian's packages.
+# The checkout has the same path inside and shares the ccache cache, so that the build takes minutes.
+# It needs root for mounts and a mirror of Debian's packages.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bare="$root/build/bare"
@@ -24,8 +24,8 @@ fail() {
     exit 1
 }
 
-# The mounts live in a namespace of their own and end with it, however this script ends. The folder is
-# removed from outside, where nothing is mounted in it.
+# The mounts live in their own namespace and end with it. The folder is removed from outside, where
+# nothing is mounted in it.
 if [[ -z ${FW_BARE_NAMESPACE:-} ]]; then
     [[ $(id -u) -eq 0 ]] || skip "only root may mount and change the root folder; run it as root"
     command -v debootstrap >/dev/null || skip "debootstrap is not here (third_party/install.sh installs it)"
@@ -42,7 +42,7 @@ mirror=${mirror:-http://deb.debian.org/debian}
 log="$root/build/bare.log"
 mkdir -p "$root/build"
 if ! debootstrap --variant=minbase bookworm "$bare" "$mirror" >"$log" 2>&1; then
-    # Without a mirror nothing can be shown; what goes wrong after it answered is a failure.
+    # Without a mirror the check is skipped; later errors are failures.
     grep -q '^I: Retrieving Packages' "$log" || skip "no mirror of Debian's packages answers at $mirror"
     tail -n 30 "$log"
     fail "debootstrap failed (its last lines are above)"
@@ -69,8 +69,8 @@ fi
 
 passed=0
 failed=0
-# step COMMAND...: one command in the bare machine, in the folder of the checkout. Nothing of this
-# machine's environment goes with it but what chooses how to compile.
+# step COMMAND...: runs one command inside, in the folder of the checkout. Of this machine's
+# environment only the compile settings are passed on.
 step() {
     local start=$SECONDS status=0
     echo "== $*"

@@ -12,6 +12,7 @@ fw_usage_error() {
 # fw_build PRESET TARGET...: configures (quietly, unless it fails) and builds into build/PRESET.
 # The environment variable FW_WARNINGS_AS_ERRORS (ON or OFF) passes through to CMake,
 # and so does FW_UNITY (OFF: what a file changes compiles sooner, everything later).
+# FW_ASSERTIONS=ON checks the library's invariants; unset, the preset or the folder decides.
 # FW_TESTS=OFF leaves out the tests and the bench, whose packages samples do without. A folder that has
 # them keeps them: without them for one run, the run after it would build them again.
 fw_build() {
@@ -24,6 +25,7 @@ fw_build() {
         ! grep -q -s -w flamewright_unit_tests "$fw_root/build/$preset/build.ninja" || tests=ON
         parts=("-DFW_BUILD_TESTS=$tests" "-DFW_BUILD_BENCH=$tests")
     fi
+    [[ -z ${FW_ASSERTIONS:-} ]] || parts+=("-DFW_ASSERTIONS=$FW_ASSERTIONS")
     mkdir -p "$fw_root/build"
     if ! (cd "$fw_root" && cmake --preset "$preset" \
         "-DFW_WARNINGS_AS_ERRORS=${FW_WARNINGS_AS_ERRORS:-OFF}" \

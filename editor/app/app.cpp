@@ -67,7 +67,7 @@ void toast(App& app, Toast::Kind kind, const std::string& title, const std::stri
     app.toasts.push_back({kind, title, text, app.now});
 }
 
-void say(App& app, const std::string& what) {
+void setStatus(App& app, const std::string& what) {
     app.result = what;
     app.resultTime = app.now;
 }
@@ -76,11 +76,11 @@ bool perform(App& app, const Command& command, ObjectId* added) {
     std::string message;
     const bool done = fwedit::run(app.document, command, message, added);
     if (!done) {
-        toast(app, Toast::Kind::kError, "That was not done", message);
+        toast(app, Toast::Kind::kError, "The command failed", message);
     } else if (!message.empty()) {
-        toast(app, Toast::Kind::kInfo, "A value was mended", message);
+        toast(app, Toast::Kind::kInfo, "A value was repaired", message);
     } else if (!app.document.dragging) {
-        say(app, app.document.steps[app.document.at].name);
+        setStatus(app, app.document.steps[app.document.at].name);
     }
     return done;
 }
@@ -121,7 +121,7 @@ void copySelection(App& app) {
     const std::string text = fwedit::copyObjects(app.document.scene, app.selection);
     if (text.empty()) return;
     ImGui::SetClipboardText(text.c_str());
-    say(app, "Copied");
+    setStatus(app, "Copied");
 }
 
 void paste(App& app) {
@@ -131,15 +131,15 @@ void paste(App& app) {
     if (!fwedit::pasteObjects(app.document, text ? text : "", added, message))
         return toast(app, Toast::Kind::kInfo, "Nothing was pasted", message);
     app.selection = added;
-    say(app, app.document.steps[app.document.at].name);
+    setStatus(app, app.document.steps[app.document.at].name);
 }
 
 namespace {
 
-// How much further back the paint page's eye is: what fits into the scene page's wide picture fits
-// into the narrow one beside the unwrap.
-float standOff(const App& app) {
-    constexpr float kWide = 0.95f;  // aspect from which on nothing is cut off
+// Factor of the paint page's camera distance, so that the scene page's wide picture fits into the
+// narrow one beside the unwrap.
+float paintDistanceFactor(const App& app) {
+    constexpr float kWide = 0.95f;  // aspect at which nothing is cropped
     const VkExtent2D extent = app.live.target.extent();
     if (app.page != Page::kPaint || extent.width == 0) return 1;
     return std::clamp(kWide * float(extent.height) / float(extent.width), 1.0f, 2.5f);
@@ -177,12 +177,12 @@ void frameSelection(App& app, bool all) {
     const glm::vec3 middle = 0.5f * (low + high);
     app.camera.target = {middle.x, middle.y, middle.z};
     const float radius = std::max(0.05f, 0.5f * glm::length(high - low));
-    // Of a picture that is higher than wide the width is what there is room in.
+    // In a portrait picture, the width limits the view.
     const VkExtent2D extent = app.live.target.extent();
     const float aspect = extent.height > 0 ? float(extent.width) / float(extent.height) : 1.0f;
     const float half = 0.5f * glm::radians(std::max(5.0f, app.camera.fieldOfView));
     const float least = std::atan(std::tan(half) * std::min(1.0f, aspect));
-    app.camera.distance = 1.15f * radius / std::sin(least) / standOff(app);
+    app.camera.distance = 1.15f * radius / std::sin(least) / paintDistanceFactor(app);
 }
 
 void compareStep(App& app, size_t step) {
@@ -192,15 +192,15 @@ void compareStep(App& app, size_t step) {
     app.live.compareWith(then.scene, then.images, fwedit::absoluteBase(app.document));
     const std::string& name = app.document.steps[step].name;
     app.compared = name.empty() ? "As it was opened" : "After: " + name;
-    say(app, "Compared side by side from here on");
+    setStatus(app, "Compared side by side from here on");
 }
 
-std::string pinWords(const App& app, fwview::WhyCard& pin) {
+std::string describePin(const App& app, fwview::WhyCard& pin) {
     const double caught = app.live.caughtAt(pin), now = app.live.time();
     if (caught >= 0 && caught > now) return "Catches at " + clockText(caught);
     if (caught >= 0) return "Caught at " + clockText(caught);
     if (!pin.error.empty()) return pin.error;
-    if (!pin.answered) return "Asking the fire";
+    if (!pin.answered) return "Querying the fire";
     return pin.answer.answer + (pin.answer.forecast.empty() ? "" : ". " + pin.answer.forecast);
 }
 
@@ -285,11 +285,11 @@ std::string joined(const std::vector<std::string>& lines) {
 }  // namespace
 
 void newScene(App& app) {
-    ifSaved(app, [&app] { showDocument(app, fwedit::newDocument()); });
+    runWhenSaved(app, [&app] { showDocument(app, fwedit::newDocument()); });
 }
 
 void openScene(App& app, const fs::path& file) {
-    ifSaved(app, [&app, file] {
+    runWhenSaved(app, [&app, file] {
         fwedit::Document document;
         std::vector<std::string> repairs;
         std::string error;
@@ -302,16 +302,16 @@ void openScene(App& app, const fs::path& file) {
         if (!repairs.empty())
             toast(app, Toast::Kind::kWarning, file.filename().string() + " opened with repairs",
                   joined(repairs));
-        say(app, "Opened " + file.filename().string());
+        setStatus(app, "Opened " + file.filename().string());
     });
 }
 
 void openBuiltIn(App& app, int which) {
-    ifSaved(app, [&app, which] {
+    runWhenSaved(app, [&app, which] {
         fwedit::Document document = fwedit::newDocument();
         std::string error;
         if (!makeBuiltIn(which, stateFolder(), document, error)) {
-            toast(app, Toast::Kind::kError, "That scene was not made", error);
+            toast(app, Toast::Kind::kError, "The scene could not be created", error);
             return;
         }
         showDocument(app, std::move(document));
@@ -321,7 +321,7 @@ void openBuiltIn(App& app, int which) {
 void importMesh(App& app, const fs::path& file) {
     Command command;
     command.verb = Verb::Import;
-    // A scene with a file of its own keeps paths beside it relative.
+    // A scene with a file stores nearby paths relative to it.
     command.file = fs::absolute(file).lexically_normal().string();
     if (!app.document.file.empty()) {
         const fs::path beside = fs::absolute(app.document.file).parent_path();
@@ -336,7 +336,7 @@ void importMesh(App& app, const fs::path& file) {
     if (app.page == Page::kWelcome) app.page = Page::kScene;
     if (!perform(app, command, &added)) return;
     if (added != 0) select(app, added, false, false);
-    if (first) app.camera.distance = -1;  // framed once it is there
+    if (first) app.camera.distance = -1;  // frame it once it is loaded
 }
 
 bool save(App& app, bool elsewhere, std::function<void()> after) {
@@ -351,7 +351,7 @@ bool save(App& app, bool elsewhere, std::function<void()> after) {
         app.savedRevision = app.document.revision;
         addRecent(app.user, file);
         dropRecovery();
-        say(app, "Saved " + file.filename().string());
+        setStatus(app, "Saved " + file.filename().string());
         if (after) after();
         return true;
     };
@@ -367,7 +367,7 @@ bool save(App& app, bool elsewhere, std::function<void()> after) {
     return false;
 }
 
-void ifSaved(App& app, std::function<void()> then) {
+void runWhenSaved(App& app, std::function<void()> then) {
     if (!fwedit::unsaved(app.document)) {
         then();
         return;
@@ -376,7 +376,7 @@ void ifSaved(App& app, std::function<void()> then) {
     app.afterGuard = std::move(then);
 }
 
-void takeDropped(App& app, const std::vector<fs::path>& files) {
+void openDropped(App& app, const std::vector<fs::path>& files) {
     for (const fs::path& file : files) {
         const std::string ending = file.extension().string();
         if (ending == ".fwscene") {
@@ -394,8 +394,8 @@ void takeDropped(App& app, const std::vector<fs::path>& files) {
 
 namespace {
 
-// False: it is not kept.
-bool keepAside(App& app) {
+// Returns false if saving fails.
+bool saveRecoveryCopy(App& app) {
     app.savedTime = app.now;
     app.savedRevision = app.document.revision;
     std::string error;
@@ -412,7 +412,7 @@ void autosave(App& app) {
     if (app.document.revision == app.savedRevision ||
         app.now - app.savedTime < double(app.autosaveEvery))
         return;
-    keepAside(app);
+    saveRecoveryCopy(app);
 }
 
 void recover(App& app, const Recovery& recovery) {
@@ -427,8 +427,8 @@ void recover(App& app, const Recovery& recovery) {
     if (!repairs.empty())
         toast(app, Toast::Kind::kWarning, "Unsaved work was recovered with repairs",
               joined(repairs));
-    say(app, "Recovered unsaved work");
-    if (keepAside(app)) dropRecovery(recovery);  // not before it lies aside as ours
+    setStatus(app, "Recovered unsaved work");
+    if (saveRecoveryCopy(app)) dropRecovery(recovery);  // only after our own copy is on disk
 }
 
 const Action* findAction(const App& app, const char* name) {
@@ -482,7 +482,7 @@ std::vector<Action> makeActions(App& app) {
         {"Open…", "File", "Ctrl+O", icons::open,
          [at, sceneFile] {
              sceneFile("Open a scene or a mesh", "Open", {".fwscene", ".glb", ".gltf"},
-                       [at](const fs::path& file) { takeDropped(*at, {file}); });
+                       [at](const fs::path& file) { openDropped(*at, {file}); });
          }},
         {"Import mesh…", "File", "Ctrl+I", icons::importFrom,
          [at, sceneFile] {
@@ -496,7 +496,7 @@ std::vector<Action> makeActions(App& app) {
          "Ctrl+W",
          nullptr,
          [at] {
-             ifSaved(*at, [at] {
+             runWhenSaved(*at, [at] {
                  adoptDocument(*at, fwedit::newDocument());
                  at->live.forget();
                  at->selection.clear();
@@ -507,12 +507,12 @@ std::vector<Action> makeActions(App& app) {
          {},
          opened,
          true},
-        {"Quit", "File", "Ctrl+Q", nullptr, [at] { ifSaved(*at, [at] { at->quit = true; }); }},
+        {"Quit", "File", "Ctrl+Q", nullptr, [at] { runWhenSaved(*at, [at] { at->quit = true; }); }},
 
         {"Undo", "Edit", "Ctrl+Z", icons::undo,
          [at] {
              if (at->page == Page::kFlame) return at->flame->undo();
-             if (fwedit::undo(at->document)) say(*at, "Undone");
+             if (fwedit::undo(at->document)) setStatus(*at, "Undone");
          },
          [at] {
              return at->page == Page::kFlame ? at->flame->at > 0 : fwedit::canUndo(at->document);
@@ -521,7 +521,7 @@ std::vector<Action> makeActions(App& app) {
         {"Redo", "Edit", "Ctrl+Shift+Z", icons::redo,
          [at] {
              if (at->page == Page::kFlame) return at->flame->redo();
-             if (fwedit::redo(at->document)) say(*at, "Done again");
+             if (fwedit::redo(at->document)) setStatus(*at, "Done again");
          },
          [at] {
              return at->page == Page::kFlame ? at->flame->at + 1 < at->flame->steps.size()
@@ -691,7 +691,7 @@ std::vector<Action> makeActions(App& app) {
          [at, atTarget] {
              const fwedit::Scene& s = at->document.scene;
              const ObjectId id = at->selection.size() == 1 ? at->selection[0] : 0;
-             // Of the fire of a mesh that is selected; else a fire of its own.
+             // Show the fire of the selected mesh, otherwise an independent fire.
              if (fwedit::findIn(s.meshes, id)) {
                  addObject(*at, Kind::Emitter,
                            {{"shape", double(fwedit::EmitterMesh)}, {"sticks_to", double(id)}});
@@ -764,9 +764,9 @@ std::vector<Action> makeActions(App& app) {
          "Ctrl+Space",
          nullptr,
          [at] {
-             at->live.seek(at->live.time());  // what was only previewed is burnt
+             at->live.seek(at->live.time());  // burn the previewed time for real
              at->playing = true;
-             say(*at, "Burns on from " + clockText(at->live.time()));
+             setStatus(*at, "Burns on from " + clockText(at->live.time()));
          },
          {},
          scene},
@@ -797,7 +797,7 @@ std::vector<Action> makeActions(App& app) {
          "C",
          icons::compare,
          [at] {
-             if (at->live.comparing()) return at->live.endCompare();
+             if (at->live.isComparing()) return at->live.endCompare();
              compareStep(*at, at->document.at);
          },
          {},
@@ -851,7 +851,7 @@ std::vector<Action> makeActions(App& app) {
         {"What is this?", "Help", "Shift+F1", icons::question,
          [at] {
              fwui::asking() = !fwui::asking();
-             if (fwui::asking()) say(*at, "Point at what you ask about");
+             if (fwui::asking()) setStatus(*at, "Point at what you ask about");
          }},
         {"About Flamewright", "Help", "", icons::info, [at] { at->about = true; }},
     };
@@ -889,8 +889,8 @@ bool rebind(App& app, size_t index, const std::string& keys, std::string& proble
         app.user.keys[action.name] = keys;
     saveUserState(app.user);
     problem.clear();
-    say(app, keys.empty() ? std::string(action.name) + " has no keys now"
-                          : keys + " is " + action.name + " now");
+    setStatus(app, keys.empty() ? std::string(action.name) + " has no keys now"
+                                : keys + " is " + action.name + " now");
     return true;
 }
 
@@ -910,7 +910,7 @@ bool keysPressed(const std::string& keys) {
            ImGui::IsKeyPressed(wanted->code, false);
 }
 
-// The next key that is pressed is the action's.
+// The next key press becomes the action's key.
 void awaitKeys(App& app) {
     const ImGuiIO& io = ImGui::GetIO();
     for (int code = 0; code < IM_ARRAYSIZE(io.KeysDown); ++code) {
@@ -926,7 +926,7 @@ void awaitKeys(App& app) {
 
 void runKeys(App& app) {
     const ImGuiIO& io = ImGui::GetIO();
-    if (ImGui::IsKeyPressed(256, false)) {  // Esc closes the topmost
+    if (ImGui::IsKeyPressed(256, false)) {  // Esc closes the topmost overlay
         if (app.rebinding >= 0) {
             app.rebinding = -1;
             app.keysProblem.clear();
@@ -953,11 +953,11 @@ void runKeys(App& app) {
         return;
     }
     if (app.rebinding >= 0) return awaitKeys(app);
-    // A slow frame may hear of several keys: a page's and then one of that page.
+    // A slow frame may receive several keys: one for a page, then one on that page.
     for (const Action& action : app.actions) {
         if (app.files.open || app.palette || app.guard || app.about) return;
         if (action.keys.empty() || !keysPressed(action.keys)) continue;
-        // Within a text its own undo and clipboard are meant.
+        // Text fields have their own undo and clipboard.
         if (io.WantTextInput && (!io.KeyCtrl || !std::strcmp(action.place, "Edit")) &&
             std::strcmp(action.name, "Keys"))
             continue;
@@ -972,9 +972,9 @@ void runKeys(App& app) {
 void recordPages(App& app, const fwui::Frame& frame) {
     if (app.page == Page::kFlame) app.flame->record(frame, app.deltaTime);
     if (app.page != Page::kScene && app.page != Page::kPaint) return;
-    const bool runs = app.page == Page::kScene && app.playing && !app.live.preparing();
+    const bool runs = app.page == Page::kScene && app.playing && !app.live.isPreparing();
     fwedit::Camera camera = app.camera;
-    camera.distance *= standOff(app);
+    camera.distance *= paintDistanceFactor(app);
     app.live.record(frame, camera, runs ? app.deltaTime * app.speed : 0);
     if (app.live.milliseconds() <= 0) return;
     app.costs.push_back(float(app.live.milliseconds()));
@@ -982,12 +982,13 @@ void recordPages(App& app, const fwui::Frame& frame) {
 }
 
 bool isLively(const App& app) {
-    if (app.page == Page::kFlame && app.flame->lively()) return true;
-    if (app.output->lively()) return true;
-    if (app.page == Page::kWelcome && app.cardsCome) return true;
+    if (app.page == Page::kFlame && app.flame->isLively()) return true;
+    if (app.output->isLively()) return true;
+    if (app.page == Page::kWelcome && app.cardsLoading) return true;
     if (app.page != Page::kScene && app.page != Page::kPaint) return false;
-    if (app.now - app.movedAt < 1) return true;  // until the sharp picture is there
-    return app.playing || !app.live.settled() || app.live.preparing() || app.live.resting();
+    if (app.now - app.movedAt < 1) return true;  // until the full-resolution picture is ready
+    return app.playing || !app.live.isSettled() || app.live.isPreparing() ||
+           app.live.isPreparingRest();
 }
 
 void showApp(App& app) {
@@ -995,7 +996,7 @@ void showApp(App& app) {
     app.screen = {0, 0, size.x, size.y};
     ImGui::PushFont(fwui::fonts().body);
     runKeys(app);
-    followOutput(app);
+    updateOutput(app);
     switch (app.page) {
         case Page::kWelcome:
             showWelcome(app, app.screen);

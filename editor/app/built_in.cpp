@@ -25,7 +25,7 @@ constexpr BuiltIn kScenes[] = {
     {"Rune fire", "Its own colours, not a real glow", icons::star},
 };
 
-// What makes each, line by line; see document/command.h.
+// Commands that build each scene; see document/command.h.
 constexpr const char* kLines[][6] = {
     {"set settings duration 40", "set settings pace 12",
      "add source match name=\"Match\" position 0.14 0.12 0.26 radius 0.03",
@@ -52,7 +52,7 @@ struct Solid {
     std::vector<uint32_t> indices;
 };
 
-// Counter-clockwise from outside, corners of their own for each face.
+// Counter-clockwise from outside; each face has its own corners.
 void addBoard(Solid& solid, std::array<float, 3> low, std::array<float, 3> high) {
     for (uint32_t face = 0; face < 6; ++face) {
         const uint32_t x = face / 2, y = (x + 1) % 3, z = (x + 2) % 3;
@@ -73,7 +73,7 @@ void addBoard(Solid& solid, std::array<float, 3> low, std::array<float, 3> high)
                                                       : k == 1 ? 2
                                                       : k == 2 ? 1
                                                                : k)));
-        if (!front) {  // the second triangle too is turned about
+        if (!front) {  // flip the second triangle too
             const size_t end = solid.indices.size();
             solid.indices[end - 6] = first;
             solid.indices[end - 5] = first + 2;
@@ -185,7 +185,7 @@ bool makeBuiltIn(int which, const std::filesystem::path& folder, fwedit::Documen
     }
     for (const char* line : kLines[which])
         if (line && !fwedit::runLine(document, line, error)) return false;
-    fwedit::resetHistory(document);  // it begins here
+    fwedit::resetHistory(document);  // the history starts here
     return true;
 }
 

@@ -28,7 +28,7 @@ bool Cards::loadNext() {
     if (next_ >= cards_.size()) return false;
     Card& card = cards_[next_];
     fwimport::DecodedImage picture;
-    std::string error;  // without its picture a card has its icon
+    std::string error;  // a card without a picture shows its icon
     const auto bytes = cardPicture(next_);
     if (!bytes.empty() && fwimport::decodeImage({bytes.data(), bytes.size()}, picture, error)) {
         card.image = host_.createTexture(picture.width, picture.height, picture.rgba.data(), false);

@@ -1,5 +1,5 @@
-// The pictures of the welcome page's scenes, made by the build of the program as it is (target
-// flamewright_guide) and kept in the program.
+// Pictures of the welcome page's scenes, embedded in the program. The target flamewright_guide
+// renders them.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ class Cards {
     Cards(const Cards&) = delete;
     Cards& operator=(const Cards&) = delete;
 
-    // One more of them; they come while the page is looked at already. False: all are there.
+    // Loads one more picture while the page is visible. Returns false when all are loaded.
     bool loadNext();
-    // Null: not there yet, or there is none. Width over height is kCardAspect.
+    // Returns null if it is not loaded or missing. The aspect is kCardAspect.
     [[nodiscard]] void* texture(size_t card) const;
 
  private:
@@ -34,7 +34,7 @@ class Cards {
 
 constexpr float kCardAspect = 1 / 0.62f;
 
-// A PNG as the build has it; empty: it was not made yet.
+// The embedded PNG; empty if the build has none.
 std::span<const unsigned char> cardPicture(size_t card);
 
 }  // namespace fwapp

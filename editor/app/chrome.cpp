@@ -1,4 +1,4 @@
-// The frame around every page: menus and pages above, status below, the transport.
+// The frame around every page: menus and page tabs, status line, transport.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -14,7 +14,7 @@ namespace {
 
 constexpr const char* kMenus[] = {"File", "Edit", "View", "Scene", "Time", "Help"};
 
-bool allowed(const App& app, const Action& action) {
+bool isAllowed(const App& app, const Action& action) {
     if (action.page == -3 && app.page == Page::kWelcome) return false;
     if (action.page >= -1 && action.page != int(app.page)) return false;
     return !action.enabled || action.enabled();
@@ -27,7 +27,7 @@ void showMenu(App& app, const char* name, ImVec2 at) {
         if (std::strcmp(action.place, name)) continue;
         if (action.line && !first) menuLine();
         first = false;
-        if (menuItem(action.name, action.icon, action.keys.c_str(), allowed(app, action)))
+        if (menuItem(action.name, action.icon, action.keys.c_str(), isAllowed(app, action)))
             action.run();
     }
     if (!std::strcmp(name, "File") && !app.user.recent.empty()) {
@@ -97,7 +97,7 @@ void showTopBar(App& app, const Rect& rect) {
             at += width;
         }
         const std::string name = sceneName(app);
-        // Where there is no room for both the name stays, and the search has its icon alone.
+        // If space is short, the scene's name stays and the search shrinks to its icon.
         if (rect.x1 - dp(kFindWidth + 18) - (at + dp(20)) < dp(60)) find = kFindIcon;
         const float room = rect.x1 - dp(find + 18) - (at + dp(20));
         drawTextFit(list, fonts().body, at + dp(20), y, room, colors::text, name.c_str());
@@ -141,7 +141,7 @@ void showStatus(App& app, const Rect& rect, std::initializer_list<Hint> hints) {
     };
     char text[64];
     const bool tells = !app.result.empty() && app.now - app.resultTime < 20;
-    const bool brief = tells && rect.width() < dp(1100);  // what was done has room then
+    const bool brief = tells && rect.width() < dp(1100);  // leaves room for the last message
     if (!brief) word(fonts().small, colors::dim, app.device.c_str());
     if (app.framesPerSecond > 0) {
         std::snprintf(text, sizeof text, "%.0f fps", double(app.framesPerSecond));
@@ -212,9 +212,9 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
     if (choice("speed", {x, y + dp(2)}, dp(64, 24), kSpeeds, chosen)) app.speed = kFactors[chosen];
     tip("Speed of playing");
     x += dp(76);
-    if (app.live.seeking() || app.live.preparing()) {
+    if (app.live.isSeeking() || app.live.isPreparing()) {
         float share = 0;
-        const std::string stage = app.live.preparing() ? app.live.stage(share) : "Running on";
+        const std::string stage = app.live.isPreparing() ? app.live.stage(share) : "Running on";
         drawText(list, fonts().small, x, y + dp(14), colors::dim,
                  stage.empty() ? "Preparing" : stage.c_str());
     }
@@ -222,7 +222,7 @@ void showTransport(App& app, ImDrawList* list, const Rect& rect, bool marks) {
     const Action* event = findAction(app, "Add event");
     const ToolLook look{.icon = icons::event, .label = "Event"};
     ToolLook beside{.icon = icons::compare, .label = "Compare"};
-    beside.active = app.live.comparing();
+    beside.active = app.live.isComparing();
     float right = rect.x1 - dp(8) - toolButtonWidth(beside);
     if (toolButton("compare", {right, y}, beside,
                    beside.active ? "Back to one picture" : "Keep this beside what changes",

@@ -27,9 +27,9 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr float kZeroCelsius = 273.15f;
-constexpr float kCoolest = 330, kHottest = 1930;  // degrees Celsius, ends of the colour map
-constexpr double kRefresh = 0.2;                  // s between pictures of a growing stroke
-constexpr float kReach = 1.25f;                   // radii that a profile is wide
+constexpr float kCoolest = 330, kHottest = 1930;  // degrees Celsius, range of the colour map
+constexpr double kRefresh = 0.2;                  // s between pictures while a stroke grows
+constexpr float kReach = 1.25f;                   // width of a profile in radii
 
 ProfilePaint paintOf(const fw::volume::Profile& profile) {
     ProfilePaint paint;
@@ -52,12 +52,12 @@ void profileOf(const ProfilePaint& paint, fw::volume::Profile& profile) {
                              profile);
 }
 
-// Soot glows from 1000 K on; below, the temperature says how much clean gas burns.
+// Soot glows above 1000 K. Below, the temperature encodes how much clean gas burns.
 float glowAt(const ProfilePaint& paint, size_t i) {
     return paint.kelvin[i] < 1000 ? paint.kelvin[i] / 1000 : 4 * paint.soot[i];
 }
 
-// By which a flame with little soot is brought to where it can be seen in a small picture.
+// Exposure that makes a flame with little soot visible in a small picture.
 float exposureOf(const ProfilePaint& paint) {
     constexpr float kBright = 0.9f, kMostExposure = 40;
     float most = 0;
@@ -65,7 +65,7 @@ float exposureOf(const ProfilePaint& paint) {
     return most > 0 ? std::clamp(kBright / most, 1.0f, kMostExposure) : 1.0f;
 }
 
-// How a texel looks on the canvas: its glow, as much as there is to glow.
+// Colour of a texel on the canvas: its glow.
 ImU32 colorAt(const ProfilePaint& paint, ProfilePlane plane, size_t i, float exposure) {
     constexpr ImU32 kEmpty = hex(0x0C0D0F);
     if (plane == ProfilePlane::kSoot)
@@ -97,7 +97,7 @@ std::string tidy(const char* name) {
 
 }  // namespace
 
-// A picture of the interface that changes: copied in the frame that shows it.
+// A texture of the interface that changes; uploaded in the frame that shows it.
 struct FlameCanvas {
     FlameCanvas(const sample::VulkanHost& hostGiven, fwui::UiRenderer& uiGiven)
         : host(hostGiven), ui(uiGiven) {
@@ -167,14 +167,14 @@ FlamePage::~FlamePage() {
 
 namespace {
 
-// A picture of a preset's glow in the preset's own colour, where it has one.
+// Tints a preset's picture with the preset's own colour, if it has one.
 void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
     const fw::volume::FlameLook look = fw::volume::presetDef(fw::volume::FlamePreset(preset)).look;
     const float weight = look.tint[3];
     if (!(weight > 0)) return;
-    // Without soot there is little glow to colour.
+    // Without soot there is little glow to tint.
     const float gain = look.painter == fw::volume::Painter::Burner ? 3.0f : 1.0f;
-    float tint[3];  // as the screen has it
+    float tint[3];  // display-encoded
     for (size_t c = 0; c < 3; ++c)
         tint[c] = gain * std::pow(std::clamp(look.tint[c], 0.0f, 1.0f), 1 / 2.2f);
     for (size_t i = 0; i + 3 < rgba.size(); i += 4) {
@@ -188,7 +188,7 @@ void tintPixels(uint32_t preset, std::vector<uint8_t>& rgba) {
 
 }  // namespace
 
-// Worlds, backdrops and targets: when the page is first seen.
+// Creates worlds, backdrops and targets when the page first opens.
 void FlamePage::open() {
     opened = true;
     canvas = std::make_unique<FlameCanvas>(host, ui);
@@ -223,8 +223,8 @@ void FlamePage::open() {
     fwContext_Prepare(context);
 }
 
-// The fires anew, of the profile as it is.
-void FlamePage::relight() {
+// Recreates the fires with the current profile.
+void FlamePage::recreateFires() {
     vkDeviceWaitIdle(host.device);
     const float room = std::max(draft.diameter * 1.2f, 0.02f);
     const bool sameRoom = room == std::exchange(studioSize, room);
@@ -266,9 +266,9 @@ void FlamePage::relight() {
     relitAt = time;
 }
 
-// The backdrop of a picture, so large that the eye stands in it.
-void FlamePage::standAround(View& view, float distance) {
-    constexpr float kInside = 6;  // sizes of it from its middle to where an eye may stand
+// Sizes the backdrop so that the camera is inside it.
+void FlamePage::sizeBackdrop(View& view, float distance) {
+    constexpr float kInside = 6;  // maximum camera distance from its centre, in backdrop sizes
     if (view.studio && view.studioSize * kInside >= distance) return;
     vkDeviceWaitIdle(host.device);
     view.studioSize = std::max(studioSize, 1.2f * distance / kInside);
@@ -286,7 +286,7 @@ float FlamePage::height() const {
     return 2 * draft.diameter;
 }
 
-bool FlamePage::lively() const { return !paused || changed || drawnRevision != pictureRevision; }
+bool FlamePage::isLively() const { return !paused || changed || drawnRevision != pictureRevision; }
 
 void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
     if (!opened) return;
@@ -295,15 +295,15 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         drawnRevision = pictureRevision;
     }
     time += double(deltaTime);
-    if (changed && (!stroking || time - relitAt > kRefresh)) relight();
+    if (changed && (!stroking || time - relitAt > kRefresh)) recreateFires();
     const float tall = height();
     ++frameCount;
     for (int i = 0; i < 3; ++i) {
         View& view = views[i];
         if (!view.world || view.rect.width() < 8) continue;
-        // They take turns: on a slow device all three, else the two small ones.
+        // Round-robin updates: on a slow device all three views, otherwise the two small ones.
         const uint64_t turns = slow ? 3 : i == 0 ? 1 : 2;
-        // A picture that holds nothing yet does not wait.
+        // An empty picture is drawn at once.
         const bool due = !view.seen || (frameCount + uint64_t(i)) % turns == 0;
         view.owed += deltaTime;
         if (!due || (paused && view.drawn == pictureRevision && view.seen)) continue;
@@ -318,7 +318,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         const float aspect = float(extent.width) / float(extent.height);
         const float wide = std::max(1.5f * tall, 1.7f * draft.diameter / std::max(0.2f, aspect));
         orbit.distance = 0.5f * wide / std::tan(0.5f * orbit.fieldOfView);
-        standAround(view, orbit.distance);
+        sizeBackdrop(view, orbit.distance);
         sample::StageFrame stage;
         stage.commands = frame.commands;
         stage.slot = frame.slot;
@@ -337,7 +337,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
         view.target->begin(frame);
         view.studio->draw(stage, frame.commands, camera, {lights, count});
         view.target->beginFlames(frame);
-        view.target->lendDepth(described);
+        view.target->setSampledDepth(described);
         const VkViewport all = view.target->viewport();
         if (outside == FW_OK) fwWorld_RecordInside(view.world, &described, targetId, &camera, &all);
         view.target->end(frame);
@@ -346,7 +346,7 @@ void FlamePage::record(const fwui::Frame& frame, float deltaTime) {
     }
 }
 
-void FlamePage::keepStep(const char* name) {
+void FlamePage::recordStep(const char* name) {
     if (steps[at].draft == draft) return;
     steps.resize(at + 1);
     steps.push_back({name, draft});
@@ -380,7 +380,7 @@ void FlamePage::usePreset(uint32_t which) {
     draft.diameter = def.diameter;
     draft.power = def.power;
     changed = true;
-    keepStep("Start from a preset");
+    recordStep("Start from a preset");
     ++pictureRevision;
 }
 
@@ -400,11 +400,11 @@ void FlamePage::useCurves(bool curves) {
     if (draft.curves == curves) return;
     draft.curves = curves;
     chosen = {};
-    if (curves) curveChanged();  // what was painted stays a step back
-    keepStep(curves ? "Shape the flame by points" : "Paint the flame by hand");
+    if (curves) curveChanged();  // the painted version stays one undo step back
+    recordStep(curves ? "Shape the flame by points" : "Paint the flame by hand");
 }
 
-bool FlamePage::takeFrom(App& app, fwedit::ObjectId id) {
+bool FlamePage::loadFromScene(App& app, fwedit::ObjectId id) {
     const fwedit::Flame* flame = fwedit::findIn(app.document.scene.flames, id);
     if (!flame) return false;
     if (fwedit::hasShape(*flame) && !fwedit::hasCurve(*flame)) {
@@ -419,7 +419,7 @@ bool FlamePage::takeFrom(App& app, fwedit::ObjectId id) {
     draft.speed = flame->speed;
     draft.ownColors = flame->tintWeight > 0;
     if (draft.ownColors) {
-        const float paler = fw::volume::FlameLook{}.tintWhite;  // a core that has no colour
+        const float paler = fw::volume::FlameLook{}.tintWhite;  // a core without its own colour
         for (size_t i = 0; i < 3; ++i) {
             draft.edge[i] = flame->tint[i];
             draft.core[i] = std::lerp(std::lerp(flame->tint[i], 1.0f, paler), flame->coreTint[i],
@@ -431,8 +431,8 @@ bool FlamePage::takeFrom(App& app, fwedit::ObjectId id) {
         draft.curve = fwedit::curveOf(*flame);
         curveChanged();
     }
-    keepStep("Take a flame from the scene");
-    say(app, "Took " + flame->name + " from the scene");
+    recordStep("Take a flame from the scene");
+    setStatus(app, "Took " + flame->name + " from the scene");
     return true;
 }
 
@@ -447,8 +447,8 @@ std::vector<double> numbersOf(const fwedit::Keys& keys) {
 
 }  // namespace
 
-// As one step of the scene. `profile`: a file of what was painted; empty: it is made by points.
-void FlamePage::putInto(App& app, fwedit::ObjectId id, const std::string& profile) {
+// Changes the scene in one step. `profile`: file of the painted profile; empty: made by points.
+void FlamePage::applyToScene(App& app, fwedit::ObjectId id, const std::string& profile) {
     const bool byPoints = profile.empty();
     std::vector<fwedit::Assignment> fields = {
         {"profile", profile},
@@ -490,7 +490,7 @@ void FlamePage::swapWithOther() {
     if (!hasOther) return;
     std::swap(draft, other);
     chosen = {};
-    keepStep("Swap A and B");
+    recordStep("Swap A and B");
     changed = true;
     ++pictureRevision;
 }
@@ -519,10 +519,10 @@ bool FlamePage::import(App& app, const fs::path& file) {
     }
     draft.paint = paintOf(profile);
     draft.curves = false;
-    keepStep("Import a flame shape");
+    recordStep("Import a flame shape");
     changed = true;
     ++pictureRevision;
-    say(app, "Imported " + file.filename().string());
+    setStatus(app, "Imported " + file.filename().string());
     return true;
 }
 
@@ -532,7 +532,7 @@ bool FlamePage::exportTo(App& app, const fs::path& file) {
     std::string error;
     if (file.extension() == ".fwprofile") {
         const auto cooked = fw::volume::cookProfile(profile, std::pmr::get_default_resource());
-        error = fwtools::writeWhole(file.string(), cooked);
+        error = fwtools::replaceFile(file.string(), cooked);
     } else {
         const bool whole = file.extension() != ".exr";
         fwimport::writePicture(file, fwtools::pictureOfProfile(profile, whole), error);
@@ -541,7 +541,7 @@ bool FlamePage::exportTo(App& app, const fs::path& file) {
         toast(app, Toast::Kind::kError, file.filename().string() + " was not written", error);
         return false;
     }
-    say(app, "Wrote " + file.filename().string());
+    setStatus(app, "Wrote " + file.filename().string());
     return true;
 }
 
@@ -556,7 +556,7 @@ void addFlameActions(App& app, std::vector<Action>& list) {
         return
             [at, by] { at->flame->strength = std::clamp(at->flame->strength + by, 0.0f, 100.0f); };
     };
-    // The flame of the scene that is selected, else the first; 0: there is none.
+    // Returns the selected flame of the scene, otherwise the first; 0: none.
     auto target = [at] {
         fwedit::ObjectId id = 0;
         for (const fwedit::Flame& flame : at->document.scene.flames)
@@ -632,7 +632,7 @@ void addFlameActions(App& app, std::vector<Action>& list) {
           icons::firepit,
           [at, target] {
               if (at->flame->draft.curves) {
-                  at->flame->putInto(*at, target(), "");
+                  at->flame->applyToScene(*at, target(), "");
                   at->page = Page::kScene;
                   return;
               }
@@ -645,7 +645,7 @@ void addFlameActions(App& app, std::vector<Action>& list) {
               dialog.done = [at, target](fs::path file) {
                   if (file.extension() != ".fwprofile") file += ".fwprofile";
                   if (!at->flame->exportTo(*at, file)) return;
-                  at->flame->putInto(*at, target(), file.string());
+                  at->flame->applyToScene(*at, target(), file.string());
                   at->page = Page::kScene;
               };
               askFile(*at, dialog);
@@ -653,7 +653,7 @@ void addFlameActions(App& app, std::vector<Action>& list) {
           {},
           page},
          {"Take from the scene", "Flame", "", icons::link,
-          [at, target] { at->flame->takeFrom(*at, target()); },
+          [at, target] { at->flame->loadFromScene(*at, target()); },
           [at] { return !at->document.scene.flames.empty(); }, page},
          {"By points or by brush",
           "Flame",
@@ -676,7 +676,7 @@ void addFlameActions(App& app, std::vector<Action>& list) {
           [at] {
               at->flame->other = at->flame->draft;
               at->flame->hasOther = at->flame->changed = true;
-              say(*at, "Kept as B");
+              setStatus(*at, "Kept as B");
           },
           {},
           page},
@@ -705,7 +705,7 @@ void showFlameTools(App& app, const Rect& rect) {
     int own = page.draft.ownColors ? 1 : 0;
     if (segments("glow", {x, y + dp(2)}, dp(176, 24), {"Real glow", "Own colours"}, own)) {
         page.draft.ownColors = own == 1;
-        page.keepStep(own == 1 ? "Own colours for the flame" : "Real glow for the flame");
+        page.recordStep(own == 1 ? "Own colours for the flame" : "Real glow for the flame");
     }
     struct Act {
         const char* name;
@@ -722,7 +722,7 @@ void showFlameTools(App& app, const Rect& rect) {
             return sum + toolButtonWidth(act.look) + dp(4);
         });
     };
-    // In a narrow window their words are in the tips alone.
+    // In a narrow window, only the tooltips have labels.
     x += dp(184);
     if (x + widthOf() > rect.x1)
         for (Act& act : acts) act.look.label = nullptr;
@@ -735,7 +735,7 @@ void showFlameTools(App& app, const Rect& rect) {
     endPanel();
 }
 
-// Numbers of the point or the stop that is chosen.
+// Values of the selected point or stop.
 void showPoint(FlamePage& page, Rows& rows) {
     if (!section(rows, "Chosen point", page.brushOpen)) return;
     fwedit::FlameCurve& curve = page.draft.curve;
@@ -774,7 +774,7 @@ void showPoint(FlamePage& page, Rows& rows) {
     rows.y += dp(4);
 }
 
-// As the screen has it.
+// Converts to display values.
 ImU32 screenColor(const std::array<float, 3>& linear) {
     const auto part = [&](size_t i) {
         return unsigned(std::lround(255 * std::sqrt(std::clamp(linear[i], 0.0f, 1.0f))));
@@ -782,7 +782,7 @@ ImU32 screenColor(const std::array<float, 3>& linear) {
     return IM_COL32(part(0), part(1), part(2), 255);
 }
 
-// The flame's own colours, from where it is coolest to where it is hottest; true if one changed.
+// The flame's own colours, from coolest to hottest. Returns true if one changed.
 bool showColors(FlamePage& page, Rows& rows) {
     const ImU32 edge = screenColor(page.draft.edge), core = screenColor(page.draft.core);
     rows.list->AddRectFilledMultiColor({rows.x0, rows.y}, {rows.x1, rows.y + dp(14)}, edge, core,
@@ -807,12 +807,12 @@ bool showColors(FlamePage& page, Rows& rows) {
     return touched;
 }
 
-// Two beside each other, with their names.
+// Two tools side by side, with labels.
 void showBrushTools(App& app, Rows& rows) {
     FlamePage& page = *app.flame;
     struct Item {
         ProfileTool tool;
-        const char *icon, *name;  // of its action
+        const char *icon, *name;  // icon and name of its action
     };
     constexpr Item kTools[] = {{ProfileTool::kPaint, icons::brush, "Paint"},
                                {ProfileTool::kErase, icons::erase, "Erase"},
@@ -898,24 +898,24 @@ void showFlameLeft(App& app, const Rect& rect) {
     if (touched) page.changed = true;
     if (!ImGui::GetIO().MouseDown[0] && !page.gripped && !page.stroking &&
         !ImGui::IsAnyItemActive())
-        page.keepStep("Numbers of the flame");
+        page.recordStep("Numbers of the flame");
     endPanel();
 }
 
 // ---- by points
 
-constexpr float kGrip = 9;       // dp around a point
-constexpr float kApart = 0.02f;  // of their line, between two points
+constexpr float kGrip = 9;       // dp, radius to grab a point
+constexpr float kApart = 0.02f;  // minimum distance between two points, relative to their line
 
-// Where a point may lie between its neighbours; the ends of an outline stay at foot and tip.
-float between(const fwedit::Keys& keys, size_t i, float wanted, bool endsStay) {
+// Clamps a point between its neighbours. The ends of an outline stay at foot and tip.
+float clampBetween(const fwedit::Keys& keys, size_t i, float wanted, bool endsStay) {
     if (endsStay && (i == 0 || i + 1 == keys.size())) return keys[i].time;
     const float low = i == 0 ? 0 : keys[i - 1].time + kApart;
     const float high = i + 1 == keys.size() ? 1 : keys[i + 1].time - kApart;
     return std::clamp(wanted, std::min(low, high), std::max(low, high));
 }
 
-// A new point among the others, if there is room; its index, else -1.
+// Inserts a point if there is space. Returns its index, or -1.
 int addPoint(fwedit::Keys& keys, fwedit::Key point) {
     size_t i = 0;
     while (i < keys.size() && keys[i].time < point.time) ++i;
@@ -936,7 +936,7 @@ bool removePoint(fwedit::Keys& keys, int i, bool endsStay) {
 struct CanvasPlace {
     ImVec2 low, high;
     float axis;
-    Rect stops;  // the bar of temperatures
+    Rect stops;  // the temperature bar
     ImVec2 of(const fwedit::Key& point, float side = 1) const {
         return {axis + side * (high.x - axis) * point.value / fwedit::kShapeReach,
                 high.y - (high.y - low.y) * point.time};
@@ -1027,8 +1027,8 @@ FlamePage::Grip under(const FlamePage& page, const CanvasPlace& place, ImVec2 mo
     return found;
 }
 
-// Points over the picture and stops below it: dragged, added by a double click, taken away by the
-// right button or Del.
+// Points over the picture and stops below it. Drag moves, double click adds, right click or Del
+// removes.
 void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
     FlamePage& page = *app.flame;
     fwedit::FlameCurve& curve = page.draft.curve;
@@ -1048,7 +1048,7 @@ void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
             page.chosen = {-1, addPoint(curve.stops, {at, fwedit::valueAt(curve.stops, at)})};
         }
         page.curveChanged();
-        page.keepStep(overCanvas ? "Add a point to the outline" : "Add a temperature");
+        page.recordStep(overCanvas ? "Add a point to the outline" : "Add a temperature");
     } else if (over && ImGui::IsMouseClicked(0)) {
         page.chosen = hot;
         page.gripped = !(hot == FlamePage::Grip{});
@@ -1061,7 +1061,7 @@ void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
             removePoint(curve.stops, which.stop, false)) {
             page.chosen = {};
             page.curveChanged();
-            page.keepStep("Take a point away");
+            page.recordStep("Take a point away");
         }
     }
     if (page.gripped && (heldCanvas || heldStops)) {
@@ -1069,22 +1069,22 @@ void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
         if (page.chosen.point >= 0) {
             const auto i = size_t(page.chosen.point);
             const fwedit::Key wanted = place.outlineAt(io.MousePos);
-            curve.outline[i] = {between(curve.outline, i, wanted.time, true),
+            curve.outline[i] = {clampBetween(curve.outline, i, wanted.time, true),
                                 std::max(0.01f, wanted.value)};
         } else if (page.chosen.stop >= 0) {
             const auto i = size_t(page.chosen.stop);
-            curve.stops[i].time = between(
+            curve.stops[i].time = clampBetween(
                 curve.stops, i, (io.MousePos.x - place.stops.x0) / place.stops.width(), false);
         }
         if (!(before == curve)) {
             page.curveChanged();
-            page.stroking = true;  // the preview follows now and then
+            page.stroking = true;  // update the preview occasionally
         }
     } else if (page.gripped) {
         page.gripped = page.stroking = false;
-        page.keepStep(page.chosen.point >= 0 ? "Outline point of the flame"
-                                             : "Temperature of the flame");
-        say(app, page.steps[page.at].name);
+        page.recordStep(page.chosen.point >= 0 ? "Outline point of the flame"
+                                               : "Temperature of the flame");
+        setStatus(app, page.steps[page.at].name);
     }
     if (overStops && hot.stop >= 0 && io.MouseWheel != 0) {
         float& celsius = curve.stops[size_t(hot.stop)].value;
@@ -1099,11 +1099,11 @@ void editCurve(App& app, ImDrawList* list, const CanvasPlace& place) {
     drawStops(list, page, place, hot);
 }
 
-// The brush from there to where the dab is, a third of a radius apart.
+// Places dabs from the previous position to the current one, a third of a radius apart.
 void paintAlong(FlamePage& page, fwedit::Dab dab, float fromX, float fromY) {
     const float toX = dab.x, toY = dab.y;
-    const float way = std::hypot((toX - fromX) / dab.radiusX, (toY - fromY) / dab.radiusY);
-    const int count = std::clamp(int(way * 3), 1, 200);
+    const float length = std::hypot((toX - fromX) / dab.radiusX, (toY - fromY) / dab.radiusY);
+    const int count = std::clamp(int(length * 3), 1, 200);
     dab.alongX = (toX - fromX) / float(count);
     dab.alongY = (toY - fromY) / float(count);
     for (int i = 1; i <= count; ++i) {
@@ -1163,11 +1163,11 @@ void showCanvas(App& app, const Rect& rect) {
         endPanel();
         return;
     }
-    // The legend of what is painted.
+    // The legend of the painted quantity.
     const float mapY = rect.y1 - dp(34), mapX0 = low.x, mapX1 = high.x;
     if (page.plane == ProfilePlane::kTemperature) {
         drawMap(list, {mapX0, mapY}, {mapX1, mapY + dp(10)}, kHeatMap);
-        const int every = mapX1 - mapX0 < dp(240) ? 2 : 1;  // numbers have room beside each other
+        const int every = mapX1 - mapX0 < dp(240) ? 2 : 1;  // avoid overlapping numbers
         for (int i = 0; i <= 4; i += every) {
             const float celsius = kCoolest + (kHottest - kCoolest) * float(i) / 4;
             char text[24];
@@ -1214,7 +1214,7 @@ void showCanvas(App& app, const Rect& rect) {
                : io.KeyCtrl                 ? ProfileTool::kErase
                                             : page.tool;
     dab.value = page.plane == ProfilePlane::kTemperature ? page.celsius + kZeroCelsius : page.soot;
-    const bool draws = held || page.stroking;  // to where the hand let go, in a slow frame too
+    const bool draws = held || page.stroking;  // includes the release position of a slow frame
     if (hovered && io.MouseWheel != 0)
         page.size = std::clamp(page.size * std::pow(1.12f, io.MouseWheel), 1.0f, 100.0f);
     if (held && picks) {
@@ -1253,7 +1253,7 @@ void showCanvas(App& app, const Rect& rect) {
             page.stroking = true;
         }
     } else if (draws) {
-        // Along the way since the last frame.
+        // Along the path since the last frame.
         if (!page.stroking || dab.x != page.lastX || dab.y != page.lastY)
             paintAlong(page, dab, page.stroking ? page.lastX : dab.x,
                        page.stroking ? page.lastY : dab.y);
@@ -1264,12 +1264,12 @@ void showCanvas(App& app, const Rect& rect) {
         page.ended = !ramps;
         page.endedX = page.lastX;
         page.endedY = page.lastY;
-        page.keepStep(page.tool == ProfileTool::kErase      ? "Erase in the flame"
-                      : page.tool == ProfileTool::kSmooth   ? "Smooth the flame"
-                      : page.tool == ProfileTool::kSmear    ? "Smear the flame"
-                      : page.tool == ProfileTool::kGradient ? "Gradient in the flame"
-                                                            : "Paint the flame");
-        say(app, page.steps[page.at].name);
+        page.recordStep(page.tool == ProfileTool::kErase      ? "Erase in the flame"
+                        : page.tool == ProfileTool::kSmooth   ? "Smooth the flame"
+                        : page.tool == ProfileTool::kSmear    ? "Smear the flame"
+                        : page.tool == ProfileTool::kGradient ? "Gradient in the flame"
+                                                              : "Paint the flame");
+        setStatus(app, page.steps[page.at].name);
     }
     if (hovered || held) {
         ImGui::SetMouseCursor(ImGuiMouseCursor_None);
@@ -1303,7 +1303,7 @@ void showCanvas(App& app, const Rect& rect) {
         }
         list->PopClipRect();
         char text[24];
-        const bool ends = ramps && page.stroking;  // the value where the mouse is
+        const bool ends = ramps && page.stroking;  // the value at the mouse
         if (page.plane == ProfilePlane::kTemperature) {
             std::snprintf(text, sizeof text, "%.0f °C",
                           double(ends ? page.celsiusEnd : page.celsius));
@@ -1336,7 +1336,7 @@ void showView(FlamePage& page, ImDrawList* list, int i, const Rect& rect, const 
     }
     const ImVec2 low = rect.low() + dp(8, 8);
     const float most = rect.width() - dp(16);
-    std::string words = name;  // where there is no room, without how much of it
+    std::string words = name;  // in little space, omit the value
     if (textSize(fonts().body, name).x + dp(36) > most)
         words.resize(std::min(words.find(','), words.size()));
     const float width = std::min(textSize(fonts().body, words.c_str()).x + dp(36), most);
@@ -1346,7 +1346,7 @@ void showView(FlamePage& page, ImDrawList* list, int i, const Rect& rect, const 
                 words.c_str());
 }
 
-// The draft and what was kept, alike in light and size of the picture.
+// The draft and the saved variant, with equal light and size.
 void showSides(FlamePage& page, ImDrawList* list, std::array<Rect, 2> rects) {
     showView(page, list, 0, rects[0], "A, now", icons::moon);
     showView(page, list, 1, rects[1], "B, kept", icons::moon);
@@ -1365,7 +1365,7 @@ void showPreview(App& app, Rect rect) {
         page.paused = !page.paused;
     rect.y0 += dp(2);
     const float gap = dp(2);
-    const bool tall = !page.compares && rect.height() > 2 * rect.width();  // one above the others
+    const bool tall = !page.compares && rect.height() > 2 * rect.width();  // stacked vertically
     const Rect night =
         tall ? rect.cutTop(std::floor(rect.height() * 0.6f) - dp(1))
              : rect.cutLeft(std::floor(rect.width() * (page.compares ? 0.5f : 0.6f)) - dp(1));
@@ -1407,9 +1407,9 @@ void showPresets(App& app, const Rect& rect) {
         button("swap", {end + dp(12), rect.y0 + dp(68)}, {wide, dp(28)}, "Swap A and B"))
         page.swapWithOther();
     float x = rect.x0 + dp(10);
-    const float gap = dp(10);  // all of them are there, however narrow
+    const float gap = dp(10);  // all of them fit at any width
     const float card = std::min(dp(84), (end + dp(2) - x) / float(FW_FIRE_PRESET_COUNT) - gap);
-    bool twoLines = false;  // of a name, then
+    bool twoLines = false;  // names then take two lines
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i)
         twoLines |= textSize(fonts().small, tidy(fwFirePresetName(i)).c_str()).x > card + dp(6);
     const float tall = dp(twoLines ? 46 : 58);

@@ -19,15 +19,14 @@ using fwedit::ObjectId;
 
 namespace {
 
-// How far a slider goes where the limits of a field are far beyond use, and how a number is
-// written.
+// Slider ranges where a field's limits exceed practical values, and number formats.
 struct Range {
     const char* key;
     float low, high;
     const char* format;
     bool heat = false;
-    const char* zero = nullptr;  // what 0 stands for, if not for none
-    bool percent = false;        // a share, shown in hundredths
+    const char* zero = nullptr;  // text for 0 if 0 has a special meaning
+    bool percent = false;        // a share, shown as a percentage
 };
 constexpr Range kRanges[] = {{"output", 0, 60, "%.1f", true},
                              {"power", 0, 400, "%.1f", true},
@@ -80,20 +79,20 @@ NumberLook lookOf(const FieldInfo& field) {
     return look;
 }
 
-std::string asWords(const char* key) {
+std::string readableName(const char* key) {
     std::string text = key;
     std::replace(text.begin(), text.end(), '_', ' ');
     if (!text.empty()) text[0] = char(std::toupper(static_cast<unsigned char>(text[0])));
     return text;
 }
 
-// From press to release it is one step.
+// One undo step from press to release.
 void applyEdit(App& app, ObjectId id, const char* key, const fwedit::Value& value, Edit edit) {
     if (edit == Edit::kDragging && !app.document.dragging) fwedit::beginDrag(app.document);
     if (edit == Edit::kDragging || edit == Edit::kTyped) performSet(app, id, key, value);
     if (edit == Edit::kDone && app.document.dragging) {
         fwedit::endDrag(app.document);
-        say(app, app.document.steps[app.document.at].name);
+        setStatus(app, app.document.steps[app.document.at].name);
     }
 }
 
@@ -116,7 +115,7 @@ void showObjectChoice(App& app, const Rows& rows, ObjectId id, const FieldInfo& 
     endMenu();
 }
 
-// The mesh among whose parts a field chooses; 0: it is no such field.
+// Returns the mesh whose nodes the field chooses from; 0: the field chooses no node.
 ObjectId nodeHolder(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key) {
     if (kind == Kind::Mesh) return std::strcmp(key, "node") ? 0 : id;
     fwedit::Value parent;
@@ -127,7 +126,7 @@ ObjectId nodeHolder(const fwedit::Scene& scene, Kind kind, ObjectId id, const ch
     return fwedit::findIn(scene.meshes, mesh) ? mesh : 0;
 }
 
-// The node of a file as an artist reads it.
+// Returns the display name of a file's node.
 std::string nodeLabel(const fwimport::ImportedModel& model, const std::string& node) {
     std::string ignored;
     const int32_t index = fwimport::findNode(model.nodes, node, ignored);
@@ -136,7 +135,7 @@ std::string nodeLabel(const fwimport::ImportedModel& model, const std::string& n
     return name.empty() ? "Part " + std::to_string(index) : name;
 }
 
-// A part of the file of `mesh`: those there are, below what they hang on.
+// Chooses a node of the file of `mesh` from its hierarchy.
 void showNodeChoice(App& app, const Rows& rows, ObjectId id, const FieldInfo& field, ObjectId mesh,
                     const char* whole) {
     std::shared_ptr<const fwimport::ImportedModel> model;
@@ -203,7 +202,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
         }
         case FieldType::Choice: {
             std::vector<std::string> names;
-            for (const char* word : field.choices) names.push_back(asWords(word));
+            for (const char* word : field.choices) names.push_back(readableName(word));
             std::vector<const char*> shown;
             for (const std::string& name : names) shown.push_back(name.c_str());
             int chosen = int(std::get<double>(value));
@@ -247,7 +246,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
                 rows.next();
                 break;
             }
-            static ImGuiID editing = 0;  // there is one keyboard
+            static ImGuiID editing = 0;  // static, since there is one keyboard
             static std::string text;
             const ImGuiID own = ImGui::GetID(field.key);
             if (editing != own) text = std::get<std::string>(value);
@@ -286,7 +285,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
             break;
         }
         case FieldType::Choices: {
-            // Of a mesh the materials by slot: those that its triangles use.
+            // For a mesh: the materials of the slots in use.
             const auto& list = std::get<std::vector<double>>(value);
             size_t slots = 1;
             if (app.live.burn()) {
@@ -294,7 +293,7 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
                     if (mesh.id == id) slots = mesh.slots;
             }
             std::vector<std::string> names;
-            for (const char* word : field.choices) names.push_back(asWords(word));
+            for (const char* word : field.choices) names.push_back(readableName(word));
             std::vector<const char*> shown;
             for (const std::string& name : names) shown.push_back(name.c_str());
             for (size_t i = 0; i < slots && i < list.size(); ++i) {
@@ -315,12 +314,12 @@ void showField(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fi
             break;
         }
         default:
-            break;  // keys and rows are edited where they show
+            break;  // keys and rows have their own editors
     }
 }
 
-// A factor over the scene's time as a line with points: drag one, double-click for a new one, right
-// click takes it away.
+// Shows a factor over the scene's time as a polyline. Drag moves a point, double click adds one,
+// right click removes one.
 void showKeys(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& field) {
     fwedit::Value value;
     if (!fwedit::getField(app.document.scene, kind, id, field.key, value)) return;
@@ -370,7 +369,7 @@ void showKeys(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fie
     bool held = false, hovered = false;
     hit("keys", low, high - low, &hovered, &held);
     const ImVec2 mouse = ImGui::GetIO().MousePos;
-    static float heldTime = -1;  // of the key under the one mouse
+    static float heldTime = -1;  // time of the dragged key
     int near = -1;
     for (size_t i = 0; i < keys.size(); ++i) {
         const ImVec2 at = place(keys[i]);
@@ -422,7 +421,7 @@ void showKeys(App& app, Rows& rows, Kind kind, ObjectId id, const FieldInfo& fie
 
 enum class Part { kPlace, kMain, kTime, kMore };
 
-Part partOf(Kind kind, const char* key) {
+Part sectionOf(Kind kind, const char* key) {
     auto is = [&](std::initializer_list<const char*> keys) {
         return std::any_of(keys.begin(), keys.end(),
                            [&](const char* one) { return !std::strcmp(one, key); });
@@ -443,8 +442,8 @@ Part partOf(Kind kind, const char* key) {
     return Part::kMain;
 }
 
-// What no shape or kind of the object has any use for.
-bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key) {
+// Returns true for fields that the object's shape or kind ignores.
+bool isIgnored(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key) {
     auto is = [&](const char* one) { return !std::strcmp(one, key); };
     if (is("name") || is("hidden") || is("locked")) return true;
     if (kind == Kind::Event && is("note")) return false;
@@ -492,10 +491,10 @@ bool isIdle(const fwedit::Scene& scene, Kind kind, ObjectId id, const char* key)
     return false;
 }
 
-bool anyOf(const fwedit::Scene& scene, Kind kind, ObjectId id, Part part) {
+bool hasFieldOf(const fwedit::Scene& scene, Kind kind, ObjectId id, Part part) {
     const auto fields = fwedit::fieldsOf(kind);
     return std::any_of(fields.begin(), fields.end(), [&](const FieldInfo& field) {
-        return partOf(kind, field.key) == part && !isIdle(scene, kind, id, field.key) &&
+        return sectionOf(kind, field.key) == part && !isIgnored(scene, kind, id, field.key) &&
                field.type != FieldType::KeyList && field.type != FieldType::Rows;
     });
 }
@@ -518,20 +517,21 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
                                 {Part::kTime, "Time", &app.timeOpen},
                                 {Part::kMore, "More", &app.moreOpen}};
     for (const Heading& heading : headings) {
-        if (!anyOf(app.document.scene, kind, id, heading.part)) continue;
+        if (!hasFieldOf(app.document.scene, kind, id, heading.part)) continue;
         if (!section(rows, heading.name, *heading.open)) continue;
-        // The column of labels is as wide as this section needs it, within reason.
+        // The label column fits this section, within limits.
         float widest = dp(metrics::label);
         for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
-            if (partOf(kind, field.key) != heading.part || field.type == FieldType::Flag ||
-                field.type == FieldType::Vector || isIdle(app.document.scene, kind, id, field.key))
+            if (sectionOf(kind, field.key) != heading.part || field.type == FieldType::Flag ||
+                field.type == FieldType::Vector ||
+                isIgnored(app.document.scene, kind, id, field.key))
                 continue;
             widest = std::max(widest, textSize(fonts().body, field.label).x + dp(10));
         }
         rows.labelWidth = std::min(widest / theme().scale, 156.0f);
         for (const FieldInfo& field : fwedit::fieldsOf(kind)) {
-            if (partOf(kind, field.key) != heading.part) continue;
-            if (isIdle(app.document.scene, kind, id, field.key)) continue;
+            if (sectionOf(kind, field.key) != heading.part) continue;
+            if (isIgnored(app.document.scene, kind, id, field.key)) continue;
             if (field.type == FieldType::KeyList) {
                 showKeys(app, rows, kind, id, field);
             } else {
@@ -542,7 +542,7 @@ void showParts(App& app, Rows& rows, Kind kind, ObjectId id) {
     }
 }
 
-// The spots that were asked about and kept, as the fire is at the time that is shown.
+// The pinned spots, with the state of the fire at the shown time.
 void showPins(App& app, Rows& rows) {
     std::vector<fwview::WhyCard>& pins = app.live.pins;
     if (pins.empty() || !section(rows, "Pinned spots", app.pinsOpen)) return;
@@ -561,7 +561,7 @@ void showPins(App& app, Rows& rows) {
                        "Unpin"))
             closed = i;
         rows.y += dp(22);
-        const std::string words = mesh ? pinWords(app, pins[i]) : std::string();
+        const std::string words = mesh ? describePin(app, pins[i]) : std::string();
         rows.y += drawTextWrapped(rows.list, fonts().small, {x, rows.y}, width, colors::text,
                                   words.c_str()) +
                   dp(8);
@@ -630,7 +630,7 @@ void showInspector(App& app, Rect rect) {
     ImGui::SetCursorScreenPos({rect.x0, rows.y + dp(8)});
     ImGui::Dummy({1, 1});
     ImGui::PopID();
-    // A drag that lost its field (its object went) ends.
+    // A drag whose field vanished (object deleted) ends.
     if (app.document.dragging && !ImGui::IsAnyMouseDown()) fwedit::endDrag(app.document);
     endPanel();
 }

@@ -1,4 +1,4 @@
-// The inspector: every field of what is selected, made from the document's table of fields.
+// The inspector: all fields of the selection, generated from the document's field table.
 #pragma once
 
 #include "app/app.h"

@@ -1,5 +1,5 @@
-// flamewright-editor: the window's loop. Frames are drawn when something moves or the hand does;
-// else the program sleeps.
+// flamewright-editor: the window's loop. Draws frames while something animates or the user acts;
+// otherwise the program sleeps.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <unistd.h>
@@ -31,20 +31,20 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-struct Wishes {
-    std::string shot;     // picture to write, then leave
+struct StartOptions {
+    std::string shot;     // picture to write before exit
     std::string page;     // "welcome", "scene", "flame", with "+keys", "+palette", ...
-    std::string builtIn;  // name of a scene of the welcome page
-    float scale = 0;      // 0: as the monitor has it
-    float seconds = 0;    // that the burn runs before the shot
-    bool report = false;  // prints what happens, line by line
-    std::string lines;    // commands before the picture, ; between them
-    bool once = false;    // one frame, then leave: what a start takes
+    std::string builtIn;  // name of a scene on the welcome page
+    float scale = 0;      // 0: the monitor's scale
+    float seconds = 0;    // s of burn before the picture
+    bool report = false;  // prints actions line by line
+    std::string lines;    // commands before the picture, separated by ;
+    bool once = false;    // renders one frame and exits, to measure the start-up
     float autosave = 20;  // s
-    bool keys = false;    // prints them, then leaves
+    bool keys = false;    // prints all keys and exits
 };
 
-constexpr float kLeastWidth = 850, kLeastHeight = 470;  // design pixels that all pages need
+constexpr float kLeastWidth = 850, kLeastHeight = 470;  // design pixels; minimum for all pages
 
 float monitorScale(GLFWwindow* window, VkExtent2D extent) {
     float x = 1, y = 1;
@@ -55,11 +55,12 @@ float monitorScale(GLFWwindow* window, VkExtent2D extent) {
     return std::clamp(std::floor(fit * 4) / 4, 1.0f, 3.0f);
 }
 
-// s since the process began, libraries and all; the kernel counts it in hundredths.
+// s since the process started, libraries included. The kernel counts hundredths.
 double sinceStart() {
     std::ifstream file("/proc/self/stat");
     const std::string line((std::istreambuf_iterator<char>(file)), {});
-    std::istringstream fields(line.substr(line.rfind(')') + 1));  // a name may hold anything
+    std::istringstream fields(line.substr(line.rfind(')') + 1));  // the process name may contain
+                                                                  // anything
     std::string field;
     for (int i = 3; i <= 22; ++i) fields >> field;  // see proc(5)
     timespec now{};
@@ -68,14 +69,14 @@ double sinceStart() {
            std::strtod(field.c_str(), nullptr) / double(sysconf(_SC_CLK_TCK));
 }
 
-// s that all threads have worked, those of a device of the CPU's among them.
+// s of processor time over all threads, including those of a CPU device.
 double processorTime() {
     timespec used{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &used);
     return double(used.tv_sec) + 1e-9 * double(used.tv_nsec);
 }
 
-// ImGui wants a cursor shown; GLFW knows four of them.
+// ImGui requests cursor shapes; GLFW provides four of them.
 struct Cursors {
     GLFWcursor* made[ImGuiMouseCursor_COUNT] = {};
     int shown = -1;
@@ -95,8 +96,8 @@ struct Cursors {
 
 class Program {
  public:
-    Program(const sample::VulkanHost& host, VkExtent2D size, const Wishes& wishes)
-        : host_(host), frames_(host, "Flamewright", size), wishes_(wishes) {
+    Program(const sample::VulkanHost& host, VkExtent2D size, const StartOptions& start)
+        : host_(host), frames_(host, "Flamewright", size), start_(start) {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
         ImGui::GetIO().ConfigFlags |= ImGuiConfigFlags_NavEnableKeyboard;
@@ -107,7 +108,8 @@ class Program {
                                     GLFW_DONT_CARE);
         }
         fwui::mapKeys(frames_.window ? frames_.window->handle() : nullptr);
-        context_ = sample::createContext(host, false);  // the viewport does, beside the first page
+        context_ = sample::createContext(host, false);  // the viewport prepares it, during the
+                                                        // first page
         app_ = std::make_unique<fwapp::App>(host, context_, *ui_);
         rescale();
     }
@@ -123,7 +125,7 @@ class Program {
 
     fwapp::App& app() { return *app_; }
 
-    // One frame of `deltaTime` s. False: there was nothing to draw into.
+    // Renders one frame of `deltaTime` s. Returns false if there was nothing to draw into.
     bool frame(float deltaTime) {
         rescale();
         fwapp::App& app = *app_;
@@ -167,32 +169,32 @@ class Program {
             before = now;
             if (glfwWindowShouldClose(window)) {
                 glfwSetWindowShouldClose(window, GLFW_FALSE);
-                fwapp::ifSaved(*app_, [this] { app_->quit = true; });
+                fwapp::runWhenSaved(*app_, [this] { app_->quit = true; });
                 quiet = 0;
             }
             if (!input_.dropped.empty()) {
-                fwapp::takeDropped(*app_, input_.dropped);
+                fwapp::openDropped(*app_, input_.dropped);
                 input_.dropped.clear();
             }
             fwapp::autosave(*app_);
-            if (fwapp::followLink(*app_)) quiet = 0;
+            if (fwapp::updateLink(*app_)) quiet = 0;
             if (!lively && !touched) {
                 app_->now += passed;
                 app_->framesPerSecond = 0;
                 continue;
             }
             const bool drawn = frame(float(std::min(passed, 0.25)));
-            if (wishes_.report && app_->live.previews()) {
-                vkDeviceWaitIdle(host_.device);  // what a hand waits for, the device's part too
+            if (start_.report && app_->live.isPreviewing()) {
+                vkDeviceWaitIdle(host_.device);  // include the device's part of the latency
                 previewTime_ = std::chrono::duration<double>(Clock::now() - now).count();
             }
-            if (wishes_.report && drawn && !shownOnce_) {
+            if (start_.report && drawn && !shownOnce_) {
                 shownOnce_ = true;
                 vkDeviceWaitIdle(host_.device);
                 std::printf("first frame %.0f ms after the start\n", 1000 * sinceStart());
                 std::fflush(stdout);
             }
-            if (wishes_.report) report();
+            if (start_.report) report();
             if (!drawn) glfwWaitEventsTimeout(0.05);
             cursors.show(window);
             const std::string title =
@@ -211,55 +213,55 @@ class Program {
         }
         fwapp::dropRecovery();
         fwapp::saveUserState(app_->user);
-        if (wishes_.report && playedSeconds_ > 0)
+        if (start_.report && playedSeconds_ > 0)
             std::printf("played at %.1f frames a second, %.1f ms of processor time each\n",
                         playedFrames_ / playedSeconds_, 1000 * playedWork_ / playedFrames_);
     }
 
-    // Without a window, one frame of it, as soon as it can be had.
+    // Headless: renders one frame as early as possible.
     void showOnce() {
         frame(1.0f / 30);
         vkDeviceWaitIdle(host_.device);
-        std::_Exit(0);  // what else the start has begun is not waited for
+        std::_Exit(0);  // do not wait for background start-up work
     }
 
-    // Without a window: the page that is asked for, once nothing is on its way any more.
+    // Headless: takes a picture of the requested page once all background work is done.
     void shoot() {
         constexpr float kStep = 1.0f / 30;
         app_->live.awaitPipelines();
         for (int i = 0; i < 4; ++i) frame(kStep);
-        while (app_->page == fwapp::Page::kWelcome && app_->cardsCome) frame(kStep);
-        for (int i = 0; i < 2000 &&
-                        (app_->live.preparing() || app_->live.resting() || app_->output->lively() ||
-                         (app_->live.comparing() && !app_->live.comparesNow()));
+        while (app_->page == fwapp::Page::kWelcome && app_->cardsLoading) frame(kStep);
+        for (int i = 0; i < 2000 && (app_->live.isPreparing() || app_->live.isPreparingRest() ||
+                                     app_->output->isLively() ||
+                                     (app_->live.isComparing() && !app_->live.showsComparison()));
              ++i) {
             frame(kStep);
             std::this_thread::sleep_for(std::chrono::milliseconds(20));
         }
         runLines();
         const auto& winds = app_->document.scene.winds;
-        if (wishes_.page.find("wind") != std::string::npos && !winds.empty())
+        if (start_.page.find("wind") != std::string::npos && !winds.empty())
             fwapp::select(*app_, winds[0].id, false, false);
-        app_->playing = wishes_.seconds > 0;
-        for (float t = 0; t < wishes_.seconds; t += kStep) frame(kStep);
+        app_->playing = start_.seconds > 0;
+        for (float t = 0; t < start_.seconds; t += kStep) frame(kStep);
         app_->playing = false;
-        if (wishes_.page.find("pin") != std::string::npos) pinMiddle();
+        if (start_.page.find("pin") != std::string::npos) pinMiddle();
         for (int i = 0; i < 3; ++i) frame(kStep);
-        sample::writePng(wishes_.shot, frames_.picture());
+        sample::writePng(start_.shot, frames_.picture());
     }
 
  private:
     // See document/command.h.
     void runLines() {
-        std::istringstream lines(wishes_.lines);
+        std::istringstream lines(start_.lines);
         std::string message;
         for (std::string line; std::getline(lines, line, ';');)
             if (!fwedit::runLine(app_->document, line, message))
                 throw sample::Failure("\"" + line + "\": " + message);
-        for (int i = 0; i < 3 && !wishes_.lines.empty(); ++i) frame(1.0f / 30);
+        for (int i = 0; i < 3 && !start_.lines.empty(); ++i) frame(1.0f / 30);
     }
 
-    // Asks the spot in the middle of the picture, and keeps it.
+    // Queries the spot in the centre of the picture and pins it.
     void pinMiddle() {
         fwview::LiveScene& live = app_->live;
         const fwview::SurfaceHit hit = live.pick(0.5f, 0.5f, false);
@@ -269,7 +271,7 @@ class Program {
         live.pinWhy();
     }
 
-    // For whoever drives the program from outside: what was done, and when there is a picture.
+    // For scripts that drive the program: prints actions and the arrival of pictures.
     void report() {
         const fwapp::App& app = *app_;
         auto print = [](const std::string& line) {
@@ -286,21 +288,21 @@ class Program {
         const bool paintable = app.page == fwapp::Page::kPaint && app.paint->surface;
         if (paintable && !reportedPaintable_) print("ready to paint");
         reportedPaintable_ = paintable;
-        if (app.live.previews()) {
+        if (app.live.isPreviewing()) {
             const std::string shown = fwapp::clockText(app.live.time());
             if (shown != reportedPreview_)
                 print("preview of " + shown + ", " + std::to_string(int(1000 * previewTime_)) +
                       " ms");
             reportedPreview_ = shown;
         }
-        const bool ready = app.live.burn() && !app.live.preparing();
+        const bool ready = app.live.burn() && !app.live.isPreparing();
         if (ready && !reportedReady_) print("ready");
         reportedReady_ = ready;
         const int second = int(app.live.time());
         if (second != reportedSecond_) print("burn at " + std::to_string(second) + " s");
         reportedSecond_ = second;
         if (app.toasts.size() > reportedToasts_)
-            print("told: " + app.toasts.back().title + ": " + app.toasts.back().text);
+            print("message: " + app.toasts.back().title + ": " + app.toasts.back().text);
         reportedToasts_ = app.toasts.size();
         const double work = processorTime();
         if (app.playing && ready) {
@@ -314,8 +316,8 @@ class Program {
     void rescale() {
         const VkExtent2D extent = frames_.extent();
         GLFWwindow* window = frames_.window ? frames_.window->handle() : nullptr;
-        const float monitor = wishes_.scale > 0 ? wishes_.scale : monitorScale(window, extent);
-        // Not so large that panels would lie over each other.
+        const float monitor = start_.scale > 0 ? start_.scale : monitorScale(window, extent);
+        // Limit the size, so that panels do not overlap.
         const float fits =
             std::min(float(extent.width) / kLeastWidth, float(extent.height) / kLeastHeight);
         const float most = std::clamp(std::floor(fits * 4) / 4, 1.0f, 4.0f);
@@ -332,14 +334,14 @@ class Program {
 
     const sample::VulkanHost& host_;
     fwui::Frames frames_;
-    Wishes wishes_;
+    StartOptions start_;
     fwui::InputQueue input_;
     std::unique_ptr<fwui::UiRenderer> ui_;
     FwContext* context_ = nullptr;
     std::unique_ptr<fwapp::App> app_;
     float scale_ = 0;
     double reportedResult_ = -1e9, playedSeconds_ = 0;
-    double playedWork_ = 0, workBefore_ = 0;  // s of processor time, the device's too
+    double playedWork_ = 0, workBefore_ = 0;  // s of processor time, including the device's
     bool reportedReady_ = false;
     std::string reportedWhy_, reportedPreview_;
     bool reportedPaintable_ = false;
@@ -351,8 +353,8 @@ class Program {
     std::string title_;
 };
 
-void openPage(fwapp::App& app, const Wishes& wishes) {
-    auto asks = [&](const char* word) { return wishes.page.find(word) != std::string::npos; };
+void openPage(fwapp::App& app, const StartOptions& start) {
+    auto asks = [&](const char* word) { return start.page.find(word) != std::string::npos; };
     if (asks("scene")) app.page = fwapp::Page::kScene;
     if (asks("paint")) app.page = fwapp::Page::kPaint;
     if (asks("flame")) app.page = fwapp::Page::kFlame;
@@ -371,27 +373,27 @@ void openPage(fwapp::App& app, const Wishes& wishes) {
     app.bare = asks("bare");
 }
 
-int run(const sample::Options& options, const Wishes& wishes) {
+int run(const sample::Options& options, const StartOptions& start) {
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
-        Program program(host, {options.width, options.height}, wishes);
+        Program program(host, {options.width, options.height}, start);
         fwapp::App& app = program.app();
-        app.autosaveEvery = wishes.autosave;
-        for (const std::string& file : options.positional) fwapp::takeDropped(app, {file});
+        app.autosaveEvery = start.autosave;
+        for (const std::string& file : options.positional) fwapp::openDropped(app, {file});
         fwapp::Recovery left;
         if (!options.positional.empty() && fwapp::findRecovery(left))
             fwapp::toast(app, fwapp::Toast::Kind::kWarning, "Unsaved work was found",
                          "It stays until you look at it: File, Close scene.");
         for (size_t i = 0; i < fwapp::builtIns().size(); ++i)
-            if (wishes.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
-        openPage(app, wishes);
-        if (wishes.keys) {
+            if (start.builtIn == fwapp::builtIns()[i].name) fwapp::openBuiltIn(app, int(i));
+        openPage(app, start);
+        if (start.keys) {
             std::fputs(fwapp::listKeys(app).c_str(), stdout);
             std::fflush(stdout);
-            std::_Exit(0);  // what the start has begun is not waited for
+            std::_Exit(0);  // do not wait for background start-up work
         }
-        if (wishes.once) {
+        if (start.once) {
             program.showOnce();
         } else if (options.headless) {
             program.shoot();
@@ -411,33 +413,30 @@ int main(int argc, char** argv) {
         sample::Options options;
         options.width = 1280;
         options.height = 720;
-        Wishes wishes;
-        sample::OptionParser parser("flamewright-editor", "scenes that burn, made by hand",
+        StartOptions start;
+        sample::OptionParser parser("flamewright-editor", "editor for burning scenes",
                                     "[FILE.fwscene | FILE.glb] | --script FILE [--headless]");
-        parser.addText("--shot", "FILE.png", "with --headless: a picture of the window, then leave",
-                       wishes.shot);
+        parser.addText("--shot", "FILE.png",
+                       "with --headless: writes a picture of the window and exits", start.shot);
         parser.addText("--page", "NAME",
                        "welcome, scene, paint, flame, export; scene+bare: the picture alone",
-                       wishes.page);
+                       start.page);
         parser.addText("--scene", "NAME", "a scene of the welcome page, by its name",
-                       wishes.builtIn);
-        parser.addText("--do", "LINES", "with --shot: commands before it, ; between them",
-                       wishes.lines);
-        parser.addFlag("--report", "print what is done, line by line", wishes.report);
-        parser.addFlag("--once", "with --headless: one frame, no picture, then leave", wishes.once);
-        parser.addFlag("--keys", "print each command's page, keys and name, then leave",
-                       wishes.keys);
-        parser.addNumber("--scale", "size of the interface; 0: as the monitor has it", wishes.scale,
-                         0, 4);
-        parser.addNumber("--autosave", "seconds between copies of unsaved work", wishes.autosave,
+                       start.builtIn);
+        parser.addText("--do", "LINES", "with --shot: commands before it, separated by ;",
+                       start.lines);
+        parser.addFlag("--report", "print each action", start.report);
+        parser.addFlag("--once", "with --headless: renders one frame and exits", start.once);
+        parser.addFlag("--keys", "print page, keys and name of each command and exit", start.keys);
+        parser.addNumber("--scale", "interface scale; 0: the monitor's scale", start.scale, 0, 4);
+        parser.addNumber("--autosave", "seconds between copies of unsaved work", start.autosave,
                          0.05f, 25);
-        parser.addNumber("--seconds", "how long the burn runs before the picture", wishes.seconds,
-                         0, 600);
+        parser.addNumber("--seconds", "seconds of burn before the picture", start.seconds, 0, 600);
         if (!parser.parse(argc, argv, options)) return 0;
-        if (options.headless && wishes.shot.empty())
-            wishes.shot = (options.out / "editor.png").string();
-        if (options.headless && wishes.shot.find('/') != std::string::npos)
-            std::filesystem::create_directories(std::filesystem::path(wishes.shot).parent_path());
-        return run(options, wishes);
+        if (options.headless && start.shot.empty())
+            start.shot = (options.out / "editor.png").string();
+        if (options.headless && start.shot.find('/') != std::string::npos)
+            std::filesystem::create_directories(std::filesystem::path(start.shot).parent_path());
+        return run(options, start);
     });
 }

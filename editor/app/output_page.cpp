@@ -25,8 +25,8 @@ fs::path folderOf(const App& app) {
            (app.document.file.empty() ? "game" : app.document.file.stem().string() + "_game");
 }
 
-// A copy of the scene as it is, and the work on it, in the background.
-void begin(App& app, OutputPage::Job& job, const char* name, Work work) {
+// Runs the work in the background on a copy of the scene.
+void startJob(App& app, OutputPage::Job& job, const char* name, Work work) {
     if (job.work.valid()) return;
     job.name = name;
     job.began = app.now;
@@ -53,7 +53,7 @@ void begin(App& app, OutputPage::Job& job, const char* name, Work work) {
         });
 }
 
-// Runs `use` with a context of its own; the page's device is busy with the page.
+// Runs `use` with a separate context, because the page uses its own device.
 bool withContext(uint32_t backend, std::string& error, const std::function<bool(FwContext*)>& use) {
     FwContextDef def = fwDefaultContextDef();
     def.backend = backend;
@@ -69,26 +69,27 @@ bool withContext(uint32_t backend, std::string& error, const std::function<bool(
 }
 
 void writeGame(App& app) {
-    begin(app, app.output->job, "Game files",
-          [out = folderOf(app)](const auto& input, const auto& progress, OutputPage::Done& done) {
-              fwedit::OutputPlan plan;
-              return withContext(FW_BACKEND_CPU, done.error, [&](FwContext* cpu) {
-                  if (!fwedit::planOutput(input, plan, done.error) ||
-                      !fwedit::cookScene(input, plan, cpu, out, progress, done.files, done.error))
-                      return false;
-                  for (const auto language :
-                       {fwedit::SnippetLanguage::C, fwedit::SnippetLanguage::Cpp}) {
-                      const bool c = language == fwedit::SnippetLanguage::C;
-                      const fs::path file = out / (plan.identifier + (c ? ".c" : ".cpp"));
-                      const std::string code = fwedit::snippetOf(plan, language);
-                      done.error =
-                          fwtools::writeWhole(file.string(), std::as_bytes(std::span(code)));
-                      if (!done.error.empty()) return false;
-                      done.files.push_back(file);
-                  }
-                  return true;
-              });
-          });
+    startJob(
+        app, app.output->job, "Game files",
+        [out = folderOf(app)](const auto& input, const auto& progress, OutputPage::Done& done) {
+            fwedit::OutputPlan plan;
+            return withContext(FW_BACKEND_CPU, done.error, [&](FwContext* cpu) {
+                if (!fwedit::planOutput(input, plan, done.error) ||
+                    !fwedit::cookScene(input, plan, cpu, out, progress, done.files, done.error))
+                    return false;
+                for (const auto language :
+                     {fwedit::SnippetLanguage::C, fwedit::SnippetLanguage::Cpp}) {
+                    const bool c = language == fwedit::SnippetLanguage::C;
+                    const fs::path file = out / (plan.identifier + (c ? ".c" : ".cpp"));
+                    const std::string code = fwedit::snippetOf(plan, language);
+                    done.error =
+                        fwtools::replaceFile(file.string(), std::as_bytes(std::span(code)));
+                    if (!done.error.empty()) return false;
+                    done.files.push_back(file);
+                }
+                return true;
+            });
+        });
 }
 
 const fwedit::Flame* chosenFlame(const App& app) {
@@ -101,56 +102,57 @@ void writeBook(App& app) {
     const fwedit::Flame* flame = chosenFlame(app);
     if (!flame) return;
     const fs::path file = folderOf(app) / (flame->name + ".fwbook");
-    begin(app, app.output->job, "Flipbook",
-          [file, id = flame->id, def = app.output->book](const auto& input, const auto& progress,
-                                                         OutputPage::Done& done) {
-              done.files = {file};
-              return fwedit::writeFlipbook(input, id, def, file, progress, done.error);
-          });
+    startJob(app, app.output->job, "Flipbook",
+             [file, id = flame->id, def = app.output->book](const auto& input, const auto& progress,
+                                                            OutputPage::Done& done) {
+                 done.files = {file};
+                 return fwedit::writeFlipbook(input, id, def, file, progress, done.error);
+             });
 }
 
 void writeTimes(App& app) {
-    begin(app, app.output->job, "Burn times",
-          [out = folderOf(app)](const auto& input, const auto& progress, OutputPage::Done& done) {
-              return withContext(FW_BACKEND_CPU, done.error, [&](FwContext* cpu) {
-                  return fwedit::writeArrivals(input, cpu, out, progress, done.files, done.error);
-              });
-          });
+    startJob(
+        app, app.output->job, "Burn times",
+        [out = folderOf(app)](const auto& input, const auto& progress, OutputPage::Done& done) {
+            return withContext(FW_BACKEND_CPU, done.error, [&](FwContext* cpu) {
+                return fwedit::writeArrivals(input, cpu, out, progress, done.files, done.error);
+            });
+        });
 }
 
 void writeStrip(App& app) {
     const fs::path file = folderOf(app) / "filmstrip.png";
-    begin(app, app.output->job, "Filmstrip",
-          [file, def = app.output->strip](const auto& input, const auto& progress,
-                                          OutputPage::Done& done) {
-              done.files = {file};
-              return withContext(FW_BACKEND_VULKAN, done.error, [&](FwContext* device) {
-                  return fwedit::writeFilmstrip(input, device, def, file, progress, done.error);
-              });
-          });
+    startJob(app, app.output->job, "Filmstrip",
+             [file, def = app.output->strip](const auto& input, const auto& progress,
+                                             OutputPage::Done& done) {
+                 done.files = {file};
+                 return withContext(FW_BACKEND_VULKAN, done.error, [&](FwContext* device) {
+                     return fwedit::writeFilmstrip(input, device, def, file, progress, done.error);
+                 });
+             });
 }
 
 void writeTurn(App& app) {
     fwedit::TurntableDef def = app.output->turn;
     def.time = app.live.time();
-    begin(app, app.output->job, "Turntable",
-          [out = folderOf(app) / "turntable", def](const auto& input, const auto& progress,
-                                                   OutputPage::Done& done) {
-              return withContext(FW_BACKEND_VULKAN, done.error, [&](FwContext* device) {
-                  return fwedit::writeTurntable(input, device, def, out, progress, done.files,
-                                                done.error);
-              });
-          });
+    startJob(app, app.output->job, "Turntable",
+             [out = folderOf(app) / "turntable", def](const auto& input, const auto& progress,
+                                                      OutputPage::Done& done) {
+                 return withContext(FW_BACKEND_VULKAN, done.error, [&](FwContext* device) {
+                     return fwedit::writeTurntable(input, device, def, out, progress, done.files,
+                                                   done.error);
+                 });
+             });
 }
 
 void copyCode(App& app) {
     const std::string& code = app.output->codes[app.output->language];
     if (code.empty()) return;
     ImGui::SetClipboardText(code.c_str());
-    say(app, app.output->language == 0 ? "Copied the code in C" : "Copied the code in C++");
+    setStatus(app, app.output->language == 0 ? "Copied the code in C" : "Copied the code in C++");
 }
 
-bool finished(const OutputPage::Job& job) {
+bool isFinished(const OutputPage::Job& job) {
     return job.work.valid() &&
            job.work.wait_for(std::chrono::seconds(0)) == std::future_status::ready;
 }
@@ -160,10 +162,10 @@ void stop(OutputPage::Job& job) { job.stop = true; }
 std::string linkWords(const App& app) {
     const OutputPage& page = *app.output;
     if (!page.linked) return "Off. Nothing leaves the editor.";
-    if (!page.link.connected()) return "No sample listens there. It is sought each second.";
+    if (!page.link.connected()) return "No sample listens on that port. Retrying every second.";
     if (!page.link.shown(app.document)) return "Sending the change";
     if (!page.link.answer().empty()) return page.link.answer();
-    return "The sample shows the scene as it is here.";
+    return "The sample shows the current scene.";
 }
 
 }  // namespace
@@ -175,22 +177,22 @@ OutputPage::~OutputPage() {
     }
 }
 
-void followOutput(App& app) {
+void updateOutput(App& app) {
     OutputPage& page = *app.output;
-    if (finished(page.job)) {
+    if (isFinished(page.job)) {
         OutputPage::Done done = page.job.work.get();
         if (done.error == fwedit::kStopped) {
-            say(app, "Stopped writing: " + page.job.name);
+            setStatus(app, "Stopped writing: " + page.job.name);
         } else if (!done.error.empty()) {
             toast(app, Toast::Kind::kError, page.job.name + ": nothing was written", done.error);
         } else {
             page.written = std::move(done.files);
             page.writtenName = page.job.name;
-            say(app, "Wrote " + std::to_string(page.written.size()) +
-                         (page.written.size() == 1 ? " file" : " files"));
+            setStatus(app, "Wrote " + std::to_string(page.written.size()) +
+                               (page.written.size() == 1 ? " file" : " files"));
         }
     }
-    if (finished(page.look)) {
+    if (isFinished(page.look)) {
         OutputPage::Done done = page.look.work.get();
         page.codeProblem = done.error;
         std::move(std::begin(done.codes), std::end(done.codes), std::begin(page.codes));
@@ -199,7 +201,7 @@ void followOutput(App& app) {
         page.codeRevision == app.document.revision)
         return;
     page.codeRevision = app.document.revision;
-    begin(app, page.look, "Code", [](const auto& input, const auto&, OutputPage::Done& done) {
+    startJob(app, page.look, "Code", [](const auto& input, const auto&, OutputPage::Done& done) {
         fwedit::OutputPlan plan;
         if (!fwedit::planOutput(input, plan, done.error)) return false;
         done.codes[0] = fwedit::snippetOf(plan, fwedit::SnippetLanguage::C);
@@ -208,7 +210,7 @@ void followOutput(App& app) {
     });
 }
 
-bool followLink(App& app) {
+bool updateLink(App& app) {
     constexpr double kCallAgain = 1;  // s
     OutputPage& page = *app.output;
     const std::string before = linkWords(app);
@@ -227,7 +229,7 @@ bool followLink(App& app) {
 void addOutputActions(App& app, std::vector<Action>& list) {
     App* at = &app;
     const int page = int(Page::kOutput);
-    const auto idle = [at] { return !at->output->writes(); };
+    const auto idle = [at] { return !at->output->isWriting(); };
     list.insert(
         list.end(),
         {{"Write game files", "Export", "Ctrl+E", icons::exportTo, [at] { writeGame(*at); }, idle,
@@ -252,18 +254,18 @@ void addOutputActions(App& app, std::vector<Action>& list) {
           [at] {
               at->output->linked = !at->output->linked;
               at->output->calledAt = -1e9;
-              say(*at, at->output->linked ? "Changes go to the sample" : "The link is off");
+              setStatus(*at, at->output->linked ? "Changes go to the sample" : "The link is off");
           },
           {},
           -3},
          {"Stop writing", "Export", "", icons::close, [at] { stop(at->output->job); },
-          [at] { return at->output->writes(); }, page}});
+          [at] { return at->output->isWriting(); }, page}});
 }
 
 namespace {
 
-// A button over the whole width; dim while something else is written.
-void act(App& app, Rows& rows, const char* name, bool primary) {
+// A full-width button; dim while another job runs.
+void showAction(App& app, Rows& rows, const char* name, bool primary) {
     const Action* action = findAction(app, name);
     const bool can = action->enabled();
     if (!can) {
@@ -278,14 +280,14 @@ void act(App& app, Rows& rows, const char* name, bool primary) {
     rows.y += dp(38);
 }
 
-void note(Rows& rows, const char* text) {
+void showNote(Rows& rows, const char* text) {
     rows.y += drawTextWrapped(rows.list, fonts().small, {rows.x0, rows.y}, rows.x1 - rows.x0,
                               colors::dim, text) +
               dp(8);
 }
 
-void wholeRow(Rows& rows, const char* label, uint32_t& value, const char* unit, float low,
-              float high) {
+void integerRow(Rows& rows, const char* label, uint32_t& value, const char* unit, float low,
+                float high) {
     auto shown = float(value);
     if (numberRow(rows, label, shown,
                   {.unit = unit, .format = "%.0f", .lowest = low, .highest = high}) != Edit::kNone)
@@ -297,36 +299,37 @@ void showActs(App& app, const Rect& rect) {
     ImDrawList* list = beginPanel("##acts", rect, colors::panel, true);
     Rows rows{list, rect.x0 + dp(10), rect.x1 - dp(10), rect.y0 - ImGui::GetScrollY(), 96};
     if (section(rows, "For the game", page.gameOpen)) {
-        note(rows, "Burn maps, paint, pictures and flame shapes, and the code that loads them.");
-        act(app, rows, "Write game files", true);
+        showNote(rows,
+                 "Burn maps, paint, pictures and flame shapes, and the code that loads them.");
+        showAction(app, rows, "Write game files", true);
     }
     if (section(rows, "Live link", page.linkOpen)) {
-        note(rows,
-             "A sample of the game shows each change as it is made: samples/run 14_scene "
-             "--link and this port.");
+        showNote(rows,
+                 "A sample of the game shows each change as it is made: samples/run 14_scene "
+                 "--link and this port.");
         rows.label("Linked");
         bool linked = page.linked;
         if (toggle("linked", {rows.fieldX(), rows.y + dp(3)}, linked))
             findAction(app, "Link to a sample")->run();
         rows.next();
         const uint32_t port = page.port;
-        wholeRow(rows, "Port", page.port, nullptr, 1024, 65535);
+        integerRow(rows, "Port", page.port, nullptr, 1024, 65535);
         if (page.port != port) page.link.disconnect();
-        note(rows, linkWords(app).c_str());
+        showNote(rows, linkWords(app).c_str());
     }
     if (section(rows, "Filmstrip", page.stripOpen)) {
-        wholeRow(rows, "Pictures", page.strip.count, nullptr, 2, 32);
-        wholeRow(rows, "In a row", page.strip.columns, nullptr, 1, 16);
-        wholeRow(rows, "Width of each", page.strip.width, "px", 64, 1920);
+        integerRow(rows, "Pictures", page.strip.count, nullptr, 2, 32);
+        integerRow(rows, "In a row", page.strip.columns, nullptr, 1, 16);
+        integerRow(rows, "Width of each", page.strip.width, "px", 64, 1920);
         page.strip.height = std::max(36u, page.strip.width * 9 / 16);
-        act(app, rows, "Write filmstrip", false);
+        showAction(app, rows, "Write filmstrip", false);
     }
     if (section(rows, "Turntable", page.turnOpen)) {
-        wholeRow(rows, "Pictures", page.turn.count, nullptr, 2, 240);
-        wholeRow(rows, "Width of each", page.turn.width, "px", 64, 3840);
+        integerRow(rows, "Pictures", page.turn.count, nullptr, 2, 240);
+        integerRow(rows, "Width of each", page.turn.width, "px", 64, 3840);
         page.turn.height = std::max(36u, page.turn.width * 9 / 16);
-        note(rows, ("As it burns at " + clockText(app.live.time())).c_str());
-        act(app, rows, "Write turntable", false);
+        showNote(rows, ("As it burns at " + clockText(app.live.time())).c_str());
+        showAction(app, rows, "Write turntable", false);
     }
     if (section(rows, "Flipbook of a flame", page.bookOpen)) {
         if (chosenFlame(app)) {
@@ -338,25 +341,25 @@ void showActs(App& app, const Rect& rect) {
             choice("flame", {rows.fieldX(), rows.y}, {rows.fieldWidth(), dp(metrics::row)}, names,
                    page.flame);
             rows.next();
-            wholeRow(rows, "Frames", page.book.frames, nullptr, 4, 128);
-            wholeRow(rows, "Size", page.book.side, "px", 16, 256);
+            integerRow(rows, "Frames", page.book.frames, nullptr, 4, 128);
+            integerRow(rows, "Size", page.book.side, "px", 16, 256);
             numberRow(rows, "One turn", page.book.seconds,
                       {.unit = "s", .format = "%.1f", .lowest = 0.2f, .highest = 10});
         } else {
-            note(rows, "Add a flame to the scene to have it as a flipbook.");
+            showNote(rows, "Add a flame to the scene to have it as a flipbook.");
         }
-        act(app, rows, "Write flipbook", false);
+        showAction(app, rows, "Write flipbook", false);
     }
     if (section(rows, "Burn times", page.timesOpen)) {
-        note(rows, "When each spot of each mesh catches, in seconds, as an EXR picture.");
-        act(app, rows, "Write burn times", false);
+        showNote(rows, "When each spot of each mesh catches, in seconds, as an EXR picture.");
+        showAction(app, rows, "Write burn times", false);
     }
     ImGui::SetCursorScreenPos({rect.x0, rows.y});
     ImGui::Dummy({1, 1});
     endPanel();
 }
 
-// `comment`: one that has begun above goes on; whether it goes on below.
+// `comment`: in: inside a comment that began above; out: whether it continues below.
 ImU32 codeColor(std::string_view line, bool& comment) {
     const size_t first = std::min(line.find_first_not_of(' '), line.size());
     const std::string_view words = line.substr(first);
@@ -432,12 +435,12 @@ void showResults(App& app, const Rect& rect) {
     const float x = rect.x0 + dp(10), right = rect.x1 - dp(10),
                 half = rect.x0 + std::min(dp(430), 0.55f * rect.width());
     drawText(list, fonts().semi, x, rect.y0 + dp(18), colors::title, "Into the folder");
-    std::string folder = homely(folderOf(app));
+    std::string folder = abbreviateHome(folderOf(app));
     if (textField("folder", {x, rect.y0 + dp(32)}, {half - x - dp(20), dp(28)}, folder,
-                  "A folder; it is made if it is not there", icons::open))
-        page.folder = fromHomely(folder);
+                  "A folder; created if missing", icons::open))
+        page.folder = expandHome(folder);
     drawColumn(list, half - dp(8), rect.y0 + dp(10), rect.y1 - dp(10), colors::line);
-    if (page.writes()) {
+    if (page.isWriting()) {
         std::string stage;
         float share = 0;
         {

@@ -1,6 +1,6 @@
-// The output page: what a scene is for. All that a game loads and the code that puts it together,
-// flipbooks, burn times, pictures; written in the background, one at a time, and stopped by a
-// click. What it does lies in output/output.h.
+// The output page: writes everything a game loads and its set-up code, flipbooks, burn times,
+// pictures. Jobs run in the background, one at a time, and can be cancelled. output/output.h does
+// the work.
 #pragma once
 
 #include <atomic>
@@ -22,9 +22,9 @@ struct OutputPage {
     OutputPage& operator=(const OutputPage&) = delete;
 
     struct Done {
-        std::string error;  // empty: it went well
+        std::string error;  // empty: success
         std::vector<std::filesystem::path> files;
-        std::string codes[2];  // of a look at the scene's code, in C and C++
+        std::string codes[2];  // preview of the scene's code in C and C++
     };
     struct Job {
         std::string name;  // "Game files"
@@ -32,41 +32,41 @@ struct OutputPage {
         double began = 0;  // s, App::now
         std::atomic<bool> stop{false};
         std::mutex mutex;
-        std::string stage;  // by mutex, as is share
+        std::string stage;  // guarded by mutex, as is share
         float share = 0;
     };
 
-    std::filesystem::path folder;  // where it all goes; empty: beside the scene
-    int language = 0;              // SnippetLanguage that is shown
+    std::filesystem::path folder;  // target folder; empty: beside the scene
+    int language = 0;              // SnippetLanguage to show
     fwedit::FlipbookDef book;
     fwedit::FilmstripDef strip;
     fwedit::TurntableDef turn;
-    int flame = 0;  // of the scene's, for a flipbook
+    int flame = 0;  // index of the scene's flame for a flipbook
     fwlink::SceneSender link;
-    bool linked = false;  // wished; off until somebody switches it on
+    bool linked = false;  // user setting, off by default
     uint32_t port = fwlink::kUsualPort;
-    double calledAt = -1e9;   // s, App::now, when the sample was last sought
-    std::string linkProblem;  // why there is none
+    double calledAt = -1e9;   // s, App::now, last attempt to connect
+    std::string linkProblem;  // reason for a missing link
     bool gameOpen = true, linkOpen = true, bookOpen = true, timesOpen = true, stripOpen = true,
          turnOpen = true;
 
-    Job job;   // what is written
-    Job look;  // the code, for the page
+    Job job;   // the running job
+    Job look;  // the code preview
     std::string codes[2];
-    uint64_t codeRevision = ~0ull;  // that it is of
+    uint64_t codeRevision = ~0ull;  // revision of the code preview
     std::string codeProblem;
-    std::vector<std::filesystem::path> written;  // by the last job
+    std::vector<std::filesystem::path> written;  // files of the last job
     std::string writtenName;
 
-    [[nodiscard]] bool writes() const { return job.work.valid(); }
-    [[nodiscard]] bool lively() const { return writes() || look.work.valid(); }
+    [[nodiscard]] bool isWriting() const { return job.work.valid(); }
+    [[nodiscard]] bool isLively() const { return isWriting() || look.work.valid(); }
 };
 
 void addOutputActions(App& app, std::vector<Action>& list);
-// Takes over what the background has finished; each frame, whatever the page.
-void followOutput(App& app);
-// Pushes what has changed to the sample that is linked, or seeks it. True: what is said of it has
-// changed. Nothing waits; call it often.
-bool followLink(App& app);
+// Collects finished background work. Call it every frame on every page.
+void updateOutput(App& app);
+// Pushes changes to the linked sample, or tries to connect. Returns true if the link's status
+// changed. Never blocks; call it often.
+bool updateLink(App& app);
 
 }  // namespace fwapp

@@ -1,4 +1,4 @@
-// What lies over a page: files, the palette, keys, questions, news.
+// Overlays: file dialogs, palette, keys, questions, messages.
 #include <algorithm>
 #include <cctype>
 #include <cstring>
@@ -70,7 +70,7 @@ void showFiles(App& app) {
              dialog.title.c_str());
     if (dialog.listed != dialog.folder.string()) listFolder(dialog);
 
-    // Where it is, and up from there.
+    // Current path, and the parent folder.
     const float y = low.y + dp(54);
     if (button("up", {low.x + dp(24), y}, dp(64, 26), "Up", ButtonKind::kPlain) &&
         dialog.folder.has_parent_path())
@@ -117,7 +117,7 @@ void showFiles(App& app) {
             finishFile(app, entered);
         }
     }
-    // A whole path may be typed too.
+    // Absolute paths are accepted too.
     textField("name", {low.x + dp(24), high.y - dp(94)}, {size.x - dp(48), dp(28)}, dialog.name,
               "Name, or a whole path", nullptr, dialog.fresh);
     dialog.fresh = false;
@@ -148,7 +148,7 @@ struct Found {
     std::string name, place;
     const char *icon, *keys;
     std::function<void()> run;
-    size_t at;  // of the text in the name
+    size_t at;  // position of the text in the name
 };
 
 std::vector<Found> findAnything(App& app) {
@@ -190,7 +190,7 @@ void showPalette(App& app) {
     const float width = std::min(dp(580), app.screen.width() - dp(40));
     const ImVec2 low(std::floor(app.screen.midX() - width * 0.5f), app.screen.y0 + dp(84));
     const std::vector<Found> found = findAnything(app);
-    // As many as there is room for above the status line.
+    // As many rows as fit above the status line.
     const float room = app.screen.y1 - dp(metrics::status + 8) - low.y - dp(50 + 46);
     const int most = std::clamp(int(room / dp(36)), 2, 8);
     const int count = int(found.size());
@@ -288,7 +288,7 @@ void showKeys(App& app) {
     drawKeys(list, x1 - close - dp(8), y0, "Esc", true);
     struct Line {
         std::string name, keys;
-        int action = -1;  // < 0: these stay as they are
+        int action = -1;  // < 0: fixed keys
     };
     struct Group {
         std::string name;
@@ -320,7 +320,7 @@ void showKeys(App& app) {
                     {"Snap, fine", "Ctrl|Shift"}};
     for (const char* place : {"Paint", "Flame"})
         group(place).lines.push_back({"Straight line", "Shift+Click"});
-    // As many columns as have room for the longest lines; what is higher than the window scrolls.
+    // As many columns as fit the longest lines. Taller content scrolls.
     constexpr float kLine = 23, kHead = 30, kRest = 14;
     const float gap = dp(28);
     const int columns = std::clamp(int((x1 - x0 + gap) / dp(232)), 1, 5);
@@ -334,10 +334,10 @@ void showKeys(App& app) {
     const float top = begin + dp(16) - ImGui::GetScrollY();
     const float bottom = top + std::max(end - begin - dp(24), all / float(columns) + dp(60));
     float x = x0, y = top, lowest = top;
-    bool onLine = app.screen.x1 - ImGui::GetIO().MousePos.x < dp(16);  // or where it scrolls
+    bool onLine = app.screen.x1 - ImGui::GetIO().MousePos.x < dp(16);  // or at the scroll bar
     for (const Group& one : groups) {
-        // One that does not fit begins in the next column while there is one, else it goes on
-        // there.
+        // A group that does not fit starts in the next column if there is one, otherwise it
+        // continues there.
         const float height = dp(kHead) + dp(kLine) * float(one.lines.size());
         const bool last = x + width + gap >= x1;
         if (y > top && y + height > bottom && !last) {
@@ -469,7 +469,7 @@ void showAbout(App& app) {
     endPanel();
 }
 
-// ---- news
+// ---- messages
 
 void showToasts(App& app) {
     float bottom = app.screen.y1 - dp(metrics::status + 12);

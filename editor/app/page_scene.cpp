@@ -16,7 +16,7 @@ using fwedit::ObjectId;
 
 namespace {
 
-void separator(ImDrawList* list, float& x, const Rect& rect) {
+void drawSeparator(ImDrawList* list, float& x, const Rect& rect) {
     x += dp(6);
     drawColumn(list, x, rect.y0 + dp(9), rect.y1 - dp(9), colors::edge);
     x += dp(7);
@@ -44,13 +44,13 @@ void showTools(App& app, const Rect& rect) {
     look.active = app.tool == Tool::kScale;
     if (toolButton("scale", {x, y}, look, "Scale", keysOf(app, "Scale"))) act("Scale");
     x += dp(30);
-    separator(list, x, rect);
+    drawSeparator(list, x, rect);
     look = {.icon = icons::snap, .label = "Snap"};
     look.active = app.snapping;
     if (toolButton("snap", {x, y}, look, "Snap to 5 cm, 15° and 10 %", "hold Ctrl"))
         app.snapping = !app.snapping;
     x += toolButtonWidth(look);
-    separator(list, x, rect);
+    drawSeparator(list, x, rect);
     x += drawText(list, fonts().body, x + dp(2), y + dp(14), colors::dim, "Add") + dp(10);
     look = {.icon = icons::srcPoint, .label = "Heat"};
     look.drops = true;
@@ -88,7 +88,7 @@ void showTools(App& app, const Rect& rect) {
             if (toolButton(adder.action, {x, y}, look, adder.action)) act(adder.action);
             x += toolButtonWidth(look) + apart;
         }
-    } else {  // so that what the picture is seen by has room
+    } else {  // in a narrow window the camera menu needs the space
         look = {.icon = icons::add, .label = "More", .drops = true};
         if (toolButton("more", {x, y}, look, "Add a flame, wind, rain, water or a wall"))
             ImGui::OpenPopup("more menu");
@@ -117,7 +117,7 @@ void showTools(App& app, const Rect& rect) {
     endPanel();
 }
 
-bool matches(const std::string& name, const std::string& filter) {
+bool matchesFilter(const std::string& name, const std::string& filter) {
     if (filter.empty()) return true;
     auto lower = [](char c) { return char(std::tolower(static_cast<unsigned char>(c))); };
     const auto found = std::search(name.begin(), name.end(), filter.begin(), filter.end(),
@@ -151,7 +151,7 @@ void showOutlinerRow(App& app, ImDrawList* list, const Rect& rect, float& y, Kin
         ImGui::OpenPopup("object menu");
     }
     if (row.opened || (isSelected(app, id) && app.selection.size() == 1 && !io.WantTextInput &&
-                       ImGui::IsKeyPressed(291, false))) {  // F2
+                       ImGui::IsKeyPressed(291, false))) {  // F2: rename
         app.renaming = id;
         app.renamed = object.name;
     }
@@ -272,10 +272,10 @@ void showLeftPanel(App& app, Rect rect) {
     };
     fwedit::forEachList(app.document.scene, [&](Kind kind, const auto& objects) {
         if (kind == Kind::Event || kind == Kind::Layer) return;
-        // The document may change while it is shown: by index, and no reference is kept.
+        // Rows may change the document, so use indices and keep no reference.
         for (size_t i = 0; i < objects.size(); ++i) {
             const fwedit::Object object = objects[i];
-            if (!matches(object.name, app.filter)) continue;
+            if (!matchesFilter(object.name, app.filter)) continue;
             showOutlinerRow(app, list, rect, y, kind, object, 0);
             ++shown;
             if (kind != Kind::Mesh) continue;
@@ -299,7 +299,7 @@ void showLeftPanel(App& app, Rect rect) {
     endPanel();
 }
 
-// Time from left to right of a strip.
+// Maps time to x on a strip.
 struct TimeScale {
     float x0, x1;
     double duration;
@@ -359,10 +359,10 @@ std::vector<Mark> marksOf(const fwedit::Scene& scene) {
     return marks;
 }
 
-// Names where there is room: dropped, never cut, when the next mark is near.
+// Shows names if there is space. A name that would overlap the next mark is dropped, never cut.
 void showMarks(App& app, ImDrawList* list, const Rect& rect, const TimeScale& scale) {
     const std::vector<Mark> marks = marksOf(app.document.scene);
-    // Those that begin together stand side by side.
+    // Marks with equal times stand side by side.
     std::vector<float> places;
     for (const Mark& mark : marks) {
         const float x = scale.x(std::min(mark.time, scale.duration));
@@ -387,8 +387,7 @@ void showMarks(App& app, ImDrawList* list, const Rect& rect, const TimeScale& sc
     }
 }
 
-// To the right of the playhead, so that it does not cross the words; at the end of the strip to its
-// left.
+// Right of the playhead, so that it does not cross the text; left of it at the end of the strip.
 void showShare(ImDrawList* list, const Rect& rect, const TimeScale& scale, double now,
                const char* text) {
     const float width = textSize(fonts().small, text).x, head = scale.x(now);
@@ -397,7 +396,7 @@ void showShare(ImDrawList* list, const Rect& rect, const TimeScale& scale, doubl
     drawText(list, fonts().small, x, rect.y0 + dp(12), colors::text, text);
 }
 
-// How much of all meshes has burnt, as far as it was seen to burn.
+// Shows the burnt share of all meshes over the recorded time.
 void showStrip(const App& app, ImDrawList* list, const Rect& rect, const TimeScale& scale) {
     list->AddRectFilled({scale.x0, rect.y0 + dp(2)}, {scale.x1, rect.y1 - dp(4)}, colors::well);
     const float low = rect.y1 - dp(4), height = rect.height() - dp(6);
@@ -423,14 +422,14 @@ void showStrip(const App& app, ImDrawList* list, const Rect& rect, const TimeSca
     }
 }
 
-// Small pictures of the burn, as far as it was seen.
+// Thumbnails of the burn over the recorded time.
 void showFilm(const App& app, ImDrawList* list, const Rect& rect, const TimeScale& scale) {
     const fwview::FilmStrip& film = app.live.film;
     const float y0 = rect.y0, y1 = rect.y1 - dp(4);
     if (film.empty() || !app.live.burn()) {
         list->AddRectFilled({scale.x0, y0}, {scale.x1, y1}, colors::well);
         drawText(list, fonts().small, scale.x0 + dp(8), 0.5f * (y0 + y1), colors::dim,
-                 "Pictures of what was seen show here");
+                 "Pictures of the played burn show here");
         return;
     }
     const float width = (scale.x1 - scale.x0) / float(film.kPictures);
@@ -447,7 +446,7 @@ void showFilm(const App& app, ImDrawList* list, const Rect& rect, const TimeScal
 
 void recordStrip(App& app) {
     const fwedit::Burn* burn = app.live.burn();
-    if (!burn || app.live.preparing()) return;
+    if (!burn || app.live.isPreparing()) return;
     const auto time = float(burn->time);
     if (!app.strip.empty() && time < app.strip.back().first)
         std::erase_if(app.strip, [&](const auto& at) { return at.first > time; });
@@ -481,7 +480,7 @@ void showTimeline(App& app, Rect rect) {
     showRuler(list, ruler, scale, now);
     list->AddRectFilled(ruler.low(), {scale.x0 - dp(12), ruler.y1}, colors::header);
 
-    // Drag anywhere to another time; marks lie above and take their clicks first.
+    // A drag anywhere changes the time; marks lie above and take their clicks first.
     const float bottom = rect.y1;
     showMarks(app, list, events, scale);
     bool held = false;
@@ -497,7 +496,7 @@ void showTimeline(App& app, Rect rect) {
         app.live.seek(wanted);
     }
     drawText(list, fonts().small, rect.x0 + dp(10), events.midY(), colors::dim, "Events");
-    // Little height: the strip alone; the film has what is left of it.
+    // If the height is small, only the strip shows; the film takes the rest.
     if (rect.height() > dp(14)) {
         const Rect strip = rect.cutTop(std::min(dp(26), rect.height()));
         drawText(list, fonts().small, strip.x0 + dp(10), strip.midY() - dp(1), colors::dim,
@@ -519,11 +518,11 @@ void showTimeline(App& app, Rect rect) {
     endPanel();
 }
 
-// The map over the picture: of burn multipliers, or of burn times, which grows with the burn.
-void followMaps(App& app) {
+// Updates the map over the picture: burn multipliers, or burn times, which grow with the burn.
+void updateMaps(App& app) {
     if (app.multipliers && app.showHelpers) {
         app.burnTimesAt = -1;
-        if (app.multipliersOf == app.document.revision || app.live.preparing()) return;
+        if (app.multipliersOf == app.document.revision || app.live.isPreparing()) return;
         app.multipliersOf = app.document.revision;
         colorMultipliers(app);
         return;
@@ -552,11 +551,11 @@ void showBare(App& app, const Rect& rect) {
 void showScene(App& app, Rect rect) {
     app.live.follow(app.document);
     app.live.shown = fwview::Shown::kBurn;
-    followMaps(app);
-    app.paint->colored = false;  // the overlay is this page's now
+    updateMaps(app);
+    app.paint->colored = false;  // this page takes over the overlay
     for (const std::string& line : app.live.takeReport())
         toast(app, Toast::Kind::kWarning, "Something was left out", line);
-    if (app.camera.distance < 0 && app.live.burn() && !app.live.preparing()) {
+    if (app.camera.distance < 0 && app.live.burn() && !app.live.isPreparing()) {
         app.camera.distance = 2;
         frameSelection(app, true);
     }
@@ -570,7 +569,7 @@ void showScene(App& app, Rect rect) {
                     {keysOf(app, "Play, pause"), "play"},
                     {"Esc", "done"}});
     } else if (app.placing) {
-        showStatus(app, status, {{"Click", "put it there"}, {"Esc", "leave it"}});
+        showStatus(app, status, {{"Click", "place it"}, {"Esc", "cancel"}});
     } else if (app.selection.empty()) {
         showStatus(app, status,
                    {{"Click", "select"},
@@ -588,7 +587,7 @@ void showScene(App& app, Rect rect) {
     }
     rect.y0 += dp(1);
     const float gap = dp(2), whole = rect.x1;
-    // Little room: the timeline folds, then the left panel goes.
+    // In a small window the timeline folds first, then the left panel hides.
     const bool low = rect.height() < dp(380) || !app.panels;
     const bool narrow = rect.width() < dp(900) || !app.panels;
     const float timeline = low ? dp(34) : dp(app.user.timeline);
@@ -635,7 +634,7 @@ void showScene(App& app, Rect rect) {
                   .highest = 340,
                   .sign = -1},
                  app.user.timeline);
-    if (app.playing && !app.live.seeking() &&
+    if (app.playing && !app.live.isSeeking() &&
         app.live.time() >= double(app.document.scene.settings.duration)) {
         if (app.looping) {
             app.live.seek(0);

@@ -1,4 +1,4 @@
-// The first page: new, open, what was open lately, what a crash left, and scenes to start from.
+// The first page: new, open, recent files, crash recovery, and scenes to start from.
 #include <algorithm>
 #include <cstdlib>
 
@@ -26,7 +26,7 @@ std::string ago(const fs::path& file) {
 }
 
 float showRecovery(App& app, ImDrawList* list, float x, float y, float width) {
-    // The folder is looked at once a second.
+    // Checks the folder once per second.
     static Recovery found;
     static bool any = false;
     static double lookedAt = -1e9;
@@ -99,7 +99,7 @@ void showLeft(App& app, Rect rect) {
         drawTextRight(list, fonts().small, x + width, y + dp(9), there ? colors::dim : colors::warn,
                       when.c_str());
         drawTextFit(list, fonts().small, x, y + dp(27), width, colors::dim,
-                    homely(file.parent_path()).c_str());
+                    abbreviateHome(file.parent_path()).c_str());
         if (pressed && there) {
             openScene(app, file);
             break;
@@ -157,7 +157,7 @@ void showCards(App& app, Rect rect) {
 }  // namespace
 
 void showWelcome(App& app, Rect rect) {
-    if (app.cardsCome && app.now > 0.05) app.cardsCome = app.cards.loadNext();
+    if (app.cardsLoading && app.now > 0.05) app.cardsLoading = app.cards.loadNext();
     showTopBar(app, rect.cutTop(dp(metrics::topBar)));
     showStatus(app, rect.cutBottom(dp(metrics::status)),
                {{"Ctrl+O", "open"}, {"Ctrl+N", "new scene"}, {"F1", "all keys"}});

@@ -26,12 +26,12 @@ constexpr MapStop kMultiplierStops[] = {{0, hex(0x1F4E9E)},
                                         {1, hex(0xB8480C)}};
 constexpr MapStop kMoistureStops[] = {
     {0, hex(0xF1F5F7)}, {0.33f, hex(0x9CCFE0)}, {0.67f, hex(0x3A93BF)}, {1, hex(0x0B3F73)}};
-// Materials have names; colours only tell neighbours apart.
+// Colours only distinguish neighbours; materials are named.
 constexpr ImU32 kMaterialColors[FW_MATERIAL_PRESET_COUNT] = {
     hex(0x6E7681), hex(0xC79A5B), hex(0x8C5A3C), hex(0xC9C5B8), hex(0xF2EBD9),
     hex(0xB9CBE0), hex(0x7B6FC4), hex(0xB8862B), hex(0x5E9C4A), hex(0xE0C24B),
     hex(0xA8B84A), hex(0xD8A878), hex(0x9A4F4F), hex(0x3FA7A0)};
-constexpr float kAsIs = 128;  // byte of the multiplier that changes nothing
+constexpr float kAsIs = 128;  // neutral byte of the multiplier
 
 std::string materialName(uint32_t preset) {
     std::string text = fwMaterialPresetName(preset);
@@ -40,7 +40,7 @@ std::string materialName(uint32_t preset) {
     return text;
 }
 
-// What is as the mesh has it lets the mesh be seen.
+// Unpainted areas are transparent.
 fwview::Palette paletteOf(uint32_t kind) {
     fwview::Palette palette{};
     for (uint32_t i = 0; i < 256; ++i) {
@@ -92,7 +92,7 @@ glm::mat4 poseOf(const fwedit::Mesh& mesh) {
     return glm::make_mat4(values.data());
 }
 
-// Metres of the world that a metre of the mesh is.
+// Returns world metres per metre of the mesh.
 float scaleOf(const fwedit::Mesh& mesh) {
     return std::cbrt(std::max(1e-9f, std::fabs(mesh.scale[0] * mesh.scale[1] * mesh.scale[2])));
 }
@@ -101,7 +101,7 @@ float radiusOf(const PaintPage& page, const fwedit::Mesh& mesh) {
     return 0.0005f * page.size / scaleOf(mesh);
 }
 
-// The mesh that is painted: the selected one, else the one from before, else the first.
+// Chooses the selected mesh, otherwise the previous one, otherwise the first.
 void chooseMesh(App& app) {
     PaintPage& page = *app.paint;
     const fwedit::Scene& scene = app.document.scene;
@@ -143,7 +143,7 @@ void colorOverlay(App& app) {
     app.live.redraw();
 }
 
-// At most 212 dp of the `room`, px.
+// Uses at most 212 dp of `room` (px).
 void drawMapLegend(ImDrawList* list, ImVec2 low, float room, const char* name,
                    std::span<const MapStop> map, std::initializer_list<const char*> words) {
     const float right = low.x + std::min(room, dp(212)) - dp(10);
@@ -189,7 +189,7 @@ void extendStroke(App& app) {
     app.live.redraw();
 }
 
-// False: there is nothing to paint on.
+// Returns false if there is nothing to paint on.
 bool prepareStroke(App& app, fwedit::BrushMode mode) {
     PaintPage& page = *app.paint;
     const fwedit::Mesh* mesh = fwedit::findIn(app.document.scene.meshes, page.mesh);
@@ -241,8 +241,8 @@ void endStroke(App& app) {
     perform(app, command);
 }
 
-// From where the last stroke ended to where the brush is.
-void lineHere(App& app) {
+// Draws a line from the end of the last stroke to the brush.
+void drawLineToBrush(App& app) {
     PaintPage& page = *app.paint;
     if (!page.aims || !prepareStroke(app, modeOf(page, true))) return;
     page.stroke.path = {page.ended, page.aim};
@@ -257,7 +257,7 @@ void cancelStroke(PaintPage& page) {
     page.colored = false;
 }
 
-void fillHere(App& app) {
+void fillAtBrush(App& app) {
     PaintPage& page = *app.paint;
     if (page.layer == 0 && addLayer(app) == 0) return;
     fwedit::Command command;
@@ -276,7 +276,7 @@ void fillHere(App& app) {
     perform(app, command);
 }
 
-void pickHere(App& app) {
+void pickValueAtBrush(App& app) {
     PaintPage& page = *app.paint;
     const auto found = app.document.images.find(page.layer);
     const size_t texel = fwedit::nearestTexel(*page.surface, page.aim);
@@ -290,8 +290,8 @@ void pickHere(App& app) {
     if (page.kind == fwedit::PaintMaterial && value > 0) page.material = value - 1;
 }
 
-// What the mouse does with the brush at `page.aim`, in whichever view it is.
-void work(App& app, bool hovered) {
+// Applies the mouse to the brush at `page.aim`, in either view.
+void applyBrush(App& app, bool hovered) {
     PaintPage& page = *app.paint;
     const ImGuiIO& io = ImGui::GetIO();
     if (page.painter) {
@@ -309,15 +309,15 @@ void work(App& app, bool hovered) {
             if (page.aims) beginStroke(app);
         } else if (!io.MouseDown[0]) {
             page.mayLine = false;
-            lineHere(app);
+            drawLineToBrush(app);
         }
         return;
     }
     if (!hovered || !page.aims || !ImGui::IsMouseClicked(0)) return;
     if (io.KeyAlt || page.tool == PaintTool::kPick) {
-        pickHere(app);
+        pickValueAtBrush(app);
     } else if (page.tool == PaintTool::kFill) {
-        fillHere(app);
+        fillAtBrush(app);
     } else if (io.KeyShift && page.endedOn == page.mesh) {
         page.mayLine = true;
         page.pressX = io.MousePos.x;
@@ -342,7 +342,7 @@ void drawBrushChip(const App& app, ImDrawList* list, ImVec2 at) {
     drawChip(list, at, text.c_str());
 }
 
-// The ring lies on the surface: its size is that of the stroke, wherever the eye is.
+// The ring lies on the surface and shows the stroke's size from any camera.
 void drawRing(ImDrawList* list, const Picture& picture, glm::vec3 at, glm::vec3 normal,
               float radius, float hardness) {
     const glm::vec3 aside = std::fabs(normal.y) > 0.9f ? glm::vec3(1, 0, 0) : glm::vec3(0, 1, 0);
@@ -406,7 +406,7 @@ void showMeshView(App& app, const Rect& rect) {
     const bool hovered = ImGui::IsItemHovered();
     const ImGuiIO& io = ImGui::GetIO();
     list->PushClipRect(rect.low(), rect.high(), true);
-    const bool overBall = navigationBall(app, list, picture);
+    const bool overBall = showNavigationBall(app, list, picture);
     if (hovered && io.MouseWheel != 0) zoom(app, io.MouseWheel);
     if (hovered && !overBall && !page.painter) {
         if (ImGui::IsMouseClicked(1)) page.orbits = true;
@@ -441,7 +441,7 @@ void showMeshView(App& app, const Rect& rect) {
             drawBrushChip(app, list, io.MousePos + dp(0, -44));
         }
     }
-    if (hovered || page.painter) work(app, hovered && !overBall);
+    if (hovered || page.painter) applyBrush(app, hovered && !overBall);
     drawLegend(app, list, {rect.x0 + dp(12), rect.y1 - dp(68)}, rect.width() - dp(24));
     list->PopClipRect();
     endPanel();
@@ -468,7 +468,7 @@ void showUnwrap(App& app, const Rect& rect) {
 
     const float room = std::min(rect.width() - dp(44), rect.height() - dp(96));
     const float scale =
-        page.zoom * room / float(std::max(surface.width, surface.height));  // pixels of a texel
+        page.zoom * room / float(std::max(surface.width, surface.height));  // pixels per texel
     const ImVec2 size(scale * float(surface.width), scale * float(surface.height));
     const ImVec2 low(std::floor(rect.midX() - size.x * 0.5f + dp(page.shift.x)),
                      std::floor(rect.midY() + dp(8) - size.y * 0.5f + dp(page.shift.y)));
@@ -479,13 +479,13 @@ void showUnwrap(App& app, const Rect& rect) {
         drawColumn(list, low.x + size.x * float(i) / 8, low.y, low.y + size.y, hex(0x292A2F));
         drawRow(list, low.x, low.x + size.x, low.y + size.y * float(i) / 8, hex(0x292A2F));
     }
-    // The ground of the islands is the legend's "as it is".
+    // Islands have the legend's colour for "as it is".
     const ImU32 ground = page.kind == fwedit::PaintMaterial   ? hex(0x8F8B82)
                          : page.kind == fwedit::PaintMoisture ? kMoistureStops[0].color
                                                               : kMultiplierStops[2].color;
     const size_t corners = surface.corners.size() / 5;
     const ImDrawListFlags smooth = list->Flags;
-    list->Flags &= ~ImDrawListFlags_AntiAliasedFill;  // no seams within an island
+    list->Flags &= ~ImDrawListFlags_AntiAliasedFill;  // avoids seams within an island
     for (size_t i = 0; i + 2 < corners; i += 3) {
         const float* c = surface.corners.data() + i * 5;
         list->AddTriangleFilled(place(c[3], c[4]), place(c[8], c[9]), place(c[13], c[14]), ground);
@@ -529,7 +529,7 @@ void showUnwrap(App& app, const Rect& rect) {
         }
     }
     list->PopClipRect();
-    if (hovered) work(app, true);
+    if (hovered) applyBrush(app, true);
 
     drawText(list, fonts().semi, rect.x0 + dp(12), rect.y0 + dp(20), colors::title, "Unwrap");
     char text[96];
@@ -608,7 +608,7 @@ void showBrush(App& app, const Rect& rect) {
     const float top = rect.y0 - ImGui::GetScrollY();
     drawText(list, fonts().semi, rect.x0 + dp(10), top + dp(16), colors::title, "Brush");
     Rows rows{list, rect.x0 + dp(10), rect.x1 - dp(10), top + dp(34), 84};
-    // The dab and its falloff, as they will be.
+    // Preview of the dab and its falloff.
     const ImVec2 low(rows.x0, rows.y), high(rows.x1, rows.y + dp(84));
     drawBox(list, low, high, colors::well, 6);
     const ImU32 color = page.kind == fwedit::PaintMaterial
@@ -716,7 +716,7 @@ void showBrush(App& app, const Rect& rect) {
         numberRow(rows, "Slope to", page.slopeHigh, slope);
     }
     if (page.tool == PaintTool::kFill && fwedit::FillBy(page.fillBy) == fwedit::FillBy::Curvature) {
-        constexpr float kMost = 200;  // 1/m that the sliders reach; more can be typed
+        constexpr float kMost = 200;  // 1/m, slider limit; typed values may exceed it
         const NumberLook bend{.unit = "/m",
                               .format = "%.0f",
                               .lowest = -kMost,
@@ -822,7 +822,7 @@ void colorMultipliers(App& app) {
         uint32_t width = 0, height = 0;
         std::vector<uint8_t> values =
             fwedit::multiplierOf(app.document.scene, app.document.images, mesh.id, width, height);
-        if (values.empty()) continue;  // as it is everywhere
+        if (values.empty()) continue;  // neutral everywhere
         if (width != surface->width || height != surface->height)
             values = fwedit::resizedPaint(
                          fwedit::paintImageOf(fwedit::PaintMultiplier, width, height, values),
@@ -882,7 +882,7 @@ void showPaint(App& app, Rect rect) {
     app.live.follow(app.document, true);
     app.live.shown = fwview::Shown::kRest;
     app.burnTimesAt = -1;
-    if (app.camera.distance < 0 && app.live.burn() && !app.live.preparing()) {
+    if (app.camera.distance < 0 && app.live.burn() && !app.live.isPreparing()) {
         app.camera.distance = 2;
         frameSelection(app, true);
     }

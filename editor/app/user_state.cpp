@@ -17,7 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr size_t kMostRecent = 8;
 
-// Whole or not at all.
+// Replaces the file atomically.
 void writeText(const fs::path& file, const std::string& text) {
     const fs::path fresh = file.string() + ".new";
     {
@@ -31,7 +31,7 @@ void writeText(const fs::path& file, const std::string& text) {
 
 }  // namespace
 
-std::string homely(const fs::path& path) {
+std::string abbreviateHome(const fs::path& path) {
     const std::string text = path.string();
     const char* given = std::getenv("HOME");
     const std::string home = given ? given : "";
@@ -39,7 +39,7 @@ std::string homely(const fs::path& path) {
     return std::string("~").append(text, home.size());
 }
 
-fs::path fromHomely(const std::string& text) {
+fs::path expandHome(const std::string& text) {
     const char* home = std::getenv("HOME");
     return home && text.starts_with("~/") ? fs::path(home) / text.substr(2) : fs::path(text);
 }
@@ -105,7 +105,7 @@ constexpr const char* kRecovery = "recovery-";
 
 fs::path ofFile(const fs::path& copy) { return fs::path(copy).replace_extension(".of"); }
 
-// A copy goes with the pictures of its paint.
+// Deletes a copy with its paint images.
 void dropCopy(const fs::path& copy) {
     const std::string pictures = copy.stem().string() + ".paint_";
     std::error_code ignored;
@@ -117,7 +117,7 @@ void dropCopy(const fs::path& copy) {
     for (const fs::path& picture : gone) fs::remove(picture, ignored);
 }
 
-// The number of the process that wrote it; 0: it is no such file.
+// Returns the id of the process that wrote it; 0: not such a file.
 pid_t writerOf(const fs::path& copy) {
     const std::string stem = copy.stem().string();
     if (copy.extension() != ".fwscene" || !stem.starts_with(kRecovery)) return 0;

@@ -1,5 +1,5 @@
-// What the editor remembers of its user between runs: sizes, recent files, what a crash left.
-// Kept beside other programs' settings, never in a scene.
+// Settings that persist between runs: sizes, recent files, crash recovery. Stored in the user's
+// state folder, never in a scene.
 #pragma once
 
 #include <filesystem>
@@ -11,30 +11,30 @@ namespace fwapp {
 
 struct UserState {
     float left = 216, right = 296, timeline = 144;  // design pixels
-    float interfaceSize = 1;                        // factor of the monitor's scale, [0.75, 2]
-    std::vector<std::filesystem::path> recent;      // the newest first, 8 at most
+    float interfaceSize = 1;                        // factor on the monitor's scale, [0.75, 2]
+    std::vector<std::filesystem::path> recent;      // newest first, 8 at most
     std::filesystem::path lastFolder;
-    std::map<std::string, std::string> keys;  // by command, where they are not those by design
+    std::map<std::string, std::string> keys;  // by command; only keys that differ from the defaults
 };
 
-// A path as people write it, with ~ for their home, and back.
-std::string homely(const std::filesystem::path& path);
-std::filesystem::path fromHomely(const std::string& text);
+// Abbreviates the home folder of a path with ~, and expands it.
+std::string abbreviateHome(const std::filesystem::path& path);
+std::filesystem::path expandHome(const std::string& text);
 
-std::filesystem::path stateFolder();  // created if need be; empty: there is none
+std::filesystem::path stateFolder();  // created if necessary; empty: not available
 void loadUserState(UserState& state);
 void saveUserState(const UserState& state);
 void addRecent(UserState& state, const std::filesystem::path& file);
 
-// Copies of unsaved work, one of each editor that runs: another one's is found once that no longer
-// lives, and stays until it is recovered or discarded.
+// Copies of unsaved work, one per running editor. A copy whose editor no longer runs can be
+// recovered, and stays until the user recovers or discards it.
 struct Recovery {
-    std::filesystem::path file, original;  // the copy, and what it is of (empty: it had no file)
+    std::filesystem::path file, original;  // the copy, and its original (empty: no file)
 };
-std::filesystem::path recoveryFile();  // our own
+std::filesystem::path recoveryFile();  // of this process
 void noteRecovery(const std::filesystem::path& original);
-void dropRecovery();                    // our own
-bool findRecovery(Recovery& recovery);  // the newest that a dead editor left
+void dropRecovery();                    // of this process
+bool findRecovery(Recovery& recovery);  // newest copy of an editor that no longer runs
 void dropRecovery(const Recovery& recovery);
 
 }  // namespace fwapp

@@ -24,21 +24,22 @@ constexpr float kGrab = 9;          // dp around a handle
 constexpr float kArm = 74;          // dp, of the gizmo's arrows
 constexpr float kSnapStep = 0.05f;  // m
 
-// What the mouse is busy with from press to release.
-enum class Busy { kNone, kOrbit, kPan, kAxis, kPlane, kBox, kClick, kTurn, kStretch };
-struct Hand {
-    Busy busy = Busy::kNone;
+// Action of the mouse from press to release.
+enum class MouseAction { kNone, kOrbit, kPan, kAxis, kPlane, kBox, kClick, kTurn, kStretch };
+struct MouseDrag {
+    MouseAction busy = MouseAction::kNone;
     int axis =
-        0;  // of kAxis, kStretch: along it (3: all alike); of kPlane: across it; of kTurn: about
-    std::vector<std::pair<ObjectId, fwedit::Vec3>> before;  // what turns and stretches, as it was
-    float done = 0;                                         // degrees, or the factor less one
+        0;  // kAxis, kStretch: along this axis (3: all); kPlane: its normal; kTurn: around it
+    std::vector<std::pair<ObjectId, fwedit::Vec3>> before;  // initial values of rotated or scaled
+                                                            // objects
+    float done = 0;                                         // degrees, or factor - 1
     ImVec2 press{};
-    glm::vec3 from{0};  // where the selection was
-    glm::vec3 grip{0};  // where it was taken
+    glm::vec3 from{0};  // initial position of the selection
+    glm::vec3 grip{0};  // grabbed point
     glm::vec3 moved{0};
 };
-Hand& hand() {
-    static Hand one;  // there is one mouse
+MouseDrag& mouseDrag() {
+    static MouseDrag one;  // static, since there is one mouse
     return one;
 }
 
@@ -48,7 +49,7 @@ glm::vec3 axisOf(int axis) {
     return v;
 }
 
-bool onPlane(const fwview::Ray& ray, glm::vec3 point, glm::vec3 normal, glm::vec3& hit) {
+bool intersectPlane(const fwview::Ray& ray, glm::vec3 point, glm::vec3 normal, glm::vec3& hit) {
     const float facing = glm::dot(ray.direction, normal);
     if (std::fabs(facing) < 1e-4f) return false;
     const float distance = glm::dot(point - ray.origin, normal) / facing;
@@ -57,11 +58,11 @@ bool onPlane(const fwview::Ray& ray, glm::vec3 point, glm::vec3 normal, glm::vec
     return true;
 }
 
-// The point of a line that is nearest to a ray.
-bool alongAxis(const fwview::Ray& ray, glm::vec3 point, glm::vec3 axis, glm::vec3& hit) {
+// Returns the point of a line nearest to a ray.
+bool findNearestOnAxis(const fwview::Ray& ray, glm::vec3 point, glm::vec3 axis, glm::vec3& hit) {
     const glm::vec3 across = glm::cross(ray.direction, axis);
     const glm::vec3 normal = glm::cross(across, axis);
-    if (!onPlane(ray, point, glm::normalize(normal), hit)) return false;
+    if (!intersectPlane(ray, point, glm::normalize(normal), hit)) return false;
     hit = point + glm::dot(hit - point, axis) * axis;
     return true;
 }
@@ -76,7 +77,7 @@ float distanceTo(ImVec2 p, ImVec2 a, ImVec2 b) {
     return std::hypot(p.x - a.x - t * along.x, p.y - a.y - t * along.y);
 }
 
-bool movable(const fwedit::Scene& scene, Kind kind, ObjectId id) {
+bool isMovable(const fwedit::Scene& scene, Kind kind, ObjectId id) {
     const fwedit::Wind* wind = fwedit::findIn(scene.winds, id);
     if (wind) return wind->shape != fwedit::WindEverywhere;
     return kind == Kind::Mesh || kind == Kind::Source || kind == Kind::Flame ||
@@ -87,14 +88,14 @@ glm::vec3 placeOf(const App& app, ObjectId id) {
     return asVec(fwedit::worldPosition(app.document.scene, id, app.document.nodePose));
 }
 
-// Where the gizmo stands: the middle of what is selected and can move.
+// The gizmo's position: centre of the movable selection.
 bool pivotOf(const App& app, glm::vec3& pivot) {
     glm::vec3 sum(0);
     float count = 0;
     for (const ObjectId id : app.selection) {
         Kind kind{};
         const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
-        if (!object || object->locked || !movable(app.document.scene, kind, id)) continue;
+        if (!object || object->locked || !isMovable(app.document.scene, kind, id)) continue;
         sum += placeOf(app, id);
         ++count;
     }
@@ -103,7 +104,7 @@ bool pivotOf(const App& app, glm::vec3& pivot) {
     return true;
 }
 
-// Metres that so many pixels are at a place.
+// Returns the metres that `pixels` span at a position.
 float metresAt(const Picture& picture, glm::vec3 place, float pixels) {
     const float depth = fwview::onPicture(picture.view, place).z;
     const float scale = std::fabs(picture.view.projection[5]);
@@ -111,13 +112,13 @@ float metresAt(const Picture& picture, glm::vec3 place, float pixels) {
 }
 
 void drawArrow(ImDrawList* list, ImVec2 from, ImVec2 to, ImU32 color, bool hot) {
-    const ImVec2 way = to - from;
-    const float length = std::hypot(way.x, way.y);
+    const ImVec2 delta = to - from;
+    const float length = std::hypot(delta.x, delta.y);
     if (length < dp(10)) {
         list->AddCircleFilled(to, dp(5), color, 16);
         return;
     }
-    const ImVec2 along = way / length, across(-along.y, along.x), neck = to - along * dp(13);
+    const ImVec2 along = delta / length, across(-along.y, along.x), neck = to - along * dp(13);
     list->AddLine(from, neck, IM_COL32(0, 0, 0, 120), dp(5));
     list->AddLine(from, neck, color, dp(hot ? 4 : 2.5f));
     list->AddTriangleFilled(to, neck + across * dp(hot ? 7 : 5.5f),
@@ -150,8 +151,8 @@ Gizmo makeGizmo(const Picture& picture, glm::vec3 pivot) {
     return gizmo;
 }
 
-// -1: none; 0..2 an arrow, 3..5 a plane.
-int underMouse(const Gizmo& gizmo, ImVec2 mouse) {
+// Returns -1: none; 0..2: an arrow; 3..5: a plane.
+int hitTest(const Gizmo& gizmo, ImVec2 mouse) {
     if (!gizmo.there) return -1;
     for (int i = 0; i < 3; ++i) {
         const ImVec2* q = gizmo.planes[i];
@@ -183,7 +184,7 @@ void drawGizmo(ImDrawList* list, const Gizmo& gizmo, int hot) {
     list->AddCircleFilled(gizmo.origin, dp(4), colors::white, 20);
 }
 
-// Rings about the axes, or arms that end in boxes with one for all of them in the middle.
+// Rings around the axes, or arms that end in boxes, with a centre box for uniform scale.
 struct Handles {
     bool there = false;
     float arm = 0;  // m
@@ -209,8 +210,8 @@ Handles makeHandles(const Picture& picture, glm::vec3 pivot) {
     return handles;
 }
 
-// -1: none; 0..2 an axis, 3 the middle (of stretching).
-int underMouse(const Handles& handles, bool turns, ImVec2 mouse) {
+// Returns -1: none; 0..2: an axis; 3: the centre (scale).
+int hitTest(const Handles& handles, bool turns, ImVec2 mouse) {
     if (!handles.there) return -1;
     int best = -1;
     float nearest = dp(kGrab);
@@ -257,7 +258,7 @@ void drawHandles(ImDrawList* list, const Handles& handles, bool turns, int hot) 
     if (!turns) box(handles.origin, hot == 3 ? colors::white : colors::text, 6);
 }
 
-// What of the selection can turn: the key of the field, null for the rest.
+// Returns the field that rotates an object; null: it cannot rotate.
 const char* turnField(Kind kind) {
     if (kind == Kind::Mesh || kind == Kind::Collider) return "rotation";
     if (kind == Kind::Source || kind == Kind::Emitter) return "direction";
@@ -287,7 +288,7 @@ std::vector<std::pair<ObjectId, fwedit::Vec3>> vectorsOf(const App& app, bool tu
     return found;
 }
 
-// Degrees about x, then y, then z, of a turn about a world axis after what was.
+// Returns degrees around x, then y, then z, after rotating `before` around a world axis.
 fwedit::Vec3 turnedAngles(const fwedit::Vec3& before, int axis, float degrees) {
     fwedit::Mesh mesh;
     mesh.rotation = before;
@@ -300,7 +301,7 @@ fwedit::Vec3 turnedAngles(const fwedit::Vec3& before, int axis, float degrees) {
         angles.x = std::atan2(m[1][2], m[2][2]);
         angles.z = std::atan2(m[0][1], m[0][0]);
     } else {
-        angles.x = std::atan2(-m[2][1], m[1][1]);  // z and x are one turn there
+        angles.x = std::atan2(-m[2][1], m[1][1]);  // gimbal lock: z and x are one rotation
     }
     angles = glm::degrees(angles);
     return {angles.x, angles.y, angles.z};
@@ -318,7 +319,7 @@ std::vector<Marker> markersOf(const App& app, const Picture& picture) {
         if (kind == Kind::Mesh) return;
         for (const auto& object : list) {
             ImVec2 place;
-            if (object.hidden || !movable(app.document.scene, kind, object.id) ||
+            if (object.hidden || !isMovable(app.document.scene, kind, object.id) ||
                 !picture.at(placeOf(app, object.id), place))
                 continue;
             if (picture.rect.holds(place)) markers.push_back({object.id, kind, place});
@@ -327,7 +328,7 @@ std::vector<Marker> markersOf(const App& app, const Picture& picture) {
     return markers;
 }
 
-// The reach of a source as a ring around its direction.
+// Shows the range of a source as a ring around its direction.
 void drawReach(const App& app, ImDrawList* list, const Picture& picture,
                const fwedit::HeatSource& source, ImU32 color) {
     const glm::vec3 place = placeOf(app, source.id);
@@ -354,22 +355,21 @@ void drawReach(const App& app, ImDrawList* list, const Picture& picture,
     list->AddPolyline(ring.data(), int(ring.size()), color, ImDrawFlags_Closed, dp(2));
     if (source.shape == fwedit::SourceFlamethrower || source.shape == fwedit::SourceLine) {
         ImVec2 a, b;
-        const glm::vec3 way =
+        const glm::vec3 heading =
             glm::length(direction) > 1e-5f ? glm::normalize(direction) : glm::vec3(0, 1, 0);
         const float reach = source.shape == fwedit::SourceLine ? 0.5f * source.length : 0.6f;
-        const glm::vec3 back = source.shape == fwedit::SourceLine ? reach * way : glm::vec3(0);
-        if (picture.at(place - back, a) && picture.at(place + reach * way, b))
+        const glm::vec3 back = source.shape == fwedit::SourceLine ? reach * heading : glm::vec3(0);
+        if (picture.at(place - back, a) && picture.at(place + reach * heading, b))
             drawArrow(list, a, b, color, false);
     }
 }
 
-// Where a zone of wind is: a box's edges, a ball's three rings, a fan's cone; and which way it
-// blows.
+// Shows a wind zone: edges of a box, three rings of a ball, cone of a fan; and its direction.
 void drawZone(const App& app, ImDrawList* list, const Picture& picture, const fwedit::Wind& wind,
               ImU32 color) {
     const glm::vec3 middle = placeOf(app, wind.id);
     const glm::vec3 velocity = asVec(wind.velocity);
-    const glm::vec3 way =
+    const glm::vec3 heading =
         glm::length(velocity) > 1e-5f ? glm::normalize(velocity) : glm::vec3(1, 0, 0);
     const auto edge = [&](glm::vec3 from, glm::vec3 to) {
         ImVec2 a, b;
@@ -402,7 +402,7 @@ void drawZone(const App& app, ImDrawList* list, const Picture& picture, const fw
     } else if (wind.shape == fwedit::WindBall) {
         for (int axis = 0; axis < 3; ++axis) ring(middle, axisOf(axis), wind.radius);
     } else {
-        for (const glm::vec3 rim : ring(middle + wind.length * way, way, wind.radius))
+        for (const glm::vec3 rim : ring(middle + wind.length * heading, heading, wind.radius))
             edge(middle, rim);
     }
     if (wind.flow == fwedit::WindOut) return;
@@ -410,7 +410,7 @@ void drawZone(const App& app, ImDrawList* list, const Picture& picture, const fw
     const float reach = wind.shape == fwedit::WindFan   ? 0.5f * wind.length
                         : wind.shape == fwedit::WindBox ? wind.halfSize[0]
                                                         : wind.radius;
-    if (picture.at(middle, a) && picture.at(middle + reach * way, b))
+    if (picture.at(middle, a) && picture.at(middle + reach * heading, b))
         drawArrow(list, a, b, color, false);
 }
 
@@ -453,7 +453,7 @@ void moveSelection(App& app, glm::vec3 by) {
     for (const ObjectId id : app.selection) {
         Kind kind{};
         const fwedit::Object* object = fwedit::findObject(app.document.scene, id, &kind);
-        if (object && !object->locked && movable(app.document.scene, kind, id))
+        if (object && !object->locked && isMovable(app.document.scene, kind, id))
             command.targets.push_back(id);
     }
     command.offset = {by.x, by.y, by.z};
@@ -463,37 +463,38 @@ void moveSelection(App& app, glm::vec3 by) {
 void endMove(App& app) {
     if (!app.document.dragging) return;
     fwedit::endDrag(app.document);
-    say(app, app.document.steps[app.document.at].name);
+    setStatus(app, app.document.steps[app.document.at].name);
 }
 
-// A drag of a handle: measured from where it was taken, so that nothing adds up.
-void drag(App& app, const Picture& picture, ImDrawList* list) {
-    Hand& state = hand();
+// Drags a handle. Measured from the grabbed point, so that errors do not accumulate.
+void dragHandle(App& app, const Picture& picture, ImDrawList* list) {
+    MouseDrag& state = mouseDrag();
     const ImGuiIO& io = ImGui::GetIO();
     const fwview::Ray ray = picture.ray(io.MousePos);
     glm::vec3 at(0);
     const glm::vec3 axis = axisOf(state.axis);
-    const bool found = state.busy == Busy::kAxis ? alongAxis(ray, state.from, axis, at)
-                                                 : onPlane(ray, state.from, axis, at);
+    const bool found = state.busy == MouseAction::kAxis
+                           ? findNearestOnAxis(ray, state.from, axis, at)
+                           : intersectPlane(ray, state.from, axis, at);
     if (found) {
-        glm::vec3 way = at - state.grip;
-        if (io.KeyShift) way *= 0.1f;
+        glm::vec3 delta = at - state.grip;
+        if (io.KeyShift) delta *= 0.1f;
         if (io.KeyCtrl != app.snapping) {
             for (int i = 0; i < 3; ++i) {
-                const bool free = (state.busy == Busy::kAxis) == (i == state.axis);
+                const bool free = (state.busy == MouseAction::kAxis) == (i == state.axis);
                 if (!free) continue;
-                way[i] =
-                    std::round((state.from[i] + way[i]) / kSnapStep) * kSnapStep - state.from[i];
+                delta[i] =
+                    std::round((state.from[i] + delta[i]) / kSnapStep) * kSnapStep - state.from[i];
             }
         }
-        if (glm::length(way - state.moved) > 1e-6f) {
+        if (glm::length(delta - state.moved) > 1e-6f) {
             if (!app.document.dragging) fwedit::beginDrag(app.document);
-            moveSelection(app, way - state.moved);
-            state.moved = way;
+            moveSelection(app, delta - state.moved);
+            state.moved = delta;
         }
     }
     char text[64];
-    if (state.busy == Busy::kAxis) {
+    if (state.busy == MouseAction::kAxis) {
         std::snprintf(
             text, sizeof text, "%s m",
             formatNumber(state.from[state.axis] + state.moved[state.axis], "%.2f").c_str());
@@ -504,27 +505,27 @@ void drag(App& app, const Picture& picture, ImDrawList* list) {
     drawChip(list, io.MousePos + dp(0, -26), text);
     if (ImGui::IsKeyPressed(256, false) || io.MouseDown[1]) {
         fwedit::cancelDrag(app.document);
-        state.busy = Busy::kNone;
+        state.busy = MouseAction::kNone;
     }
 }
 
-// A turn about an axis, or a stretch along one, since the press.
-void turnOrStretch(App& app, const Picture& picture, ImDrawList* list) {
-    Hand& state = hand();
+// Rotates around an axis, or scales along one, relative to the press.
+void rotateOrScale(App& app, const Picture& picture, ImDrawList* list) {
+    MouseDrag& state = mouseDrag();
     const ImGuiIO& io = ImGui::GetIO();
-    const bool turns = state.busy == Busy::kTurn;
+    const bool turns = state.busy == MouseAction::kTurn;
     const fwview::Ray ray = picture.ray(io.MousePos);
     float amount = state.done;
     glm::vec3 at(0);
     if (turns) {
         const glm::vec3 axis = axisOf(state.axis);
-        if (onPlane(ray, state.from, axis, at)) {
+        if (intersectPlane(ray, state.from, axis, at)) {
             const glm::vec3 a = state.grip - state.from, b = at - state.from;
             amount = glm::degrees(std::atan2(glm::dot(glm::cross(a, b), axis), glm::dot(a, b)));
         }
     } else if (state.axis == 3) {
         amount = (io.MousePos.x - state.press.x - (io.MousePos.y - state.press.y)) / dp(100);
-    } else if (alongAxis(ray, state.from, axisOf(state.axis), at)) {
+    } else if (findNearestOnAxis(ray, state.from, axisOf(state.axis), at)) {
         const float whole = state.grip[state.axis] - state.from[state.axis];
         if (std::fabs(whole) > 1e-6f)
             amount = (at[state.axis] - state.from[state.axis]) / whole - 1;
@@ -549,8 +550,9 @@ void turnOrStretch(App& app, const Picture& picture, ImDrawList* list) {
                     glm::rotate(glm::mat4(1), glm::radians(amount), axisOf(state.axis));
                 const fwedit::Pose holder =
                     fwedit::holderPose(app.document.scene, id, app.document.nodePose);
-                const glm::vec3 way(turn * glm::vec4(asVec(fwedit::turnedBy(holder, before)), 0));
-                now = fwedit::directionWithin(holder, {way.x, way.y, way.z});
+                const glm::vec3 turned(turn *
+                                       glm::vec4(asVec(fwedit::turnedBy(holder, before)), 0));
+                now = fwedit::directionWithin(holder, {turned.x, turned.y, turned.z});
             } else if (turns) {
                 now = turnedAngles(before, state.axis, amount);
             } else {
@@ -566,22 +568,22 @@ void turnOrStretch(App& app, const Picture& picture, ImDrawList* list) {
     drawChip(list, io.MousePos + dp(0, -26), text.c_str());
     if (ImGui::IsKeyPressed(256, false) || io.MouseDown[1]) {
         fwedit::cancelDrag(app.document);
-        state.busy = Busy::kNone;
+        state.busy = MouseAction::kNone;
     }
 }
 
-void place(App& app, ImDrawList* list, const Picture& picture, ImVec2 mouse) {
+void placeSource(App& app, ImDrawList* list, const Picture& picture, ImVec2 mouse) {
     const glm::vec2 p = picture.share(mouse);
     fwview::SurfaceHit hit = app.live.pick(p.x, p.y, false);
     const float ground = app.document.scene.settings.ground;
     if (!hit.hit) {
         glm::vec3 at;
-        if (onPlane(picture.ray(mouse), {0, ground, 0}, {0, 1, 0}, at)) {
+        if (intersectPlane(picture.ray(mouse), {0, ground, 0}, {0, 1, 0}, at)) {
             hit.position = at;
             hit.normal = {0, 1, 0};
         } else {
-            onPlane(picture.ray(mouse), asVec(app.camera.target), -picture.ray(mouse).direction,
-                    hit.position);
+            intersectPlane(picture.ray(mouse), asVec(app.camera.target),
+                           -picture.ray(mouse).direction, hit.position);
         }
     }
     const bool rain = app.placed == fwedit::SourceRain;
@@ -618,7 +620,7 @@ void place(App& app, ImDrawList* list, const Picture& picture, ImVec2 mouse) {
     app.placing = false;
 }
 
-void askHere(App& app, const Picture& picture, ImVec2 mouse) {
+void queryAt(App& app, const Picture& picture, ImVec2 mouse) {
     const glm::vec2 p = picture.share(mouse);
     const fwview::SurfaceHit hit = app.live.pick(p.x, p.y, false);
     if (hit.hit) {
@@ -629,12 +631,12 @@ void askHere(App& app, const Picture& picture, ImVec2 mouse) {
     }
 }
 
-// "Not lit" and the like: the answer without its numbers.
+// The heading of an answer, such as "Not lit", without its numbers.
 std::string headOf(const std::string& answer) {
     return answer.substr(0, answer.find_first_of(":,"));
 }
 
-// Beside the spot, never over it: right of it, left where there is no room.
+// Beside the spot, never over it: right of it, or left if there is no space.
 void showWhy(App& app, ImDrawList* list, const Picture& picture) {
     fwview::WhyCard& why = app.live.why;
     ImVec2 spot;
@@ -648,7 +650,7 @@ void showWhy(App& app, ImDrawList* list, const Picture& picture) {
         textHeight += dp(8) + drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0,
                                               cause.c_str());
     const std::string forecast =
-        answer.forecast.empty() ? "It will not catch as things are" : answer.forecast;
+        answer.forecast.empty() ? "Without changes it will not ignite" : answer.forecast;
     textHeight +=
         drawTextWrapped(nullptr, fonts().body, {0, 0}, inner - dp(22), 0, forecast.c_str());
     const bool unlit = why.answered && (!answer.forecast.empty() || !answer.causes.empty());
@@ -670,7 +672,7 @@ void showWhy(App& app, ImDrawList* list, const Picture& picture) {
     float y = low.y;
     drawIcon(list, fonts().icon20, {x + dp(8), y + dp(23)}, colors::accent, icons::question);
     const std::string head = why.answered        ? headOf(answer.answer)
-                             : why.error.empty() ? std::string("Asking the fire")
+                             : why.error.empty() ? std::string("Querying the fire")
                                                  : std::string("No answer");
     drawTextFit(list, fonts().heading, x + dp(24), y + dp(22), inner - dp(74), colors::title,
                 head.c_str());
@@ -759,7 +761,7 @@ void drawTimeLegend(const App& app, ImDrawList* list, ImVec2 low) {
                   clockText(duration, false).c_str());
 }
 
-// The spots that are kept, with their numbers.
+// The pinned spots, with their numbers.
 void drawPins(App& app, ImDrawList* list, const Picture& picture) {
     for (size_t i = 0; i < app.live.pins.size(); ++i) {
         ImVec2 spot;
@@ -771,11 +773,11 @@ void drawPins(App& app, ImDrawList* list, const Picture& picture) {
     }
 }
 
-// The names of the two halves, and the line between them.
+// Names of the two halves, and the line between them.
 void drawHalves(const App& app, ImDrawList* list, const Rect& rect, const Rect& worked) {
-    if (!app.live.comparing()) return;
-    if (!app.live.comparesNow()) {
-        drawChip(list, {rect.midX(), rect.y0 + dp(20)}, "Preparing what it is compared with");
+    if (!app.live.isComparing()) return;
+    if (!app.live.showsComparison()) {
+        drawChip(list, {rect.midX(), rect.y0 + dp(20)}, "Preparing the comparison");
         return;
     }
     list->AddRectFilled({worked.x0 - dp(1), rect.y0}, {worked.x0 + dp(1), rect.y1}, colors::gap);
@@ -791,7 +793,7 @@ void drawHalves(const App& app, ImDrawList* list, const Rect& rect, const Rect& 
     name(worked.x0, worked.width() - dp(90), "B", "Now");
 }
 
-// What a click means: the marker under it, else the surface, else nothing.
+// A click selects the marker under it, otherwise the surface, otherwise nothing.
 void pickAt(App& app, const Picture& picture, const std::vector<Marker>& markers, ImVec2 mouse) {
     const ImGuiIO& io = ImGui::GetIO();
     for (auto marker = markers.rbegin(); marker != markers.rend(); ++marker) {
@@ -801,7 +803,7 @@ void pickAt(App& app, const Picture& picture, const std::vector<Marker>& markers
         select(app, marker->id, io.KeyShift, io.KeyCtrl);
         return;
     }
-    if (app.tool == Tool::kWhy) return askHere(app, picture, mouse);
+    if (app.tool == Tool::kWhy) return queryAt(app, picture, mouse);
     const glm::vec2 p = picture.share(mouse);
     select(app, app.live.pick(p.x, p.y, true).object, io.KeyShift, io.KeyCtrl);
 }
@@ -837,7 +839,7 @@ fwview::Ray Picture::ray(ImVec2 pixel) const {
     return fwview::rayThrough(view, p.x, p.y);
 }
 
-bool navigationBall(App& app, ImDrawList* list, const Picture& picture) {
+bool showNavigationBall(App& app, ImDrawList* list, const Picture& picture) {
     const ImVec2 centre(picture.rect.x1 - dp(44), picture.rect.y0 + dp(46));
     const float radius = dp(26);
     const glm::mat4 view = glm::make_mat4(picture.view.view);
@@ -887,8 +889,8 @@ void orbit(App& app, ImVec2 by) {
 void pan(App& app, const Picture& picture, ImVec2 by) {
     const glm::mat4 back = glm::inverse(glm::make_mat4(picture.view.view));
     const float metres = metresAt(picture, asVec(app.camera.target), 1);
-    const glm::vec3 way = metres * (-by.x * glm::vec3(back[0]) + by.y * glm::vec3(back[1]));
-    for (int i = 0; i < 3; ++i) app.camera.target[size_t(i)] += way[i];
+    const glm::vec3 delta = metres * (-by.x * glm::vec3(back[0]) + by.y * glm::vec3(back[1]));
+    for (int i = 0; i < 3; ++i) app.camera.target[size_t(i)] += delta[i];
 }
 
 void zoom(App& app, float notches) {
@@ -897,11 +899,12 @@ void zoom(App& app, float notches) {
 
 namespace {
 
-// Share of the pixels' sides that a moving picture has now; looked at anew every few frames.
-float movingSharpness(App& app) {
+// Returns the share of full resolution for a moving picture; re-evaluated every few frames.
+float chooseMovingResolution(App& app) {
     constexpr float kShares[] = {1, 0.8f, 0.64f, 0.5f, 0.4f, 0.32f};
-    constexpr float kMost = 1 / 18.0f;                     // s of a frame; 15 a second is the aim
-    constexpr float kRoom = kMost * 0.64f * 0.64f * 0.9f;  // then the next sharper one fits
+    constexpr float kMost = 1 / 18.0f;  // s per frame; the goal is 15 frames a second
+    constexpr float kRoom = kMost * 0.64f * 0.64f * 0.9f;  // below it, the next higher resolution
+                                                           // fits
     constexpr uint32_t kLooks = 6;
     Pace& pace = app.pace;
     pace.seconds += app.deltaTime;
@@ -915,14 +918,14 @@ float movingSharpness(App& app) {
     return kShares[pace.step];
 }
 
-// Before there is a picture of the scene: how far it is, or that it was left.
+// Before there is a picture of the scene: shows the progress, or that it was cancelled.
 void showPreparing(App& app, ImDrawList* list, const Rect& rect, bool takesLong) {
     const float y = rect.midY();
-    if (app.live.stopped()) {
+    if (app.live.isCancelled()) {
         drawTextCentred(list, fonts().body, rect.midX(), y - dp(8), colors::dim,
-                        "The scene is not prepared");
+                        "Preparation was cancelled");
         if (button("prepare", {rect.midX() - dp(60), y + dp(8)}, dp(120, 28), "Prepare it"))
-            app.live.goOn();
+            app.live.resume();
         return;
     }
     float share = 0;
@@ -945,27 +948,28 @@ void showPicture(App& app, const Rect& rect) {
 }
 
 void showViewport(App& app, const Rect& rect) {
-    // Below a picture nothing is painted: it covers all of it.
+    // The picture covers everything below it, so nothing is painted there.
     const bool covered = app.live.burn() && app.live.target.texture();
     ImDrawList* list = beginPanel("##view", rect, covered ? 0 : colors::gap);
-    constexpr double kStill = 0.3;  // s until what stood still is sharp again
-    if (hand().busy != Busy::kNone || ImGui::GetIO().MouseWheel != 0) app.movedAt = app.now;
-    const bool moves =
-        app.playing || app.live.seeking() || app.live.previews() || app.now - app.movedAt < kStill;
+    constexpr double kStill = 0.3;  // s without motion before the full-resolution picture
+    if (mouseDrag().busy != MouseAction::kNone || ImGui::GetIO().MouseWheel != 0)
+        app.movedAt = app.now;
+    const bool moves = app.playing || app.live.isSeeking() || app.live.isPreviewing() ||
+                       app.now - app.movedAt < kStill;
     if (!moves) app.pace = {.step = app.pace.step};
-    const float sharpness = app.slow && moves ? movingSharpness(app) : 1.0f;
+    const float sharpness = app.slow && moves ? chooseMovingResolution(app) : 1.0f;
     app.live.resize(uint32_t(std::max(8.0f, rect.width() * sharpness)),
                     uint32_t(std::max(8.0f, rect.height() * sharpness)));
-    // Of a comparison the right half is the scene that is worked on.
+    // The right half of a comparison is the current scene.
     Rect worked = rect;
-    if (app.live.comparesNow()) worked.x0 = std::floor(rect.midX());
+    if (app.live.showsComparison()) worked.x0 = std::floor(rect.midX());
     const Picture picture{worked, app.live.view};
     if (app.live.burn() && app.live.target.texture())
         list->AddImage(app.live.target.texture(), rect.low(), rect.high());
 
-    // What is prepared for long wants a button to leave it.
+    // A long preparation shows a cancel button.
     constexpr double kLong = 1;  // s
-    if (!app.live.preparing())
+    if (!app.live.isPreparing())
         app.preparingSince = -1;
     else if (app.preparingSince < 0)
         app.preparingSince = app.now;
@@ -983,7 +987,7 @@ void showViewport(App& app, const Rect& rect) {
     const std::vector<Marker> markers = markersOf(app, picture);
     const ImGuiIO& io = ImGui::GetIO();
     const ImVec2 mouse = io.MousePos;
-    Hand& state = hand();
+    MouseDrag& state = mouseDrag();
 
     list->PushClipRect(worked.low(), worked.high(), true);
     Gizmo gizmo;
@@ -999,99 +1003,99 @@ void showViewport(App& app, const Rect& rect) {
             pivotOf(app, pivot))
             handles = makeHandles(picture, pivot);
     }
-    const bool overBall = navigationBall(app, list, picture);
-    const int hot =
-        hovered && !overBall && !io.KeyAlt && state.busy == Busy::kNone
-            ? handles.there ? underMouse(handles, turns, mouse) : underMouse(gizmo, mouse)
-            : -1;
-    const bool holds = state.busy == Busy::kTurn || state.busy == Busy::kStretch;
+    const bool overBall = showNavigationBall(app, list, picture);
+    const int hot = hovered && !overBall && !io.KeyAlt && state.busy == MouseAction::kNone
+                        ? handles.there ? hitTest(handles, turns, mouse) : hitTest(gizmo, mouse)
+                        : -1;
+    const bool holds = state.busy == MouseAction::kTurn || state.busy == MouseAction::kStretch;
     drawHandles(list, handles, turns, holds ? state.axis : hot);
     drawGizmo(list, gizmo,
-              state.busy == Busy::kAxis    ? state.axis
-              : state.busy == Busy::kPlane ? 3 + state.axis
-                                           : hot);
+              state.busy == MouseAction::kAxis    ? state.axis
+              : state.busy == MouseAction::kPlane ? 3 + state.axis
+                                                  : hot);
     if (hovered && io.MouseWheel != 0) zoom(app, io.MouseWheel);
 
-    if (state.busy == Busy::kNone && hovered && !overBall) {
+    if (state.busy == MouseAction::kNone && hovered && !overBall) {
         state.press = mouse;
-        if (ImGui::IsMouseClicked(2)) state.busy = Busy::kPan;
-        if (ImGui::IsMouseClicked(1)) state.busy = app.placing ? Busy::kNone : Busy::kOrbit;
+        if (ImGui::IsMouseClicked(2)) state.busy = MouseAction::kPan;
+        if (ImGui::IsMouseClicked(1))
+            state.busy = app.placing ? MouseAction::kNone : MouseAction::kOrbit;
         if (ImGui::IsMouseClicked(1) && app.placing) app.placing = false;
         if (ImGui::IsMouseClicked(0)) {
             if (io.KeyAlt) {
-                state.busy = Busy::kOrbit;
+                state.busy = MouseAction::kOrbit;
             } else if (!app.placing && hot >= 0 && handles.there) {
                 state.axis = hot;
-                state.busy = turns ? Busy::kTurn : Busy::kStretch;
+                state.busy = turns ? MouseAction::kTurn : MouseAction::kStretch;
                 state.from = state.grip = pivot;
                 state.done = 0;
                 state.before = vectorsOf(app, turns);
                 const fwview::Ray ray = picture.ray(mouse);
                 if (turns) {
-                    onPlane(ray, pivot, axisOf(hot), state.grip);
+                    intersectPlane(ray, pivot, axisOf(hot), state.grip);
                 } else if (hot < 3) {
-                    alongAxis(ray, pivot, axisOf(hot), state.grip);
+                    findNearestOnAxis(ray, pivot, axisOf(hot), state.grip);
                 }
             } else if (!app.placing && hot >= 0) {
                 state.axis = hot % 3;
-                state.busy = hot < 3 ? Busy::kAxis : Busy::kPlane;
+                state.busy = hot < 3 ? MouseAction::kAxis : MouseAction::kPlane;
                 state.from = pivot;
                 state.moved = glm::vec3(0);
                 state.grip = pivot;
                 const fwview::Ray ray = picture.ray(mouse);
                 if (hot < 3) {
-                    alongAxis(ray, pivot, axisOf(state.axis), state.grip);
+                    findNearestOnAxis(ray, pivot, axisOf(state.axis), state.grip);
                 } else {
-                    onPlane(ray, pivot, axisOf(state.axis), state.grip);
+                    intersectPlane(ray, pivot, axisOf(state.axis), state.grip);
                 }
             } else if (!app.placing) {
-                state.busy = Busy::kClick;
+                state.busy = MouseAction::kClick;
             }
         }
     }
-    if (app.placing && hovered && !overBall && !io.KeyAlt) place(app, list, picture, mouse);
+    if (app.placing && hovered && !overBall && !io.KeyAlt) placeSource(app, list, picture, mouse);
     switch (state.busy) {
-        case Busy::kOrbit:
+        case MouseAction::kOrbit:
             orbit(app, io.MouseDelta);
-            if (!io.MouseDown[0] && !io.MouseDown[1]) state.busy = Busy::kNone;
+            if (!io.MouseDown[0] && !io.MouseDown[1]) state.busy = MouseAction::kNone;
             break;
-        case Busy::kPan:
+        case MouseAction::kPan:
             pan(app, picture, io.MouseDelta);
-            if (!io.MouseDown[2]) state.busy = Busy::kNone;
+            if (!io.MouseDown[2]) state.busy = MouseAction::kNone;
             break;
-        case Busy::kTurn:
-        case Busy::kStretch:
-            turnOrStretch(app, picture, list);
+        case MouseAction::kTurn:
+        case MouseAction::kStretch:
+            rotateOrScale(app, picture, list);
             if (!io.MouseDown[0]) {
                 endMove(app);
-                state.busy = Busy::kNone;
+                state.busy = MouseAction::kNone;
             }
             break;
-        case Busy::kAxis:
-        case Busy::kPlane:
-            drag(app, picture, list);
+        case MouseAction::kAxis:
+        case MouseAction::kPlane:
+            dragHandle(app, picture, list);
             if (!io.MouseDown[0]) {
                 endMove(app);
-                state.busy = Busy::kNone;
+                state.busy = MouseAction::kNone;
             }
             break;
-        case Busy::kClick:
+        case MouseAction::kClick:
             if (std::hypot(mouse.x - state.press.x, mouse.y - state.press.y) > dp(4))
-                state.busy = Busy::kBox;
+                state.busy = MouseAction::kBox;
             if (!io.MouseDown[0]) {
                 pickAt(app, picture, markers, mouse);
-                state.busy = Busy::kNone;
+                state.busy = MouseAction::kNone;
             }
             break;
-        case Busy::kBox:
+        case MouseAction::kBox:
             list->AddRectFilled(state.press, mouse, faded(colors::accent, 0.12f));
             list->AddRect(state.press, mouse, colors::accent, 0, 0, hairline());
             if (!io.MouseDown[0]) {
                 pickBox(app, picture, markers, state.press, mouse);
-                state.busy = Busy::kNone;
+                state.busy = MouseAction::kNone;
             }
             break;
-        case Busy::kNone:
+        case MouseAction::kNone:
             break;
     }
     drawPins(app, list, picture);
@@ -1107,7 +1111,7 @@ void showViewport(App& app, const Rect& rect) {
     }
     drawHalves(app, list, rect, worked);
     showWhy(app, list, picture);
-    if (app.live.preparing()) {
+    if (app.live.isPreparing()) {
         float share = 0;
         const std::string stage = app.live.stage(share);
         const std::string text = stage.empty() ? "Preparing" : stage;
@@ -1115,10 +1119,10 @@ void showViewport(App& app, const Rect& rect) {
         if (takesLong &&
             button("leave it", {rect.midX() - dp(40), rect.y1 - dp(66)}, dp(80, 26), "Cancel"))
             app.live.cancel();
-    } else if (app.live.stopped()) {
+    } else if (app.live.isCancelled()) {
         drawChip(list, {rect.midX(), rect.y1 - dp(22)}, "The last change is not shown");
         if (button("show it", {rect.midX() - dp(40), rect.y1 - dp(66)}, dp(80, 26), "Show it"))
-            app.live.goOn();
+            app.live.resume();
     }
     if (app.document.scene.meshes.empty() && app.document.scene.flames.empty() &&
         app.document.scene.emitters.empty()) {

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Takes the guide's pictures anew, and those of the welcome page's scenes, without a display: the target flamewright_guide runs it.
+# Renders the guide's pictures and those of the welcome page, headless: the target flamewright_guide runs it.
 # Usage: pictures.sh [cards | pages], with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -10,13 +10,13 @@ export HOME=$state XDG_STATE_HOME=$state XDG_CACHE_HOME=${XDG_CACHE_HOME:-$state
 
 cd "$state"
 
-# page NAME PAGE SECONDS SCENE [LINES]: one picture of 1280 x 720, after those commands.
+# page NAME PAGE SECONDS SCENE [LINES]: one picture of 1280 x 720, after the commands LINES.
 page() {
     "$editor" --headless --size 1280x720 --scale 1 --shot "$here/$1.png" --page "$2" --seconds "$3" \
         --scene "$4" --do "${5:-}"
 }
-# card NAME SECONDS SCENE: the scene alone, as small as the welcome page shows it. The program has them
-# in it: build it again afterwards.
+# card NAME SECONDS SCENE: the scene alone, in the size of the welcome page. The build embeds it, so
+# rebuild afterwards.
 card() {
     "$editor" --headless --size 360x223 --scale 1 --shot "$here/../app/cards/$1.png" --page scene+bare \
         --seconds "$2" --scene "$3"

@@ -37,8 +37,8 @@ bool hasPosition(const Scene& scene, ObjectId id) {
     return findObject(scene, id, &kind) && findField(kind, "position");
 }
 
-// Empty, or why `child` cannot stick to `parent`.
-std::string whyNotAttached(const Scene& scene, ObjectId child, ObjectId parent) {
+// Returns an empty string, or the reason why `child` cannot stick to `parent`.
+std::string attachProblem(const Scene& scene, ObjectId child, ObjectId parent) {
     if (parent == 0) return "";
     const Object* object = findObject(scene, parent);
     if (!object) return "sticks_to is #" + std::to_string(parent) + ", which is not in the scene";
@@ -49,7 +49,7 @@ std::string whyNotAttached(const Scene& scene, ObjectId child, ObjectId parent) 
     return "";
 }
 
-// Of an object that can stick to one; null else.
+// Returns null for objects that cannot stick to a node.
 std::string* nodeOf(Scene& scene, ObjectId id) {
     std::string* node = nullptr;
     forEachList(scene, [&](Kind, auto& list) {
@@ -60,11 +60,11 @@ std::string* nodeOf(Scene& scene, ObjectId id) {
     return node;
 }
 
-// Empty, or why `child` cannot stick to that node.
-std::string whyNoNode(const Scene& scene, ObjectId child, std::string_view node,
-                      const NodePoseOf& nodePose) {
+// Returns an empty string, or the reason why `child` cannot stick to that node.
+std::string nodeProblem(const Scene& scene, ObjectId child, std::string_view node,
+                        const NodePoseOf& nodePose) {
     if (node.empty()) return "";
-    const Mesh* mesh = findIn(scene.meshes, holderOf(scene, child));
+    const Mesh* mesh = findIn(scene.meshes, parentOf(scene, child));
     std::string error;
     if (!mesh)
         error = "it takes a part of a mesh that \"" + findObject(scene, child)->name +
@@ -79,35 +79,35 @@ bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignmen
                bool keepPlace, const NodePoseOf& nodePose, std::string& repair,
                std::string& error) {
     for (const Assignment& made : fields) {
-        std::string mended;
+        std::string fieldRepair;
         const bool attaches = made.field == "sticks_to" || made.field == "sticks_to_node";
         const bool keeps = attaches && keepPlace && findField(kind, "position");
         const Pose before = keeps ? holderPose(scene, id, nodePose) : Pose{};
-        const ObjectId parent = attaches ? holderOf(scene, id) : 0;
+        const ObjectId parent = attaches ? parentOf(scene, id) : 0;
         if (const double* number = std::get_if<double>(&made.value)) {
             const auto to = static_cast<ObjectId>(std::clamp(*number, 0.0, 4294967295.0));
-            if (made.field == "sticks_to") error = whyNotAttached(scene, id, to);
+            if (made.field == "sticks_to") error = attachProblem(scene, id, to);
             if (made.field == "mesh" && kind == Kind::Layer && to && !findIn(scene.meshes, to))
                 error = "mesh is #" + std::to_string(to) + ", which is no mesh of the scene";
             if (!error.empty()) return false;
         }
         if (made.field == "sticks_to_node")
             if (const auto* node = std::get_if<std::string>(&made.value)) {
-                error = whyNoNode(scene, id, *node, nodePose);
+                error = nodeProblem(scene, id, *node, nodePose);
                 if (!error.empty()) return false;
             }
-        if (!setField(scene, kind, id, made.field, made.value, mended, error)) return false;
-        if (!mended.empty() && repair.empty()) repair = mended;
-        // A node is of the mesh that it was of.
+        if (!setField(scene, kind, id, made.field, made.value, fieldRepair, error)) return false;
+        if (!fieldRepair.empty() && repair.empty()) repair = fieldRepair;
+        // A node belongs to its previous mesh.
         std::string* node = nodeOf(scene, id);
-        if (attaches && node && holderOf(scene, id) != parent) node->clear();
+        if (attaches && node && parentOf(scene, id) != parent) node->clear();
         if (keeps) keepInWorld(scene, id, before, holderPose(scene, id, nodePose));
     }
     return true;
 }
 
 void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePoseOf& nodePose) {
-    // What sticks to it stays where it is.
+    // Children keep their world position.
     forEachList(scene, [&](Kind, auto& list) {
         for (auto& object : list)
             if constexpr (requires { object.sticksTo; })
@@ -127,9 +127,9 @@ void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePose
     images.erase(id);
 }
 
-// Something that `id` sticks to, directly or through others, is among the targets.
+// Returns true if the targets include a direct or indirect parent of `id`.
 bool holdsAny(const Scene& scene, const std::vector<ObjectId>& targets, ObjectId id) {
-    const std::vector<ObjectId> holders = holdersOf(scene, holderOf(scene, id));
+    const std::vector<ObjectId> holders = holdersOf(scene, parentOf(scene, id));
     return std::find_first_of(holders.begin(), holders.end(), targets.begin(), targets.end()) !=
            holders.end();
 }
@@ -199,7 +199,7 @@ bool needTargets(const Scene& scene, const Command& command, std::string& error)
     const bool none = command.verb == Verb::Add || command.verb == Verb::Import ||
                       (command.verb == Verb::Set && command.kind >= Kind::Settings);
     if (none != command.targets.empty()) {
-        error = none ? "Nothing is named by this command" : "The command names no object";
+        error = none ? "The command names no target" : "The command names no object";
         return false;
     }
     if (command.verb == Verb::Set && command.fields.empty()) {
@@ -209,7 +209,7 @@ bool needTargets(const Scene& scene, const Command& command, std::string& error)
     return true;
 }
 
-std::string stemOf(const std::string& file) {
+std::string fileStem(const std::string& file) {
     const size_t slash = file.find_last_of('/');
     const std::string last = slash == std::string::npos ? file : file.substr(slash + 1);
     const size_t dot = last.find_last_of('.');
@@ -233,7 +233,7 @@ bool applyAdd(const Command& command, Scene& scene, const NodePoseOf& nodePose,
     if (command.verb == Verb::Import) {
         Mesh& mesh = scene.meshes.back();
         mesh.file = cleanText(command.file, 4096);
-        if (mesh.name.empty()) mesh.name = freeName(scene, cleanText(stemOf(mesh.file), 100));
+        if (mesh.name.empty()) mesh.name = freeName(scene, cleanText(fileStem(mesh.file), 100));
     }
     if (object.name.empty()) object.name = freeName(scene, kindLabel(kind));
     if (kind == Kind::Layer && scene.layers.back().mesh == 0 && scene.meshes.size() == 1)
@@ -273,7 +273,7 @@ std::string freeName(const Scene& scene, std::string name) {
 }
 
 bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
-    bool mended = false;
+    bool anyRepaired = false;
     forEachList(scene, [&](Kind kind, auto& list) {
         for (size_t i = 0; i < list.size(); ++i) {
             auto& object = list[i];
@@ -281,20 +281,20 @@ bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
             const std::string where =
                 join(kindKey(kind), kind == Kind::Mesh ? "es[" : "s[", std::to_string(i), "].");
             if constexpr (requires { object.sticksTo; }) {
-                why = whyNotAttached(scene, object.id, object.sticksTo);
+                why = attachProblem(scene, object.id, object.sticksTo);
                 if (!why.empty()) {
                     object.sticksTo = 0;
                     if (repairs)
                         repairs->push_back(where + "sticks_to: " + why + "; it is now none");
-                    mended = true;
+                    anyRepaired = true;
                 }
             }
             if constexpr (requires { object.sticksToNode; }) {
-                why = whyNoNode(scene, object.id, object.sticksToNode, {});
+                why = nodeProblem(scene, object.id, object.sticksToNode, {});
                 if (!why.empty()) {
                     object.sticksToNode.clear();
                     if (repairs) repairs->push_back(where + why + "; it is now none");
-                    mended = true;
+                    anyRepaired = true;
                 }
             }
             if constexpr (requires { object.mesh; }) {
@@ -303,11 +303,11 @@ bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
                     repairs->push_back(where + "mesh was #" + std::to_string(object.mesh) +
                                        ", which is no mesh of the scene; it is now none");
                 object.mesh = 0;
-                mended = true;
+                anyRepaired = true;
             }
         }
     });
-    return mended;
+    return anyRepaired;
 }
 
 bool applyCommand(const Document& document, const Command& command, Scene& scene,
@@ -341,7 +341,7 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
                         good = false;
                     }
                     if (!good) break;
-                    if (holdsAny(scene, command.targets, id)) continue;  // it comes along
+                    if (holdsAny(scene, command.targets, id)) continue;  // it moves with its parent
                     auto& position = std::get<std::vector<double>>(value);
                     const Vec3 by =
                         offsetWithin(holderPose(scene, id, document.nodePose), command.offset);

@@ -1,4 +1,4 @@
-// What a command does to a scene and its pictures. Knows nothing of history or files.
+// Applies commands to a scene and its images. Independent of history and files.
 #pragma once
 
 #include "document/document.h"
@@ -7,13 +7,15 @@ namespace fwedit {
 
 constexpr size_t kMostObjects = 4000;
 
-// False: `message` says why; scene and images may be half changed then, so give copies. True:
-// `message` says what was repaired, if anything. `added`: the new object, else untouched.
+// On failure returns false with the reason in `message`; scene and images may be half changed, so
+// pass copies. On success `message` lists repairs, if any. `added`: set to the new object, if there
+// is one.
 bool applyCommand(const Document& document, const Command& command, Scene& scene,
                   PaintImages& images, std::string& message, ObjectId& added);
-// "Crate", "Crate 2", "Crate 3": the first that is free.
+// Returns the first free name: "Crate", "Crate 2", "Crate 3".
 std::string freeName(const Scene& scene, std::string name);
-// A reference that points nowhere, to itself or around in a circle becomes 0; true: one did.
+// Sets references that are missing, self-referential or circular to 0. Returns true if there were
+// any.
 bool mendReferences(Scene& scene, std::vector<std::string>* repairs);
 
 }  // namespace fwedit

@@ -23,7 +23,7 @@ namespace fwedit {
 struct BurnShared {
     struct MaterialKey {
         uint32_t preset;
-        float thickness;  // m; 0: the preset's
+        float thickness;  // m; 0: the preset's value
         bool ownColors;
         auto operator<=>(const MaterialKey&) const = default;
     };
@@ -31,7 +31,7 @@ struct BurnShared {
     std::map<std::pair<const fwimport::DecodedImage*, float>, FwImageId> images;  // and its cut-off
     std::map<std::string, FwMeshId> meshes;                                       // by bake
     std::map<std::string, FwFireProfileId> profiles;
-    FwFlipbookId books[FW_FLIPBOOK_PRESET_COUNT] = {};
+    FwFlipbookId flipbooks[FW_FLIPBOOK_PRESET_COUNT] = {};
 };
 
 namespace {
@@ -47,7 +47,7 @@ FwMeshDef meshDefOf(const Mesh& mesh, const ImportedModel& model, const ModelSur
     return def;
 }
 
-bool goOn(const Assets& assets, const std::string& stage, float share) {
+bool reportStage(const Assets& assets, const std::string& stage, float share) {
     return !assets.progress || assets.progress(stage, share);
 }
 
@@ -87,7 +87,7 @@ std::string addMesh(Burn& burn, BurnShared& shared, const Mesh& mesh, const Pain
     if (!bake) return error;
     FwMeshId& meshId = shared.meshes[made.bake];
     if (meshId.index1 == 0 && !createMesh(burn.world, *bake, meshId)) {
-        // A bake on the disk that cannot be read is made again.
+        // An unreadable cached bake is rebuilt.
         assets.bakes.erase(made.bake);
         fwmodel::dropBake(assets.cache, made.bake);
         const auto again = bakeOf(burn.context, mesh, *made.model, assets, made.bake, error);
@@ -125,7 +125,7 @@ std::string addMesh(Burn& burn, BurnShared& shared, const Mesh& mesh, const Pain
     return "";
 }
 
-// What is drawn by points is named by them.
+// The points identify a shape that is drawn by points.
 std::string shapeKeyOf(const Flame& flame) {
     if (!hasCurve(flame)) return flame.profile;
     std::string key = "#";
@@ -158,8 +158,8 @@ FwFireProfileId profileOf(Burn& burn, BurnShared& shared, const Flame& flame,
     return id;
 }
 
-FwFlipbookId bookOf(Burn& burn, BurnShared& shared, uint32_t preset) {
-    FwFlipbookId& id = shared.books[preset];
+FwFlipbookId flipbookOf(Burn& burn, BurnShared& shared, uint32_t preset) {
+    FwFlipbookId& id = shared.flipbooks[preset];
     if (id.index1 != 0) return id;
     FwFlipbookDef def = fwDefaultFlipbookDef();
     def.preset = preset;
@@ -167,11 +167,11 @@ FwFlipbookId bookOf(Burn& burn, BurnShared& shared, uint32_t preset) {
     return id;
 }
 
-void giveBooks(Burn& burn, BurnShared& shared, FwFireEmitterDef& def) {
-    def.fireBooks[0] = bookOf(burn, shared, FW_FLIPBOOK_ROLL);
-    def.fireBooks[1] = bookOf(burn, shared, FW_FLIPBOOK_PUFF);
-    def.smokeBooks[0] = bookOf(burn, shared, FW_FLIPBOOK_SMOKE);
-    def.sparkBook = bookOf(burn, shared, FW_FLIPBOOK_SPARK);
+void assignFlipbooks(Burn& burn, BurnShared& shared, FwFireEmitterDef& def) {
+    def.fireBooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_ROLL);
+    def.fireBooks[1] = flipbookOf(burn, shared, FW_FLIPBOOK_PUFF);
+    def.smokeBooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_SMOKE);
+    def.sparkBook = flipbookOf(burn, shared, FW_FLIPBOOK_SPARK);
 }
 
 void addSource(Burn& burn, BurnShared& shared, const HeatSource& source) {
@@ -180,7 +180,7 @@ void addSource(Burn& burn, BurnShared& shared, const HeatSource& source) {
     FwResult result = FW_OK;
     if (source.shape == SourceFlamethrower) {
         FwFireEmitterDef def = jetDefOf(burn.scene, source);
-        giveBooks(burn, shared, def);
+        assignFlipbooks(burn, shared, def);
         result = fwWorld_CreateFireEmitter(burn.world, &def, &part.emitter);
     } else if (source.shape == SourcePoint || source.shape == SourceDisc ||
                source.shape == SourceLine) {
@@ -213,7 +213,7 @@ void addEmitter(Burn& burn, BurnShared& shared, const Emitter& emitter) {
     BurnPart part;
     part.id = emitter.id;
     FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
-    if (emitter.books) giveBooks(burn, shared, def);
+    if (emitter.flipbooks) assignFlipbooks(burn, shared, def);
     for (const BurnMesh& mesh : burn.meshes)
         if (mesh.id == emitter.sticksTo) def.object = mesh.object;
     FwResult result = FW_ERROR_INVALID_ARGUMENT;
@@ -253,7 +253,7 @@ void addWind(Burn& burn, const Wind& wind) {
     burn.parts.push_back(std::move(part));
 }
 
-// 0 while it does not work, else the factor of its keys.
+// Returns 0 while it is inactive, otherwise the factor of its keys.
 template <typename T>
 float factorOf(const T& object, double time) {
     const auto at = static_cast<float>(time);
@@ -267,7 +267,7 @@ bool water(Burn& burn, const HeatSource& source, double time, double delay, std:
     if (!(rate > 0)) return true;
     const float radius = std::max(source.radius, 0.01f);
     const float area = 3.14159265f * radius * radius;
-    // What falls on the disc in an eighth of a second; less than a gram waits until it is one.
+    // Water on the disc in an eighth of a second. Less than a gram accumulates until it is one.
     const float grams = rate * 1000 * static_cast<float>(kWateringStep) / area;
     const double every = std::max(1.0f, std::ceil(1 / std::max(grams, 1e-6f)));
     const double step = std::round(time / kWateringStep);
@@ -312,7 +312,7 @@ bool feedSources(Burn& burn, double from, double to, std::string& error) {
     return true;
 }
 
-// Output by keys and times; told to the plugin where it changed.
+// Applies output by keys and times, where it changed.
 void feedParts(Burn& burn, double time) {
     for (BurnPart& part : burn.parts) {
         float factor = 0, power = 0, share = 1;
@@ -343,7 +343,7 @@ void feedParts(Burn& burn, double time) {
     }
 }
 
-// Of a scene what a burn is made for, and cannot follow.
+// Returns the parts of a scene that a running burn cannot change.
 Scene fixedPartOf(const Scene& scene) {
     Scene part;
     part.settings = scene.settings;
@@ -365,7 +365,7 @@ Scene fixedPartOf(const Scene& scene) {
     part.layers = scene.layers;
     for (PaintLayer& layer : part.layers) {
         layer.name.clear();
-        layer.image.clear();  // a file's name, given when it is saved
+        layer.image.clear();  // a file name, assigned on save
         layer.locked = false;
     }
     return part;
@@ -378,8 +378,8 @@ T unnamed(T object) {
     return object;
 }
 
-// A match that has been struck is not struck elsewhere.
-bool litOtherwise(const Burn& burn, const Scene& scene) {
+// A match that has ignited cannot move.
+bool movesIgnitedMatch(const Burn& burn, const Scene& scene) {
     const auto struck = [&](const HeatSource& source) {
         return source.shape == SourceMatch && static_cast<double>(source.start) < burn.time;
     };
@@ -395,23 +395,23 @@ bool litOtherwise(const Burn& burn, const Scene& scene) {
     return false;
 }
 
-// ---- what is made anew when more than this differs
+// ---- objects whose remaining fields differ are recreated
 
 template <typename T>
-T placeless(T object) {
+T withoutPlacement(T object) {
     object = unnamed(std::move(object));
     object.position = {};
     object.sticksTo = 0;
     return object;
 }
 template <typename T>
-T timeless(T object) {
+T withoutTimes(T object) {
     object.start = object.duration = 0;
     return object;
 }
-HeatSource steered(const HeatSource& source) {
-    HeatSource rest = timeless(placeless(source));
-    // A jet has room for as much as it was made for.
+HeatSource withoutAdjustables(const HeatSource& source) {
+    HeatSource rest = withoutTimes(withoutPlacement(source));
+    // A jet is created with a fixed capacity.
     if (source.shape == SourceFlamethrower) {
         rest.direction = {};
         return rest;
@@ -420,20 +420,20 @@ HeatSource steered(const HeatSource& source) {
     rest.keys.clear();
     return rest;
 }
-Flame steered(const Flame& flame) {
-    Flame rest = timeless(placeless(flame));
+Flame withoutAdjustables(const Flame& flame) {
+    Flame rest = withoutTimes(withoutPlacement(flame));
     rest.power = 0;
     rest.keys.clear();
     return rest;
 }
-Emitter steered(const Emitter& emitter) {
-    Emitter rest = timeless(unnamed(emitter));
+Emitter withoutAdjustables(const Emitter& emitter) {
+    Emitter rest = withoutTimes(unnamed(emitter));
     rest.position = {};
-    return rest;  // what it sticks to is what it shows the fire of
+    return rest;  // its parent mesh provides its fire
 }
-Collider steered(const Collider& collider) { return unnamed(collider); }
-// A zone is set anew as a whole.
-Wind steered(const Wind& wind) {
+Collider withoutAdjustables(const Collider& collider) { return unnamed(collider); }
+// A zone is always set as a whole.
+Wind withoutAdjustables(const Wind& wind) {
     Wind rest;
     rest.shape = wind.shape == WindEverywhere || wind.hidden ? WindEverywhere : WindBox;
     return rest;
@@ -446,7 +446,7 @@ void hide(const Burn& burn, const BurnPart& part, bool hidden) {
         fwWorld_SetFireEmitterHidden(burn.world, part.emitter, hidden ? 1 : 0);
 }
 
-void steer(const Burn& burn, BurnPart& part, const HeatSource& source) {
+void adjust(const Burn& burn, BurnPart& part, const HeatSource& source) {
     part.lastFactor = -1;
     hide(burn, part, source.hidden);
     if (part.emitter.index1 != 0) {
@@ -458,22 +458,22 @@ void steer(const Burn& burn, BurnPart& part, const HeatSource& source) {
     for (size_t i = 0; i < std::min(defs.size(), part.fires.size()); ++i)
         fwWorld_MoveVolumetricFire(burn.world, part.fires[i], defs[i].position);
 }
-void steer(const Burn& burn, BurnPart& part, const Flame& flame) {
+void adjust(const Burn& burn, BurnPart& part, const Flame& flame) {
     part.lastFactor = -1;
     hide(burn, part, flame.hidden);
     const FwVolumetricFireDef def = fireDefOf(burn.scene, flame);
     for (const FwVolumetricFireId fire : part.fires)
         fwWorld_MoveVolumetricFire(burn.world, fire, def.position);
 }
-void steer(const Burn& burn, BurnPart& part, const Emitter& emitter) {
+void adjust(const Burn& burn, BurnPart& part, const Emitter& emitter) {
     part.lastFactor = -1;
     hide(burn, part, emitter.hidden);
     if (part.emitter.index1 == 0) return;
     const FwFireEmitterDef def = emitterDefOf(burn.scene, emitter);
     fwWorld_MoveFireEmitter(burn.world, part.emitter, def.position, def.direction);
 }
-void steer(const Burn&, BurnPart& part, const Wind&) { part.lastFactor = -1; }
-void steer(const Burn& burn, BurnPart& part, const Collider& collider) {
+void adjust(const Burn&, BurnPart& part, const Wind&) { part.lastFactor = -1; }
+void adjust(const Burn& burn, BurnPart& part, const Collider& collider) {
     const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
     if (part.collider.index1 != 0) fwWorld_SetFireCollider(burn.world, part.collider, &def);
     const FwBlockerDef blocker = blockerDefOf(burn.scene, collider);
@@ -489,8 +489,8 @@ void removePart(const Burn& burn, const BurnPart& part) {
     if (part.zone.index1 != 0) fwWorld_DestroyWindZone(burn.world, part.zone);
 }
 
-// The shape of a flame that is gone, unless another one has it.
-void dropShape(const Burn& burn, BurnShared& shared, const Flame* flame) {
+// Destroys the shape of a removed flame unless another flame uses it.
+void destroyUnusedShape(const Burn& burn, BurnShared& shared, const Flame* flame) {
     if (!flame || !hasShape(*flame)) return;
     const auto shape = shared.profiles.find(shapeKeyOf(*flame));
     if (shape != shared.profiles.end() &&
@@ -506,19 +506,19 @@ Burn::~Burn() { fwDestroyWorld(world); }
 std::shared_ptr<const ImportedModel> modelOf(const Mesh& mesh, const fs::path& folder,
                                              Assets& assets, std::string& error) {
     if (mesh.file.empty()) {
-        error = "\"" + mesh.name + "\" names no file";
+        error = "\"" + mesh.name + "\" has no file";
         return nullptr;
     }
     std::error_code code;
     const fs::path path = fs::absolute(folder / mesh.file, code).lexically_normal();
     const auto changed = fs::last_write_time(path, code);
-    // A file that was saved anew is read anew.
+    // The key has the file's time, so a saved file is read again.
     const std::string key = path.string() + "@" +
                             std::to_string(code ? 0 : changed.time_since_epoch().count()) + "#" +
                             mesh.node;
     if (const auto found = assets.models.find(key); found != assets.models.end())
         return found->second;
-    if (!goOn(assets, "Reading " + path.filename().string(), 0)) {
+    if (!reportStage(assets, "Reading " + path.filename().string(), 0)) {
         error = "stopped";
         return nullptr;
     }
@@ -562,12 +562,12 @@ std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& 
         return found->second;
     auto bytes = std::make_shared<std::vector<char>>();
     if (fwmodel::readBake(assets.cache, key, *bytes)) return assets.bakes[key] = bytes;
-    if (!goOn(assets, "Unwrapping " + mesh.name, 0)) {
+    if (!reportStage(assets, "Unwrapping " + mesh.name, 0)) {
         error = "stopped";
         return nullptr;
     }
     if (!fwmodel::cookMesh(context, def, *bytes, error)) return nullptr;
-    goOn(assets, "Unwrapping " + mesh.name, 1);
+    reportStage(assets, "Unwrapping " + mesh.name, 1);
     fwmodel::keepBake(assets.cache, key, *bytes);
     return assets.bakes[key] = bytes;
 }
@@ -632,7 +632,8 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
 
 bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
     const Scene scene = placedScene(wanted, nodePosesOf(burn));
-    if (!(fixedPartOf(burn.scene) == fixedPartOf(scene)) || litOtherwise(burn, scene)) return false;
+    if (!(fixedPartOf(burn.scene) == fixedPartOf(scene)) || movesIgnitedMatch(burn, scene))
+        return false;
     const Scene before = std::exchange(burn.scene, scene);
     for (const BurnMesh& mesh : burn.meshes) {
         const Mesh& object = *findIn(scene.meshes, mesh.id);
@@ -643,14 +644,15 @@ bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
     if (scene.settings.wind != before.settings.wind || scene.winds.empty())
         fwWorld_SetWind(burn.world, scene.settings.wind.data());
     std::vector<BurnPart> old = std::exchange(burn.parts, {});
-    // Keeps what only moves, is hidden or gives more or less; makes the rest anew in its place.
+    // Updates objects that only move, hide or change output. Recreates all others in place.
     const auto follow = [&](const auto& objects, const auto& formerly, auto&& add) {
         for (const auto& object : objects) {
             const auto part = std::find_if(old.begin(), old.end(),
                                            [&](const BurnPart& at) { return at.id == object.id; });
             const auto* former = findIn(formerly, object.id);
-            if (part != old.end() && former && steered(*former) == steered(object)) {
-                steer(burn, *part, object);
+            if (part != old.end() && former &&
+                withoutAdjustables(*former) == withoutAdjustables(object)) {
+                adjust(burn, *part, object);
                 burn.parts.push_back(std::move(*part));
             } else {
                 if (part != old.end()) removePart(burn, *part);
@@ -663,7 +665,7 @@ bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
     follow(scene.sources, before.sources,
            [&](const HeatSource& source) { addSource(burn, shared, source); });
     follow(scene.flames, before.flames, [&](const Flame& flame) {
-        dropShape(burn, shared, findIn(before.flames, flame.id));
+        destroyUnusedShape(burn, shared, findIn(before.flames, flame.id));
         addFlame(burn, shared, flame, folder);
     });
     follow(scene.emitters, before.emitters,
@@ -673,14 +675,14 @@ bool reviseBurn(Burn& burn, const Scene& wanted, const fs::path& folder) {
     follow(scene.winds, before.winds, [&](const Wind& wind) { addWind(burn, wind); });
     for (const BurnPart& gone : old) {
         removePart(burn, gone);
-        dropShape(burn, shared, findIn(before.flames, gone.id));
+        destroyUnusedShape(burn, shared, findIn(before.flames, gone.id));
     }
     return true;
 }
 
 namespace {
 
-// Widens `low` and `high` by a model's box in its place.
+// Extends `low` and `high` by a placed model's box.
 void addBounds(const Mesh& mesh, const ImportedModel& model, Vec3& low, Vec3& high) {
     const std::array<float, 16> m = transformOf(mesh);
     for (uint32_t corner = 0; corner < 8; ++corner) {
@@ -694,7 +696,7 @@ void addBounds(const Mesh& mesh, const ImportedModel& model, Vec3& low, Vec3& hi
     }
 }
 
-// False: no mesh is there.
+// Returns false if there is no mesh.
 bool boundsOf(const Burn& burn, Vec3& low, Vec3& high) {
     bool any = false;
     low = {1e30f, 1e30f, 1e30f};
@@ -738,10 +740,10 @@ Backdrop backdropOf(const Burn& burn) {
         for (const uint32_t index : solid.indices) made.indices.push_back(first + index);
     }
     for (const Flame& flame : burn.scene.flames) {
-        if (made.any) break;  // flames alone are as large as they burn
+        if (made.any) break;  // flames alone define the size
         const Vec3 place = worldPosition(burn.scene, flame.id);
         const glm::vec3 foot(place[0], place[1], place[2]);
-        // Heskestad 1983: 0.235 Q^(2/5) - 1.02 D, m, kW; never less than half as high as wide.
+        // Heskestad 1983: 0.235 Q^(2/5) - 1.02 D, m, kW; at least half as high as wide.
         const float tall =
             std::max(0.235f * std::pow(std::max(flame.power, 0.0f), 0.4f) - 1.02f * flame.diameter,
                      0.5f * flame.diameter);
@@ -795,7 +797,7 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time) 
     FwView view = fwDefaultView();
     glm::vec3 up(settings.up[0], settings.up[1], settings.up[2]);
     up = glm::length(up) > 1e-6f ? glm::normalize(up) : glm::vec3(0, 1, 0);
-    // Two axes across up: yaw 0 looks along -z in a world whose up is y.
+    // Two axes perpendicular to up: yaw 0 looks along -z if up is y.
     const glm::vec3 level = std::abs(up.y) > 0.9f ? glm::vec3(0, 0, 1) : glm::vec3(0, 1, 0);
     const glm::vec3 side = glm::normalize(glm::cross(up, level)), front = glm::cross(side, up);
     const float yaw = glm::radians(camera.yaw), pitch = glm::radians(camera.pitch);
@@ -810,7 +812,7 @@ FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time) 
     const float aspect = static_cast<float>(width) / static_cast<float>(std::max(1u, height));
     fwmodel::setPerspective(view, glm::radians(camera.fieldOfView), aspect, near, far);
 
-    // cd/m^2; a camera's exposure goes with the light.
+    // cd/m^2; the exposure adapts to the light.
     struct Light {
         float share, exposure;
     };
@@ -848,7 +850,7 @@ bool shootNeutral(Burn& burn, const fwmodel::NeutralCamera& camera, uint32_t wid
                   std::vector<uint8_t>& rgba, std::string& error) {
     Vec3 low, high;
     if (!boundsOf(burn, low, high)) {
-        error = "there is no mesh to look at";
+        error = "the scene has no mesh";
         return false;
     }
     FwOffscreenDef def = fwDefaultOffscreenDef();
@@ -896,7 +898,7 @@ bool shapeOf(const Flame& flame, const fs::path& folder, FlameShape& shape, std:
     }
     shape.width = picture.width;
     shape.height = picture.height;
-    // Whole numbers span 0 to 3000 K and 0 to 2 of soot; the picture's lowest row is the base.
+    // Integer texels map to [0, 3000] K and [0, 2] of soot. The lowest row is the base.
     const float heat = picture.whole ? 3000.0f : 1.0f, soot = picture.whole ? 2.0f : 1.0f;
     for (uint32_t y = picture.height; y-- > 0;)
         for (uint32_t x = 0; x < picture.width; ++x) {

@@ -1,5 +1,5 @@
-// A scene as a world of the plugin, through its public C headers alone: what a game would show.
-// Whoever holds the context steps or records the world; feedBurn says what happens on the way.
+// Builds a world of the plugin from a scene, through the public C headers only, as a game would.
+// The owner of the context steps or records the world; feedBurn applies timed changes.
 #pragma once
 
 #include <filesystem>
@@ -18,15 +18,16 @@
 namespace fwedit {
 
 constexpr double kTicksPerSecond = 4096;      // of fwDebug_FetchBurnMap
-constexpr uint32_t kFirstCode = 0xfffffff0u;  // from it on: texels without an ignition tick
+constexpr uint32_t kFirstCode = 0xfffffff0u;  // this code and above: texels without an ignition
+                                              // tick
 
-// Imported files and baked burn maps, kept from burn to burn. One per program.
+// Imported files and baked burn maps, cached across burns. One instance per program.
 struct Assets {
-    std::filesystem::path cache;  // folder of bakes; empty: none are kept
+    std::filesystem::path cache;  // folder of baked maps; empty: no cache on disk
     std::map<std::string, std::shared_ptr<const fwimport::ImportedModel>> models;  // by full path
     std::map<std::string, std::shared_ptr<const std::vector<char>>> bakes;         // by hash
     std::map<std::string, std::shared_ptr<const PaintSurface>> surfaces;           // by hash
-    // Stage by name and share of it, [0, 1]; false: stop. May be null.
+    // Reports the stage and its progress, [0, 1]. Returns false to cancel. May be null.
     std::function<bool(const std::string& stage, float share)> progress;
 };
 
@@ -36,9 +37,9 @@ struct BurnMesh {
     FwBurnableMeshId object{};
     std::shared_ptr<const fwimport::ImportedModel> model;
     std::string bake;    // key into Assets::bakes and surfaces
-    uint32_t slots = 1;  // of Mesh::materials that its triangles use
+    uint32_t slots = 1;  // number of entries of Mesh::materials in use
 };
-struct BurnPart {  // a source, flame, emitter, collider or zone of wind at work
+struct BurnPart {  // an active source, flame, emitter, collider or wind zone
     ObjectId id = 0;
     std::vector<FwVolumetricFireId> fires;
     FwFireEmitterId emitter{};
@@ -47,18 +48,18 @@ struct BurnPart {  // a source, flame, emitter, collider or zone of wind at work
     FwWindZoneId zone{};
     float lastFactor = -1;
 };
-struct BurnShared;  // materials, pictures, shapes and books that objects of a burn have in common
+struct BurnShared;  // materials, images, shapes and flipbooks that the objects of a burn share
 
 struct Burn {
-    FwContext* context = nullptr;  // not ours
+    FwContext* context = nullptr;  // not owned
     FwWorld* world = nullptr;
-    Scene scene;      // that it was made of, placed
-    double time = 0;  // s, of the world
+    Scene scene;      // the placed scene that it was built from
+    double time = 0;  // s, world time
     std::vector<BurnMesh> meshes;
     std::vector<BurnPart> parts;
     std::unique_ptr<BurnShared> shared;
-    std::vector<std::string> report;  // what was left out, and why
-    // Texels of a mesh's burn map, for questions about paint; set by createBurn.
+    std::vector<std::string> report;  // skipped objects, with reasons
+    // Returns the texels of a mesh's burn map, for paint queries. Set by createBurn.
     std::function<std::shared_ptr<const PaintSurface>(const Mesh&)> surfaceOf;
 
     Burn();
@@ -67,30 +68,32 @@ struct Burn {
     Burn& operator=(const Burn&) = delete;
 };
 
-// `folder`: where relative paths begin. `assets` outlives the burn. A mesh that cannot be had is
-// left out and reported. Null: `error` says why there is no world.
+// Creates a world. `folder`: base of relative paths. `assets` must outlive the burn. Skips and
+// reports meshes that cannot be loaded. Returns null with the reason in `error` if there is no
+// world.
 std::unique_ptr<Burn> createBurn(FwContext* context, const Scene& scene, const PaintImages& images,
                                  const std::filesystem::path& folder, Assets& assets,
                                  std::string& error);
-// Call right before each fwWorld_Step or fwWorld_RecordOutside with its deltaTime: sources, keys
-// and wind of [time, time + deltaTime). Moves burn.time on.
+// Applies sources, keys and wind of [time, time + deltaTime), and advances burn.time. Call it right
+// before each fwWorld_Step or fwWorld_RecordOutside with the same deltaTime.
 bool feedBurn(Burn& burn, float deltaTime, std::string& error);
-// Wishes the ignition maps' hashes; fetchHashes has them after the next step or some frames later,
-// if it be of no time: "Crate: 1b0c2f... at tick 640" for each mesh. FW_NOT_READY: not yet.
+// Requests the hashes of the ignition maps. fetchHashes has them after the next step or some frames
+// later (deltaTime may be 0): "Crate: 1b0c2f... at tick 640" per mesh. Until then it returns
+// FW_NOT_READY.
 void requestHashes(const Burn& burn);
 FwResult fetchHashes(const Burn& burn, std::vector<std::string>& lines);
-// Contexts that step themselves (own device, cpu): feeds and steps on to `time`, in frames of the
-// scene. False: `error`. Back in time: create it anew.
+// For contexts that step themselves (own device, cpu): feeds and steps to `time`, in frames of the
+// scene. Returns false with `error`. To go back in time, create a new burn.
 bool runBurn(Burn& burn, double time, std::string& error);
-// Goes on with the scene changed, from this moment: wind, light and camera, what heats, wets and
-// blows, flames and their shapes, walls, where meshes stand. False, and nothing is changed, where
-// it takes a new burn: other meshes, materials or ways to spread, or a match that has lit already.
-// Paint is not looked at. `folder`: where relative paths begin.
+// Applies the changed scene to the running burn: wind, light, camera, sources, flames and their
+// shapes, colliders, mesh positions. Returns false and changes nothing if a new burn is necessary:
+// other meshes, materials or heat-transfer modes, or a match that has already ignited. Ignores
+// paint. `folder`: base of relative paths.
 bool reviseBurn(Burn& burn, const Scene& scene, const std::filesystem::path& folder);
-// What a picture stands on: the middle of the floor, the largest side of what burns (m), and the
-// triangles of all that is seen and casts a shadow, in world space.
+// Describes the surroundings of a picture: centre of the floor, largest side of the burning objects
+// (m), and all visible shadow-casting triangles in world space.
 struct Backdrop {
-    bool any = false;  // there are meshes; else the size is a guess
+    bool any = false;  // false: there are no meshes, so the size is a guess
     Vec3 middle{};
     float size = 1;
     std::vector<float> positions;
@@ -98,16 +101,16 @@ struct Backdrop {
     bool operator==(const Backdrop&) const = default;
 };
 Backdrop backdropOf(const Burn& burn);
-// The scene's camera and light. `time`: s, for flicker.
+// Returns the scene's camera and light. `time`: s, for flicker.
 FwView viewOf(const Scene& scene, uint32_t width, uint32_t height, double time);
-// Own device: RGBA8 sRGB, rows top first.
+// Renders RGBA8 sRGB with rows from the top. Own device only.
 bool shootBurn(Burn& burn, uint32_t width, uint32_t height, std::vector<uint8_t>& rgba,
                std::string& error);
-// As it is: on the neutral stage, all meshes in the picture. Own device.
+// Renders all meshes unburnt on the neutral stage. Own device only.
 bool shootNeutral(Burn& burn, const fwmodel::NeutralCamera& camera, uint32_t width, uint32_t height,
                   std::vector<uint8_t>& rgba, std::string& error);
 
-// What a flame has for a shape of its own: texels as FwFireProfileDef has them, or a cooked file.
+// The custom shape of a flame: texels as in FwFireProfileDef, or a cooked file.
 struct FlameShape {
     uint32_t width = 0, height = 0;
     std::vector<float> texels;
@@ -116,36 +119,36 @@ struct FlameShape {
 [[nodiscard]] inline bool hasShape(const Flame& flame) {
     return !flame.profile.empty() || !flame.outline.empty() || !flame.stops.empty();
 }
-// False: `error` says what is wrong with its file.
+// Returns false with the problem of the file in `error`.
 bool shapeOf(const Flame& flame, const std::filesystem::path& folder, FlameShape& shape,
              std::string& error);
-FwFireProfileDef profileDefOf(const FlameShape& shape);  // points into it
+FwFireProfileDef profileDefOf(const FlameShape& shape);  // The result points into `shape`.
 
-// The bounds of all meshes of the scene in world space; false: there are none.
+// Computes the world bounds of all meshes. Returns false if there are none.
 bool sceneBounds(const Scene& scene, const std::filesystem::path& folder, Assets& assets, Vec3& low,
                  Vec3& high);
-// Null: `error`. Imports and caches.
+// Imports and caches. Returns null with `error` on failure.
 std::shared_ptr<const fwimport::ImportedModel> modelOf(const Mesh& mesh,
                                                        const std::filesystem::path& folder,
                                                        Assets& assets, std::string& error);
-// Of a model for NodePoseOf. False: `error` names its file, the node and those there are.
+// For NodePoseOf. Returns false; `error` lists the file, the node and the available nodes.
 bool nodePoseOf(const fwimport::ImportedModel& model, const Mesh& mesh, std::string_view node,
                 Pose& pose, std::string& error);
-// By the models of a burn's meshes, which it points to.
+// Reads the models of the burn's meshes. The result refers to the burn.
 NodePoseOf nodePosesOf(const Burn& burn);
-// The cooked burn map: from memory, the cache, or baked now, and its key in Assets::bakes. Null:
-// `error`.
+// Returns the cooked burn map from memory or the disk cache, or bakes it, and its key in
+// Assets::bakes. Returns null with `error` on failure.
 std::shared_ptr<const std::vector<char>> bakeOf(FwContext* context, const Mesh& mesh,
                                                 const fwimport::ImportedModel& model,
                                                 Assets& assets, std::string& key,
                                                 std::string& error);
-// The key alone. Meshes with the same one have the same burn map.
+// Returns the key only. Meshes with equal keys share a burn map.
 std::string bakeKeyOf(const Mesh& mesh, const fwimport::ImportedModel& model);
-// The texels to paint on: bakes if need be.
+// Returns the texels to paint on. Bakes if necessary.
 std::shared_ptr<const PaintSurface> paintSurfaceOf(FwContext* context, const Mesh& mesh,
                                                    const std::filesystem::path& folder,
                                                    Assets& assets, std::string& error);
-// The layers of a mesh put together for FwBurnableMeshDef::multiplier; empty: nothing is painted.
+// Combines the layers of a mesh for FwBurnableMeshDef::multiplier. Empty: nothing is painted.
 std::vector<uint8_t> multiplierOf(const Scene& scene, const PaintImages& images, ObjectId mesh,
                                   uint32_t& width, uint32_t& height);
 

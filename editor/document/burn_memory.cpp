@@ -9,11 +9,11 @@
 namespace fwedit {
 namespace {
 
-constexpr double kAskEvery = 1;                  // s of the fire between looks at its map
-constexpr double kLeastApart = 5, kMoments = 8;  // s; moments that are kept over a scene
+constexpr double kReadInterval = 1;  // s of burn time between two reads of the ignition map
+constexpr double kLeastApart = 5, kSnapshotCount = 8;  // s; number of snapshots per scene
 
-// How long a texel of each of a mesh's materials glows until it looks charred, in ticks. Thick fuel
-// flames for long, under a crust that is black soon.
+// Returns, per material of a mesh, the ticks that a texel glows before it looks charred. Thick fuel
+// burns on for long below a crust that soon turns black.
 std::array<float, 8> glowingOf(const Burn& burn, const Mesh& mesh) {
     std::array<float, 8> ticks{};
     for (size_t slot = 0; slot < ticks.size(); ++slot) {
@@ -23,7 +23,7 @@ std::array<float, 8> glowingOf(const Burn& burn, const Mesh& mesh) {
         float seconds = def.burnTime;
         if (!(seconds > 0) && def.burningFlux > 0)
             seconds = thickness * def.density / def.burningFlux;
-        constexpr float kCharring = 24;  // s at pace 1
+        constexpr float kCharring = 24;  // s at pace factor 1
         seconds = std::min(seconds, kCharring);
         seconds = std::max(seconds / std::max(burn.scene.settings.pace, 0.1f), 0.2f);
         ticks[slot] = seconds * float(kTicksPerSecond);
@@ -45,32 +45,33 @@ void BurnMemory::forget() { *this = {}; }
 
 void BurnMemory::beforeFrame(Burn& burn, float step) {
     longest_ = std::max(longest_, burn.time);
-    // Saves have their cost: few of them, and the first for nothing.
-    const double apart = std::max(kLeastApart, double(burn.scene.settings.duration) / kMoments);
-    const bool due = moments_.empty() || burn.time >= moments_.back().time + apart;
-    if (!saving_ && due && fwWorld_RequestSave(burn.world) >= 0) {
-        saving_ = true;
+    // Saves are expensive, so there are few of them. The first costs nothing.
+    const double apart =
+        std::max(kLeastApart, double(burn.scene.settings.duration) / kSnapshotCount);
+    const bool due = snapshots_.empty() || burn.time >= snapshots_.back().time + apart;
+    if (!isSaving_ && due && fwWorld_RequestSave(burn.world) >= 0) {
+        isSaving_ = true;
         savingTime_ = burn.time;
     }
-    behind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
-    if (asked_ || !behind_ || (step > 0 && burn.time < known_ + kAskEvery)) return;
-    asked_ = true;
-    askedTime_ = burn.time;
+    isBehind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
+    if (isReading_ || !isBehind_ || (step > 0 && burn.time < known_ + kReadInterval)) return;
+    isReading_ = true;
+    readingTime_ = burn.time;
     for (const BurnMesh& mesh : burn.meshes)
-        asked_ = asked_ && fwDebug_RequestBurnMap(burn.world, mesh.object) >= 0;
-    if (!asked_) known_ = burn.time;
+        isReading_ = isReading_ && fwDebug_RequestBurnMap(burn.world, mesh.object) >= 0;
+    if (!isReading_) known_ = burn.time;
 }
 
 void BurnMemory::afterFrame(Burn& burn) {
-    if (asked_ && takeTicks(burn)) {
-        asked_ = false;
-        known_ = askedTime_;
+    if (isReading_ && receiveTicks(burn)) {
+        isReading_ = false;
+        known_ = readingTime_;
     }
-    behind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
-    if (saving_) takeSave(burn);
+    isBehind_ = burn.time > known_ + 1e-4 && burn.time + 1e-4 >= longest_;
+    if (isSaving_) receiveSave(burn);
 }
 
-bool BurnMemory::takeTicks(Burn& burn) {
+bool BurnMemory::receiveTicks(Burn& burn) {
     for (const BurnMesh& mesh : burn.meshes) {
         uint64_t count = 0, hash = 0, tick = 0;
         std::vector<uint32_t>& ticks = ticks_[mesh.id];
@@ -87,26 +88,26 @@ bool BurnMemory::takeTicks(Burn& burn) {
     return true;
 }
 
-void BurnMemory::takeSave(Burn& burn) {
+void BurnMemory::receiveSave(Burn& burn) {
     uint64_t size = 0;
     const FwResult result = fwWorld_FetchSave(burn.world, nullptr, &size);
     if (result == FW_NOT_READY) return;
-    saving_ = false;
-    Moment moment;
-    moment.time = savingTime_;
-    moment.bytes.resize(size);
-    if (result >= 0 && fwWorld_FetchSave(burn.world, moment.bytes.data(), &size) == FW_OK)
-        moments_.push_back(std::move(moment));
+    isSaving_ = false;
+    Snapshot snapshot;
+    snapshot.time = savingTime_;
+    snapshot.bytes.resize(size);
+    if (result >= 0 && fwWorld_FetchSave(burn.world, snapshot.bytes.data(), &size) == FW_OK)
+        snapshots_.push_back(std::move(snapshot));
 }
 
 bool BurnMemory::restore(Burn& burn, double time) {
-    const Moment* latest = nullptr;
-    for (const Moment& moment : moments_)
-        if (moment.time <= time + 1e-6) latest = &moment;
+    const Snapshot* latest = nullptr;
+    for (const Snapshot& snapshot : snapshots_)
+        if (snapshot.time <= time + 1e-6) latest = &snapshot;
     if (!latest || fwWorld_Load(burn.world, latest->bytes.data(), latest->bytes.size()) < 0)
         return false;
     burn.time = latest->time;
-    saving_ = false;
+    isSaving_ = false;
     for (BurnPart& part : burn.parts) part.lastFactor = -1;
     return true;
 }
@@ -116,7 +117,7 @@ bool BurnMemory::agesAt(const Burn& burn, ObjectId id, const PaintSurface& surfa
     const auto found = ticks_.find(id);
     const Mesh* mesh = findIn(burn.scene.meshes, id);
     if (found == ticks_.end() || !mesh || found->second.size() != surface.real.size()) return false;
-    std::array<float, 8> share{};  // of its glow that a tick is, in steps of a byte
+    std::array<float, 8> share{};  // share of its glow per tick, in byte steps
     const std::array<float, 8> glowing = glowingOf(burn, *mesh);
     for (size_t slot = 0; slot < share.size(); ++slot) share[slot] = 253 / glowing[slot];
     const auto now = int64_t(start_) + int64_t(std::llround(time * kTicksPerSecond));

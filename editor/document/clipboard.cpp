@@ -13,7 +13,7 @@ namespace {
 
 constexpr size_t kMostPasted = size_t{1} << 20;  // bytes
 
-// Only what differs from an object as it is added.
+// Prints only fields that differ from a new object.
 std::string lineOf(const Scene& scene, Kind kind, ObjectId id) {
     Scene plain;
     PaintImages none;
@@ -29,7 +29,8 @@ std::string lineOf(const Scene& scene, Kind kind, ObjectId id) {
         if (!getField(scene, kind, id, field.key, value) ||
             (getField(plain, kind, fresh, field.key, standard) && value == standard))
             continue;
-        if (!std::strcmp(field.key, "sticks_to_node")) {  // after the mesh that has it
+        if (!std::strcmp(field.key, "sticks_to_node")) {  // written after the mesh that has the
+                                                          // node
             parent += std::string(" ") + field.key + " " + inQuotes(std::get<std::string>(value));
             continue;
         }
@@ -37,14 +38,14 @@ std::string lineOf(const Scene& scene, Kind kind, ObjectId id) {
             add.fields.push_back({field.key, std::move(value)});
             continue;
         }
-        // By its name: ids are of no meaning in another scene.
+        // By name, because ids differ between scenes.
         const Object* object = findObject(scene, static_cast<ObjectId>(std::get<double>(value)));
         if (object) parent = std::string(" ") + field.key + " " + inQuotes(object->name);
     }
     return printCommand(scene, add) + parent + "\n";
 }
 
-// Without what no object here can be: "sticks_to" of a name that is not there.
+// Drops a "sticks_to" of a name that does not exist in this scene.
 bool parseLine(const Scene& scene, const std::string& line, Command& command,
                std::string& message) {
     if (parseCommand(scene, line, command, message)) return true;
@@ -68,7 +69,7 @@ std::string copyObjects(const Scene& scene, std::span<const ObjectId> objects) {
 bool pasteObjects(Document& document, std::string_view text, std::vector<ObjectId>& added,
                   std::string& message) {
     added.clear();
-    const char* const kNone = "What was copied is no object of a scene";
+    const char* const kNone = "The clipboard contains no object of a scene";
     message = kNone;
     if (text.size() > kMostPasted) return false;
     std::istringstream lines{std::string(text)};

@@ -1,5 +1,5 @@
-// Objects on a clipboard: as the commands that add them, a line each, so that they go from window
-// to window and may be read, kept and sent as text.
+// The clipboard format: one `add` command per object, so that text can be pasted across windows,
+// stored and sent.
 #pragma once
 
 #include <span>
@@ -11,11 +11,11 @@
 
 namespace fwedit {
 
-// Of layers only their picture would be of use, and that is no text: they are left out. Empty:
-// there was nothing to copy.
+// Skips layers, because their content is an image. Returns an empty string if nothing can be
+// copied.
 std::string copyObjects(const Scene& scene, std::span<const ObjectId> objects);
-// All of them as one step, under names of their own; what a copy stuck to it sticks to where there
-// is such an object. False: `message` says why nothing was added.
+// Adds all objects as one step, with free names. A copy sticks to its parent where an object of
+// that name exists. On failure returns false with the reason in `message`.
 bool pasteObjects(Document& document, std::string_view text, std::vector<ObjectId>& added,
                   std::string& message);
 

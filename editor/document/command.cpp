@@ -59,7 +59,7 @@ std::string listOf(const char* const (&words)[N]) {
     return list;
 }
 
-// The words of a line from the front on, with errors that say what was wished for.
+// Reads the words of a line in order. Errors list the expected word.
 class Reader {
  public:
     Reader(std::vector<Word> words, std::string& error) : words_(std::move(words)), error_(error) {}
@@ -113,7 +113,7 @@ class Reader {
         return false;
     }
 
-    // Names in quotes and ids; the first may be a bare word.
+    // Names in quotes and ids. The first name may be unquoted.
     bool targets(const Scene& scene, std::vector<ObjectId>& ids, bool several) {
         do {
             std::string text;
@@ -158,7 +158,7 @@ class Reader {
     std::string& error_;
 };
 
-// The field whose word may stand right behind the kind: "add source point".
+// The field whose value may follow the kind directly: "add source point".
 const FieldInfo* leadingField(Kind kind) {
     for (const char* key : {"shape", "preset", "kind"})
         if (const FieldInfo* info = findField(kind, key)) return info;
@@ -195,8 +195,8 @@ bool parseSet(Reader& reader, const Scene& scene, Command& command) {
         for (const ObjectId id : command.targets) {
             Kind kind{};
             findObject(scene, id, &kind);
-            // Of several kinds a field must mean the same to all; those that it does are parsed by
-            // the first, and applied by name.
+            // With several kinds, a field must have the same meaning in all of them. The first kind
+            // parses it; all apply it by name.
             if (kind >= Kind::Settings) return reader.refuse("Settings are set by themselves");
         }
     }
@@ -405,7 +405,7 @@ bool parseCommand(const Scene& scene, std::string_view line, Command& command, s
         }
     }
     if (!good) return false;
-    if (!reader.done()) return reader.refuse("\"" + reader.peek().text + "\" is one word too many");
+    if (!reader.done()) return reader.refuse("\"" + reader.peek().text + "\" is an extra word");
     command = std::move(made);
     return true;
 }

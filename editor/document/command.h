@@ -1,4 +1,4 @@
-// What can be done to a scene, each with a line of text that does the same:
+// The commands that change a scene. Each has a textual form of one line:
 //   add source point name="Corner torch" position 0.1 0.2 0.3 output 18 kW
 //   set "Corner torch" output 20
 //   set settings wind 3 0 0
@@ -9,8 +9,7 @@
 //   import "gate.glb" name="Gate"
 //   stroke "Dry side" size 0.05 value 0.2 strength 1 hardness 0.5 path 0:1:0.2 0.1:1:0.2
 //   fill "Dry side" value 0.5 by all
-// Targets are names in quotes, or #id. A name that several have means the first. // begins a
-// comment.
+// Targets are quoted names or #id. A duplicate name means the first object. // begins a comment.
 #pragma once
 
 #include <string>
@@ -44,25 +43,26 @@ struct Assignment {
 
 struct Command {
     Verb verb = Verb::Set;
-    Kind kind = Kind::Source;  // of Add; Settings and Camera have no targets
+    Kind kind = Kind::Source;  // for Add; Settings and Camera have no targets
     std::vector<ObjectId> targets;
-    std::vector<Assignment> fields;  // of Add, Set, Import
-    Vec3 offset{};                   // of Move
-    Key key;                         // of Key, Unkey
-    uint32_t index = 0;              // of Order
-    std::string file;                // of Import
-    Stroke stroke;                   // of Stroke
-    FillRequest fill;                // of Fill
+    std::vector<Assignment> fields;  // for Add, Set, Import
+    Vec3 offset{};                   // for Move
+    Key key;                         // for Key, Unkey
+    uint32_t index = 0;              // for Order
+    std::string file;                // for Import
+    Stroke stroke;                   // for Stroke
+    FillRequest fill;                // for Fill
 };
 
-// One line. False: `error` says what is wrong with which word and what is allowed.
+// Parses one line. On failure returns false; `error` has the word, its problem and the allowed
+// values.
 bool parseCommand(const Scene& scene, std::string_view line, Command& command, std::string& error);
 std::string printCommand(const Scene& scene, const Command& command);
-// "Move Corner torch", "Output of Corner torch", "Add heat source"; at most 40 characters.
+// Returns at most 40 characters: "Move Corner torch", "Output of Corner torch", "Add heat source".
 std::string undoName(const Scene& before, const Command& command);
 
-// Words of a line: quotes hold spaces, \" and \\ within them; // at a word's start begins a
-// comment.
+// Splits a line into words. Quotes may contain spaces, \" and \\. // at the start of a word begins
+// a comment.
 bool splitWords(std::string_view line, std::vector<std::string>& words, std::string& error);
 
 }  // namespace fwedit

@@ -9,8 +9,8 @@
 
 namespace fwedit {
 
-// A scene in pieces that steps share: a step costs what it changed, and a pointer for each object
-// of the lists that it changed.
+// A scene in parts that steps share. A step costs its changes, plus a pointer per object of the
+// changed lists.
 template <typename T>
 using SharedList = std::shared_ptr<const std::vector<std::shared_ptr<const T>>>;
 
@@ -34,7 +34,7 @@ SharedList<T> share(const std::vector<T>& list, const SharedList<T>& before) {
     bool same = before && before->size() == list.size();
     for (size_t i = 0; i < list.size(); ++i) {
         std::shared_ptr<const T> kept;
-        // Most objects are where they were; one that was moved among others is looked for nearby.
+        // Most objects keep their index; search a moved one nearby.
         if (before)
             for (const size_t at : {i, i + 1, i - 1})
                 if (!kept && at < before->size() && *(*before)[at] == list[i]) kept = (*before)[at];
@@ -145,7 +145,7 @@ bool run(Document& document, const Command& command, std::string& message, Objec
     if (added) *added = fresh;
     ++document.revision;
     document.nudgeKey.clear();
-    // The camera is no step: undo does not turn the artist's head.
+    // Camera changes add no step, so undo does not move the view.
     if (command.verb == Verb::Set && command.kind == Kind::Camera) return true;
     if (document.dragging) {
         if (document.dragName.empty()) document.dragName = name;
@@ -171,7 +171,7 @@ bool runNudge(Document& document, const Command& command, double now, std::strin
     const size_t before = document.at;
     if (!run(document, command, message)) return false;
     if (merges && document.at == before + 1) {
-        // The new step takes the place of the one before it.
+        // The new step replaces the previous one.
         document.steps.erase(document.steps.begin() + static_cast<std::ptrdiff_t>(before));
         document.at = before;
         if (document.saved != ~size_t{0} && document.saved >= before) document.saved = ~size_t{0};

@@ -1,4 +1,4 @@
-// Opening and saving: the scene's file, the pictures of its layers beside it.
+// Opens and saves the scene file and the layer images beside it.
 #include <fcntl.h>
 #include <unistd.h>
 
@@ -24,8 +24,8 @@ std::string reason(const fs::path& file, const char* what) {
     return file.string() + " " + what + ": " + std::strerror(errno) + ".";
 }
 
-// Whole or not at all, and on the disk when it returns.
-bool writeWhole(const fs::path& file, std::string_view bytes, std::string& error) {
+// Replaces a file atomically and flushes it to disk.
+bool replaceFile(const fs::path& file, std::string_view bytes, std::string& error) {
     const std::string fresh = file.string() + ".new";
     const int handle = ::open(fresh.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644);
     if (handle < 0) {
@@ -74,7 +74,7 @@ fs::path folderOf(const fs::path& file) {
     return whole.parent_path();
 }
 
-// A path that began in one folder, so that it begins in another.
+// Converts a path relative to one folder into one relative to another.
 std::string rebased(const std::string& path, const fs::path& from, const fs::path& to) {
     if (path.empty()) return path;
     const fs::path given(path);
@@ -99,8 +99,8 @@ fwimport::FloatPicture pictureOf(const PaintImage& image) {
     return picture;
 }
 
-// Pictures are named by what they hold, so that the scene on the disk never shows another scene's
-// paint, whenever the writing of a new one ends.
+// Image names depend on their content, so a saved scene never shows another scene's paint, even
+// after an interrupted save.
 bool savePictures(Scene& scene, const PaintImages& images, const fs::path& file,
                   std::string& error) {
     for (PaintLayer& layer : scene.layers) {
@@ -122,7 +122,7 @@ bool savePictures(Scene& scene, const PaintImages& images, const fs::path& file,
         std::ifstream stream(fresh, std::ios::binary);
         const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
         fs::remove(fresh, ignored);
-        if (!writeWhole(path, bytes, error)) return false;
+        if (!replaceFile(path, bytes, error)) return false;
     }
     return true;
 }
@@ -134,7 +134,7 @@ bool writeScene(Scene& scene, const Document& document, const fs::path& file, st
     rebaseScene(scene, baseFolder(document), folder);
     const fs::path whole = folder / file.filename();
     return savePictures(scene, document.images, whole, error) &&
-           writeWhole(whole, printScene(scene), error);
+           replaceFile(whole, printScene(scene), error);
 }
 
 void readPictures(Document& document, std::vector<std::string>& repairs) {
@@ -201,7 +201,7 @@ bool openDocument(const fs::path& file, Document& document, std::vector<std::str
     readPictures(fresh, repairs);
     resetHistory(fresh);
     fresh.revision = document.revision + 1;
-    // What was mended is not on the disk yet.
+    // The file does not have the repairs yet.
     if (!repairs.empty()) fresh.saved = ~size_t{0};
     document = std::move(fresh);
     return true;
@@ -210,7 +210,7 @@ bool openDocument(const fs::path& file, Document& document, std::vector<std::str
 bool saveCopy(const Document& document, const fs::path& file, std::string& error) {
     Scene scene = document.scene;
     if (!writeScene(scene, document, file, error)) return false;
-    // The copy before had pictures of its own; those that the new one has no use for go.
+    // Remove images of the previous copy that the new one does not use.
     std::set<std::string> kept;
     for (const PaintLayer& layer : scene.layers) kept.insert(layer.image);
     const std::string own = file.stem().string() + ".paint_";
@@ -239,8 +239,8 @@ bool saveDocument(Document& document, const fs::path& file, std::string& error) 
     Scene scene = document.scene;
     if (!writeScene(scene, document, file, error)) return false;
 
-    // The history speaks of the same files from now on: by paths from the new folder, and each
-    // layer by the picture that was just written.
+    // The history must refer to the same files: paths relative to the new folder, and the layer
+    // images that were just written.
     std::error_code code;
     const fs::path from = baseFolder(document);
     const fs::path to = folderOf(file);
@@ -256,7 +256,7 @@ bool saveDocument(Document& document, const fs::path& file, std::string& error) 
                 layer.size = now->size;
             }
     });
-    // Pictures of ours that no longer belong to the file.
+    // Remove our images that the file no longer uses.
     if (from == to && document.file.stem() == file.stem())
         for (const std::string& image : before)
             if (!image.empty() && !kept.contains(image) &&

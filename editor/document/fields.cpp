@@ -36,8 +36,8 @@ struct Table {
     }
 };
 
-constexpr double kFar = 1e6;           // m; as far as the plugin takes positions
-constexpr double kMostCelsius = 2700;  // of a flame
+constexpr double kFar = 1e6;           // m; the plugin's limit for positions
+constexpr double kMostCelsius = 2700;  // for a flame
 
 template <typename T>
 Entry<T> flag(const char* key, const char* label, bool T::*member) {
@@ -211,7 +211,7 @@ const Table<Emitter>& tableOf() {
             number("sparks", "Sparks", "", 0, 1, &Emitter::sparks),
             number("wind_response", "Bends in the wind", "", 0, 4, &Emitter::windResponse),
             number("turbulence", "Break-up", "", 0, 4, &Emitter::turbulence),
-            flag("books", "Shows flipbooks", &Emitter::books),
+            flag("books", "Shows flipbooks", &Emitter::flipbooks),
         };
         addSpan(own, "Keys of the output");
         own.push_back(object("sticks_to", "Sticks to", &Emitter::sticksTo));
@@ -322,7 +322,7 @@ constexpr KindWords kKinds[] = {{"mesh", "Mesh"},         {"source", "Heat sourc
                                 {"settings", "Settings"}, {"camera", "Camera"}};
 static_assert(std::size(kKinds) == size_t(Kind::Count));
 
-// Calls `visit(object, table)` with the object in its own type; false: there is none.
+// Calls `visit(object, table)` with the object's own type. Returns false if there is none.
 template <typename SceneT, typename Visit>
 bool withTyped(SceneT& scene, Kind kind, ObjectId id, Visit&& visit) {
     if (kind == Kind::Settings) return visit(scene.settings, tableOf<Settings>()), true;
@@ -386,7 +386,7 @@ std::string withUnit(double value, const FieldInfo& info) {
     return text;
 }
 
-// Into the field's limits; told once, of the first.
+// Clamps to the field's limits and reports the first repair.
 double bounded(double value, const FieldInfo& info, double low, double high, std::string& repair) {
     const double kept = std::clamp(value, low, high);
     if (kept != value && repair.empty())
@@ -495,7 +495,7 @@ bool store(T& into, const Member<T>& member, const FieldInfo& info, const Value&
                              bounded(list[i + 1], info, info.least, info.most, repair))});
                 std::stable_sort(made.begin(), made.end(),
                                  [](const Key& a, const Key& b) { return a.time < b.time; });
-                // Of two keys at one time the later one counts.
+                // Of two keys at the same time, the later entry counts.
                 Keys single;
                 for (const Key& key : made) {
                     if (!single.empty() && single.back().time == key.time) single.pop_back();
@@ -516,7 +516,7 @@ bool store(T& into, const Member<T>& member, const FieldInfo& info, const Value&
         member);
 }
 
-// What a unit behind a number multiplies it by to be in the field's own; 0: not a unit of it.
+// Returns the factor from the given unit to the field's own unit; 0: not a matching unit.
 double unitFactor(std::string_view own, std::string_view given) {
     if (given == own) return 1;
     struct Row {

@@ -1,5 +1,5 @@
-// The fields of a scene's objects by name: one table that saving, loading, commands, undo's names
-// and inspectors read. A field that is not in it is not saved and cannot be edited.
+// Table of the fields of all objects, by name, for saving, loading, commands, undo names and
+// inspectors. Only fields in this table are saved and editable.
 #pragma once
 
 #include <span>
@@ -31,14 +31,15 @@ struct FieldInfo {
     const char* label = "";  // in inspectors and undo names: "Wind response"
     const char* unit = "";   // "kW", "m", "°"; empty: none
     FieldType type{};
-    double low = 0, high = 0;           // of each number
-    uint32_t width = 1;                 // numbers in it; of Rows: in a row
-    std::vector<const char*> choices;   // words of a Choice, in the order of their numbers
-    double least = -1000, most = 1000;  // of a KeyList's values; low and high are of its times
+    double low = 0, high = 0;           // limits of each number
+    uint32_t width = 1;                 // number of values; for Rows: per row
+    std::vector<const char*> choices;   // words of a Choice, in numeric order
+    double least = -1000, most = 1000;  // limits of a KeyList's values; low and high limit its
+                                        // times
 };
 
-// Flags, numbers and choices are numbers; objects too, by id. Vectors, keys and rows are lists of
-// numbers, row after row.
+// Flags, numbers, choices and object ids are numbers. Vectors, keys and rows are flat lists of
+// numbers, row by row.
 using Value = std::variant<double, std::string, std::vector<double>>;
 
 const char* kindKey(Kind kind);    // "source", in files and commands
@@ -46,22 +47,23 @@ const char* kindLabel(Kind kind);  // "Heat source"
 bool kindOfKey(std::string_view key, Kind& kind);
 
 std::span<const FieldInfo> fieldsOf(Kind kind);
-// Null: there is none of that key.
+// Returns null if there is no such key.
 const FieldInfo* findField(Kind kind, std::string_view key);
 
-// `id` is of no meaning for Settings and Camera. False: no such object or field.
+// Settings and Camera ignore `id`. Returns false if the object or the field does not exist.
 bool getField(const Scene& scene, Kind kind, ObjectId id, std::string_view key, Value& value);
-// As setField, and says what it did to a value beyond its limits: `repair` is then not empty:
-// "radius was -0.4 m, below 0 m; it is now 0 m". False: `error` says why nothing was set.
+// Sets a field and clamps it to its limits. `repair` then says so: "radius was -0.4 m, below 0 m;
+// it is now 0 m". On failure returns false with the reason in `error`.
 bool setField(Scene& scene, Kind kind, ObjectId id, std::string_view key, const Value& value,
               std::string& repair, std::string& error);
 
-// As in commands: shortest text that reads back the same; texts in quotes, choices as words.
+// Prints a value as in commands: shortest text that parses back; texts in quotes, choices as words.
 std::string printValue(const Scene& scene, const FieldInfo& field, const Value& value);
-// False: `error` names the field, the value and what is allowed. Units after numbers are taken.
+// Parses a value. Accepts units after numbers. On failure returns false; `error` has the field, the
+// value and the allowed values.
 bool parseValue(const Scene& scene, const FieldInfo& field, std::span<const std::string> words,
                 Value& value, std::string& error);
-// How many of the words, from the first on, are a value of the field, its unit included.
+// Returns the number of leading words that belong to a value of the field, including its unit.
 size_t wordsOfValue(const FieldInfo& field, std::span<const std::string> words);
 
 }  // namespace fwedit

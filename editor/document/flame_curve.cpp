@@ -8,9 +8,9 @@ namespace fwedit {
 namespace {
 
 constexpr float kZeroCelsius = 273.15f, kMostKelvin = 3000;
-constexpr float kGlowFrom = 1000;  // K, above which soot glows
+constexpr float kGlowFrom = 1000;  // K, soot glows above it
 constexpr float kEdge = 0.22f,
-                kSoftFoot = 0.12f;  // of the radius, the height: where soot thins out
+                kSoftFoot = 0.12f;  // share of radius and height over which soot thins out
 
 float smooth(float from, float to, float at) {
     const float t = std::clamp((at - from) / (to - from), 0.0f, 1.0f);
@@ -66,7 +66,7 @@ std::vector<float> texelsOfCurve(const FlameCurve& curve) {
             const float out = kShapeReach * (static_cast<float>(x) + 0.5f) / kShapeWidth;
             const float inside = 1 - out / radius;  // 0 edge, 1 core
             const float kelvin = std::min(valueAt(curve.stops, inside) + kZeroCelsius, kMostKelvin);
-            // What is too cold to glow is not there, rather than blue gas.
+            // Regions too cold to glow become empty instead of blue gas.
             const float soot = smooth(0, kEdge, inside) * smooth(0, kSoftFoot, height) *
                                smooth(0.75f * kGlowFrom, kGlowFrom, kelvin);
             texels.push_back(soot > 0 ? std::max(kelvin, kGlowFrom) : 0);

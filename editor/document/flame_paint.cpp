@@ -24,7 +24,7 @@ float meanAround(const Plane& plane, int x, int y) {
     return sum / count;
 }
 
-// Between texels; the flame is round, so left of the axis it is as it is right of it.
+// Samples between texels. The flame is axially symmetric, so negative x mirrors positive x.
 float valueAt(const Plane& plane, float x, float y) {
     const float u = std::clamp(std::fabs(x) - 0.5f, 0.0f, float(kWidth - 1));
     const float v = std::clamp(y - 0.5f, 0.0f, float(kHeight - 1));
@@ -46,7 +46,7 @@ void paintDab(ProfilePaint& paint, const Dab& dab) {
     const float alongX = dab.x < 0 ? -dab.alongX : dab.alongX;
     for (int y = 0; y < kHeight; ++y) {
         for (int x = 0; x < kWidth; ++x) {
-            // The flame is round: what is left of the axis is right of it too.
+            // The flame is axially symmetric: the left side mirrors the right one.
             const float atX = float(x) + 0.5f, atY = float(y) + 0.5f;
             const float dy = (atY - dab.y) / dab.radiusY;
             const float dx = (atX - std::fabs(dab.x)) / dab.radiusX;
@@ -69,7 +69,7 @@ void paintDab(ProfilePaint& paint, const Dab& dab) {
                  : dab.tool == ProfileTool::kSmear  ? smeared(was)
                                                     : dab.value,
                  most);
-            // Heat shows by what glows in it: both are painted and smeared, and both go.
+            // Soot shows heat, so paint and smear change both, and erase removes both.
             if (ofSoot) continue;
             float& soot = paint.soot[texel];
             if (dab.tool == ProfileTool::kPaint) soot = std::max(soot, 0.6f * share);
@@ -84,7 +84,7 @@ void paintGradient(ProfilePaint& paint, const Gradient& gradient) {
     const bool ofSoot = gradient.plane == ProfilePlane::kSoot;
     Plane& plane = ofSoot ? paint.soot : paint.kelvin;
     const float most = ofSoot ? ProfilePaint::kMostSoot : ProfilePaint::kMostKelvin;
-    // Drawn left of the axis it is the one right of it.
+    // A line left of the axis is mirrored to the right.
     const float side = gradient.fromX < 0 || (gradient.fromX == 0 && gradient.toX < 0) ? -1.0f : 1;
     const float fromX = side * gradient.fromX;
     const float wayX = (side * gradient.toX - fromX) * gradient.aspect;

@@ -1,5 +1,5 @@
-// A flame's shape as a picture of temperature and soot over radius and height, and what a brush
-// does to it: dabs that paint, erase, smooth or smear, and gradients from one value to another.
+// A flame's shape as an image of temperature and soot over radius and height, with brush
+// operations: paint, erase, smooth, smear and gradients.
 #pragma once
 
 #include <cstddef>
@@ -7,7 +7,7 @@
 
 namespace fwedit {
 
-// 64 x 128 texels as the plugin keeps them; rows from the base up.
+// 64 x 128 texels in the plugin's layout; rows from the base up.
 struct ProfilePaint {
     static constexpr int kWidth = 64, kHeight = 128;
     static constexpr float kMostKelvin = 3000, kMostSoot = 2;
@@ -19,9 +19,8 @@ struct ProfilePaint {
 enum class ProfileTool : int { kPaint, kErase, kSmooth, kSmear, kGradient, kPick };
 enum class ProfilePlane : int { kTemperature, kSoot };
 
-// A dab of the brush at (x, y), texels, of a radius in texels; mirrored about the axis by nature.
-// `value`: K or soot that it goes towards. `hardness`, `strength`: [0, 1]. `alongX`, `alongY`:
-// texels since the dab before, what a smear takes along.
+// A dab of the brush at (x, y), in texels; symmetric about the axis. `value`: target in K or soot.
+// `hardness`, `strength`: [0, 1]. `alongX`, `alongY`: texels since the previous dab, for smearing.
 struct Dab {
     ProfileTool tool = ProfileTool::kPaint;
     ProfilePlane plane = ProfilePlane::kTemperature;
@@ -31,8 +30,8 @@ struct Dab {
 };
 void paintDab(ProfilePaint& paint, const Dab& dab);
 
-// From one value to another along a line between two places, texels; beyond its ends as at them,
-// and only where there is a flame. `aspect`: how much wider a texel is than high, on the canvas.
+// A gradient along a line between two points, in texels; constant beyond its ends, and only inside
+// the flame. `aspect`: width of a texel relative to its height on the canvas.
 struct Gradient {
     ProfilePlane plane = ProfilePlane::kTemperature;
     float fromX = 0, fromY = 0, toX = 0, toY = 0;

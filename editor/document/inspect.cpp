@@ -21,7 +21,7 @@ FwWorldStats statsOf(FwWorld* world) {
     return stats;
 }
 
-// Reads when each texel caught; `start` is the world's first tick.
+// Reads the ignition time of each texel. `start`: the world's first tick.
 std::string readField(Burn& burn, const BurnMesh& mesh, uint64_t start, ArrivalField& field) {
     FwMeshInfo info{};
     info.structSize = sizeof info;
@@ -33,7 +33,7 @@ std::string readField(Burn& burn, const BurnMesh& mesh, uint64_t start, ArrivalF
     result = fwDebug_FetchBurnMap(burn.world, mesh.object, ticks.data(), ticks.size(), &count,
                                   &hash, &now);
     if (result < 0) return worldProblem(burn, result);
-    if (result == FW_NOT_READY) return "The burn map is not there yet";
+    if (result == FW_NOT_READY) return "The burn map is not ready";
     field.mesh = mesh.id;
     field.width = info.mapWidth;
     field.height = info.mapHeight;
@@ -67,20 +67,20 @@ std::string number(const char* form, double value) {
     return text;
 }
 
-// Bare seconds up to a minute, then m:ss.s.
+// Seconds up to a minute, then m:ss.s.
 std::string clock(double seconds) {
     if (seconds < 60) return number("%.1f s", seconds);
     const int minutes = static_cast<int>(seconds / 60);
     return std::to_string(minutes) + ":" + number("%04.1f", seconds - 60.0 * minutes);
 }
 
-const BurnMesh* madeOf(const Burn& burn, ObjectId id) {
+const BurnMesh* burnMeshOf(const Burn& burn, ObjectId id) {
     for (const BurnMesh& mesh : burn.meshes)
         if (mesh.id == id) return &mesh;
     return nullptr;
 }
 
-// From which side a fire comes, as the camera sees it.
+// Returns the direction of a fire relative to the camera.
 std::string sideOf(const Scene& scene, const Vec3& at, const Vec3& fire) {
     const FwView view = viewOf(scene, 16, 9, 0);
     float seen[3] = {};
@@ -92,14 +92,14 @@ std::string sideOf(const Scene& scene, const Vec3& at, const Vec3& fire) {
     return seen[2] > 0 ? "from the front" : "from behind";
 }
 
-// What is known of a place, in words. `arrival`: null while it is worked out.
+// Describes a point in words. `arrival`: null while the forecast is pending.
 void explain(Burn& burn, const PaintImages& images, const WhyQuestion& question,
              const FwArrivalState* arrival, WhyAnswer& answer) {
     const ObjectId meshId = question.mesh;
     const Vec3 worldPosition = question.position;
     const Mesh* mesh = findIn(burn.scene.meshes, meshId);
     const FwPointState& point = question.point;
-    // What the place is made of: slot and paint of the nearest texel.
+    // Material of the point: slot and paint of the nearest texel.
     FwMaterialDef material = fwDefaultMaterialDef();
     uint32_t preset = mesh->materials[0];
     answer = {};
@@ -189,9 +189,9 @@ void explain(Burn& burn, const PaintImages& images, const WhyQuestion& question,
         if (nearest < FLT_MAX) answer.forecast += " " + sideOf(burn.scene, worldPosition, fire);
         answer.answer += ", a" + answer.forecast.substr(1);
     } else if (question.asksArrival && !arrival) {
-        answer.forecast = "Working out when the fire comes";
+        answer.forecast = "Predicting when the fire arrives";
     } else if (question.asksArrival) {
-        answer.forecast = "As things are, no fire comes here along the mesh";
+        answer.forecast = "Without changes, no fire reaches this spot along the mesh";
     }
 }
 
@@ -207,7 +207,7 @@ bool recordBurn(FwContext* cpu, const Scene& scene, const PaintImages& images,
     const double end = static_cast<double>(scene.settings.duration);
     while (burn->time < end - 1e-6) {
         if (stop && stop(burn->time)) break;
-        // A quarter of a second at a time; sources and keys go by frames within.
+        // Steps of a quarter second; sources and keys advance per frame within.
         if (!runBurn(*burn, std::min(end, burn->time + 0.25), error)) return false;
         drainEvents(*burn, made);
     }
@@ -241,7 +241,7 @@ std::vector<uint8_t> burnTimeMap(const ArrivalField& field, float duration) {
 bool beginWhy(Burn& burn, ObjectId meshId, Vec3 worldPosition, WhyQuestion& question,
               std::string& error) {
     const Mesh* mesh = findIn(burn.scene.meshes, meshId);
-    const BurnMesh* made = madeOf(burn, meshId);
+    const BurnMesh* made = burnMeshOf(burn, meshId);
     if (!mesh || !made) {
         error = mesh ? "\"" + mesh->name + "\" is not in the burn" : "Click on a surface";
         return false;
@@ -257,7 +257,7 @@ bool beginWhy(Burn& burn, ObjectId meshId, Vec3 worldPosition, WhyQuestion& ques
 
 FwResult pollWhy(Burn& burn, const PaintImages& images, WhyQuestion& question, WhyAnswer& answer,
                  std::string& error) {
-    const BurnMesh* made = madeOf(burn, question.mesh);
+    const BurnMesh* made = burnMeshOf(burn, question.mesh);
     if (!made || !findIn(burn.scene.meshes, question.mesh)) return FW_ERROR_INVALID_ARGUMENT;
     FwPointState& point = question.point;
     if (!question.pointKnown) {
@@ -288,14 +288,14 @@ bool askWhy(Burn& burn, const PaintImages& images, ObjectId mesh, Vec3 worldPosi
             WhyAnswer& answer, std::string& error) {
     WhyQuestion question;
     if (!beginWhy(burn, mesh, worldPosition, question, error)) return false;
-    // The front is run ahead a piece a frame: a world that stands still is stepped by nothing.
+    // Each poll advances the forecast a little. The world itself stands still.
     constexpr int kMostSteps = 4000;
     FwResult result = FW_NOT_READY;
     for (int i = 0; i < kMostSteps && result == FW_NOT_READY; ++i) {
         result = pollWhy(burn, images, question, answer, error);
         if (result == FW_NOT_READY) fwWorld_Step(burn.world, 0);
     }
-    if (result == FW_NOT_READY) error = "No answer came";
+    if (result == FW_NOT_READY) error = "The query timed out";
     return result == FW_OK;
 }
 

@@ -1,5 +1,5 @@
-// Keys by the names on their caps, "Ctrl+Shift+S", and which command has them. Commands of
-// different pages may share keys; two that can be meant at once may not.
+// Key combinations by name, such as "Ctrl+Shift+S", and their commands. Commands on different pages
+// may share keys. Commands that are active together may not.
 #pragma once
 
 #include <optional>
@@ -10,22 +10,22 @@
 namespace fwedit {
 
 struct KeyPress {
-    int code = 0;  // GLFW's number of the key
+    int code = 0;  // GLFW key code
     bool ctrl = false, shift = false;
     bool operator==(const KeyPress&) const = default;
 };
 
-// Nothing: these are no keys, or keys that no command may have (Esc, Enter, modifiers alone).
+// Returns nothing for unknown keys and for reserved ones (Esc, Enter, modifiers alone).
 std::optional<KeyPress> parseKeys(std::string_view words);
-std::string printKeys(const KeyPress& keys);  // empty: the key has no name here
+std::string printKeys(const KeyPress& keys);  // empty: the key has no name
 
 constexpr int kEveryPage = -2, kEveryPageOfAScene = -3;
 struct KeyUse {
     std::string_view command;
     std::string_view keys;  // empty: none
-    int page = kEveryPage;  // or the number of a page
+    int page = kEveryPage;  // or the index of a page
 };
-// The command that already means these keys where `page` is seen, other than `command`. Null: none.
+// Returns the command, other than `command`, that already uses these keys on `page`; null: none.
 const KeyUse* keyConflict(std::span<const KeyUse> uses, std::string_view command,
                           const KeyPress& keys, int page);
 

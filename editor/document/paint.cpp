@@ -21,7 +21,7 @@ float distanceToSegment(const Vec3& p, const Vec3& a, const Vec3& b) {
     return std::sqrt(dot(off, off));
 }
 
-// Calls `visit(texel)` for every real texel within the box, and maybe for some beside it.
+// Calls `visit(texel)` for every surface texel within the box, and possibly for some outside.
 template <typename Visit>
 void forTexelsWithin(const PaintSurface& surface, const Vec3& low, const Vec3& high,
                      Visit&& visit) {
@@ -154,7 +154,7 @@ PaintImage makePaintImage(uint32_t kind, uint32_t width, uint32_t height) {
 
 namespace {
 
-// Tiles that hold what they held are those of `before`.
+// Unchanged tiles stay shared with `before`.
 PaintImage tiled(PaintImage before, std::span<const uint8_t> values) {
     constexpr uint32_t side = PaintImage::kTile;
     const uint32_t across = (before.width + side - 1) / side;
@@ -209,7 +209,7 @@ StrokePainter::StrokePainter(const PaintSurface& surface, uint32_t kind, const P
     if (brush_.mode == BrushMode::Smooth) original_ = values_;
 }
 
-// Mean around a texel on the surface, seams and all, of what was there before the stroke.
+// Mean of the values before the stroke, around a texel on the surface, across seams.
 uint8_t StrokePainter::smoothed(size_t texel) const {
     const Vec3 p = at3(surface_.positions, texel), n = at3(surface_.normals, texel);
     const float reach = std::max(0.25f * brush_.size, 2.5f * surface_.spacing);
@@ -315,8 +315,8 @@ size_t nearestTexel(const PaintSurface& surface, Vec3 position) {
 
 namespace {
 
-// How the normals turn away from a texel's, over the way to their places; sharp edges bend as far
-// as texels reach.
+// Change of the normals around a texel per distance. At sharp edges the bend is limited by the
+// texel spacing.
 float curvatureAt(const PaintSurface& surface, size_t texel) {
     const Vec3 p = at3(surface.positions, texel), n = at3(surface.normals, texel);
     const float reach = 3 * surface.spacing;
@@ -324,12 +324,12 @@ float curvatureAt(const PaintSurface& surface, size_t texel) {
     const Vec3 low = {p[0] - reach, p[1] - reach, p[2] - reach};
     const Vec3 high = {p[0] + reach, p[1] + reach, p[2] + reach};
     forTexelsWithin(surface, low, high, [&](size_t other) {
-        const Vec3 way = minus(at3(surface.positions, other), p);
-        const float square = dot(way, way);
+        const Vec3 offset = minus(at3(surface.positions, other), p);
+        const float square = dot(offset, offset);
         const Vec3 normal = at3(surface.normals, other);
-        // The back of a thin wall is no bend of its front.
+        // The back of a thin wall is not a bend of its front.
         if (square > reach * reach || square < 1e-12f || dot(normal, n) < -0.5f) return;
-        sum += dot(minus(normal, n), way) / square;
+        sum += dot(minus(normal, n), offset) / square;
         ++count;
     });
     return count > 0 ? sum / count : 0;

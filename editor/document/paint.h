@@ -1,5 +1,5 @@
-// Painting on a mesh: a brush is a ball in space, so that a stroke goes over the seams of the
-// unwrap as over any other place. Works on the texels of the burn map as the plugin baked it.
+// Painting on a mesh. The brush is a ball in space, so a stroke crosses the seams of the unwrap.
+// Works on the texels of the baked burn map.
 #pragma once
 
 #include <array>
@@ -13,43 +13,44 @@
 
 namespace fwedit {
 
-struct Seam {  // an edge at which the unwrap is cut; its other side is another seam
+struct Seam {  // an edge where the unwrap is cut; its other side is a separate seam
     std::array<float, 2> from{}, to{};  // texels
     Vec3 fromPosition{}, toPosition{};  // m, object space
 };
 
-// Where the texels of a mesh's burn map are on it; from the bake, see paintSurfaceOf in burn.h.
+// Surface positions of the burn map's texels; from the bake, see paintSurfaceOf in burn.h.
 struct PaintSurface {
     uint32_t width = 0, height = 0;  // texels
     std::vector<float> positions;    // 3 per texel, m, object space
     std::vector<float> normals;      // 3 per texel, unit
     std::vector<uint8_t> real;       // 1: a texel of the surface
-    std::vector<uint32_t> island;    // of the unwrap, from 0; ~0u where not real
+    std::vector<uint32_t> island;    // island of the unwrap, from 0; ~0u: no surface
     std::vector<uint32_t> piece;     // connected parts of the surface, across seams
     std::vector<uint8_t> material;   // slot
     float spacing = 0;               // m between texels
     uint32_t islands = 0;
-    // What is drawn, three corners a triangle: position (m, object space), place (texels).
+    // Drawn geometry, three corners per triangle: position (m, object space), burn map position
+    // (texels).
     std::vector<float> corners;
     std::vector<Seam> seams;
-    // Texels by where they are, for the brush; see indexSurface.
+    // Spatial index of the texels for the brush; see indexSurface.
     Vec3 low{};
     float cell = 0;  // m
     std::array<uint32_t, 3> cells{};
     std::vector<uint32_t> cellBegin, cellTexels;
 };
-// Sorts the texels into cells. Without it a brush looks at every texel.
+// Sorts the texels into grid cells. Without it, a brush visits every texel.
 void indexSurface(PaintSurface& surface);
 
-// A layer's values over the burn map, in tiles that undo's steps share.
-// Multiplier: 128 is as is, 0 never burns, 255 twice as fast. Moisture: 255 is 100 %. Material: the
-// preset + 1, 0: as the mesh has it.
+// Values of a layer over the burn map, in tiles that undo steps share. Multiplier: 128 neutral, 0
+// never burns, 255 twice as fast. Moisture: 255 is 100 %. Material: preset + 1; 0: the mesh's
+// material.
 struct PaintImage {
     static constexpr uint32_t kTile = 64;  // px
     using Tile = std::array<uint8_t, kTile * kTile>;
     uint32_t width = 0, height = 0;
-    uint8_t empty = 0;                               // value of a tile that is not there
-    std::vector<std::shared_ptr<const Tile>> tiles;  // null: all `empty`
+    uint8_t empty = 0;                               // value of a missing tile
+    std::vector<std::shared_ptr<const Tile>> tiles;  // null: the whole tile is `empty`
 
     [[nodiscard]] uint8_t at(uint32_t x, uint32_t y) const;
     [[nodiscard]] std::vector<uint8_t> flat() const;
@@ -67,36 +68,37 @@ struct Stroke {
     float size = 0.05f;         // m, radius, object space
     float value = 0;            // multiplier 0..2, moisture 0..1, material preset
     float strength = 1;         // [0, 1]
-    float hardness = 0.5f;      // [0, 1]: share of the radius that gets all of it
-    bool mirror = false;        // about the object's x = 0
+    float hardness = 0.5f;      // [0, 1]: share of the radius with full strength
+    bool mirror = false;        // mirrored at the object's x = 0
     std::vector<Vec3> path;     // m, object space, on the surface
-    std::vector<Vec3> normals;  // as many or none: then thin walls are painted on both sides
+    std::vector<Vec3> normals;  // one per point of the path, or none: thin walls are then painted
+                                // on both sides
     bool operator==(const Stroke&) const = default;
 };
 enum class FillBy : uint32_t { All, Island, Piece, Material, Slope, Curvature };
 struct FillRequest {
     FillBy by = FillBy::All;
     float value = 0;
-    Vec3 at{};                           // of Island, Piece: a point on it, m, object space
-    uint32_t material = 0;               // slot, of Material
-    float slopeLow = 0, slopeHigh = 90;  // degrees from level ground, of Slope
-    // 1/m, of Curvature: one over the radius of the bend, > 0 outwards as at edges, < 0 in hollows.
+    Vec3 at{};                           // for Island, Piece: a point on it, m, object space
+    uint32_t material = 0;               // slot, for Material
+    float slopeLow = 0, slopeHigh = 90;  // degrees from horizontal, for Slope
+    // 1/m, for Curvature: inverse bend radius, > 0 convex as at edges, < 0 concave.
     float curveLow = 5, curveHigh = 10000;
     bool operator==(const FillRequest&) const = default;
 };
 
-// Texels [x0, x1) x [y0, y1) that changed; empty: none did.
+// Range of changed texels [x0, x1) x [y0, y1); empty: none.
 struct PaintedArea {
     uint32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     [[nodiscard]] bool empty() const { return x0 >= x1 || y0 >= y1; }
 };
 
-// A stroke that grows: begin, extend with each move of the brush, end with the image it made. Its
-// values do not depend on how many calls the path came in.
+// An incremental stroke: begin, extend with each brush move, end with the resulting image. The
+// result does not depend on the number of calls.
 class StrokePainter {
  public:
     StrokePainter(const PaintSurface& surface, uint32_t kind, const PaintImage& image,
-                  const Stroke& brush);  // brush.path is not used
+                  const Stroke& brush);  // brush.path is ignored
     PaintedArea extend(Vec3 position, const Vec3* normal = nullptr);
     [[nodiscard]] PaintImage image() const;
     [[nodiscard]] std::span<const uint8_t> values() const { return values_; }  // width x height
@@ -110,15 +112,15 @@ class StrokePainter {
     PaintImage before_;
     Stroke brush_;
     std::vector<uint8_t> values_;
-    std::vector<uint8_t> original_;  // of a stroke that smooths
-    std::vector<float> cover_;       // of the stroke so far, [0, 1]
+    std::vector<uint8_t> original_;  // for a smoothing stroke
+    std::vector<float> cover_;       // coverage of the stroke so far, [0, 1]
 };
 
 PaintImage applyStroke(const PaintSurface& surface, uint32_t kind, const PaintImage& image,
                        const Stroke& stroke);
 PaintImage applyFill(const PaintSurface& surface, uint32_t kind, const PaintImage& image,
                      const FillRequest& fill, Vec3 up);
-// The texel nearest to a point, width * height if there is none.
+// Returns the texel nearest to a point; width * height if there is none.
 size_t nearestTexel(const PaintSurface& surface, Vec3 position);
 
 }  // namespace fwedit

@@ -1,5 +1,4 @@
-// The surface to paint on: what the plugin says of its burn map's texels, and the triangles that
-// they lie on.
+// Builds the surface to paint on from the burn map's texels and the triangles below them.
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -43,7 +42,7 @@ float squareToTriangle(const Vec3& p, const Vec3& a, const Vec3& b, const Vec3& 
     return height * height / nn;
 }
 
-// Triangles by the cells that their boxes touch.
+// Triangles by the grid cells that their boxes overlap.
 struct TriangleGrid {
     Vec3 low{};
     float cell = 1;
@@ -100,7 +99,7 @@ uint32_t rootOf(std::vector<uint32_t>& parents, uint32_t at) {
     return at;
 }
 
-// Which connected part of the mesh each triangle is of; corners at one place are one.
+// Assigns each triangle its connected part. Corners at equal positions are connected.
 std::vector<uint32_t> piecesOf(const ImportedModel& model) {
     const size_t vertices = model.vertexCount();
     std::vector<uint32_t> order(vertices), parents(vertices);
@@ -121,7 +120,7 @@ std::vector<uint32_t> piecesOf(const ImportedModel& model) {
     return pieces;
 }
 
-// Texels that touch in the map and on the surface are of one island.
+// Texels that are adjacent in the map and on the surface form an island.
 void findIslands(PaintSurface& surface) {
     surface.island.assign(surface.real.size(), ~0u);
     const float reach = 3 * surface.spacing;
@@ -154,7 +153,7 @@ void findIslands(PaintSurface& surface) {
     surface.islands = islands;
 }
 
-// Edges that only one triangle has in the map.
+// Edges with only one triangle in the map.
 void findSeams(PaintSurface& surface) {
     using Place = std::array<int32_t, 2>;
     struct Edge {
@@ -162,7 +161,7 @@ void findSeams(PaintSurface& surface) {
         uint32_t from, to;  // corners
     };
     const auto placeOf = [&](uint32_t corner) {
-        constexpr float kFine = 64;  // parts of a texel
+        constexpr float kFine = 64;  // subdivisions of a texel
         const float* place = surface.corners.data() + size_t{corner} * 5 + 3;
         return Place{static_cast<int32_t>(std::lround(place[0] * kFine)),
                      static_cast<int32_t>(std::lround(place[1] * kFine))};
@@ -293,7 +292,7 @@ std::vector<uint8_t> multiplierOf(const Scene& scene, const PaintImages& images,
             if (layer.kind == PaintMultiplier) {
                 factor = static_cast<float>(values[i]) / 128;
             } else if (layer.kind == PaintMoisture) {
-                // Fire slows down with the water in the fuel and stops where that is too much.
+                // Water in the fuel slows the fire and stops it above a limit.
                 const float wet = static_cast<float>(values[i]) / 255;
                 const float room = own.extinctionMoisture - own.moisture;
                 factor = room > 0 ? std::clamp(1 - wet / room, 0.0f, 1.0f) : 1;

@@ -9,7 +9,7 @@ namespace fwedit {
 namespace {
 
 constexpr float kDegree = 0.017453292519943295f;
-// As far as the fields go, see fields.cpp.
+// Equal to the limits in fields.cpp.
 constexpr float kMostPosition = 1e6f, kMostDirection = 1000, kMostExtent = 100;
 
 Vec3 bounded(Vec3 v, float most) {
@@ -27,7 +27,8 @@ Pose product(const Pose& a, const Pose& b) {
 
 Vec3 column(const Pose& m, size_t c) { return {m[c * 4], m[c * 4 + 1], m[c * 4 + 2]}; }
 
-// Its axes without scale and shear, mirrored if it is; those of the world where it has none.
+// Returns orthonormal axes without scale and shear (mirrored if m is), or the world's axes if m is
+// degenerate.
 std::array<Vec3, 3> axesOf(const Pose& m) {
     std::array<Vec3, 3> axes{};
     for (size_t c = 0; c < 3; ++c) {
@@ -43,7 +44,7 @@ std::array<Vec3, 3> axesOf(const Pose& m) {
     return axes;
 }
 
-// Where an object says it is, and what it sticks to.
+// An object's local position and parent.
 struct Place {
     Vec3 position{};
     ObjectId sticksTo = 0;
@@ -65,8 +66,8 @@ Place placeOf(const Scene& scene, ObjectId id) {
     return place;
 }
 
-// What a row of things that stick to each other ends at: a mesh and a node of it, or nothing, and
-// how far from there it begins.
+// The end of a parent chain: a mesh and one of its nodes, or nothing, plus the offset of the
+// chain's start.
 struct Root {
     const Mesh* mesh = nullptr;
     std::string_view node;
@@ -88,7 +89,7 @@ Root rootOf(const Scene& scene, ObjectId parent, std::string_view node) {
     return root;
 }
 
-// Within the mesh of a root. False: `error`; it is then that of the mesh itself.
+// Returns the pose within the mesh of a root. On failure sets `error` and uses the mesh's own pose.
 bool poseWithin(const Root& root, const NodePoseOf& nodePose, Pose& pose, std::string& error) {
     pose = kWorldPose;
     const bool good =
@@ -138,7 +139,7 @@ Pose transformOf(const Mesh& mesh) {
     const float cx = std::cos(r[0] * kDegree), sx = std::sin(r[0] * kDegree);
     const float cy = std::cos(r[1] * kDegree), sy = std::sin(r[1] * kDegree);
     const float cz = std::cos(r[2] * kDegree), sz = std::sin(r[2] * kDegree);
-    // Columns of turn(z) turn(y) turn(x).
+    // Columns of rotate(z) rotate(y) rotate(x).
     const Vec3 columns[3] = {{cy * cz, cy * sz, -sy},
                              {sx * sy * cz - cx * sz, sx * sy * sz + cx * cz, sx * cy},
                              {cx * sy * cz + sx * sz, cx * sy * sz - sx * cz, cx * cy}};
@@ -176,7 +177,7 @@ Vec3 positionWithin(const Pose& holder, const Vec3& world) {
 }
 
 Vec3 offsetWithin(const Pose& holder, const Vec3& world) {
-    // Cramer's rule; in double, since axes may be sheared and of very different lengths.
+    // Cramer's rule, in double precision because axes may be sheared and differ in length.
     double m[3][3], away[3];
     for (size_t k = 0; k < 3; ++k) {
         away[k] = static_cast<double>(world[k]);
@@ -193,7 +194,7 @@ Vec3 offsetWithin(const Pose& holder, const Vec3& world) {
             static_cast<float>(volume(m[0], m[1], away) / whole)};
 }
 
-ObjectId holderOf(const Scene& scene, ObjectId id) { return placeOf(scene, id).sticksTo; }
+ObjectId parentOf(const Scene& scene, ObjectId id) { return placeOf(scene, id).sticksTo; }
 
 std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent) {
     std::vector<ObjectId> holders;
@@ -208,7 +209,7 @@ std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent) {
     for (auto at = next.find(parent); at != next.end();) {
         const ObjectId holder = at->second;
         holders.push_back(holder);
-        next.erase(at);  // passed once: a knot ends where it closes
+        next.erase(at);  // visited once: a cycle ends here
         at = next.find(holder);
     }
     return holders;

@@ -1,5 +1,5 @@
-// A scene as .fwscene: JSON by hand on the way out, so that keys keep their order and a value its
-// line; nlohmann's parser on the way in, and nothing of what it read is believed.
+// The .fwscene format. The writer emits JSON directly, with a fixed key order and one value per
+// line. The reader uses nlohmann's parser and validates everything.
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::json;
 
-// 2: what sticks to a mesh turns with it, and may stick to a node of its file.
+// 2: objects that stick to a mesh rotate with it, and may stick to a node of its file.
 constexpr int kVersion = 2;
 constexpr size_t kMostBytes = size_t{16} << 20;
 constexpr size_t kMostRepairs = 100;
@@ -24,7 +24,7 @@ std::string jsonText(std::string_view text) {
     std::string result = "\"";
     for (const char c : text) {
         if (c == '"' || c == '\\') result += '\\';
-        result += c;  // control characters are never in a scene's texts
+        result += c;  // scene texts never contain control characters
     }
     return result + '"';
 }
@@ -96,10 +96,11 @@ class SceneReader {
         : name_(std::move(name)), repairs_(repairs) {}
 
     bool read(const json& root, Scene& scene, std::string& error) {
-        if (!root.is_object()) return refuse(error, "it holds no scene, but " + typeOf(root));
+        if (!root.is_object())
+            return refuse(error, "its root is " + typeOf(root) + ", not an object");
         const auto version = root.find("fwscene");
         if (version == root.end() || !version->is_number_integer())
-            return refuse(error, "it does not say which version of a scene it is (\"fwscene\")");
+            return refuse(error, "it has no scene version (\"fwscene\")");
         if (version->get<int64_t>() < 1 || version->get<int64_t>() > kVersion)
             return refuse(error, "fwscene is " + version->dump() + "; this program reads up to " +
                                      std::to_string(kVersion));
@@ -113,7 +114,7 @@ class SceneReader {
             const auto found = root.find(key);
             if (found == root.end() || tooMany) return;
             if (!found->is_array()) {
-                tell(key + " is " + typeOf(*found) + ", not a list; it is now empty");
+                reportRepair(key + " is " + typeOf(*found) + ", not a list; it is now empty");
                 return;
             }
             objects += found->size();
@@ -125,13 +126,13 @@ class SceneReader {
         if (tooMany)
             return refuse(error, "it has more than " + std::to_string(kMostObjects) +
                                      " objects, the most a scene can have");
-        mendIds(scene, root);
+        repairIds(scene, root);
         std::vector<std::string> references;
         mendReferences(scene, &references);
-        for (const std::string& repair : references) tell(repair);
-        if (version->get<int64_t>() == 1) turnIntoHolders(scene);
-        if (told_ > kMostRepairs)
-            repairs_.push_back(name_ + ": " + std::to_string(told_ - kMostRepairs) +
+        for (const std::string& repair : references) reportRepair(repair);
+        if (version->get<int64_t>() == 1) convertDirectionsToLocal(scene);
+        if (repairCount_ > kMostRepairs)
+            repairs_.push_back(name_ + ": " + std::to_string(repairCount_ - kMostRepairs) +
                                " more repairs of this kind");
         return true;
     }
@@ -141,8 +142,8 @@ class SceneReader {
         error = name_ + " was not opened: " + why + ".";
         return false;
     }
-    void tell(const std::string& what) {
-        if (++told_ <= kMostRepairs) repairs_.push_back(name_ + ": " + what + ".");
+    void reportRepair(const std::string& what) {
+        if (++repairCount_ <= kMostRepairs) repairs_.push_back(name_ + ": " + what + ".");
     }
     static std::string typeOf(const json& value) {
         return std::string(value.is_array()     ? "a list"
@@ -156,32 +157,34 @@ class SceneReader {
         bool known = key == "fwscene" || key == "next_id" || key == "settings" || key == "camera";
         for (uint32_t kind = 0; kind < uint32_t(Kind::Settings); ++kind)
             known = known || key == listName(Kind(kind));
-        if (!known) tell("\"" + cleanText(key, 80) + "\" is not known here and is left out");
+        if (!known)
+            reportRepair("\"" + cleanText(key, 80) + "\" is not known here and is left out");
     }
 
     template <typename T>
     void readObject(const json& from, Kind kind, size_t index, std::vector<T>& list, Scene& scene) {
         const std::string where = listName(kind) + "[" + std::to_string(index) + "]";
         if (!from.is_object()) {
-            tell(where + " is " + typeOf(from) + ", not an object; it is left out");
+            reportRepair(where + " is " + typeOf(from) + ", not an object; it is left out");
             return;
         }
         T& object = list.emplace_back();
-        // For the time of reading ids are places; setField finds by them.
+        // While reading, use positions as ids, because setField finds objects by id.
         const auto id = static_cast<ObjectId>(4294967295u - ids_.size());
         object.id = id;
         const auto given = from.find("id");
         const bool fine = given != from.end() && given->is_number_integer() &&
                           given->get<int64_t>() > 0 && given->get<int64_t>() < 2147483648;
         if (!fine)
-            tell(where + ".id is " + (given == from.end() ? "missing" : "no whole number above 0") +
-                 "; it gets one");
+            reportRepair(where + ".id is " +
+                         (given == from.end() ? "missing" : "not an integer above 0") +
+                         "; it gets a new one");
         ids_.push_back({id, fine ? static_cast<ObjectId>(given->get<int64_t>()) : 0, where});
         readFields(from, kind, scene, id, where + ".", "");
         if (object.name.empty()) object.name = kindLabel(kind);
     }
 
-    // `member`: of `from` whose fields they are; empty: its own.
+    // `member`: of `from`, with the fields; empty: `from` itself.
     void readFields(const json& from, Kind kind, Scene& scene, ObjectId id,
                     const std::string& where, const std::string& member) {
         const json* fields = &from;
@@ -189,7 +192,8 @@ class SceneReader {
             const auto found = from.find(member);
             if (found == from.end()) return;
             if (!found->is_object()) {
-                tell(member + " is " + typeOf(*found) + ", not an object; it is as in a new scene");
+                reportRepair(member + " is " + typeOf(*found) +
+                             ", not an object; it keeps its defaults");
                 return;
             }
             fields = &*found;
@@ -198,16 +202,16 @@ class SceneReader {
             if (key == "id") continue;
             const FieldInfo* info = findField(kind, key);
             if (!info) {
-                tell(where + cleanText(key, 80) + " is not known here and is left out");
+                reportRepair(where + cleanText(key, 80) + " is not known here and is left out");
                 continue;
             }
             Value value;
             std::string repair, error;
             if (!valueOf(given, *info, value, error) ||
                 !setField(scene, kind, id, key, value, repair, error))
-                tell(where + error + "; it is as in a new " + kindKey(kind));
+                reportRepair(where + error + "; it keeps the default of a new " + kindKey(kind));
             else if (!repair.empty())
-                tell(where + repair);
+                reportRepair(where + repair);
         }
     }
 
@@ -281,29 +285,30 @@ class SceneReader {
         return false;
     }
 
-    // Gives objects the ids of the file; those that are taken or none get fresh ones.
-    void mendIds(Scene& scene, const json& root) {
+    // Assigns the file's ids. Objects with duplicate or missing ids get new ones.
+    void repairIds(Scene& scene, const json& root) {
         std::vector<ObjectId> used;
         ObjectId highest = 0;
-        for (const Given& given : ids_) highest = std::max(highest, given.wished);
-        for (Given& given : ids_) used.push_back(given.wished);
+        for (const Given& given : ids_) highest = std::max(highest, given.id);
+        for (Given& given : ids_) used.push_back(given.id);
         std::sort(used.begin(), used.end());
         std::vector<ObjectId> seen;
         for (Given& given : ids_) {
-            const auto range = std::equal_range(used.begin(), used.end(), given.wished);
-            const bool shared = given.wished != 0 && range.second - range.first > 1;
+            const auto range = std::equal_range(used.begin(), used.end(), given.id);
+            const bool shared = given.id != 0 && range.second - range.first > 1;
             if (shared) {
-                // The first keeps it.
-                if (std::find(seen.begin(), seen.end(), given.wished) != seen.end()) {
-                    tell(given.where + ".id is " + std::to_string(given.wished) +
-                         ", which another object has; it is now " + std::to_string(highest + 1));
-                    given.wished = ++highest;
+                // The first object keeps it.
+                if (std::find(seen.begin(), seen.end(), given.id) != seen.end()) {
+                    reportRepair(given.where + ".id is " + std::to_string(given.id) +
+                                 ", which another object has; it is now " +
+                                 std::to_string(highest + 1));
+                    given.id = ++highest;
                 } else {
-                    seen.push_back(given.wished);
+                    seen.push_back(given.id);
                 }
             }
-            if (given.wished == 0) given.wished = ++highest;
-            if (Object* object = findObject(scene, given.place)) object->id = given.wished;
+            if (given.id == 0) given.id = ++highest;
+            if (Object* object = findObject(scene, given.place)) object->id = given.id;
         }
         scene.nextId = highest + 1;
         const auto next = root.find("next_id");
@@ -311,30 +316,30 @@ class SceneReader {
             next->get<int64_t>() < 4000000000)
             scene.nextId = static_cast<ObjectId>(next->get<int64_t>());
         else if (next != root.end())
-            tell("next_id is " + cleanText(next->dump(-1, ' ', true), 80) +
-                 "; it must be above every id; it is now " + std::to_string(scene.nextId));
+            reportRepair("next_id is " + cleanText(next->dump(-1, ' ', true), 80) +
+                         "; it must be above every id; it is now " + std::to_string(scene.nextId));
     }
 
-    // Directions of version 1 were the world's, whatever a thing stuck to.
-    static void turnIntoHolders(Scene& scene) {
+    // Version 1 stored world directions for attached objects.
+    static void convertDirectionsToLocal(Scene& scene) {
         forEachList(scene, [&](Kind, auto& list) {
             for (auto& object : list) {
                 if constexpr (requires { object.direction; }) {
                     const Vec3 position = object.position;
                     keepInWorld(scene, object.id, kWorldPose, holderPose(scene, object.id));
-                    object.position = position;  // that was its own already
+                    object.position = position;  // already local
                 }
             }
         });
     }
 
     struct Given {
-        ObjectId place, wished;
+        ObjectId place, id;
         std::string where;
     };
     std::string name_;
     std::vector<std::string>& repairs_;
-    size_t told_ = 0;
+    size_t repairCount_ = 0;
     std::vector<Given> ids_;
 };
 

@@ -6,7 +6,7 @@
 namespace fwedit {
 namespace {
 
-// Bytes of the UTF-8 character at the start of `text`, 0: it is none.
+// Returns the byte count of the UTF-8 character at the start of `text`; 0: invalid.
 size_t characterBytes(std::string_view text) {
     const auto byte = [&](size_t i) { return static_cast<unsigned char>(text[i]); };
     const unsigned char first = byte(0);
@@ -18,7 +18,7 @@ size_t characterBytes(std::string_view text) {
     if (bytes == 0 || bytes > text.size()) return 0;
     for (size_t i = 1; i < bytes; ++i)
         if ((byte(i) & 0xc0) != 0x80) return 0;
-    // Overlong forms, surrogates, beyond the last plane.
+    // Overlong forms, surrogates, values beyond the last plane.
     if ((first == 0xe0 && byte(1) < 0xa0) || (first == 0xed && byte(1) >= 0xa0) ||
         (first == 0xf0 && byte(1) < 0x90) || (first == 0xf4 && byte(1) >= 0x90))
         return 0;

@@ -8,7 +8,7 @@
 namespace fwedit {
 namespace {
 
-constexpr float kSmallestFlame = 0.02f;  // m across
+constexpr float kSmallestFlame = 0.02f;  // m, diameter
 
 void copy(float* to, const Vec3& from) { std::copy(from.begin(), from.end(), to); }
 
@@ -24,7 +24,7 @@ Vec3 unit(const Vec3& v, const Vec3& otherwise) {
     return {v[0] / length, v[1] / length, v[2] / length};
 }
 
-// A rotation in degrees, as transformOf takes it, without place and scale.
+// Returns a rotation in degrees, in the convention of transformOf, without position and scale.
 std::array<float, 16> turned(const Vec3& rotation) {
     Mesh mesh;
     mesh.rotation = rotation;
@@ -32,7 +32,7 @@ std::array<float, 16> turned(const Vec3& rotation) {
 }
 
 void quaternionOf(const std::array<float, 16>& m, float* q) {
-    // Largest part first, so that none is divided by nearly nothing.
+    // Take the largest component first, to avoid division by almost zero.
     const float trace[4] = {m[0] - m[5] - m[10], m[5] - m[0] - m[10], m[10] - m[0] - m[5],
                             m[0] + m[5] + m[10]};
     const auto i = static_cast<size_t>(std::max_element(trace, trace + 4) - trace);

@@ -1,4 +1,4 @@
-// FNV-1a over what a bake reads: the name under which its outcome is kept.
+// FNV-1a over the input of a bake; the cache key of its result.
 #pragma once
 
 #include <cstddef>

@@ -18,7 +18,7 @@ std::string lowered(std::string text) {
     return text;
 }
 
-// Its first line: some libraries tell of each row of pixels.
+// The first line only: some libraries report each row of pixels.
 std::string reasonOf(const std::string& text) {
     const std::string line = text.substr(0, text.find('\n'));
     return line.empty() ? "it cannot be read" : line;
@@ -71,7 +71,7 @@ bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::
         read.names.assign(spec.channelnames.begin(), spec.channelnames.end());
         read.names.resize(read.channels);
         read.values.resize(size_t(read.width) * read.height * read.channels);
-        // Some readers say what is missing and return true all the same.
+        // Some readers report a problem and still return true.
         if (!input->read_image(0, 0, 0, spec.nchannels, OIIO::TypeDesc::FLOAT,
                                read.values.data()) ||
             input->has_error())
@@ -85,7 +85,7 @@ bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::
 
 bool writePicture(const std::filesystem::path& path, const FloatPicture& picture,
                   std::string& error) {
-    // All of it or nothing: beside it first, under a name whose format is the same.
+    // Write to a temporary file with the same extension, then rename it.
     std::filesystem::path fresh = path;
     fresh.replace_filename(".new-" + path.filename().string());
     try {
@@ -95,7 +95,7 @@ bool writePicture(const std::filesystem::path& path, const FloatPicture& picture
                              picture.whole ? OIIO::TypeDesc::UINT16 : OIIO::TypeDesc::FLOAT);
         if (picture.names.size() == picture.channels)
             spec.channelnames.assign(picture.names.begin(), picture.names.end());
-        spec["oiio:UnassociatedAlpha"] = 1;  // as readPicture takes them: straight alpha
+        spec["oiio:UnassociatedAlpha"] = 1;  // straight alpha, as readPicture expects
         const bool good = output->open(fresh.string(), spec) &&
                           output->write_image(OIIO::TypeDesc::FLOAT, picture.values.data());
         const std::string why = good ? std::string() : reasonOf(output->geterror());

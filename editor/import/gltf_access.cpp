@@ -49,7 +49,7 @@ uint64_t sizeOf(const Field& field, const char* name, int64_t otherwise) {
     return static_cast<uint64_t>(value);
 }
 
-// `count` elements of `element` bytes from `offset`, proved to lie within the view.
+// Returns `count` elements of `element` bytes from `offset`, validated against the view.
 Bytes rangeBytes(const Bytes& view, uint64_t offset, uint64_t count, uint64_t element,
                  const std::string& who) {
     const uint64_t stride = view.stride ? view.stride : element;
@@ -147,7 +147,7 @@ GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder,
     if (!json_.is_object()) refuse("it is not glTF: its JSON is no object");
     if (repaired) notes_.add("the JSON is not all UTF-8: bytes of names are read as ?");
     const Field asset = root().object("asset");
-    // Some writers make it a number.
+    // Some writers store it as a number.
     const bool number = asset.present() && json_["asset"].contains("version") &&
                         json_["asset"]["version"].is_number();
     const std::string version =
@@ -160,7 +160,7 @@ GltfFile::GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder,
     if (least != "2.0") refuse("asset.minVersion is \"", least.substr(0, 40), "\"; 2.0 is read");
 }
 
-// Header and chunks. Chunks of other kinds than JSON and BIN are skipped, as the standard asks.
+// Header and chunks. Unknown chunk types are skipped, as the standard requires.
 void GltfFile::readContainer(std::span<const uint8_t> bytes) {
     if (bytes.size() < 20) {
         refuse("the GLB is ", bytes.size(), " bytes; its header and first chunk need 20");
@@ -178,7 +178,7 @@ void GltfFile::readContainer(std::span<const uint8_t> bytes) {
     }
     constexpr uint32_t kBinary = 0x004e4942u;
     for (uint64_t next = 20 + jsonSize; next + 8 <= length;) {
-        // A length is a multiple of four. Some writers pad and do not count it, some do not pad.
+        // Lengths are multiples of four. Some writers pad without counting, some do not pad.
         if (next % 4 != 0 && little32(&bytes[next + 4]) != kBinary) next = (next + 3) / 4 * 4;
         if (next + 8 > length) break;
         const uint64_t size = little32(&bytes[next]);
@@ -248,7 +248,7 @@ Bytes GltfFile::view(int64_t index, const std::string& who) {
     for (const char* name : {"KHR_meshopt_compression", "EXT_meshopt_compression"})
         if (!packed.present()) packed = view.extension(name);
     if (packed.present()) {
-        // A buffer that stands in for readers without the codec may hold the plain bytes.
+        // A fallback buffer for readers without the codec may contain the plain bytes.
         const int plain = view.index("buffer", count("buffers"));
         const bool usable = plain >= 0 &&
                             (item("buffers", plain).has("uri") || (plain == 0 && hasBinary_)) &&
@@ -300,10 +300,10 @@ Values GltfFile::accessor(int64_t index, const std::string& who) {
     if (values.count > 4 * kMaxVertices) {
         refuse(name, ".count is ", values.count, "; the limit is ", 4 * kMaxVertices);
     }
-    // One file may name the same numbers many times over.
+    // A file may reference the same numbers many times.
     constexpr uint64_t kMostRead = 1ull << 31;
     if ((valuesRead_ += values.count * values.components) > kMostRead)
-        refuse(name, " brings what is read to ", valuesRead_, " numbers; the limit is ", kMostRead);
+        refuse(name, " raises the total to ", valuesRead_, " numbers; the limit is ", kMostRead);
     const uint64_t element = size * values.components;
     const bool normalized = accessor.flag("normalized", false);
     const Field sparse = accessor.object("sparse");

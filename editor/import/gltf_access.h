@@ -1,6 +1,5 @@
-// The raw side of a glTF file: its container, buffers, views, and the numbers behind an accessor.
-// No offset, count or index of it is used before it has been compared with what there is. Buffers
-// are read when something needs them. Knows nothing of meshes.
+// The raw layer of a glTF file: container, buffers, views, accessor values. Every offset, count and
+// index is validated before use. Buffers load on demand. No knowledge of meshes.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +14,12 @@
 
 namespace fwimport {
 
-// Lines for the user, each once, at most so many; and things that are left out, counted.
+// User messages, each once and limited in number, and counted skipped features.
 class Notes {
  public:
     explicit Notes(std::vector<std::string>& lines) : lines_(lines) {}
     void add(const std::string& line);
-    // "normalTexture is left out (materials[0] and 4 more)", once finish() is called.
+    // finish() turns it into "normalTexture is left out (materials[0] and 4 more)".
     void leaveOut(const std::string& what, const std::string& where,
                   const std::string& how = "is left out");
     void finish();
@@ -38,13 +37,13 @@ class Notes {
 struct Bytes {
     const uint8_t* data = nullptr;
     uint64_t size = 0;
-    uint64_t stride = 0;  // as the view says; 0: packed
+    uint64_t stride = 0;  // from the view; 0: packed
     std::span<const uint8_t> span() const { return {data, static_cast<size_t>(size)}; }
 };
 
 class GltfFile {
  public:
-    // Throws Refusal, as all of it does. `bytes` must outlive it.
+    // Throws Refusal, as do all members. `bytes` must outlive this object.
     GltfFile(std::span<const uint8_t> bytes, std::filesystem::path folder, Notes& notes);
 
     [[nodiscard]] const nlohmann::json& json() const { return json_; }
@@ -53,17 +52,17 @@ class GltfFile {
     [[nodiscard]] Field item(const char* name, int64_t index) const;
     [[nodiscard]] size_t count(const char* name) const { return root().list(name).size(); }
 
-    // A buffer view's bytes, proved to lie within its buffer; uncompressed if need be.
-    // `index` is what the file says, in range or not.
+    // Returns a buffer view's bytes, validated and decompressed. `index`: as in the file, possibly
+    // out of range.
     Bytes view(int64_t index, const std::string& who);
-    // Reads an accessor whole, sparse substitution included. `who` is the attribute, for messages.
-    // `index` is what the file says, in range or not.
+    // Reads a whole accessor with sparse substitution. `who`: the attribute, for messages. `index`:
+    // as in the file, possibly out of range.
     Values accessor(int64_t index, const std::string& who);
-    // True: it has values that are not all zero by definition.
+    // Returns true if it has values that are not all zero by definition.
     [[nodiscard]] bool accessorHasData(int index) const;
-    // True: it is there and its count is 0, which the standard forbids.
+    // Returns true if its count is 0, which the standard forbids.
     [[nodiscard]] bool isEmpty(int64_t index) const;
-    // With a note if it lies outside the folder.
+    // Adds a note if it lies outside the folder.
     std::vector<uint8_t> uri(const std::string& uri, const std::string& field);
 
  private:
@@ -74,10 +73,10 @@ class GltfFile {
     std::filesystem::path folder_;
     Notes& notes_;
     nlohmann::json json_;
-    std::span<const uint8_t> binary_;  // the GLB's
+    std::span<const uint8_t> binary_;  // of a GLB
     bool hasBinary_ = false;
     uint64_t valuesRead_ = 0;
-    std::map<int64_t, std::vector<uint8_t>> buffers_, unpacked_;  // of URIs; of compressed views
+    std::map<int64_t, std::vector<uint8_t>> buffers_, unpacked_;  // by URI; of compressed views
 };
 
 }  // namespace fwimport

@@ -20,12 +20,12 @@
 namespace fwimport {
 namespace {
 
-// A primitive in its own space, as triangles.
+// A primitive in its local space, as triangles.
 struct Shape {
     std::string name;  // "meshes[0].primitives[1]"
     uint32_t material = 0;
     uint64_t vertices = 0;
-    std::vector<double> positions, normals;  // 3 per vertex; no normals: empty
+    std::vector<double> positions, normals;  // 3 per vertex; normals may be empty
     std::vector<float> uvs;                  // 2 per vertex, or empty
     std::vector<uint32_t> colors;            // RGBA8 per vertex, or empty
     std::vector<uint32_t> joints;            // `influences` per vertex, into the skin's joints
@@ -117,7 +117,7 @@ class Importer {
         return glm::length(q) > 1e-9 ? glm::mat4_cast(glm::normalize(q)) : glm::dmat4(1.0);
     }
 
-    // Finds where every node stands. Joints may stand outside the scene: they have a pose, too.
+    // Computes the world pose of every node. Joints outside the scene have a pose too.
     void placeNodes() {
         const Field nodes = file_.root().list("nodes");
         std::vector<std::vector<int>> children(nodes.size());
@@ -136,7 +136,7 @@ class Importer {
                 const auto [index, parent] = open.back();
                 open.pop_back();
                 const auto at = static_cast<size_t>(index);
-                // A node may stand in one place only; a second visit is a cycle or a shared child.
+                // A node has one parent. A second visit is a cycle or a shared child.
                 if (visited[at])
                     refuse("nodes[", index, "] has more than one parent, or is its own ancestor");
                 visited[at] = true;
@@ -158,8 +158,8 @@ class Importer {
             }
         };
         std::vector<int> tops = roots(children);
-        std::ranges::stable_partition(
-            tops, [&](int top) { return !hasParent[static_cast<size_t>(top)]; });
+        std::stable_partition(tops.begin(), tops.end(),
+                              [&](int top) { return !hasParent[static_cast<size_t>(top)]; });
         for (const int top : tops) {
             const auto at = static_cast<size_t>(top);
             if (visited[at])
@@ -175,15 +175,15 @@ class Importer {
 
     glm::dmat4 poseOf(size_t node) const { return glm::make_mat4(model_.nodes[node].pose.data()); }
 
-    // Of all nodes that are in the scene, or of one and what is below it.
+    // Takes the meshes of all scene nodes, or of one subtree.
     void takeMeshes(std::string_view part) {
         std::string problem;
         const int32_t top = part.empty() ? -1 : findNode(model_.nodes, part, problem);
         if (!part.empty() && top < 0) refuse(problem);
         const Field nodes = file_.root().list("nodes");
         const size_t meshes = file_.count("meshes");
-        std::map<int, size_t> users;                       // of each mesh, nodes of the scene
-        const bool oneScene = file_.count("scenes") == 1;  // of several, a note says so
+        std::map<int, size_t> users;                       // scene nodes of each mesh
+        const bool oneScene = file_.count("scenes") == 1;  // only then a note is useful
         for (size_t i = 0; i < nodes.size(); ++i) {
             const Field node = nodes.at(i);
             if (!node.has("mesh")) continue;
@@ -196,7 +196,7 @@ class Importer {
             if (!users.contains(static_cast<int>(i)))
                 notes_.leaveOut("mesh", text("meshes[", i, "]"), "is left out: no node shows it");
         std::vector<bool> taken(model_.nodes.size(), top < 0);
-        for (const size_t index : order_) {  // parents come before their children
+        for (const size_t index : order_) {  // parents precede their children
             const int32_t parent = model_.nodes[index].parent;
             if (static_cast<int32_t>(index) == top ||
                 (parent >= 0 && taken[static_cast<size_t>(parent)]))
@@ -291,7 +291,7 @@ class Importer {
         return result;
     }
 
-    // By joint: from the shape's space to the model's, in the pose in which the nodes stand.
+    // Returns per joint the transform from the shape's space to the model's, in the rest pose.
     std::vector<glm::dmat4> skinOf(int index, const Shape& shape) {
         const Field skin = file_.item("skins", index);
         const Field joints = skin.list("joints");
@@ -322,11 +322,11 @@ class Importer {
         return result;
     }
 
-    // The attributes of a primitive, from its Draco data or its accessors.
+    // Attributes of a primitive, from Draco data or accessors.
     struct Attributes {
         Field primitive, names;
         std::map<std::string, Values> unpacked;
-        std::vector<uint32_t> corners;  // of Draco
+        std::vector<uint32_t> corners;  // Draco only
         bool draco = false;
     };
 
@@ -357,8 +357,8 @@ class Importer {
         return result;
     }
 
-    // An attribute with the primitive's morph targets applied; empty: it has none. One of another
-    // length than the positions cannot be matched to them.
+    // Returns an attribute with the primitive's morph targets applied; empty: missing. A length
+    // that differs from POSITION is an error.
     Values readAttribute(const Attributes& from, const std::string& key, uint64_t least,
                          uint64_t most, uint64_t count, const std::vector<double>& weights) {
         const std::string name = from.primitive.path() + "." + key;
@@ -438,12 +438,12 @@ class Importer {
         return shape;
     }
 
-    // A picture cuts out by its own alpha alone: the alpha of vertices counts by whole triangles.
+    // Images cut out by their own alpha only, so vertex alpha drops whole triangles.
     void dropCutOutTriangles(Shape& shape) {
         const ImportedMaterial& material = model_.materials[shape.material];
         if (material.alphaMode != AlphaMode::Mask || shape.corners.empty()) return;
         std::vector<uint32_t> kept;
-        uint32_t least = 255;  // of what is kept
+        uint32_t least = 255;  // of the kept triangles
         for (size_t i = 0; i < shape.corners.size(); i += 3) {
             uint32_t low = 255, high = shape.colors.empty() ? 255 : 0;
             for (size_t k = i; k < i + 3 && !shape.colors.empty(); ++k) {
@@ -465,7 +465,7 @@ class Importer {
                             "is left out, but for triangles that are below the alphaCutoff");
     }
 
-    // Primitives may share one list of vertices, of which each uses a part.
+    // Several primitives may share a vertex list and use parts of it.
     static void dropUnusedVertices(Shape& shape) {
         constexpr uint32_t kUnused = UINT32_MAX;
         std::vector<uint32_t> places(shape.vertices, kUnused);
@@ -540,7 +540,7 @@ class Importer {
                     const double weight = weights[set].data[i * 4 + c];
                     const double joint = joints[set].data[i * 4 + c];
                     const bool used = std::isfinite(weight) && weight > 0;
-                    // A joint of no weight may be any number.
+                    // A joint with zero weight may have any index.
                     shape.joints.push_back(
                         used && joint >= 0 && joint < 65536 ? static_cast<uint32_t>(joint) : 0);
                     shape.weights.push_back(used ? weight : 0);
@@ -558,7 +558,7 @@ class Importer {
         for (const std::string& name : from.names.names()) {
             if (name == "POSITION" || name == "NORMAL" || name == "COLOR_0" || name == uv) continue;
             if (name.starts_with("JOINTS_") || name.starts_with("WEIGHTS_")) continue;
-            // Coordinates of no picture are nothing that could be seen.
+            // Skip texture coordinates without an image.
             if (name.starts_with("TEXCOORD_") && !pictured) continue;
             notes_.leaveOut("attribute " + name, shape.name);
         }
@@ -617,7 +617,7 @@ class Importer {
                 corner[2] >= shape.vertices)
                 refuse(shape.name, ": a triangle names a vertex beyond the ", shape.vertices,
                        " that there are");
-            // Strips turn corners with triangles that have no area.
+            // Strips use degenerate triangles to turn corners.
             if (corner[0] == corner[1] || corner[1] == corner[2] || corner[2] == corner[0]) {
                 repeatedCorners_ += strip ? 0 : 1;
                 continue;
@@ -626,7 +626,7 @@ class Importer {
         }
     }
 
-    // True: it squeezes everything onto a line or a point.
+    // Returns true if the transform collapses everything onto a line or a point.
     static bool isFlattened(const glm::dmat3& linear) {
         double most = 0, area = 0;
         for (int c = 0; c < 3; ++c) {
@@ -641,7 +641,7 @@ class Importer {
                                                           : glm::dmat3(1.0);
     }
 
-    // `skin` by joint; empty: all of it stands at `place`.
+    // `skin`: by joint; empty: the whole shape is placed by `place`.
     void addShape(const Shape& shape, const std::vector<glm::dmat4>& skin,
                   const glm::dmat4& place) {
         if (skin.empty() && isFlattened(glm::dmat3(place))) {
@@ -710,7 +710,7 @@ class Importer {
         }
     }
 
-    // Vertices without a normal get one from their triangles, weighted by area.
+    // Vertices without a normal get the area-weighted mean of their triangles.
     void computeMissingNormals() {
         const auto at = [&](const std::vector<float>& values, size_t i) {
             return glm::dvec3(glm::make_vec3(&values[i * 3]));
@@ -757,7 +757,7 @@ class Importer {
     Notes& notes_;
     Materials materials_;
     std::vector<bool> hidden_;
-    std::vector<size_t> order_;  // of the scene's nodes: parents before their children
+    std::vector<size_t> order_;                       // scene nodes; parents precede their children
     std::map<std::pair<int, size_t>, Shape> shapes_;  // of meshes that several nodes use
     uint64_t repeatedCorners_ = 0, badNormals_ = 0, missingNormals_ = 0;
     bool anyNormal_ = false, everyUv_ = true, anyColor_ = false;

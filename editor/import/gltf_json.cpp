@@ -11,7 +11,7 @@ using nlohmann::json;
 
 constexpr int kDeepest = 64;
 
-// Parsing and freeing recurse over levels.
+// Parsing and destruction recurse per level.
 void checkNesting(std::span<const uint8_t> bytes) {
     int depth = 0;
     bool quoted = false;
@@ -30,7 +30,7 @@ void checkNesting(std::span<const uint8_t> bytes) {
     }
 }
 
-// Bytes of the character that begins at `at`; 0: it is no UTF-8.
+// Returns the byte count of the character at `at`; 0: invalid UTF-8.
 size_t utf8Length(std::span<const uint8_t> bytes, size_t at) {
     const uint8_t c = bytes[at];
     if (c < 0x80) return 1;
@@ -56,9 +56,9 @@ const char* kindOf(const json& value) {
     refuse(path, " is ", kindOf(value), "; it takes ", takes);
 }
 
-// Whole numbers may be written 3.0 and 3e0.
+// Integers may be written as 3.0 or 3e0.
 int64_t integerOf(const json& value, const std::string& path) {
-    constexpr double kMost = 9007199254740992.0;  // exact in a double below this
+    constexpr double kMost = 9007199254740992.0;  // doubles are exact below this
     if (value.is_number_integer()) {
         const auto number = value.get<double>();
         if (std::abs(number) > kMost) refuse(path, " is ", number, "; 2^53 is the most");
@@ -78,17 +78,17 @@ json parseJson(std::span<const uint8_t> bytes, bool& repaired) {
     // Some writers pad a GLB's JSON with zeros.
     while (!bytes.empty() && bytes.back() == 0) bytes = bytes.first(bytes.size() - 1);
     checkNesting(bytes);
-    std::vector<uint8_t> mended;
+    std::vector<uint8_t> cleaned;
     for (size_t at = 0; at < bytes.size();) {
         const size_t length = utf8Length(bytes, at);
         if (length == 0) {
-            if (mended.empty()) mended.assign(bytes.begin(), bytes.end());
-            mended[at] = '?';
+            if (cleaned.empty()) cleaned.assign(bytes.begin(), bytes.end());
+            cleaned[at] = '?';
         }
         at += std::max<size_t>(length, 1);
     }
-    repaired = !mended.empty();
-    if (repaired) bytes = mended;
+    repaired = !cleaned.empty();
+    if (repaired) bytes = cleaned;
     try {
         return json::parse(bytes.begin(), bytes.end());
     } catch (const json::parse_error& failure) {
@@ -194,7 +194,7 @@ int Field::index(const char* name, size_t count) const {
     const json* value = find(name);
     if (!value) return -1;
     const int64_t number = integerOf(*value, pathOf(name));
-    if (number == -1) return -1;  // as some writers say "none"
+    if (number == -1) return -1;  // some writers encode "none" like this
     if (number < 0 || static_cast<uint64_t>(number) >= count)
         refuse(pathOf(name), " is ", number, "; there are ", count);
     return static_cast<int>(number);

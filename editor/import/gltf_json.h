@@ -1,5 +1,5 @@
-// The JSON of a glTF file, field by field: each is read with the type that glTF gives it, and a
-// refusal names the field, its value and what it takes. Knows nothing of meshes.
+// Typed access to a glTF file's JSON, field by field. Errors name the field, its value and the
+// allowed values. No knowledge of meshes.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,7 @@
 
 namespace fwimport {
 
-// Why a file is not read, for the user: names the thing, its value and the limit.
+// The reason why a file is rejected, for the user: item, value and limit.
 struct Refusal : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -29,11 +29,11 @@ template <typename... Parts>
     throw Refusal(text(parts...));
 }
 
-// Parses; refuses broken syntax by its place, and deep nesting. `repaired`: it held bytes that are
-// no UTF-8, which became question marks.
+// Parses JSON. Rejects syntax errors with their position, and deep nesting. `repaired`: invalid
+// UTF-8 bytes became question marks.
 nlohmann::json parseJson(std::span<const uint8_t> bytes, bool& repaired);
 
-// A value in the JSON and its path, "nodes[3].translation"; or the absence of one.
+// A JSON value with its path, such as "nodes[3].translation"; or a missing one.
 class Field {
  public:
     Field() = default;
@@ -41,9 +41,9 @@ class Field {
 
     [[nodiscard]] bool present() const { return value_ != nullptr; }
     [[nodiscard]] const std::string& path() const { return path_; }
-    // 0 for an absent list or object.
+    // 0 for a missing list or object.
     [[nodiscard]] size_t size() const { return value_ ? value_->size() : 0; }
-    // The names of an object's members.
+    // Returns the member names of an object.
     [[nodiscard]] std::vector<std::string> names() const;
 
     [[nodiscard]] Field object(const char* name) const;
@@ -57,9 +57,9 @@ class Field {
     [[nodiscard]] double number(const char* name, double otherwise) const;
     [[nodiscard]] bool flag(const char* name, bool otherwise) const;
     [[nodiscard]] std::string string(const char* name, const char* otherwise = "") const;
-    // Empty where absent; `count` 0: any number of them.
+    // Empty if missing. `count` 0: any length.
     [[nodiscard]] std::vector<double> numbers(const char* name, size_t count) const;
-    // Into a list of `count`, refused beyond it. -1: absent.
+    // Returns an index below `count`, or -1 if missing. Larger values are an error.
     [[nodiscard]] int index(const char* name, size_t count) const;
     [[nodiscard]] int64_t asInteger() const;
     [[nodiscard]] std::string asString() const;

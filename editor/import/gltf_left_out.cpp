@@ -14,7 +14,7 @@ bool among(const char* const (&names)[N], std::string_view name) {
     return std::find(std::begin(names), std::end(names), name) != std::end(names);
 }
 
-// Read, or as good as read.
+// Supported, or safe to ignore.
 constexpr const char* kRead[] = {
     "KHR_texture_transform",      "KHR_mesh_quantization",
     "KHR_draco_mesh_compression", "EXT_meshopt_compression",
@@ -22,7 +22,7 @@ constexpr const char* kRead[] = {
     "KHR_node_visibility",        "EXT_texture_webp",
     "MSFT_texture_dds",           "KHR_materials_pbrSpecularGlossiness"};
 
-// On primitives and meshes, without any say in their shape.
+// On primitives and meshes, without effect on the shape.
 constexpr const char* kHarmless[] = {
     "KHR_materials_variants", "EXT_mesh_features",     "EXT_structural_metadata",
     "EXT_feature_metadata",   "EXT_instance_features", "CESIUM_primitive_outline",
@@ -33,7 +33,7 @@ struct Found {
     std::string name, where;
 };
 
-// Every member of every "extensions" object, with the path of what has it.
+// Collects every member of every "extensions" object, with its owner's path.
 void collect(const json& value, const std::string& path, std::vector<Found>& found) {
     if (value.is_array()) {
         for (size_t i = 0; i < value.size(); ++i)
@@ -58,7 +58,7 @@ std::vector<std::string> requiredOf(const GltfFile& file) {
     return result;
 }
 
-// True: it is where the numbers of shapes are.
+// Returns true if the path contains shape data.
 bool holdsShape(const std::string& path) {
     return path.starts_with("buffers[") || path.starts_with("bufferViews[") ||
            path.starts_with("accessors[") || path.starts_with("meshes[");

@@ -5,11 +5,11 @@
 
 namespace fwimport {
 
-// Refuses a file whose shapes cannot be read without an extension that is not read. An
-// extension that changes only the look of a surface, or other parts of a scene, is no reason.
+// Rejects a file whose shapes require an unsupported extension. Extensions that only affect
+// appearance or other parts of the scene are accepted.
 void checkRequired(const GltfFile& file);
 
-// Notes every extension that is in the file and is not read, and whole kinds of things.
+// Adds notes about unsupported extensions and whole unsupported categories.
 void noteLeftOut(const GltfFile& file, Notes& notes);
 
 }  // namespace fwimport

@@ -7,7 +7,7 @@
 namespace fwimport {
 namespace {
 
-constexpr const char* kOwnShine = "is left out: surfaces shine as what they burn as does";
+constexpr const char* kOwnShine = "is left out: the burn material defines the gloss";
 
 double unit(double value, double otherwise) {
     return std::isfinite(value) ? std::clamp(value, 0.0, 1.0) : otherwise;
@@ -19,21 +19,21 @@ void readColor(const std::vector<double>& from, std::array<float, 4>& to) {
 
 double brightness(const glm::dvec3& c) { return 0.299 * c.x + 0.587 * c.y + 0.114 * c.z; }
 
-// How far a specular-glossiness surface is a metal, which is black in diffuse light and has its
-// colour in the reflection. [0, 1]
+// Returns how metallic a specular-glossiness surface is, [0, 1]. Metals are black in diffuse light
+// and have coloured reflections.
 double metalShare(const glm::dvec3& diffuse, const glm::dvec3& specular) {
     const double dark = std::clamp(1 - 10 * brightness(diffuse), 0.0, 1.0);
     return dark * std::clamp((brightness(specular) - 0.04) / 0.06, 0.0, 1.0);
 }
 
-// True: some of it is more see-through than not, and some is not.
+// Returns true if the image has both transparent and opaque parts.
 bool hasHoles(const DecodedImage& image) {
     bool hole = false, solid = false;
     for (size_t i = 3; i < image.rgba.size(); i += 4) (image.rgba[i] < 128 ? hole : solid) = true;
     return hole && solid;
 }
 
-// The picture of diffuse colours with those of metals put in, where both pictures are dark there.
+// Adds metal colours to the diffuse image where it is dark.
 void addMetal(DecodedImage& diffuse, const std::array<float, 4>& factor,
               const DecodedImage& specular, const glm::dvec3& specularFactor) {
     std::array<double, 256> linear;
@@ -109,7 +109,7 @@ void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& mate
     const std::vector<double> factor = glossy.numbers("specularFactor", 3);
     readColor(factor, specular);
     const Field map = glossy.object("specularGlossinessTexture");
-    // A file that says nothing of the reflection has no metal in mind.
+    // A file without specular values has no metal.
     if (factor.empty() && !map.present()) return;
     const glm::dvec3 metal(specular[0], specular[1], specular[2]);
     if (material.image < 0) {
@@ -142,19 +142,19 @@ void Materials::readSpecularGlossiness(const Field& from, ImportedMaterial& mate
     model_.images.push_back(std::move(mixed));
 }
 
-// Alpha that a Mask cannot show becomes the nearest thing that it can, with a note.
+// Approximates alpha that a Mask cannot represent, with a note.
 void Materials::readAlpha(const Field& from, ImportedMaterial& material) {
     const std::string mode = from.string("alphaMode", "OPAQUE");
     if (mode == "MASK") {
         material.alphaMode = AlphaMode::Mask;
-        // Beyond 1 nothing is there.
+        // Above 1, everything is cut out.
         material.alphaCutoff =
             static_cast<float>(std::clamp(from.number("alphaCutoff", 0.5), 0.0, 2.0));
     } else if (mode == "BLEND") {
         const bool holes =
             material.image >= 0 && hasHoles(model_.images[static_cast<size_t>(material.image)]);
         if (holes) material.alphaMode = AlphaMode::Mask;
-        // The holes are those of the picture, however clear the whole is.
+        // Uses the holes of the image, independent of the overall alpha.
         material.alphaCutoff = 0.5f * std::max(material.baseColor[3], 1e-3f);
         notes_.leaveOut("alphaMode BLEND", from.path(),
                         holes ? "is shown as a cut-out at alpha 0.5" : "is shown opaque");
@@ -237,7 +237,7 @@ int32_t Materials::textureImage(const Field& info, TextureUse& use) {
     const Field texture = file_.item("textures", index);
     readSampler(texture, use);
     const size_t images = file_.count("images");
-    std::vector<int> candidates;  // the first that can be decoded is shown
+    std::vector<int> candidates;  // use the first one that decodes
     for (const char* name : {"EXT_texture_webp", "MSFT_texture_dds"})
         candidates.push_back(texture.extension(name).index("source", images));
     candidates.push_back(texture.index("source", images));
@@ -305,7 +305,7 @@ bool Materials::decode(int index, DecodedImage& decoded, std::string& error) {
 }
 
 void Materials::unwrapPictures() {
-    // One axis of a picture: `from` to `from + length` of its texels are laid out.
+    // One axis of an image: texels `from` to `from + length` are laid out.
     struct Axis {
         int64_t wrap = kRepeat, from = 0, length = 0;
     };
@@ -347,7 +347,7 @@ void Materials::unwrapPictures() {
             if (axis.wrap == kMirror) {
                 axis.length = 2 * texels;
             } else {
-                // One texel more on both sides for those that are mixed at the edge.
+                // Add one texel on both sides for filtering.
                 const auto size = double(texels);
                 axis.from = std::min<int64_t>(0, int64_t(std::floor(low * size)) - 1);
                 axis.length =
@@ -357,7 +357,7 @@ void Materials::unwrapPictures() {
             layout.offset[c] = -double(axis.from) / double(axis.length);
         }
         if (!layout.changed) continue;
-        // A small picture, however far it reaches, stays in proportion.
+        // A small image stays within limits at any extent.
         constexpr uint64_t kMostBytes = 256ull << 20, kSmall = 4ull << 20;
         const uint64_t most = std::clamp(64 * uint64_t{image.rgba.size()}, kSmall, kMostBytes);
         const uint64_t bytes = 4 * static_cast<uint64_t>(axes[0].length * axes[1].length);

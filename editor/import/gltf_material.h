@@ -1,5 +1,5 @@
-// Materials of a glTF file as ours: base colours, their pictures and how those lie on the surface.
-// Other properties of a material go to the notes.
+// Converts glTF materials: base colours, their images and texture transforms. Unsupported
+// properties become notes.
 #pragma once
 
 #include <array>
@@ -14,10 +14,10 @@
 
 namespace fwimport {
 
-// glTF's numbers for what is beyond a picture's edge.
+// glTF's constants for wrap modes.
 constexpr int64_t kRepeat = 10497, kClamp = 33071, kMirror = 33648;
 
-// How a material's picture is laid on.
+// Texture transform and sampling of a material's image.
 struct TextureUse {
     int64_t texCoord = 0;
     glm::dvec2 offset{0}, scale{1};
@@ -34,14 +34,14 @@ class Materials {
     Materials(GltfFile& file, ImportedModel& model, Notes& notes)
         : file_(file), model_(model), notes_(notes) {}
 
-    // Into ImportedModel::materials, for one of the file's; -1: glTF's default. Decodes its picture
-    // the first time.
+    // Returns the index in ImportedModel::materials for a file material; -1: glTF's default.
+    // Decodes its image on first use.
     uint32_t indexOf(int material);
     [[nodiscard]] const TextureUse& use(uint32_t index) const { return uses_[index]; }
-    // All pictures repeat here. Pictures that the file clamps or mirrors beyond their edge are laid
-    // out as far as the surfaces reach, and the model's UVs with them.
+    // Makes all images tile. Clamped or mirrored images are extended as far as the UVs reach, and
+    // the UVs are adjusted.
     void unwrapPictures();
-    // Notes what is wrong with pictures that nothing above used.
+    // Adds notes about broken images that no material used.
     void noteUnusedImages();
 
  private:
@@ -51,11 +51,11 @@ class Materials {
     void noteChannels(const Field& from, bool glossy);
     void readTransform(const Field& info, TextureUse& use) const;
     void readSampler(const Field& texture, TextureUse& use);
-    // The picture of a texture reference, or -1 with a note: no reason to refuse a mesh.
+    // Returns the image of a texture reference, or -1 with a note. The mesh still loads without it.
     int32_t textureImage(const Field& info, TextureUse& use);
     int32_t imageIndex(int image, std::string& error);
     bool decode(int image, DecodedImage& decoded, std::string& error);
-    // False: all pictures together would be too large; `error` says so.
+    // Returns false with `error` if all images together would be too large.
     bool reserveBytes(uint64_t bytes, std::string& error);
 
     GltfFile& file_;
@@ -64,7 +64,7 @@ class Materials {
     std::map<int, uint32_t> materials_;
     std::map<int, int32_t> images_;
     std::map<int, std::string> imageErrors_;
-    std::set<int> reflections_;  // images that are read for the colour of metals alone
+    std::set<int> reflections_;  // images used only for metal colours
     std::vector<TextureUse> uses_;
     uint64_t pictureBytes_ = 0;
 };

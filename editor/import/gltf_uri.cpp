@@ -47,7 +47,7 @@ std::vector<uint8_t> decodeBase64(std::string_view words, const std::string& fie
     return bytes;
 }
 
-// Its length; 0: it has none. A single letter is a drive.
+// Returns the length of the scheme; 0: none. A single letter is a drive.
 size_t schemeLength(const std::string& uri) {
     for (size_t i = 0; i < uri.size(); ++i) {
         const auto c = static_cast<unsigned char>(uri[i]);
@@ -58,7 +58,7 @@ size_t schemeLength(const std::string& uri) {
     return 0;
 }
 
-// In any case of letters; `lower` has small ones.
+// Compares without case; `lower` is in lower case.
 bool isSame(std::string_view words, std::string_view lower) {
     return std::equal(words.begin(), words.end(), lower.begin(), lower.end(), [](char a, char b) {
         return std::tolower(static_cast<unsigned char>(a)) == b;
@@ -112,8 +112,8 @@ UriBytes readUri(const std::string& uri, const fs::path& folder, const std::stri
     if (isData(uri)) return {readData(uri, field), false};
     const std::string said = text(field, " \"", uri.substr(0, 80), "\"");
     if (uri.empty()) refuse(field, " is empty");
-    // The standard's reading comes first: what stands behind ? and # is no part of the path. Then
-    // the readings of writers that do not encode: those signs, % and \ in a name.
+    // First reading per the standard: ? and # end the path. Then the readings for writers that do
+    // not encode ?, #, % and \ in names.
     std::string decoded = decodePercent(uri);
     const std::string strict = decodePercent(uri.substr(0, uri.find_first_of("?#")));
     std::string turned = strict;

@@ -13,11 +13,12 @@ struct UriBytes {
     bool outside = false;  // the file lies outside the folder
 };
 
-// `field` is its name for messages: "images[0].uri". Throws Refusal: what it is, and what is read.
+// `field`: for messages, such as "images[0].uri". Throws Refusal with the problem and the supported
+// forms.
 UriBytes readUri(const std::string& uri, const std::filesystem::path& folder,
                  const std::string& field);
 
-// As glTF writes them: %41 is A; a percent sign without two digits stands for itself.
+// Percent-decodes: %41 is A. A percent sign without two digits stays.
 std::string decodePercent(const std::string& uri);
 
 }  // namespace fwimport

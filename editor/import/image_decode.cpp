@@ -12,7 +12,7 @@
 namespace fwimport {
 namespace {
 
-// The file name OpenImageIO should believe in; null for what is not a picture we take.
+// Returns the file name that selects OpenImageIO's reader; null: unsupported format.
 const char* nameFor(std::span<const uint8_t> bytes) {
     struct Signature {
         size_t at;
@@ -34,17 +34,17 @@ const char* nameFor(std::span<const uint8_t> bytes) {
     return nullptr;
 }
 
-// Numbers of light, as films have them, as bytes of a picture.
+// Encodes linear light as sRGB bytes.
 void encodeSrgb(std::span<const float> linear, size_t channels, std::span<uint8_t> bytes) {
     for (size_t i = 0; i < linear.size(); ++i) {
-        const float value = linear[i] > 0 ? std::min(linear[i], 1.0f) : 0.0f;  // not a number: 0
+        const float value = linear[i] > 0 ? std::min(linear[i], 1.0f) : 0.0f;  // NaN becomes 0
         const bool alpha = channels % 2 == 0 && i % channels == channels - 1;
         const double shown = alpha ? double(value) : toSrgb(double(value));
         bytes[i] = static_cast<uint8_t>(std::lround(255 * shown));
     }
 }
 
-// Straight alpha; `most` is a value's whole.
+// Converts to straight alpha; `most`: value of full scale.
 template <typename T>
 void divideByAlpha(std::span<T> values, size_t channels, float most) {
     for (size_t i = 0; i + channels <= values.size(); i += channels) {
@@ -78,11 +78,11 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
     }
     try {
         OIIO::Filesystem::IOMemReader memory(const_cast<uint8_t*>(bytes.data()), bytes.size());
-        // Colours as the file has them: by default they come multiplied by the alpha. The reader of
-        // DDS multiplies nothing, and takes no configuration together with memory.
+        // Disables premultiplication, which is the default. The DDS reader never multiplies, and
+        // cannot combine a configuration with memory input.
         OIIO::ImageSpec config;
         config.attribute("oiio:UnassociatedAlpha", 1);
-        // Together with a configuration the memory must come in it.
+        // With a configuration, the memory proxy must be part of it.
         OIIO::Filesystem::IOProxy* proxy = &memory;
         config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, static_cast<void*>(&proxy));
         const bool isDds = std::string_view(name).ends_with(".dds");
@@ -115,7 +115,7 @@ bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::strin
             error = "it cannot be decoded: " + input->geterror();
             return false;
         }
-        // EXR has its colours multiplied by alpha, TIFF may have.
+        // EXR stores premultiplied colours, TIFF may do so.
         const std::string_view kind = input->format_name();
         const bool multiplied =
             channels % 2 == 0 &&

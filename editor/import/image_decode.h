@@ -1,5 +1,5 @@
-// Decodes a picture in memory, by its first bytes: PNG, JPEG, EXR, TIFF, HDR, DDS, WebP.
-// Not a texture: eight bits per channel, RGBA, one level.
+// Decodes an image in memory by its magic bytes: PNG, JPEG, EXR, TIFF, HDR, DDS, WebP. Output:
+// RGBA8, one level.
 #pragma once
 
 #include <cstdint>
@@ -11,16 +11,16 @@ namespace fwimport {
 
 struct DecodedImage {
     uint32_t width = 0, height = 0;  // pixels, [1, 8192]
-    std::vector<uint8_t> rgba;       // as stored (sRGB for colour), rows top first
+    std::vector<uint8_t> rgba;       // as stored (sRGB for colour), rows from the top
 };
 
 constexpr uint32_t kMaxImageSide = 8192;  // pixels
 
-// The curve of sRGB, of values in [0, 1].
+// Inverse sRGB transfer function for values in [0, 1].
 double toLinear(double stored);
 double toSrgb(double linear);
 
-// False: `error` says why and `image` is untouched.
+// On failure returns false with `error`; `image` is then unchanged.
 bool decodeImage(std::span<const uint8_t> bytes, DecodedImage& image, std::string& error);
 
 }  // namespace fwimport

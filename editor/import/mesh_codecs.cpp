@@ -102,8 +102,8 @@ DracoMesh readDraco(std::span<const uint8_t>, const std::map<std::string, DracoA
 
 namespace {
 
-// KHR_meshopt_compression's filter COLOR, which the library lacks below version 0.23: luma and two
-// chroma differences, scaled by the alpha's highest bit.
+// The COLOR filter of KHR_meshopt_compression, which the library lacks before version 0.23: luma
+// and two chroma differences, scaled by the alpha's highest bit.
 template <typename Signed, typename Unsigned>
 void decodeColor(Unsigned* data, uint64_t count) {
     const auto most = static_cast<float>(static_cast<Unsigned>(~Unsigned{0}));
@@ -133,7 +133,7 @@ std::vector<uint8_t> readMeshopt(std::span<const uint8_t> bytes, const MeshoptVi
     if (attributes ? stride < 4 || stride > 256 || stride % 4 != 0 : stride != 2 && stride != 4)
         refuse(name, ".byteStride is ", stride, "; ", view.mode, " takes ",
                attributes ? "a multiple of 4 up to 256" : "2 or 4");
-    // The decoder reads whole blocks: no byte that it makes is worth less than 1/1000 of one.
+    // The decoder reads whole blocks. Compression is at most 1000:1.
     if (count * stride / 4096 > bytes.size() + 1)
         refuse(name, " makes ", count * stride, " bytes of ", bytes.size(), ", which is absurd");
     std::vector<uint8_t> out(count * stride);

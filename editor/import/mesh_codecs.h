@@ -1,4 +1,4 @@
-// Compressed geometry of glTF files: Draco and meshoptimizer, each where the build has its library.
+// Compressed geometry of glTF files: Draco and meshoptimizer, if the build has their libraries.
 #pragma once
 
 #include <array>
@@ -12,14 +12,14 @@ namespace fwimport {
 
 struct Values {
     uint64_t count = 0, components = 0;
-    std::vector<double> data;  // exact for every type that glTF has
+    std::vector<double> data;  // doubles represent every glTF type exactly
 };
 
-// False: the build has no such library; reading throws Refusal, which says how to convert.
+// False: the build lacks the library; reading throws Refusal with conversion advice.
 bool readsDraco();
 bool readsMeshopt();
 
-// Tells the user how to convert a file whose compressed geometry is not read.
+// Conversion advice for compressed geometry.
 constexpr const char* kConvertMesh =
     "; export the file again without mesh compression (Blender: Compression off; gltfpack: "
     "without -c)";
@@ -30,7 +30,7 @@ struct DracoMesh {
     std::map<std::string, Values> attributes;
 };
 struct DracoAttribute {
-    int64_t id = 0;  // unique in the data
+    int64_t id = 0;  // unique within the data
     bool normalized = false;
 };
 DracoMesh readDraco(std::span<const uint8_t> bytes,
@@ -38,7 +38,7 @@ DracoMesh readDraco(std::span<const uint8_t> bytes,
                     const std::string& name);
 
 struct MeshoptView {
-    uint64_t count = 0, stride = 0;  // elements, bytes of one
+    uint64_t count = 0, stride = 0;  // number of elements, bytes per element
     std::string mode, filter = "NONE";
 };
 std::vector<uint8_t> readMeshopt(std::span<const uint8_t> bytes, const MeshoptView& view,

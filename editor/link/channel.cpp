@@ -15,7 +15,7 @@
 namespace fwlink {
 namespace {
 
-constexpr size_t kMostAtOnce = 4u << 20;  // bytes that a frame takes in
+constexpr size_t kMostAtOnce = 4u << 20;  // bytes, limit per frame
 
 sockaddr_in loopback(uint16_t port) {
     sockaddr_in address{};
@@ -27,7 +27,7 @@ sockaddr_in loopback(uint16_t port) {
 
 std::string systemWords(const std::string& what) { return what + ": " + std::strerror(errno); }
 
-// From here on no call on it waits, and small messages go at once.
+// Makes all calls non-blocking and sends small messages at once.
 void makeQuick(int socket) {
     const int yes = 1;
     fcntl(socket, F_SETFL, fcntl(socket, F_GETFL) | O_NONBLOCK);
@@ -53,7 +53,7 @@ Channel& Channel::operator=(Channel&& other) noexcept {
 bool Channel::connect(uint16_t port, std::string& error) {
     *this = Channel(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
     const sockaddr_in address = loopback(port);
-    // Within the machine it is there at once or not at all.
+    // A local connection succeeds or fails immediately.
     if (socket_ < 0 ||
         ::connect(socket_, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) {
         error = systemWords("Nobody answers on port " + std::to_string(port));
@@ -73,7 +73,7 @@ void Channel::close() {
     problem_.clear();
 }
 
-// What came whole before can still be read.
+// Complete messages stay readable.
 void Channel::fail(std::string problem) {
     MessageReader kept = std::move(reader_);
     close();
@@ -86,7 +86,7 @@ void Channel::send(Kind kind, std::span<const uint8_t> body) {
 }
 
 void Channel::pump() {
-    while (open() && !drained()) {
+    while (open() && !isDrained()) {
         const ssize_t went =
             ::send(socket_, out_.data() + sent_, out_.size() - sent_, MSG_NOSIGNAL);
         if (went > 0) {
@@ -94,20 +94,20 @@ void Channel::pump() {
         } else if (triesAgain()) {
             break;
         } else {
-            return fail(systemWords("The other side is gone"));
+            return fail(systemWords("The peer has disconnected"));
         }
     }
-    if (drained()) {
+    if (isDrained()) {
         out_.clear();
         sent_ = 0;
     }
     std::array<uint8_t, 65536> room;
-    // Unread bytes stay in the socket, whose flow control then holds the other side back.
+    // Unread bytes stay in the socket, so TCP flow control throttles the peer.
     for (size_t taken = 0; open() && taken < kMostAtOnce && !reader_.full();) {
         const ssize_t came = ::recv(socket_, room.data(), room.size(), 0);
         if (came < 0 && triesAgain()) return;
-        if (came < 0) return fail(systemWords("The other side is gone"));
-        if (came == 0) return fail("The other side is gone");
+        if (came < 0) return fail(systemWords("The peer has disconnected"));
+        if (came == 0) return fail("The peer has disconnected");
         reader_.feed({room.data(), static_cast<size_t>(came)});
         taken += static_cast<size_t>(came);
         received_ += static_cast<size_t>(came);
@@ -130,7 +130,7 @@ bool Listener::listen(uint16_t port, std::string& error) {
         bind(socket_, reinterpret_cast<const sockaddr*>(&address), size) != 0 ||
         ::listen(socket_, 1) != 0 ||
         getsockname(socket_, reinterpret_cast<sockaddr*>(&address), &size) != 0) {
-        error = systemWords("Port " + std::to_string(port) + " cannot be listened on");
+        error = systemWords("Port " + std::to_string(port) + " is not available");
         return false;
     }
     makeQuick(socket_);

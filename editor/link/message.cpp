@@ -42,7 +42,7 @@ bool MessageReader::next(Message& message, std::string& error) {
     const auto version = head.number<uint16_t>(), kind = head.number<uint16_t>();
     const auto size = head.number<uint32_t>(), check = head.number<uint32_t>();
     if (mark != kMark)
-        error = "what came is no message of a live link";
+        error = "the data is not a message of a live link";
     else if (version != kVersion)
         error = "the other side speaks version " + std::to_string(version) + ", this one " +
                 std::to_string(kVersion);

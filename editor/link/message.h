@@ -1,7 +1,7 @@
-// What goes over a live link: whole messages, each with a head that says what and how much it is.
-// Little-endian. Whatever comes is checked before it is believed: a wrong mark, version, kind, size
-// or check ends the link, and a body is read within its bounds.
-//   head, 16 bytes: mark "FWLK", version u16, kind u16, size of the body u32, check of the body u32
+// Messages of a live link. Each has a header with type and size. Little-endian. All input is
+// validated: a wrong magic, version, kind, size or checksum ends the link, and bodies are read with
+// bounds checks.
+//   header, 16 bytes: magic "FWLK", version u16, kind u16, body size u32, body checksum u32
 #pragma once
 
 #include <cstdint>
@@ -13,15 +13,15 @@
 namespace fwlink {
 
 constexpr uint32_t kMark = 0x4b4c5746;     // "FWLK"
-constexpr uint16_t kVersion = 1;           // of heads and bodies; both sides have the same
+constexpr uint16_t kVersion = 1;           // of headers and bodies; both sides must match
 constexpr uint32_t kHeadSize = 16;         // bytes
 constexpr uint32_t kMostBody = 32u << 20;  // bytes; all tiles of a layer of 4096^2 are 16 MiB
 using Bytes = std::vector<uint8_t>;
 
 enum class Kind : uint16_t {
-    Paint,  // tiles of a layer's picture: editor to sample
-    Scene,  // what is open now, and that all before it belongs to it: editor to sample
-    Taken,  // a scene is shown: sample to editor
+    Paint,  // tiles of a layer image: editor to sample
+    Scene,  // the open scene, which uses all earlier messages: editor to sample
+    Taken,  // a scene is visible: sample to editor
     Count
 };
 struct Message {
@@ -29,25 +29,25 @@ struct Message {
     Bytes body;
 };
 
-// A whole message at the end of `out`. The body is at most kMostBody.
+// Appends a complete message to `out`. The body has at most kMostBody bytes.
 void appendMessage(Bytes& out, Kind kind, std::span<const uint8_t> body);
 
-// Cuts what comes, in whatever pieces, into messages.
+// Splits a byte stream into messages.
 class MessageReader {
  public:
     void feed(std::span<const uint8_t> bytes);
-    // False: none is whole yet, or `error` says why there will never be one again.
+    // Returns false if no message is complete. A non-empty `error` is permanent.
     bool next(Message& message, std::string& error);
-    // At least one message waits whole, whatever its size: nothing more need be fed.
+    // At least one message of any size is complete, so no more input is necessary.
     [[nodiscard]] bool full() const { return waiting_.size() - at_ >= kHeadSize + kMostBody; }
 
  private:
     Bytes waiting_;
-    size_t at_ = 0;  // of waiting_ that is read
+    size_t at_ = 0;  // read part of waiting_
     bool broken_ = false;
 };
 
-// ---- bodies, field by field
+// ---- message bodies, field by field
 class BodyWriter {
  public:
     template <typename T>
@@ -65,7 +65,7 @@ class BodyWriter {
     Bytes body;
 };
 
-// Beyond the end all reads give zero and `good` falls.
+// Reads beyond the end return zero and clear `good`.
 class BodyReader {
  public:
     explicit BodyReader(std::span<const uint8_t> body) : left_(body) {}
@@ -87,7 +87,7 @@ class BodyReader {
         left_ = left_.subspan(count);
         return taken;
     }
-    // All of it was read, and nothing beyond.
+    // The body was read exactly to its end.
     [[nodiscard]] bool whole() const { return good && left_.empty(); }
     bool good = true;
 

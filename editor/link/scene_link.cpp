@@ -13,7 +13,7 @@ namespace {
 constexpr uint32_t kMostSide = 4096;        // px, of a layer
 constexpr size_t kMostAnswer = 64u << 10;   // bytes
 constexpr size_t kMostUnsent = 1u << 20;    // bytes of answers
-constexpr uint32_t kMostScenesAtOnce = 16;  // that a frame reads of one caller
+constexpr uint32_t kMostScenesAtOnce = 16;  // limit per caller and frame
 constexpr size_t kTileSize = std::tuple_size_v<fwedit::PaintImage::Tile>;
 
 uint32_t tilesOf(uint32_t side) {
@@ -25,7 +25,7 @@ bool sameTile(const std::shared_ptr<const fwedit::PaintImage::Tile>& a,
     return a == b || (a && b && *a == *b);
 }
 
-// The tiles of a layer that the other side has not; it has `before`, or nothing of that size.
+// Encodes the tiles that the peer lacks. The peer has `before`, or nothing of that size.
 Bytes paintBody(fwedit::ObjectId layer, const fwedit::PaintImage& image,
                 const fwedit::PaintImage* before) {
     const bool fits = before && before->width == image.width && before->height == image.height &&
@@ -79,7 +79,7 @@ void SceneSender::follow(const fwedit::Document& document) {
         shown_ = number;
         answer_ = answer;
     }
-    if (!connected() || !channel_.drained() || document.revision == followed_) return;
+    if (!connected() || !channel_.isDrained() || document.revision == followed_) return;
     followed_ = document.revision;
     for (const auto& [layer, image] : document.images) {
         const auto before = images_.find(layer);
@@ -135,10 +135,10 @@ bool SceneReader::takePaint(BodyReader& body, std::string& error) {
                 " layers; a scene has no more objects than that";
         return false;
     }
-    // The whole body is read before any of it counts.
+    // Decode the whole body before applying any of it.
     const uint32_t most = tilesOf(head.width) * tilesOf(head.height);
     std::vector<std::pair<uint32_t, std::span<const uint8_t>>> sent;
-    size_t made = 0;  // tiles
+    size_t made = 0;  // new tiles
     for (uint32_t i = 0; i < count && body.good; ++i) {
         const auto at = body.number<uint32_t>();
         const auto there = body.number<uint8_t>();
@@ -184,13 +184,13 @@ bool SceneReader::takeScene(BodyReader& body, std::string& error) {
         error = "a scene that ends before its text does, or after it";
         return false;
     }
-    std::vector<std::string> ignored;  // the editor's own scenes need none
+    std::vector<std::string> ignored;  // the editor's own scenes need no repairs
     if (!fwedit::readScene(text, "The scene of the link", made.scene, ignored, error)) return false;
     std::erase_if(
         paint_, [&](const auto& paint) { return !fwedit::findIn(made.scene.layers, paint.first); });
     tiles_ = 0;
     for (const auto& [layer, paint] : paint_) {
-        // A table of 4096 x 4096 px takes 64 KiB: without a tile a layer is as good as unpainted.
+        // A table of 4096 x 4096 px takes 64 KiB, so a layer without tiles gets none.
         if (paint.tiles.empty()) continue;
         fwedit::PaintImage& image = made.images[layer];
         image.width = paint.width;
@@ -208,7 +208,7 @@ void SceneReceiver::acceptCallers() {
     for (size_t i = 0; i < kMostCallers; ++i) {
         Channel channel = listener_.accept();
         if (!channel.open()) break;
-        // With no place left, the caller that has sent least goes.
+        // If all places are taken, drop the caller that sent least.
         if (callers_.size() == kMostCallers)
             callers_.erase(std::ranges::min_element(
                 callers_, {}, [](const Caller& caller) { return caller.channel.received(); }));
@@ -219,7 +219,7 @@ void SceneReceiver::acceptCallers() {
 bool SceneReceiver::readCaller(Caller& caller, std::string& report) {
     caller.channel.pump();
     bool whole = false;
-    uint32_t scenes = 0;  // more than a few a frame are left for the next
+    uint32_t scenes = 0;  // limit per frame; the rest waits
     for (Message message; scenes < kMostScenesAtOnce && caller.channel.next(message);) {
         bool isScene = false;
         std::string error;
@@ -242,11 +242,11 @@ bool SceneReceiver::poll(LinkedScene& scene, std::string& report) {
     for (Caller& caller : callers_) {
         if (!readCaller(caller, report)) continue;
         if (editor_.channel.open()) addLine(report, "Another editor has taken over the link.");
-        editor_ = std::move(caller);  // leaves a closed channel, which goes below
+        editor_ = std::move(caller);  // the moved-from channel is closed and removed below
         isNew = true;
     }
     std::erase_if(callers_, [](const Caller& caller) { return !caller.channel.open(); });
-    if (isNew) scene = editor_.reader.scene();  // of several the last
+    if (isNew) scene = editor_.reader.scene();  // of several, the last one counts
     return isNew;
 }
 

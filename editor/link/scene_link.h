@@ -1,7 +1,6 @@
-// A scene that is edited in one program and shown by another, over a live link: the editor pushes
-// what has changed, the sample takes it over. The scene goes as its file's text, which is small;
-// of paint only the tiles that differ from what the other side has. Meshes and flame shapes are
-// files of this machine, which both read, as they do the cache of burn maps.
+// Live link between an editor and a sample: the editor pushes changes, the sample applies them. The
+// scene travels as its file's text, paint as the tiles that differ from the sample's state. Meshes,
+// flame shapes and cached burn maps are local files that both sides read.
 #pragma once
 
 #include <filesystem>
@@ -20,47 +19,47 @@ constexpr uint16_t kUsualPort = 47380;
 // The editor's side.
 class SceneSender {
  public:
-    // False: `error`. What the other side had before counts for nothing: it gets all anew.
+    // Connects and forgets the peer's earlier state, so the whole scene is sent. On failure returns
+    // false with `error`.
     bool connect(uint16_t port, std::string& error);
     void disconnect() { channel_.close(); }
     [[nodiscard]] bool connected() const { return channel_.open(); }
     [[nodiscard]] const std::string& problem() const { return channel_.problem(); }
-    // Sends what has changed; while the last is still on its way, later.
+    // Sends changes. Waits until the previous update is sent.
     void follow(const fwedit::Document& document);
-    // The other side shows the document as it is.
+    // The peer shows the current document.
     [[nodiscard]] bool shown(const fwedit::Document& document) const {
         return connected() && followed_ == document.revision && shown_ == sent_;
     }
-    // What it said of that: empty, or what it could not take, for people.
+    // The peer's reply: empty, or a message for the user about skipped parts.
     [[nodiscard]] const std::string& answer() const { return answer_; }
 
  private:
     Channel channel_;
-    fwedit::PaintImages images_;     // that the other side has
-    uint64_t followed_ = ~0ull;      // revision
-    uint64_t sent_ = 0, shown_ = 0;  // numbers of scenes, from 1
+    fwedit::PaintImages images_;     // layers that the peer has
+    uint64_t followed_ = ~0ull;      // document revision
+    uint64_t sent_ = 0, shown_ = 0;  // scene serials, from 1
     std::string answer_;
 };
 
 struct LinkedScene {
-    uint64_t number = 0;  // for took()
+    uint64_t number = 0;  // serial for took()
     fwedit::Scene scene;
     fwedit::PaintImages images;
-    std::filesystem::path folder;  // where its relative paths begin
+    std::filesystem::path folder;  // base of relative paths
 };
 
-// The sample's side of the link, without a socket. It holds what was sent and no more:
-// tiles are kept one by one, and a layer's table of tiles is made only for layers that a scene
-// names.
+// The sample's side without a socket. Memory is bounded by the data received: tiles are stored one
+// by one, and only layers that a scene uses get a tile table.
 class SceneReader {
  public:
-    static constexpr size_t kMostPaint = size_t{256} << 20;  // bytes of tiles held at a time
+    static constexpr size_t kMostPaint = size_t{256} << 20;  // bytes, limit of stored tiles
 
-    // False: `error` says what is wrong with it, and nothing of it counts. `whole`: there is a
-    // scene to be shown, in scene().
+    // Applies a message. On failure returns false with `error` and ignores the whole message.
+    // `whole`: scene() has a new scene.
     bool take(const Message& message, bool& whole, std::string& error);
     [[nodiscard]] const LinkedScene& scene() const { return scene_; }
-    // Bytes of tiles held, and layers that have an entry.
+    // Bytes of stored tiles, and layers with an entry.
     [[nodiscard]] size_t paintBytes() const { return tiles_ * sizeof(fwedit::PaintImage::Tile); }
     [[nodiscard]] size_t layers() const { return paint_.size(); }
 
@@ -75,24 +74,25 @@ class SceneReader {
     bool takeScene(BodyReader& body, std::string& error);
 
     LinkedScene scene_;
-    std::map<fwedit::ObjectId, LayerPaint> paint_;  // as it came; a scene says which layers count
-    size_t tiles_ = 0;                              // of all layers
+    std::map<fwedit::ObjectId, LayerPaint> paint_;  // as received; a scene selects the layers in
+                                                    // use
+    size_t tiles_ = 0;                              // over all layers
 };
 
-// The sample's side. The editor whose scene came last is the one that is shown. Callers that have
-// sent no scene yet wait beside it, so that a silent one keeps nobody out.
+// The sample's side. Shows the editor whose scene came last. Connections without a scene wait
+// beside it, so an idle one blocks nobody.
 class SceneReceiver {
  public:
-    static constexpr size_t kMostCallers = 8;  // beside the editor that is shown
+    static constexpr size_t kMostCallers = 8;  // besides the active editor
 
-    // Listens; 0: on any port that is free. False: `error`.
+    // Listens; port 0: any free port. On failure returns false with `error`.
     bool listen(uint16_t port, std::string& error) { return listener_.listen(port, error); }
     [[nodiscard]] uint16_t port() const { return listener_.port(); }
     [[nodiscard]] bool connected() const { return editor_.channel.open(); }
-    // Once a frame. True: there is a new scene. `report`: lines for people, empty if there are
-    // none.
+    // Call it once per frame. Returns true if there is a new scene. `report`: messages for the
+    // user, empty if there are none.
     bool poll(LinkedScene& scene, std::string& report);
-    // The scene of that number is on the screen; `answer` is for the artist.
+    // The scene with that serial is visible. `answer`: message for the artist.
     void took(uint64_t number, const std::string& answer);
 
  private:
@@ -102,7 +102,8 @@ class SceneReceiver {
     };
 
     void acceptCallers();
-    // True: a scene came whole. A fault of the caller closes its channel and is added to `report`.
+    // Returns true if a complete scene arrived. Errors close the caller's channel and are appended
+    // to `report`.
     bool readCaller(Caller& caller, std::string& report);
 
     Listener listener_;

@@ -1,4 +1,4 @@
-// Burn maps that are baked once and kept in a folder, by a hash of all that the bake reads.
+// A disk cache of burn maps, keyed by a hash of the bake's input.
 #pragma once
 
 #include <filesystem>
@@ -9,19 +9,19 @@
 
 namespace fwmodel {
 
-// Meshes with the same key have the same burn map. Indices are of 4 bytes.
+// Meshes with equal keys have equal burn maps. Indices have 4 bytes.
 std::string bakeKeyOf(const FwMeshDef& def);
-// `folder` empty, or nothing there that can be read: false.
+// Returns false if `folder` is empty or has no readable entry.
 bool readBake(const std::filesystem::path& folder, const std::string& key,
               std::vector<char>& bytes);
-// False: `error` is the plugin's message.
+// On failure returns false with the plugin's message in `error`.
 bool cookMesh(FwContext* context, const FwMeshDef& def, std::vector<char>& bytes,
               std::string& error);
-// False: it cannot be written, or `folder` is empty. The file is whole or not there.
+// Writes atomically. Returns false if writing fails or `folder` is empty.
 bool keepBake(const std::filesystem::path& folder, const std::string& key,
               const std::vector<char>& bytes);
 void dropBake(const std::filesystem::path& folder, const std::string& key);
-// Of bytes that readBake or cookMesh gave; points to them.
+// Points to bytes from readBake or cookMesh.
 FwMeshDef cookedDefOf(const std::vector<char>& bytes);
 
 }  // namespace fwmodel

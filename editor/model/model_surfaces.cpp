@@ -23,7 +23,7 @@ Appearance appearanceOf(const ImportedMaterial& material) {
     Appearance result;
     result.factor = {material.baseColor[0], material.baseColor[1], material.baseColor[2]};
     result.picture.image = material.image;
-    // The file's cut-off is of the picture's alpha times the factor's.
+    // The file's cut-off applies to the product of image and factor alpha.
     if (material.image >= 0 && material.alphaMode == fwimport::AlphaMode::Mask)
         result.picture.alphaCutoff =
             std::clamp(material.alphaCutoff / std::max(material.baseColor[3], 1e-3f), 0.0f, 1.0f);
@@ -35,13 +35,13 @@ std::string nameOf(const ImportedModel& model, size_t material) {
     return name.empty() ? "material " + std::to_string(material + 1) : "\"" + name + "\"";
 }
 
-// Linear, of up to 65,536 pixels that are spread over the whole picture; holes do not count.
+// Linear mean of up to 65,536 pixels spread over the image, without holes.
 glm::vec3 meanColor(const fwimport::DecodedImage& image, float alphaCutoff) {
     std::array<double, 256> linear{};
     for (size_t i = 0; i < linear.size(); ++i) linear[i] = fwimport::toLinear(double(i) / 255);
     const size_t count = image.rgba.size() / 4;
     size_t step = std::max<size_t>(1, count / 65536);
-    // Has no divisor in common with the width: else some columns would never be looked at.
+    // Coprime to the width, so that every column is sampled.
     while (step > 1 && std::gcd(step, size_t{image.width}) != 1) ++step;
     glm::dvec3 sum(0);
     size_t taken = 0;
@@ -54,27 +54,28 @@ glm::vec3 meanColor(const fwimport::DecodedImage& image, float alphaCutoff) {
     return taken == 0 ? glm::vec3(1) : glm::vec3(sum / static_cast<double>(taken));
 }
 
-// Gives each material the first slot that `share` lets it share, else the next one. Returns how
-// many there are.
+// Assigns each material the first slot that `share` accepts, otherwise a new one. Returns the
+// number of slots.
 template <typename Share>
-size_t groupMaterials(const std::vector<Appearance>& looks, std::vector<size_t>& groups,
+size_t groupMaterials(const std::vector<Appearance>& appearances, std::vector<size_t>& groups,
                       Share&& share) {
-    std::vector<size_t> first;  // material of each group
-    groups.resize(looks.size());
-    for (size_t i = 0; i < looks.size(); ++i) {
-        const auto same = std::find_if(first.begin(), first.end(),
-                                       [&](size_t other) { return share(looks[i], looks[other]); });
+    std::vector<size_t> first;  // first material of each slot
+    groups.resize(appearances.size());
+    for (size_t i = 0; i < appearances.size(); ++i) {
+        const auto same = std::find_if(first.begin(), first.end(), [&](size_t other) {
+            return share(appearances[i], appearances[other]);
+        });
         groups[i] = static_cast<size_t>(same - first.begin());
         if (same == first.end()) first.push_back(i);
     }
     return first.size();
 }
 
-// Seven pictures keep a slot, those with cut-outs before others; all else shares the last one.
-void foldPictures(const ImportedModel& model, std::vector<Appearance>& looks,
+// Seven images keep a slot, cut-outs first; everything else shares the last slot.
+void foldPictures(const ImportedModel& model, std::vector<Appearance>& appearances,
                   std::vector<size_t>& groups, size_t count, std::vector<std::string>& notes) {
     std::vector<SlotPicture> pictures(count);
-    for (size_t i = 0; i < looks.size(); ++i) pictures[groups[i]] = looks[i].picture;
+    for (size_t i = 0; i < appearances.size(); ++i) pictures[groups[i]] = appearances[i].picture;
     std::vector<size_t> order(count), slots(count, kSlots - 1);
     std::iota(order.begin(), order.end(), size_t{0});
     const auto rank = [&](size_t group) {
@@ -90,9 +91,9 @@ void foldPictures(const ImportedModel& model, std::vector<Appearance>& looks,
     size_t lost = 0;
     bool holes = false;
     std::vector<std::pair<SlotPicture, glm::vec3>> means;
-    for (size_t i = 0; i < looks.size(); ++i) {
+    for (size_t i = 0; i < appearances.size(); ++i) {
         groups[i] = slots[groups[i]];
-        SlotPicture& picture = looks[i].picture;
+        SlotPicture& picture = appearances[i].picture;
         if (groups[i] != kSlots - 1 || picture.image < 0) continue;
         auto mean = std::find_if(means.begin(), means.end(),
                                  [&](const auto& known) { return known.first == picture; });
@@ -100,7 +101,7 @@ void foldPictures(const ImportedModel& model, std::vector<Appearance>& looks,
             mean = means.insert(
                 means.end(), {picture, meanColor(model.images[static_cast<size_t>(picture.image)],
                                                  picture.alphaCutoff)});
-        looks[i].factor *= mean->second;
+        appearances[i].factor *= mean->second;
         holes = holes || picture.alphaCutoff > 0;
         picture = {};
         if (++lost <= kNamed) names += (lost > 1 ? ", " : "") + nameOf(model, i);
@@ -114,8 +115,9 @@ void foldPictures(const ImportedModel& model, std::vector<Appearance>& looks,
         ". To keep them, split the file or put pictures together");
 }
 
-// The file's colour of each vertex: its own times its material's.
-std::vector<uint32_t> colorsOf(const ImportedModel& model, const std::vector<Appearance>& looks) {
+// Returns vertex colours multiplied by their material's colour.
+std::vector<uint32_t> colorsOf(const ImportedModel& model,
+                               const std::vector<Appearance>& appearances) {
     std::vector<uint32_t> colors = model.colors;
     colors.resize(model.vertexCount(), 0xffffffffu);
     std::vector<bool> done(model.vertexCount(), false);
@@ -123,7 +125,7 @@ std::vector<uint32_t> colorsOf(const ImportedModel& model, const std::vector<App
         const uint32_t vertex = model.indices[i];
         if (done[vertex]) continue;
         done[vertex] = true;
-        const glm::vec3& factor = looks[model.triangleMaterials[i / 3]].factor;
+        const glm::vec3& factor = appearances[model.triangleMaterials[i / 3]].factor;
         uint32_t packed = 0xff000000u;
         for (int c = 0; c < 3; ++c) {
             const auto own = static_cast<float>(colors[vertex] >> (8 * c) & 255);
@@ -135,9 +137,9 @@ std::vector<uint32_t> colorsOf(const ImportedModel& model, const std::vector<App
     return colors;
 }
 
-// True: the surfaces that the file shows from both sides are no outsides of something closed: they
-// have long rims for their area. Edges of one triangle alone are rims; corners at one place are
-// one.
+// Returns true if the double-sided surfaces are open sheets instead of parts of a closed surface:
+// their rims are long relative to their area. A rim is an edge of one triangle only; equal
+// positions count as one corner.
 bool areOpenSheets(const ImportedModel& model) {
     const auto isDoubleSided = [&](uint32_t i) { return model.materials[i].doubleSided; };
     if (std::ranges::none_of(model.triangleMaterials, isDoubleSided)) return false;
@@ -178,44 +180,44 @@ bool areOpenSheets(const ImportedModel& model) {
 
 ModelSurfaces surfacesOf(const ImportedModel& model) {
     ModelSurfaces result;
-    std::vector<Appearance> looks;
+    std::vector<Appearance> appearances;
     bool gray = true;
     result.twoSided = areOpenSheets(model);
     for (size_t i = 0; i < model.materials.size(); ++i) {
         const ImportedMaterial& material = model.materials[i];
-        looks.push_back(appearanceOf(material));
-        const bool cutOut = looks.back().picture.alphaCutoff > 0;
+        appearances.push_back(appearanceOf(material));
+        const bool cutOut = appearances.back().picture.alphaCutoff > 0;
         result.twoSided = result.twoSided || (cutOut && material.doubleSided);
-        const glm::vec3& factor = looks.back().factor;
+        const glm::vec3& factor = appearances.back().factor;
         gray = gray && factor[0] == factor[1] && factor[1] == factor[2];
     }
     const bool colored = !gray || model.hasColors || !model.images.empty();
 
-    std::vector<size_t> groups(looks.size());
+    std::vector<size_t> groups(appearances.size());
     std::iota(groups.begin(), groups.end(), size_t{0});
-    size_t count = looks.size();
-    if (count > kSlots) count = groupMaterials(looks, groups, std::equal_to<>());
+    size_t count = appearances.size();
+    if (count > kSlots) count = groupMaterials(appearances, groups, std::equal_to<>());
     if (count > kSlots)
-        count = groupMaterials(looks, groups, [](const Appearance& a, const Appearance& b) {
+        count = groupMaterials(appearances, groups, [](const Appearance& a, const Appearance& b) {
             return a.picture == b.picture;
         });
     if (count > kSlots) {
-        foldPictures(model, looks, groups, count, result.notes);
+        foldPictures(model, appearances, groups, count, result.notes);
         count = kSlots;
-    } else if (looks.size() > kSlots) {
+    } else if (appearances.size() > kSlots) {
         result.notes.push_back("a burnable mesh has 8 material slots; the file's " +
-                               std::to_string(looks.size()) + " materials share " +
-                               std::to_string(count) + ", by what they show");
+                               std::to_string(appearances.size()) + " materials share " +
+                               std::to_string(count) + ", by appearance");
     }
     result.slotCount = static_cast<uint32_t>(std::max<size_t>(1, count));
     for (size_t i = 0; i < groups.size(); ++i) {
         result.slots.push_back(static_cast<uint8_t>(groups[i]));
-        result.pictures[groups[i]] = looks[i].picture;
+        result.pictures[groups[i]] = appearances[i].picture;
     }
     result.triangleMaterials.reserve(model.triangleCount());
     for (const uint32_t material : model.triangleMaterials)
         result.triangleMaterials.push_back(result.slots[material]);
-    if (colored) result.colors = colorsOf(model, looks);
+    if (colored) result.colors = colorsOf(model, appearances);
     return result;
 }
 
@@ -223,7 +225,7 @@ FwMeshDef meshDefOf(const ImportedModel& model, const ModelSurfaces& surfaces) {
     FwMeshDef def = fwDefaultMeshDef();
     def.positions = model.positions.data();
     def.normals = model.hasNormals ? model.normals.data() : nullptr;
-    // Parts without UVs have none that a picture needs.
+    // Parts without UVs need none for an image.
     def.uvs = model.hasUvs || !model.images.empty() ? model.uvs.data() : nullptr;
     def.colors = surfaces.ownColors() ? surfaces.colors.data() : nullptr;
     def.indices = model.indices.data();
@@ -243,7 +245,7 @@ FwMaterialDef materialDefOf(uint32_t preset, bool ownColors) {
 
 namespace {
 
-// Is the picture there? The place may be any number of turns away.
+// Samples whether the image is opaque at a point. UVs repeat.
 bool isThere(const fwimport::DecodedImage& image, float alphaCutoff, glm::vec2 uv) {
     const glm::vec2 turn = uv - glm::floor(uv);
     const auto pixel = [](float share, uint32_t side) {
@@ -253,7 +255,7 @@ bool isThere(const fwimport::DecodedImage& image, float alphaCutoff, glm::vec2 u
     return static_cast<float>(image.rgba[at * 4 + 3]) >= alphaCutoff * 255;
 }
 
-// Splits each side of a triangle into `parts`, and adds those of the small ones that are there.
+// Splits each side of a triangle into `parts` and adds the opaque sub-triangles.
 void addParts(const ImportedModel& model, const SlotPicture& picture, size_t triangle, int parts,
               SolidTriangles& result) {
     const auto& image = model.images[static_cast<size_t>(picture.image)];

@@ -1,5 +1,5 @@
-// Appearance of an imported model, and of which material slot each triangle is: a burnable mesh has
-// eight slots, eight pictures, and a colour for each vertex; a file has as many as it likes.
+// Appearance of an imported model, and the material slot of each triangle. A burnable mesh has
+// eight slots, eight images and vertex colours; a file may have any number of materials.
 #pragma once
 
 #include <array>
@@ -12,11 +12,11 @@
 
 namespace fwmodel {
 
-constexpr size_t kSlots = 8;  // of FwBurnableMeshDef::materials and baseColors
+constexpr size_t kSlots = 8;  // size of FwBurnableMeshDef::materials and baseColors
 
 struct SlotPicture {
     int32_t image = -1;     // into ImportedModel::images; -1: none
-    float alphaCutoff = 0;  // as FwImageDef's, [0, 1]; 0: the picture is opaque
+    float alphaCutoff = 0;  // as in FwImageDef, [0, 1]; 0: opaque image
     bool operator==(const SlotPicture&) const = default;
 };
 
@@ -24,33 +24,32 @@ struct ModelSurfaces {
     std::vector<uint8_t> slots;              // by ImportedModel::materials
     std::vector<uint8_t> triangleMaterials;  // slot by triangle
     std::array<SlotPicture, kSlots> pictures;
-    uint32_t slotCount = 1;          // slots that triangles use: [0, slotCount)
-    std::vector<uint32_t> colors;    // RGBA8 linear by vertex; empty: the file says no colour, and
-                                     // the material's own base colour shows
-    bool twoSided = false;           // cut-outs or open sheets are to be seen from both sides
-    std::vector<std::string> notes;  // what is shown otherwise than the file says, and why
+    uint32_t slotCount = 1;        // number of used slots: [0, slotCount)
+    std::vector<uint32_t> colors;  // RGBA8 linear per vertex; empty: the file has no colour, so the
+                                   // material's base colour shows
+    bool twoSided = false;         // cut-outs or open sheets are visible from both sides
+    std::vector<std::string> notes;  // approximations, with reasons
 
     [[nodiscard]] bool ownColors() const { return !colors.empty(); }
 };
 
-// Up to eight materials have a slot each. Of more, those that look alike share one, then those that
-// share a picture; pictures for which no slot is left show their mean colour, and a note names
-// them.
+// Assigns up to eight materials a slot each. Beyond that, equal appearances share a slot, then
+// equal images. Images without a slot become their mean colour, with a note.
 ModelSurfaces surfacesOf(const fwimport::ImportedModel& model);
 
-// Points into both. Its burn map's size and density are the defaults.
+// Points into both arguments. Size and density of the burn map keep their defaults.
 FwMeshDef meshDefOf(const fwimport::ImportedModel& model, const ModelSurfaces& surfaces);
-// A preset. Where the file has colours the base colour is 1: unburnt, the file's colours show.
+// Returns a preset. `ownColors`: base colour 1, so that the file's colours show while unburnt.
 FwMaterialDef materialDefOf(uint32_t preset, bool ownColors);
-// Geometry that casts a shadow: the model's triangles, and of those with cut-outs parts that are
-// there, as fine as a soft shadow shows them.
+// Geometry for shadows: the model's triangles. Triangles with cut-outs contribute their opaque
+// parts, at the resolution of a soft shadow.
 struct SolidTriangles {
     std::vector<float> positions;   // 3 per vertex, m
     std::vector<uint32_t> indices;  // 3 per triangle
 };
 SolidTriangles solidTrianglesOf(const fwimport::ImportedModel& model,
                                 const ModelSurfaces& surfaces);
-// Of a slot with a picture; points into `model`.
+// For a slot with an image; points into `model`.
 FwImageDef imageDefOf(const fwimport::ImportedModel& model, const SlotPicture& picture);
 
 }  // namespace fwmodel

@@ -11,7 +11,7 @@ namespace fwmodel {
 
 FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& high,
                    const NeutralCamera& camera, uint32_t width, uint32_t height) {
-    constexpr float kFilled = 0.9f;       // of the picture's height, or of its width
+    constexpr float kFilled = 0.9f;       // share of the picture's height, or of its width
     constexpr float kFieldOfView = 0.5f;  // rad, vertical
     const float yaw = glm::radians(camera.yaw), pitch = glm::radians(camera.pitch);
     const glm::vec3 back(std::sin(yaw) * std::cos(pitch), std::sin(pitch),
@@ -42,7 +42,7 @@ FwView neutralView(const std::array<float, 3>& low, const std::array<float, 3>& 
     for (size_t c = 0; c < 3; ++c) {
         view.sunColor[c] = 0;
         view.ambientSky[c] = 1.1f;
-        view.ambientGround[c] = 0.95f;  // a little less from below: forms show
+        view.ambientGround[c] = 0.95f;  // slightly darker from below, so that shapes remain visible
     }
     view.exposure = 1;
     view.emissionScale = 1;

@@ -12,7 +12,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Words that code gives another meaning.
+// Reserved words of C and C++.
 const std::set<std::string> kTaken = {
     "auto",    "bool",    "break",    "case",     "char",     "class",  "const",  "context",
     "def",     "default", "delete",   "do",       "double",   "else",   "enum",   "extern",
@@ -21,7 +21,7 @@ const std::set<std::string> kTaken = {
     "signed",  "sizeof",  "static",   "struct",   "switch",   "this",   "time",   "true",
     "typedef", "union",   "unsigned", "void",     "volatile", "while",  "world"};
 
-// "Corner torch (2)": corner_torch_2. Letters that code cannot have are left out.
+// Converts "Corner torch (2)" to corner_torch_2. Drops invalid characters.
 std::string identifierOf(const std::string& name, const std::string& otherwise) {
     std::string text;
     for (const char c : name) {
@@ -50,10 +50,10 @@ std::string typeOf(const std::string& identifier) {
 
 class Names {
  public:
-    std::string unique(const std::string& wished) {
-        std::string name = wished;
+    std::string unique(const std::string& wanted) {
+        std::string name = wanted;
         for (size_t number = 2; !taken_.insert(name).second; ++number)
-            name = wished + "_" + std::to_string(number);
+            name = wanted + "_" + std::to_string(number);
         return name;
     }
 
@@ -64,13 +64,13 @@ class Names {
 template <typename T>
 bool writeAll(const fs::path& file, const std::vector<T>& values, std::vector<fs::path>& files,
               std::string& error) {
-    error = fwtools::writeWhole(file.string(), std::as_bytes(std::span(values)));
+    error = fwtools::replaceFile(file.string(), std::as_bytes(std::span(values)));
     if (error.empty()) files.push_back(file);
     return error.empty();
 }
 
-bool goOn(const OutputProgress& progress, const std::string& stage, size_t done, size_t all,
-          std::string& error) {
+bool reportStage(const OutputProgress& progress, const std::string& stage, size_t done, size_t all,
+                 std::string& error) {
     const float share = static_cast<float>(done) / static_cast<float>(std::max<size_t>(all, 1));
     if (!progress || progress(stage, share)) return true;
     error = kStopped;
@@ -112,9 +112,9 @@ bool planOutput(const OutputInput& input, OutputPlan& plan, std::string& error) 
         for (const auto& object : list)
             plan.identifiers[object.id] = names.unique(identifierOf(object.name, kindKey(kind)));
     });
-    std::map<std::string, const PlannedMesh*> maps;             // by the key of the bake
-    std::map<std::pair<const void*, float>, int32_t> images;    // by picture and its cut-off
-    std::map<ObjectId, const fwimport::ImportedModel*> models;  // the assets keep them
+    std::map<std::string, const PlannedMesh*> maps;             // by bake key
+    std::map<std::pair<const void*, float>, int32_t> images;    // by image and its cut-off
+    std::map<ObjectId, const fwimport::ImportedModel*> models;  // owned by the assets
     plan.meshes.reserve(scene.meshes.size());
     for (const Mesh& mesh : scene.meshes) {
         const auto model = modelOf(mesh, input.folder, input.assets, error);
@@ -172,7 +172,7 @@ bool cookScene(const OutputInput& input, const OutputPlan& plan, FwContext* cpu,
     size_t done = 0;
     for (const PlannedMesh& planned : plan.meshes) {
         const Mesh& mesh = *findIn(input.scene.meshes, planned.mesh);
-        if (!goOn(progress, "Unwrapping " + mesh.name, done++, all, error)) return false;
+        if (!reportStage(progress, "Unwrapping " + mesh.name, done++, all, error)) return false;
         if (planned.ownsMap) {
             std::string key;
             const auto model = modelOf(mesh, input.folder, input.assets, error);
@@ -185,16 +185,16 @@ bool cookScene(const OutputInput& input, const OutputPlan& plan, FwContext* cpu,
             return false;
     }
     for (const PlannedImage& image : plan.images)
-        if (!goOn(progress, "Writing pictures", done++, all, error) ||
+        if (!reportStage(progress, "Writing pictures", done++, all, error) ||
             !writeAll(out / image.file, *image.pixels, files, error))
             return false;
     for (const auto& [id, file] : plan.shapes) {
         const Flame& flame = *findIn(input.scene.flames, id);
-        if (!goOn(progress, "Writing the shape of " + flame.name, done++, all, error) ||
+        if (!reportStage(progress, "Writing the shape of " + flame.name, done++, all, error) ||
             !cookShape(input, cpu, flame, out / file, files, error))
             return false;
     }
-    return goOn(progress, "Done", all, all, error);
+    return reportStage(progress, "Done", all, all, error);
 }
 
 fwimport::FloatPicture arrivalPicture(const ArrivalField& field) {
@@ -216,9 +216,10 @@ bool writeArrivals(const OutputInput& input, FwContext* cpu, const fs::path& out
     BurnRecord record;
     if (!recordBurn(cpu, input.scene, input.images, input.folder, input.assets, record, error,
                     [&](double time) {
-                        stopped = stopped || !goOn(progress, "When each spot catches",
-                                                   static_cast<size_t>(1000 * time),
-                                                   static_cast<size_t>(1000 * duration), error);
+                        stopped =
+                            stopped || !reportStage(progress, "When each spot catches",
+                                                    static_cast<size_t>(1000 * time),
+                                                    static_cast<size_t>(1000 * duration), error);
                         return stopped;
                     }))
         return false;

@@ -23,7 +23,7 @@ std::unique_ptr<Burn> burnOf(const OutputInput& input, FwContext* device, std::s
     return createBurn(device, input.scene, input.images, input.folder, input.assets, error);
 }
 
-// Runs on by a frame at a time, so that it can be stopped. The share goes from one to another.
+// Runs frame by frame, so that it can be cancelled. Progress goes from `from` to `to`.
 bool runTo(Burn& burn, double time, float from, float to, const OutputProgress& progress,
            std::string& error) {
     const double start = burn.time, span = std::max(time - start, 1e-6);
@@ -34,7 +34,7 @@ bool runTo(Burn& burn, double time, float from, float to, const OutputProgress& 
             error = kStopped;
             return false;
         }
-        // Whole frames from zero on, as the burn itself is run.
+        // Whole frames from zero, as the burn itself runs.
         if (!runBurn(burn, std::min(time, burn.time + frame), error)) return false;
     }
     return true;
@@ -71,7 +71,7 @@ bool writeFilmstrip(const OutputInput& input, FwContext* device, const Filmstrip
     for (uint32_t i = 0; i < def.count; ++i) {
         const auto before = static_cast<float>(i) / static_cast<float>(def.count);
         const auto after = static_cast<float>(i + 1) / static_cast<float>(def.count);
-        // The first picture is of the beginning, the last of the end.
+        // The first picture shows the start, the last one the end.
         const double time = def.count > 1 ? duration * i / (def.count - 1) : 0;
         if (!runTo(*burn, time, before, after, progress, error) ||
             !shootBurn(*burn, def.width, def.height, one, error))
@@ -131,15 +131,15 @@ bool writeFlipbook(const OutputInput& input, ObjectId id, const FlipbookDef& def
     book.seconds = def.seconds;
     book.threads = std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::byte> bytes;
-    const auto goOn = [&](float share) {
+    const auto reportStage = [&](float share) {
         return !progress || progress("Looking at " + flame->name, share);
     };
-    if (!fwtools::bakeFlameBook(book, goOn, bytes, error)) {
+    if (!fwtools::bakeFlameBook(book, reportStage, bytes, error)) {
         if (error.empty()) error = kStopped;
         return false;
     }
     makeFolderOf(file);
-    error = fwtools::writeWhole(file.string(), bytes);
+    error = fwtools::replaceFile(file.string(), bytes);
     return error.empty();
 }
 

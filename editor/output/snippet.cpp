@@ -39,7 +39,7 @@ std::string words(const std::string& text) {
     return safe;
 }
 
-// `%` stands for what the two languages say differently.
+// `%` stands for the part that differs between the languages.
 struct Dialect {
     bool cpp;
     const char *scene, *argument, *member, *world, *folder, *copy, *null;
@@ -55,7 +55,7 @@ constexpr Dialect kCpp = {true,
                           "std::memcpy",
                           "nullptr"};
 
-// What of a def is not as its default is, a line each.
+// The fields of a def that differ from the defaults, one per line.
 class Fields {
  public:
     Fields(std::string& out, const char* copy) : out_(out), copy_(copy) {}
@@ -191,7 +191,7 @@ const char* presetWord(uint32_t preset) {
     return kWords[std::min<uint32_t>(preset, FW_MATERIAL_PRESET_COUNT - 1)];
 }
 
-// The flipbooks of our own that emitters show, as burn.cpp gives them.
+// The library's flipbooks that emitters show, as in burn.cpp.
 struct Book {
     const char *member, *preset, *slot;
 };
@@ -221,7 +221,7 @@ class Writer {
         if (!is_.cpp)
             text += "void " + named("destroy") + "(" + is_.scene +
                     ") {\n    fwDestroyWorld(scene->world);\n    scene->world = NULL;\n}\n";
-        // The scene's own type stands where the dialects say CrateYard.
+        // The dialects use CrateYard as a placeholder for the scene's type.
         for (size_t at = 0; (at = text.find("CrateYard", at)) != std::string::npos;
              at += plan_.type.size())
             text.replace(at, 9, plan_.type);
@@ -274,20 +274,20 @@ class Writer {
             }
         }
         if (!seen.empty()) {
-            open("add_materials", false, "What things are made of.");
+            open("add_materials", false, "Materials.");
             functions_ +=
                 "    FwMaterialDef def = fwDefaultMaterialDef();\n"
                 "    FwResult result = FW_OK;\n" +
                 body + "    return result;\n}\n\n";
         }
         if (!plan_.images.empty()) addImages();
-        const bool books =
+        const bool flipbooks =
             std::any_of(scene_.emitters.begin(), scene_.emitters.end(),
-                        [](const Emitter& one) { return one.books; }) ||
+                        [](const Emitter& one) { return one.flipbooks; }) ||
             std::any_of(scene_.sources.begin(), scene_.sources.end(),
                         [](const HeatSource& one) { return one.shape == SourceFlamethrower; });
-        if (!books) return;
-        open("add_books", false, "What particles show: the library's own flipbooks.");
+        if (!flipbooks) return;
+        open("add_books", false, "Flipbooks of the particles, from the library.");
         line("FwFlipbookDef def = fwDefaultFlipbookDef();");
         line("FwResult result = FW_OK;");
         for (const Book& book : kBooks) {
@@ -302,7 +302,7 @@ class Writer {
     void addImages() {
         reads_ = true;
         member("FwImageId", "colors[" + std::to_string(plan_.images.size()) + "]");
-        open("add_images", true, "What things look like before they burn.");
+        open("add_images", true, "Images of the unburnt objects.");
         line("FwImageDef def = fwDefaultImageDef();");
         line("FwResult result = FW_OK;");
         if (!is_.cpp) {
@@ -327,7 +327,7 @@ class Writer {
         functions_ += "    return result;\n}\n\n";
     }
 
-    // Reads a file into `bytes`, and returns where there is none.
+    // Emits code that reads a file into `bytes` and returns on failure.
     std::string openFile(const std::string& file, bool first, bool declares) const {
         if (is_.cpp)
             return std::string("    ") + (first ? "std::vector<char> " : "") +
@@ -345,9 +345,9 @@ class Writer {
         return std::string(is_.cpp ? "bytes.size()" : "size") + " == " + std::to_string(bytes);
     }
 
-    // `colored`: with base colour 1, for meshes that bring colours.
+    // `colored`: base colour 1, for meshes with their own colours.
     std::string material(uint32_t preset, float thickness, bool colored) const {
-        std::string name = presetWord(preset) + 12;  // without FW_MATERIAL_
+        std::string name = presetWord(preset) + 12;  // strips FW_MATERIAL_
         for (char& c : name) c = static_cast<char>(std::tolower(c));
         if (colored) name += "_colored";
         if (thickness <= 0) return "material_" + name;
@@ -480,14 +480,14 @@ class Writer {
         power(flame, flame.power, "fwWorld_SetVolumetricFirePower", in(name));
     }
 
-    void emitter(ObjectId id, const std::string& called, const FwFireEmitterDef& made, bool books,
-                 ObjectId object) {
+    void emitter(ObjectId id, const std::string& called, const FwFireEmitterDef& made,
+                 bool flipbooks, ObjectId object) {
         const std::string name = nameOf(id);
         member("FwFireEmitterId", name);
         open("add_" + name, false, called);
         def("FireEmitter", made);
         for (const Book& book : kBooks)
-            if (books) line(std::string("def.") + book.slot + " = " + in(book.member) + ";");
+            if (flipbooks) line(std::string("def.") + book.slot + " = " + in(book.member) + ";");
         if (object) line("def.object = " + in(nameOf(object)) + ";");
         line("return fwWorld_CreateFireEmitter(" + world() + ", &def, &" + in(name) + ");");
         functions_ += "}\n\n";
@@ -495,9 +495,11 @@ class Writer {
 
     void addEmitter(const Emitter& one) {
         const bool sticks = findIn(scene_.meshes, one.sticksTo) != nullptr;
-        if (one.shape == EmitterMesh && !sticks) return;  // it shows the fire of none
+        if (one.shape == EmitterMesh && !sticks)
+            return;  // a mesh emitter without a mesh has no
+                     // fire
         const FwFireEmitterDef made = emitterDefOf(scene_, one);
-        emitter(one.id, one.name, made, one.books, sticks ? one.sticksTo : 0);
+        emitter(one.id, one.name, made, one.flipbooks, sticks ? one.sticksTo : 0);
         if (one.shape != EmitterMesh)
             carry(one.id, "fwWorld_MoveFireEmitter", in(nameOf(one.id)), made.position,
                   made.direction);
@@ -519,7 +521,7 @@ class Writer {
         functions_ += "}\n\n";
     }
 
-    // ---- what happens when
+    // ---- timed events
 
     void addMatch(const HeatSource& match) {
         const Vec3 at = worldPosition(scene_, match.id);
@@ -581,7 +583,7 @@ class Writer {
                    in(name + "_zone") + ");\n        if (result < 0) return result;\n    }\n";
     }
 
-    // What sticks to a mesh comes along when the game moves that.
+    // Objects that stick to a mesh move with it when the game moves it.
     void carry(ObjectId id, const std::string& function, const std::string& part,
                const float (&position)[3], const float* direction = nullptr) {
         const Mesh* mesh = meshHolding(scene_, id);
@@ -596,26 +598,28 @@ class Writer {
         if (direction)
             text += "        static const float ahead[3] = " +
                     list(offsetWithin(pose, {direction[0], direction[1], direction[2]})) +
-                    ";\n        float way[3];\n        within_pose(transform, ahead, 0, way);\n";
+                    ";\n        float direction[3];\n        within_pose(transform, ahead, 0, "
+                    "direction);\n";
         text += "        within_pose(transform, own, 1, place);\n        result = " + function +
-                "(" + world() + ", " + part + ", place" + (direction ? ", way" : "") +
+                "(" + world() + ", " + part + ", place" + (direction ? ", direction" : "") +
                 ");\n    }\n";
     }
     std::string moveFunctions() const {
         std::string text;
         for (const auto& [id, parts] : carried_)
-            text += "/* " + words(findIn(scene_.meshes, id)->name) +
-                    " goes there (object to world, column-major), and what sticks to it. */\n"
-                    "FwResult " +
-                    named(("move_" + nameOf(id)).c_str()) + "(" + is_.scene +
-                    ", const float transform[16]) {\n    float place[3];\n    FwResult result = "
-                    "fwWorld_SetTransform(" +
-                    world() + ", " + in(nameOf(id)) + ", transform);\n" + parts +
-                    "    return result;\n}\n\n";
+            text +=
+                "/* " + words(findIn(scene_.meshes, id)->name) +
+                ": moves it and everything that sticks to it (object to world, column-major). */\n"
+                "FwResult " +
+                named(("move_" + nameOf(id)).c_str()) + "(" + is_.scene +
+                ", const float transform[16]) {\n    float place[3];\n    FwResult result = "
+                "fwWorld_SetTransform(" +
+                world() + ", " + in(nameOf(id)) + ", transform);\n" + parts +
+                "    return result;\n}\n\n";
         return text;
     }
 
-    // The output over time, of what has times or keys.
+    // Emits the output over time for objects with times or keys.
     template <typename T>
     void power(const T& object, float output, const std::string& function, const std::string& id) {
         if (object.start <= 0 && object.duration <= 0 && object.keys.empty()) return;
@@ -651,21 +655,21 @@ class Writer {
         return text;
     }
 
-    // ---- the file's parts
+    // ---- parts of the file
 
     std::string head() const {
         const std::string create = named("create"), advance = named("advance");
         const std::string world = is_.cpp ? "scene.world.get()" : "scene.world";
         const std::string at = is_.cpp ? "scene" : "&scene";
         return "/* " + plan_.identifier +
-               ": a scene of the Flamewright editor. Compile this file with your game; what it "
-               "reads\n * lies in one folder, as the editor wrote it.\n * Once, with your "
+               ": a scene of the Flamewright editor. Compile this file with your game. Its files "
+               "are in one folder,\n * as the editor wrote them.\n * Once, with your "
                "context: " +
                create + "(context, \"FOLDER\", " + at + ");\n * Before each frame: " + advance +
                "(" + at + ", seconds); then record " + world +
                " as any world\n * (fwWorld_RecordOutside), or fwWorld_Step(" + world +
-               ", seconds) where you lend no device.\n" +
-               (is_.cpp ? " * The world goes with the scene. */\n"
+               ", seconds) without a host device.\n" +
+               (is_.cpp ? " * Destroying the scene destroys the world. */\n"
                         : " * At the end: " + named("destroy") + "(" + at + "); */\n") +
                includes();
     }
@@ -683,10 +687,10 @@ class Writer {
     }
 
     std::string members() const {
-        const std::string body = "    double time; /* s that were advanced */\n" + members_;
+        const std::string body = "    double time; /* s, world time */\n" + members_;
         if (is_.cpp)
-            return "struct CrateYard {\n    fw::World world;\n    double time = 0;  // s that were "
-                   "advanced\n" +
+            return "struct CrateYard {\n    fw::World world;\n    double time = 0;  // s, world "
+                   "time\n" +
                    initialised(members_) + "};\n\n";
         return "typedef struct CrateYard {\n    FwWorld* world;\n" + body + "} CrateYard;\n\n";
     }
@@ -705,7 +709,7 @@ class Writer {
                       "    std::ifstream file(path, std::ios::binary);\n"
                       "    return {std::istreambuf_iterator<char>(file), "
                       "std::istreambuf_iterator<char>()};\n}\n\n"
-                    : "/* The bytes of a file, to be freed; null: it cannot be read. */\n"
+                    : "/* Reads a file; free the result. Null: it cannot be read. */\n"
                       "static void* read_file(const char* folder, const char* name, uint64_t* "
                       "size) {\n"
                       "    char path[1024];\n    FILE* file;\n    void* bytes = NULL;\n    long "
@@ -726,8 +730,7 @@ class Writer {
                 "    return value < -most ? -most : value > most ? most : value;\n}\n\n";
         if (times_)
             text +=
-                "/* 0 while it does not work; else the factor of its keys, along straight lines "
-                "between them. */\n"
+                "/* 0 while inactive, otherwise the factor of its keys, linearly interpolated. */\n"
                 "static float factor_at(float time, float start, float duration, const float "
                 "(*keys)[2], int count) {\n"
                 "    float value = 1.0f;\n    int i;\n"
@@ -741,7 +744,7 @@ class Writer {
                 "    return value > 0 ? value : 0.0f;\n}\n\n";
         if (!carried_.empty())
             text +=
-                "/* A place, or with 0 for `moves` a way, of a thing that stands at a pose. */\n"
+                "/* Transforms a position by a pose, or a direction with 0 for `moves`. */\n"
                 "static void within_pose(const float pose[16], const float own[3], float moves, "
                 "float* out) {\n    int i;\n    for (i = 0; i < 3; ++i)\n"
                 "        out[i] = pose[i] * own[0] + pose[4 + i] * own[1] + pose[8 + i] * own[2] + "
@@ -761,9 +764,9 @@ class Writer {
         std::string up;
         for (const float part : scene_.settings.up) up += (up.empty() ? "" : ", ") + literal(part);
         return "static const double kWateringStep = " + seconds(kWateringStep) + "; /* s */\n\n" +
-               "/* `rate` kg/s onto a disc, for one step of watering; less than a gram a square "
-               "metre waits until it "
-               "is one. */\n"
+               "/* `rate` kg/s onto a disc, for one watering step. Less than 1 g/m^2 "
+               "accumulates until "
+               "it is one. */\n"
                "static FwResult pour(FwWorld* world, const float place[3], float fall, float "
                "radius, float rate,\n"
                "                     double at, double delay) {\n"
@@ -802,11 +805,12 @@ class Writer {
     std::string advanceFunctions() const {
         std::string text;
         if (parts_)
-            text += "/* Outputs as they are at that time. */\nstatic FwResult set_powers(" +
+            text += "/* Sets all outputs for that time. */\nstatic FwResult set_powers(" +
                     std::string(is_.scene) + ", double time) {\n" + powers_ +
                     "    return FW_OK;\n}\n\n";
         text +=
-            "/* What happens in the next `step` seconds; right before they are stepped or "
+            "/* Applies the events of the next `step` seconds. Call it right before they are "
+            "stepped or "
             "recorded. */\n"
             "FwResult " +
             named("advance") + "(" + is_.scene + ", float step) {\n";
@@ -835,7 +839,7 @@ class Writer {
     std::string createFunction() {
         const std::string world_ = is_.cpp ? "world" : "scene->world";
         std::string text =
-            "/* Negative: something is missing, and nothing is left behind; see "
+            "/* On failure returns a negative result and creates nothing; see "
             "fwWorld_GetLastMessage. */\nFwResult " +
             named("create") + "(FwContext* context, " + is_.folder + ", " + is_.scene + ") {\n";
         text += "    FwWorldDef def = fwDefaultWorldDef();\n    FwResult result;\n";
@@ -865,8 +869,8 @@ class Writer {
     const OutputPlan& plan_;
     const Dialect& is_;
     std::string members_, functions_, calls_, advance_, powers_, blow_;
-    std::map<ObjectId, std::string> carried_;  // by the mesh
-    // Which helpers are needed.
+    std::map<ObjectId, std::string> carried_;  // by mesh
+    // Required helper functions.
     bool reads_ = false, times_ = false, parts_ = false, pours_ = false, gusts_ = false;
 };
 

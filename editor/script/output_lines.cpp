@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-// A whole number of a line, if the line is so long.
+// Parses an optional integer word.
 bool whole(const Words& words, size_t at, const char* name, uint32_t low, uint32_t high,
            uint32_t& value, std::string& error) {
     if (at >= words.size()) return true;
@@ -62,7 +62,7 @@ bool snippet(ScriptHost& host, const Words& words, std::string& error) {
         snippetOf(plan, file.extension() == ".c" ? SnippetLanguage::C : SnippetLanguage::Cpp);
     std::error_code ignored;
     fs::create_directories(file.parent_path(), ignored);
-    error = fwtools::writeWhole(file.string(), std::as_bytes(std::span(text)));
+    error = fwtools::replaceFile(file.string(), std::as_bytes(std::span(text)));
     return error.empty();
 }
 

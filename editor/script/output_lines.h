@@ -1,4 +1,4 @@
-// Script lines that write what a scene is for: see script.h.
+// Script commands that export a scene; see script.h.
 #pragma once
 
 #include <string>
@@ -9,10 +9,10 @@
 
 namespace fwedit {
 
-// The scene of a host, to be written. It points into the host.
+// Returns the host's scene for export. It points into the host.
 OutputInput outputOf(ScriptHost& host);
 
-// False in `known`: the first word is none of these.
+// `known` false: the first word is no export command.
 bool runOutputLine(ScriptHost& host, const std::vector<std::string>& words, bool& known,
                    std::string& error);
 

@@ -191,7 +191,7 @@ bool expectField(ScriptHost& host, const Words& words, std::string& error) {
     return false;
 }
 
-// Two pictures of one size, whose values differ by no more than that in the mean, of [0, 1].
+// Compares two images of equal size by their mean difference, [0, 1].
 bool expectAlike(ScriptHost& host, const Words& words, std::string& error) {
     double limit = 0;
     fwimport::FloatPicture a, b;
@@ -216,7 +216,7 @@ bool expectAlike(ScriptHost& host, const Words& words, std::string& error) {
     return mean <= limit;
 }
 
-// The two halves of a comparison, by how much their values differ in the mean.
+// Compares the two halves of an image by their mean difference.
 bool expectHalves(ScriptHost& host, const Words& words, std::string& error) {
     double limit = 0;
     fwimport::FloatPicture picture;
@@ -285,7 +285,7 @@ bool refuse(ScriptHost& host, const std::string& line, std::string& error) {
     const size_t at = line.find("refuse") + 6;
     std::string message;
     if (runLine(host.document, std::string_view(line).substr(at), message)) {
-        error = "it was possible";
+        error = "the command succeeded";
         return false;
     }
     host.say("refused: " + message);
@@ -314,7 +314,7 @@ bool printHashes(ScriptHost& host, std::string& error) {
     return true;
 }
 
-// Until the sample shows the scene as it is here.
+// Waits until the sample shows the current scene.
 bool awaitLink(ScriptHost& host, std::string& error) {
     constexpr auto kPatience = std::chrono::seconds(60);
     const auto begun = std::chrono::steady_clock::now();
@@ -349,7 +349,7 @@ bool link(ScriptHost& host, const Words& words, std::string& error) {
     return host.link.connect(static_cast<uint16_t>(port), error);
 }
 
-// What only a script does; false in `known`: it is a command of the document.
+// Runs commands that exist only in scripts. `known` false: a document command.
 bool runOwn(ScriptHost& host, const Words& words, const std::string& line, bool& known,
             std::string& error) {
     const std::string& verb = words[0];
@@ -402,7 +402,7 @@ ScriptHost::ScriptHost(fs::path begin) : folder(std::move(begin)), document(newD
         if (!found || !context) return nullptr;
         const auto surface = paintSurfaceOf(context, *found, baseFolder(document), assets, error);
         if (!surface) say(error);
-        return surface.get();  // assets keep it
+        return surface.get();  // the assets own it
     };
     document.nodePose = [this](const Mesh& mesh, std::string_view node, Pose& pose,
                                std::string& error) {
@@ -474,7 +474,7 @@ bool writeShot(ScriptHost& host, const fs::path& file, uint32_t width, uint32_t 
 bool frameScene(ScriptHost& host, std::string& error) {
     Vec3 low, high;
     if (!sceneBounds(host.document.scene, baseFolder(host.document), host.assets, low, high)) {
-        error = "there is no mesh to look at";
+        error = "the scene has no mesh";
         return false;
     }
     Camera& camera = host.document.scene.camera;
@@ -483,7 +483,7 @@ bool frameScene(ScriptHost& host, std::string& error) {
         camera.target[k] = 0.5f * (low[k] + high[k]);
         square += (high[k] - low[k]) * (high[k] - low[k]);
     }
-    // The ball around it fills the picture's height, with room for the flames above.
+    // The bounding sphere fills the picture's height, with space for flames above.
     const float radius = 0.5f * std::sqrt(square);
     camera.distance = 1.15f * radius / std::sin(0.5f * camera.fieldOfView * 0.017453292f);
     camera.target[1] += 0.15f * radius;
@@ -502,7 +502,7 @@ bool runLineAlone(ScriptHost& host, const std::string& line, std::string& error)
     const bool done = runOwn(host, words, line, known, error);
     if (known) return done;
     if (words[0] == "import") {
-        // A file that cannot be read is no object of the scene.
+        // An unreadable file becomes no object.
         Command command;
         if (!parseCommand(host.document.scene, line, command, error)) return false;
         Mesh mesh;
@@ -547,9 +547,10 @@ bool runScript(ScriptHost& host, const fs::path& file, std::string& error) {
 int scriptMain(int count, char** words) {
     static constexpr const char* kHelp =
         "--script FILE --headless [--cache FOLDER] [--quiet]\n"
-        "  Runs the commands of FILE, one a line, without a window. Paths begin at FILE's folder.\n"
-        "  --cache FOLDER  keeps what was baked there\n"
-        "Exit code: 0 all lines worked, 1 one did not (it is named), 2 the command line is "
+        "  Runs the commands of FILE, one per line, without a window. Paths are relative to FILE's "
+        "folder.\n"
+        "  --cache FOLDER  caches baked maps there\n"
+        "Exit code: 0 success, 1 a line failed (prints it), 2 the command line is "
         "wrong.\n";
     fs::path script, cache;
     bool quiet = false;
@@ -562,11 +563,11 @@ int scriptMain(int count, char** words) {
         } else if ((word == "--script" || word == "--cache") && i + 1 < count) {
             (word == "--script" ? script : cache) = words[++i];
         } else {
-            std::fprintf(stderr, "\"%s\" is not known here\n%s", word.c_str(), kHelp);
+            std::fprintf(stderr, "\"%s\" is unknown\n%s", word.c_str(), kHelp);
             return 2;
         }
     }
-    if (script.empty()) return std::fprintf(stderr, "No script is named\n%s", kHelp), 2;
+    if (script.empty()) return std::fprintf(stderr, "No script is given\n%s", kHelp), 2;
     std::error_code ignored;
     ScriptHost host(fs::absolute(script, ignored).parent_path());
     host.assets.cache = cache;

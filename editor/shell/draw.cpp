@@ -149,7 +149,8 @@ void drawCard(ImDrawList* list, ImVec2 low, ImVec2 high) {
 }
 
 float drawKeys(ImDrawList* list, float x, float y, const char* keys, bool toTheLeft) {
-    std::vector<std::pair<std::string, bool>> caps;  // a key, and whether an alternative begins
+    std::vector<std::pair<std::string, bool>> caps;  // a key, and whether an alternative starts
+                                                     // here
     std::string key;
     bool fresh = false;
     for (const char* at = keys;; ++at) {

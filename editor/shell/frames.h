@@ -1,5 +1,5 @@
-// The editor's frames: a ring of command buffers and the output that the interface is drawn to. It
-// keeps what was drawn, so that a frame draws what changed; a window shows copies of it.
+// The editor's frames: a ring of command buffers and the output image of the interface. The output
+// persists, so a frame draws only changes; the window shows a copy.
 #pragma once
 
 #include <memory>
@@ -13,7 +13,7 @@ namespace fwui {
 struct Frame {
     VkCommandBuffer commands = VK_NULL_HANDLE;  // recording
     uint64_t index = 0;                         // from 1
-    uint64_t completed = 0;                     // the device is done with this and all before
+    uint64_t completed = 0;  // the device has finished this frame and all earlier ones
     uint32_t slot = 0;
     VkExtent2D extent{};  // pixels of the output
 };
@@ -21,22 +21,22 @@ struct Frame {
 class Frames {
  public:
     static constexpr uint32_t kSlots = 2;
-    // A window of that size if the host has windows, else pictures of it.
+    // Creates a window of that size if the host supports windows, otherwise renders pictures.
     Frames(const sample::VulkanHost& host, const char* title, VkExtent2D size);
     ~Frames();
     Frames(const Frames&) = delete;
     Frames& operator=(const Frames&) = delete;
 
-    // False: there is nothing to draw into now.
+    // Returns false if there is nothing to draw into.
     bool begin(Frame& frame);
-    // True: nothing is in the output yet. Else what the frame before left there.
+    // Returns true if the output is still empty. Otherwise it holds the previous frame.
     bool beginOutput(const Frame& frame);
-    // Ends the output, submits, shows.
+    // Ends the output pass, submits and presents.
     void end(const Frame& frame);
-    // Without a window: what the last frame drew. Waits.
+    // Headless: returns the last frame. Waits for the device.
     sample::Picture picture();
 
-    std::unique_ptr<sample::Window> window;  // null: pictures
+    std::unique_ptr<sample::Window> window;  // null: headless
     VkRenderPass outputPass = VK_NULL_HANDLE;
     [[nodiscard]] VkExtent2D extent() const { return window ? window->extent : size_; }
 

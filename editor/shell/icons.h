@@ -1,5 +1,5 @@
-// Glyphs of Material Icons (Google, Apache-2.0), as Debian's fonts-material-design-icons-iconfont
-// 6.7.0 has them, by what they mean here.
+// Glyphs of Material Icons (Google, Apache-2.0), from Debian's fonts-material-design-icons-iconfont
+// 6.7.0, named by their use here.
 #pragma once
 
 #include <imgui.h>
@@ -13,7 +13,6 @@ constexpr const char* move = "\xee\xa2\x9f";        // open_with
 constexpr const char* rotate = "\xee\x95\xb7";      // 360
 constexpr const char* scale = "\xef\x87\x8e";       // open_in_full
 constexpr const char* snap = "\xef\x80\x96";        // grid_4x4
-constexpr const char* world = "\xee\xa0\x8b";       // public
 constexpr const char* local = "\xee\xa7\xbe";       // view_in_ar
 constexpr const char* srcPoint = "\xee\x8e\x9e";    // adjust
 constexpr const char* srcDisc = "\xee\xa0\xb6";     // radio_button_unchecked
@@ -25,7 +24,6 @@ constexpr const char* water = "\xee\x9e\x98";       // water_drop
 constexpr const char* firepit = "\xee\xa9\x83";     // fireplace
 constexpr const char* mesh = "\xee\x95\xb4";        // category
 constexpr const char* crate = "\xee\x86\xa1";       // inventory_2
-constexpr const char* light = "\xee\x94\x98";       // light_mode
 constexpr const char* camera = "\xee\x81\x8b";      // videocam
 constexpr const char* group = "\xee\x8b\x87";       // folder
 constexpr const char* moon = "\xee\xbd\x84";        // bedtime
@@ -36,7 +34,6 @@ constexpr const char* lock = "\xee\xa2\x97";        // lock
 constexpr const char* unlock = "\xee\xa2\x98";      // lock_open
 constexpr const char* add = "\xee\x85\x85";         // add
 constexpr const char* trash = "\xee\xa1\xb2";       // delete
-constexpr const char* more = "\xee\x97\x94";        // more_vert
 constexpr const char* close = "\xee\x97\x8d";       // close
 constexpr const char* check = "\xee\x97\x8a";       // check
 constexpr const char* checkOn = "\xee\xa1\xac";     // check_circle
@@ -59,7 +56,6 @@ constexpr const char* toEnd = "\xee\x81\x84";       // skip_next
 constexpr const char* stepBack = "\xee\x97\x8b";    // chevron_left
 constexpr const char* stepFwd = "\xee\x97\x8c";     // chevron_right
 constexpr const char* loop = "\xee\x81\x80";        // repeat
-constexpr const char* keyframe = "\xee\xa1\xab";    // change_history
 constexpr const char* brush = "\xee\x8e\xae";       // brush
 constexpr const char* erase = "\xee\x99\xa5";       // auto_fix_off
 constexpr const char* fill = "\xee\x88\xba";        // format_color_fill
@@ -68,47 +64,30 @@ constexpr const char* smooth = "\xee\x8e\xa5";      // blur_on
 constexpr const char* gradient = "\xee\x8f\xa9";    // gradient
 constexpr const char* curve = "\xee\x9b\xa1";       // show_chart
 constexpr const char* layers = "\xee\x94\xbb";      // layers
-constexpr const char* uv = "\xee\x8f\xac";          // grid_on
 constexpr const char* symmetry = "\xee\x8f\xa8";    // flip
-constexpr const char* island = "\xee\x85\xa2";      // select_all
-constexpr const char* slope = "\xee\xa1\xab";       // change_history
-constexpr const char* curvature = "\xee\x85\xb6";   // waves
 constexpr const char* compare = "\xee\x8e\xb9";     // compare
-constexpr const char* thermo = "\xef\x81\xb6";      // thermostat
-constexpr const char* soot = "\xee\x8a\xbd";        // cloud
 constexpr const char* material = "\xee\x90\xa1";    // texture
-constexpr const char* mult = "\xee\xa7\xa4";        // speed
 constexpr const char* timer = "\xee\x90\xa5";       // timer
 constexpr const char* event = "\xee\x85\x93";       // flag
 constexpr const char* film = "\xee\xa3\x9a";        // theaters
 constexpr const char* exportTo = "\xee\x9a\xb8";    // ios_share
 constexpr const char* importFrom = "\xee\x8b\x84";  // file_download
-constexpr const char* code = "\xee\xa1\xaf";        // code
 constexpr const char* link = "\xee\x85\x97";        // link
-constexpr const char* settings = "\xee\xa2\xb8";    // settings
-constexpr const char* help = "\xee\xa3\xbd";        // help_outline
 constexpr const char* keyboard = "\xee\x8c\x92";    // keyboard
-constexpr const char* mouse = "\xee\x8c\xa3";       // mouse
-constexpr const char* target = "\xee\x95\x9c";      // my_location
 constexpr const char* frame = "\xee\x8e\xb4";       // center_focus_strong
 constexpr const char* pin = "\xef\x84\x8d";         // push_pin
 constexpr const char* question = "\xee\xa5\x8c";    // contact_support
 constexpr const char* star = "\xee\xa0\xb8";        // star
-constexpr const char* image = "\xee\x8f\xb4";       // image
-constexpr const char* memory = "\xee\x8c\xa2";      // memory
 constexpr const char* tune = "\xee\x90\xa9";        // tune
-constexpr const char* drag = "\xee\xa5\x85";        // drag_indicator
 constexpr const char* bolt = "\xee\xa8\x8b";        // bolt
-constexpr const char* openNew = "\xee\xa2\x9e";     // open_in_new
 constexpr const char* copy = "\xee\x85\x8d";        // content_copy
-constexpr const char* full = "\xee\x97\x90";        // fullscreen
 constexpr const char* smear = "\xee\x85\x95";       // gesture
 
 }  // namespace fwui::icons
 
 namespace fwui {
 
-// The atlas holds these alone.
+// The font atlas contains only these.
 constexpr ImWchar kIconRanges[] = {
     // clang-format off
     0xe000, 0xe000, 0xe002, 0xe002, 0xe034, 0xe034, 0xe037, 0xe037, 0xe040, 0xe040, 0xe044, 0xe044,

@@ -20,7 +20,7 @@ InputQueue& queueOf(GLFWwindow* window) {
     return *static_cast<InputQueue*>(owner->guest);
 }
 
-// Framebuffer pixels for a unit of GLFW's coordinates.
+// Framebuffer pixels per GLFW unit.
 float pixelsPerUnit(GLFWwindow* window) {
     int width = 0, height = 0, pixels = 0;
     glfwGetWindowSize(window, &width, &height);
@@ -53,7 +53,7 @@ void InputQueue::listen(GLFWwindow* window) {
     });
     glfwSetMouseButtonCallback(window, [](GLFWwindow* at, int button, int action, int) {
         if (button < 0 || button > 2) return;
-        // Where it was then, not where it is by the time that a slow frame comes to hear of it.
+        // Use the position at the click, not the position when a slow frame processes it.
         InputEvent event =
             pointerEvent(at, Type::kButton, queueOf(at).pointerX, queueOf(at).pointerY);
         event.code = button;
@@ -101,12 +101,12 @@ bool InputQueue::deliver() {
     while (!events_.empty()) {
         const InputEvent& event = events_.front();
         const auto code = size_t(event.code);
-        // A click belongs to where the mouse is; a wheel turns over what is under it.
+        // Clicks and wheel events refer to the current mouse position, so a move ends the batch.
         if (event.type == Type::kMove && (buttons.any() || wheel)) break;
         if (event.type == Type::kButton && (buttons.test(code) || wheel)) break;
         if (event.type == Type::kKey && keys.test(code)) break;
-        // What a key or click means is said by the modifiers that were held with it, although they
-        // may be let go of before it.
+        // Modifiers qualify the keys and clicks pressed with them, even if they are released
+        // earlier.
         if (event.type == Type::kKey && isModifier(event.code) && (pressed || wheel)) break;
         if (event.type == Type::kWheel && buttons.any()) break;
         any = true;

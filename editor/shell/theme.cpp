@@ -11,11 +11,11 @@
 namespace fwui {
 namespace {
 
-// Latin, dashes and quotes, super- and subscripts, arrows, signs of mathematics.
+// Latin, dashes and quotes, super- and subscripts, arrows, mathematical symbols.
 constexpr ImWchar kText[] = {0x20,   0x17F,  0x2010, 0x2027, 0x2030, 0x203A, 0x2070,
                              0x209C, 0x2190, 0x2199, 0x2200, 0x2265, 0};
 
-// Inter's digits differ in width: as wide as the widest, a running number does not wobble.
+// Inter's digits differ in width. Equal widths keep a running number from jittering.
 void makeDigitsEqual(ImFont* font) {
     float widest = 0;
     for (ImWchar digit = '0'; digit <= '9'; ++digit) {
@@ -62,7 +62,7 @@ bool loadFonts(std::string& error) {
     atlas->Clear();
     atlas->FontBuilderIO = ImGuiFreeType::GetBuilderForFreeType();
     atlas->FontBuilderFlags = ImGuiFreeTypeBuilderFlags_LightHinting;
-    // FreeType counts a size as ascent + descent: for Inter 1.21 em, so 15 is an em of 12.4.
+    // FreeType sizes are ascent + descent: for Inter 1.21 em, so size 15 is an em of 12.4.
     auto text = [&](const char* face, float size) {
         ImFontConfig config;
         config.OversampleH = config.OversampleV = 1;
@@ -81,7 +81,7 @@ bool loadFonts(std::string& error) {
     made.smallSemi = text("Inter-SemiBold.otf", 13.5f);
     made.heading = text("InterDisplay-SemiBold.otf", 19);
     made.title = text("InterDisplay-SemiBold.otf", 32);
-    // Letters of one width, for code; where there are none ImGui has some of its own.
+    // A monospaced font for code. If it is missing, ImGui's own serves.
     const char* mono = "/usr/share/fonts/truetype/dejavu/DejaVuSansMono.ttf";
     ImFontConfig plain;
     plain.SizePixels = dp(13);

@@ -1,5 +1,5 @@
-// The look of the editor: one scale, one set of colours, sizes and fonts. Every length in the
-// editor is a design pixel of a 1280 x 720 window; dp() makes it whole pixels of the screen.
+// The editor's theme: one scale, one set of colours, sizes and fonts. All lengths are design pixels
+// of a 1280 x 720 window; dp() converts them to whole screen pixels.
 #pragma once
 
 #define IMGUI_DEFINE_MATH_OPERATORS
@@ -17,7 +17,7 @@ struct Fonts {
 };
 
 struct Theme {
-    float scale = 1;  // pixels of the screen for a design pixel, [0.75, 4]
+    float scale = 1;  // screen pixels per design pixel, [0.75, 4]
     Fonts fonts{};
 };
 Theme& theme();
@@ -36,13 +36,13 @@ inline ImU32 faded(ImU32 color, float share) {
 }
 ImU32 mix(ImU32 a, ImU32 b, float share);
 
-// Neutral greys: the chrome has no hue, so that the picture can be judged. Blue means selected or
-// active. Orange means heat, and nothing but heat.
+// Neutral greys, so that the interface does not bias the view of the picture. Blue: selected or
+// active. Orange: heat only.
 namespace colors {
 constexpr ImU32 gap = hex(0x111214);      // between panels
 constexpr ImU32 well = hex(0x151618);     // fields, canvases, tracks
-constexpr ImU32 panel = hex(0x1E1F22);    // bodies of panels
-constexpr ImU32 header = hex(0x26272B);   // heads of panels, tool bars
+constexpr ImU32 panel = hex(0x1E1F22);    // panel bodies
+constexpr ImU32 header = hex(0x26272B);   // panel headers, toolbars
 constexpr ImU32 raised = hex(0x2A2C31);   // cards, menus, dialogs
 constexpr ImU32 control = hex(0x32343A);  // buttons
 constexpr ImU32 hover = hex(0x3D4047);
@@ -53,9 +53,9 @@ constexpr ImU32 title = hex(0xF2F3F5);
 constexpr ImU32 text = hex(0xD3D5DA);
 constexpr ImU32 dim = hex(0x9DA1AA);          // labels, units, hints
 constexpr ImU32 off = hex(0x666A73);          // disabled
-constexpr ImU32 accent = hex(0x62ABFF);       // outline of what is selected, links
+constexpr ImU32 accent = hex(0x62ABFF);       // outline of the selection, links
 constexpr ImU32 accentFill = hex(0x2A69B0);   // the primary button, the active tool
-constexpr ImU32 accentHover = hex(0x3479C6);  // the same, under the mouse
+constexpr ImU32 accentHover = hex(0x3479C6);  // accentFill when hovered
 constexpr ImU32 accentSoft = hex(0x62ABFF, 46);
 constexpr ImU32 heat = hex(0xFF9445);
 constexpr ImU32 wet = hex(0x46B4D8);
@@ -74,9 +74,10 @@ constexpr float timeline = 144, left = 216, right = 296;
 }  // namespace metrics
 
 // Loads the fonts of the Debian packages fonts-inter and fonts-material-design-icons-iconfont at
-// the theme's scale into ImGui's atlas and builds it. False: `error` names file and package.
+// the theme's scale and builds ImGui's atlas. On failure returns false; `error` has the file and
+// the package.
 bool loadFonts(std::string& error);
-// Puts colours and sizes into ImGui's style. Again after the scale has changed.
+// Sets ImGui's colours and sizes. Call it again after a change of scale.
 void applyStyle();
 
 }  // namespace fwui

@@ -16,9 +16,9 @@ namespace {
 #include "ui.vert.h"
 
 constexpr uint32_t kMostTextures = 128;
-constexpr uint32_t kClearCorners = 4, kClearIndices = 6;  // of what clears a part
-constexpr size_t kMostChanges = 12;                       // parts that are drawn apart
-constexpr float kJoined = 1.3f;  // parts become one that is up to so much larger than both
+constexpr uint32_t kClearCorners = 4, kClearIndices = 6;  // geometry that clears a part
+constexpr size_t kMostChanges = 12;                       // separate parts to redraw
+constexpr float kJoined = 1.3f;  // two parts merge if the union is at most this factor larger
 
 struct Push {
     float scale[2], shift[2];
@@ -81,7 +81,7 @@ void UiRenderer::uploadFonts() {
     unsigned char* pixels = nullptr;
     int width = 0, height = 0;
     atlas->GetTexDataAsRGBA32(&pixels, &width, &height);
-    // White with coverage in alpha, so the order of the colours is free.
+    // White with coverage in alpha, so the channel order is irrelevant.
     sample::ImageRequest request;
     request.width = uint32_t(width);
     request.height = uint32_t(height);
@@ -90,7 +90,7 @@ void UiRenderer::uploadFonts() {
     fontTexture_ = addTexture(fonts_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     atlas->SetTexID(fontTexture_);
     atlas->ClearTexData();
-    before_.clear();  // what it shows looks different
+    before_.clear();  // the texture content changed
 }
 
 void* UiRenderer::addTexture(VkImageView view, VkImageLayout layout) {
@@ -107,11 +107,11 @@ void UiRenderer::removeTexture(void* texture) {
 
 void UiRenderer::reserve(sample::Buffer& buffer, VkDeviceSize size, VkBufferUsageFlags usage) {
     if (buffer.size >= size) return;
-    host_.destroy(buffer);  // its slot's last frame is done
+    host_.destroy(buffer);  // the slot's last frame has finished
     buffer = host_.createBuffer(size + size / 2, usage, true);
 }
 
-// ---- what differs from the frame before
+// ---- changes from the previous frame
 
 void UiRenderer::addChange(Part part) {
     if (part.x0 >= part.x1 || part.y0 >= part.y1) return;
@@ -120,7 +120,7 @@ void UiRenderer::addChange(Part part) {
         return Part{std::min(a.x0, b.x0), std::min(a.y0, b.y0), std::max(a.x1, b.x1),
                     std::max(a.y1, b.y1)};
     };
-    // A part that grew may reach others.
+    // A part that grew may overlap others.
     for (size_t i = 0; i < changes_.size();) {
         const Part joined = both(changes_[i], part);
         if (area(joined) > kJoined * (area(changes_[i]) + area(part))) {
@@ -142,7 +142,7 @@ void UiRenderer::addChange(Part part) {
     least = both(least, part);
 }
 
-// The bounds of three corners within what the command shows.
+// The bounds of a triangle, clipped to the command's rectangle.
 UiRenderer::Part UiRenderer::boundsOf(const ImDrawCmd& command, const ImVec2& a, const ImVec2& b,
                                       const ImVec2& c) const {
     const ImVec4& clip = command.ClipRect;
@@ -161,7 +161,7 @@ UiRenderer::Part UiRenderer::boundsOf(const ImDrawCmd& command, const ImVec2& a,
     return part;
 }
 
-// What a command draws, its triangles' bounds together.
+// Records a command and the bounds of its triangles.
 void UiRenderer::addCommand(const ImDrawCmd& command, const ImDrawVert* vertices,
                             const ImDrawIdx* indices) {
     const ImDrawVert* from = vertices + command.VtxOffset;
@@ -288,8 +288,8 @@ void UiRenderer::drawChanges(VkCommandBuffer commands, uint32_t slotIndex, const
     for (uint32_t i = 0; i < changes_.size(); ++i) drawPart(commands, data, i, clears);
 }
 
-// All that shows in a part of the output, over black: what is half seen lies over that, not over
-// itself of a frame before or of a part that this one crosses.
+// Draws everything in a part of the output, over black, so that translucent content never blends
+// with its own previous frame or with an overlapping part.
 void UiRenderer::drawPart(VkCommandBuffer commands, const ImDrawData& data, uint32_t number,
                           bool clears) {
     const Part& part = changes_[number];

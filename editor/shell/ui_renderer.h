@@ -1,6 +1,6 @@
-// Draws Dear ImGui's lists with Vulkan: one pipeline, and a descriptor set for each picture, which
-// is what an ImTextureID is here. Draws what differs from the frame before: most of an interface
-// stands still while a scene moves. Knows no window.
+// Draws Dear ImGui's lists with Vulkan: one pipeline, and a descriptor set per texture, which is an
+// ImTextureID here. Draws only changes from the previous frame, since most of an interface is
+// static while a scene moves. Independent of windows.
 #pragma once
 
 #include <imgui.h>
@@ -11,35 +11,35 @@
 
 namespace fwui {
 
-// Of pictures that are shown often: as windows have it. With one mip no level is looked for.
+// The format of windows, for textures that are shown often. A single mip avoids mip selection.
 constexpr VkFormat kUiFormat = VK_FORMAT_B8G8R8A8_UNORM;
 
 class UiRenderer {
  public:
-    // `pass`: one colour attachment of display values. `slots`: frames in flight.
+    // `pass`: one colour attachment with display values. `slots`: frames in flight.
     UiRenderer(const sample::VulkanHost& host, VkRenderPass pass, uint32_t slots);
     ~UiRenderer();
     UiRenderer(const UiRenderer&) = delete;
     UiRenderer& operator=(const UiRenderer&) = delete;
 
-    // Uploads ImGui's atlas; again after fonts were built anew. Waits for the device.
+    // Uploads ImGui's atlas. Call it again after rebuilding fonts. Waits for the device.
     void uploadFonts();
-    // A picture for ImGui::Image: an ImTextureID. Drawn with linear filtering, and anew in each
-    // frame, as what is in it may be another. Null: all 128 are taken.
+    // Registers a texture for ImGui::Image and returns its ImTextureID. Linear filtering. Redrawn
+    // every frame, because its content may change. Returns null if all 128 slots are in use.
     void* addTexture(VkImageView view, VkImageLayout layout);
-    // The device is done with what showed it.
+    // The device must have finished all frames that show it.
     void removeTexture(void* texture);
-    // In the pass, outside nothing: sets its own viewport and scissors. `whole`: the output holds
-    // nothing yet; else it is as the last call left it.
+    // Draws inside the pass and sets its own viewport and scissors. `whole`: the output is empty;
+    // false: it holds the previous call's result.
     void draw(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data, bool whole);
-    // The same, all of it, over what the pass has drawn so far: a game's.
+    // Draws everything over the pass's current content, for a game's overlay.
     void drawOver(VkCommandBuffer commands, uint32_t slot, const ImDrawData& data);
 
  private:
-    struct Part {  // of the output, in pixels
+    struct Part {  // a rectangle of the output, in pixels
         int32_t x0 = 0, y0 = 0, x1 = 0, y1 = 0;
     };
-    struct List {  // of a frame, kept
+    struct List {  // copy of a frame's list
         std::vector<ImDrawVert> vertices;
         std::vector<ImDrawIdx> indices;
         std::vector<ImDrawCmd> commands;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kToolSide = 28, kTipDelay = 0.45f;
 
-// The one field that is typed into, and the one that is dragged: there is one mouse.
+// The field being typed into and the field being dragged. There is only one mouse.
 struct FieldState {
     ImGuiID typing = 0;
     bool fresh = false;
@@ -36,7 +36,7 @@ constexpr UnitScale kUnits[] = {{"mm", "m", 0.001f}, {"cm", "m", 0.01f},       {
                                 {"ms", "s", 0.001f}, {"W", "kW", 0.001f},      {"MW", "kW", 1000},
                                 {"m", "mm", 1000},   {"km/h", "m/s", 1 / 3.6f}};
 
-// A sum of products of numbers, read as far as it goes.
+// Parses a sum of products as far as possible.
 struct Sum {
     const char* at;
     bool good = true;
@@ -149,7 +149,7 @@ ImDrawList* beginPanel(const char* name, const Rect& rect, ImU32 fill, bool scro
 }
 
 void endPanel() {
-    // What goes on below the edge fades out there.
+    // Content that continues below the edge fades out there.
     const ImGuiWindow* window = ImGui::GetCurrentWindow();
     if (!(window->Flags & ImGuiWindowFlags_NoScrollbar) && window->Scroll.y < window->ScrollMax.y) {
         const ImU32 fill =
@@ -212,7 +212,7 @@ bool hit(const char* id, ImVec2 low, ImVec2 size, bool* hovered, bool* held) {
 }
 
 bool& asking() {
-    static bool on = false;  // there is one mouse
+    static bool on = false;  // global, since there is one mouse
     return on;
 }
 
@@ -503,19 +503,19 @@ Edit number(const char* id, ImVec2 at, ImVec2 size, float& value, const NumberLo
         value = *standard;
         edit = Edit::kTyped;
     }
-    // Measured from the press, not summed: exact at any frame rate.
+    // Measured from the press instead of summed up, which is exact at any frame rate.
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActivated()) {
         state.before = value;
         state.pressX = io.MousePos.x;
         state.moved = false;
     }
-    const float way = io.MousePos.x - state.pressX;
-    if (held && (state.moved || std::fabs(way) > dp(3))) {
+    const float dragged = io.MousePos.x - state.pressX;
+    if (held && (state.moved || std::fabs(dragged) > dp(3))) {
         state.moved = true;
         const float worth =
             ranged ? (look.highest - look.lowest) / size.x : look.step / theme().scale;
-        float wanted = state.before + way * worth * (io.KeyShift ? 0.1f : 1.0f);
+        float wanted = state.before + dragged * worth * (io.KeyShift ? 0.1f : 1.0f);
         if (io.KeyCtrl && look.snap > 0) wanted = std::round(wanted / look.snap) * look.snap;
         if (ranged) wanted = std::clamp(wanted, look.lowest, look.highest);
         if (ImGui::IsKeyPressed(ImGui::GetKeyIndex(ImGuiKey_Escape)) || io.MouseDown[1]) {

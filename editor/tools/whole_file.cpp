@@ -17,7 +17,7 @@ std::string readWhole(const std::string& path, std::vector<std::byte>& bytes) {
     return {};
 }
 
-std::string writeWhole(const std::string& path, std::span<const std::byte> bytes) {
+std::string replaceFile(const std::string& path, std::span<const std::byte> bytes) {
     const std::string fresh = path + ".new";
     {
         std::ofstream file(fresh, std::ios::binary);

@@ -1,4 +1,4 @@
-// Files read and written whole: a tool that is cut off leaves the old file.
+// Reads and writes whole files atomically, so an interrupted tool keeps the old file.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -7,8 +7,8 @@
 
 namespace fwtools {
 
-// Empty, or what went wrong, with the file's name.
+// Returns an empty string, or the problem with the file's name.
 [[nodiscard]] std::string readWhole(const std::string& path, std::vector<std::byte>& bytes);
-[[nodiscard]] std::string writeWhole(const std::string& path, std::span<const std::byte> bytes);
+[[nodiscard]] std::string replaceFile(const std::string& path, std::span<const std::byte> bytes);
 
 }  // namespace fwtools

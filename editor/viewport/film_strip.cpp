@@ -47,7 +47,7 @@ void FilmStrip::take(const fwui::Frame& frame, const SceneTarget& target, float 
     if (distance >= distance_[index]) return;
     distance_[index] = distance;
 
-    // The whole height or the whole width, whichever the picture has less of.
+    // Full height or full width, whichever limits.
     const VkExtent2D from = target.extent();
     constexpr float kAspect = float(kWidth) / float(kHeight);
     const auto width = std::min(int32_t(from.width), int32_t(float(from.height) * kAspect));

@@ -1,5 +1,5 @@
-// Small pictures of the burn along its timeline, taken from the viewport as it runs by: for each
-// stretch of time the one nearest to its middle.
+// Thumbnails of the burn along its timeline, copied from the viewport during playback. Each
+// interval keeps the picture nearest to its centre.
 #pragma once
 
 #include <imgui.h>
@@ -13,20 +13,20 @@ namespace fwview {
 
 class FilmStrip {
  public:
-    static constexpr uint32_t kPictures = 16, kWidth = 192, kHeight = 108;  // px, of each
+    static constexpr uint32_t kPictures = 16, kWidth = 192, kHeight = 108;  // px, per picture
     FilmStrip(const sample::VulkanHost& host, fwui::UiRenderer& ui);
     ~FilmStrip();
     FilmStrip(const FilmStrip&) = delete;
     FilmStrip& operator=(const FilmStrip&) = delete;
 
     void forget();
-    // What `target` shows, of a moment at `share` of the timeline, if none is nearer to the middle
-    // of its stretch. After SceneTarget::end.
+    // Copies the picture of `target` at `share` of the timeline, if it is nearest to its interval's
+    // centre so far. Call it after SceneTarget::end.
     void take(const fwui::Frame& frame, const SceneTarget& target, float share);
     [[nodiscard]] bool has(uint32_t index) const { return distance_[index] < 1; }
     [[nodiscard]] bool empty() const;
     [[nodiscard]] void* texture() const { return texture_; }
-    // Of a picture in the texture, cut to that width over height about its middle.
+    // Texture coordinates of a picture, cropped around its centre to `aspect`.
     void place(uint32_t index, float aspect, ImVec2& low, ImVec2& high) const;
 
  private:
@@ -34,7 +34,7 @@ class FilmStrip {
     fwui::UiRenderer& ui_;
     sample::Image pictures_;
     void* texture_ = nullptr;
-    std::array<float, kPictures> distance_{};  // from the middle, in stretches; 1: none is there
+    std::array<float, kPictures> distance_{};  // from the centre, in intervals; 1: no picture
 };
 
 }  // namespace fwview

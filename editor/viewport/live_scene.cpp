@@ -14,8 +14,8 @@
 namespace fwview {
 namespace {
 
-constexpr float kSeekStep = 1.0f / 8;  // s of the fire in a frame that hurries
-constexpr uint32_t kSeekSteps = 4;     // such steps in one frame of the screen
+constexpr float kSeekStep = 1.0f / 8;  // s of burn time per catch-up step
+constexpr uint32_t kSeekSteps = 4;     // such steps per frame
 constexpr size_t kMostPins = 9;
 
 std::filesystem::path cacheFolder() {
@@ -26,7 +26,7 @@ std::filesystem::path cacheFolder() {
     return {};
 }
 
-// Of the values of BurnMemory::agesAt: a front that glows, embers, char.
+// Palette for BurnMemory::agesAt: glowing front, embers, char.
 const Palette& burntPalette() {
     static const Palette palette = [] {
         constexpr fwui::MapStop kStops[] = {{0, fwui::hex(0xFFE2A0)},
@@ -53,7 +53,7 @@ std::string lastMessage(FwWorld* world) {
     return text;
 }
 
-// What a new world must be made for. Names, marks and the camera change no fire.
+// Returns the parts that require a new world. Names, marks and the camera do not.
 fwedit::Scene withoutLabels(const fwedit::Scene& scene, bool paints) {
     fwedit::Scene plain = scene;
     if (paints) plain.layers.clear();
@@ -93,12 +93,12 @@ LiveScene::LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::U
             return;
         char text[512] = "";
         fwContext_GetLastMessage(context, text, sizeof text);
-        throw sample::Failure(std::string("The viewport cannot be drawn: ") + text);
+        throw sample::Failure(std::string("The viewport cannot be rendered: ") + text);
     });
 }
 
 void LiveScene::awaitPipelines() {
-    if (pipelines_.valid()) pipelines_.get();  // throws if they cannot be made
+    if (pipelines_.valid()) pipelines_.get();  // rethrows their failure
 }
 
 LiveScene::~LiveScene() {
@@ -165,7 +165,7 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
         moveDragged(document);
         return;
     }
-    if (restWork_.valid()) return;  // it has the assets
+    if (restWork_.valid()) return;  // the background uses the assets
     seen_ = document.revision;
     stale_ = true;
     const bool sameScene = withoutLabels(document.scene, paints) == withoutLabels(scene_, paints);
@@ -178,7 +178,7 @@ void LiveScene::follow(const fwedit::Document& document, bool paints) {
     scene_ = document.scene;
     images_ = document.images;
     if (same && !restart_) return;
-    // A change is seen at the moment that is looked at.
+    // A change shows at the current time.
     if (!restart_ && burn_) wanted_ = std::max(wanted_, burn_->time);
     restart_ = false;
     folder_ = document.file.empty() ? std::filesystem::current_path()
@@ -196,7 +196,7 @@ void LiveScene::adopt(Made made) {
     stale_ = true;
     stopped_ = stop_;
     if (stopped_) {
-        vkDeviceWaitIdle(host_.device);  // what was made of it goes
+        vkDeviceWaitIdle(host_.device);  // its results are dropped
         return;
     }
     if (!made.burn) {
@@ -207,15 +207,15 @@ void LiveScene::adopt(Made made) {
     report_.insert(report_.end(), made.burn->report.begin(), made.burn->report.end());
     for (const fwedit::BurnMesh& mesh : made.burn->meshes) {
         const auto isOfMesh = [&](const fwedit::BurnMesh& at) { return at.model == mesh.model; };
-        if (burn_ && std::ranges::any_of(burn_->meshes, isOfMesh)) continue;  // said before
+        if (burn_ && std::ranges::any_of(burn_->meshes, isOfMesh)) continue;  // already reported
         report_.insert(report_.end(), mesh.model->notes.begin(), mesh.model->notes.end());
     }
     burn_ = std::move(made.burn);
-    // The background has the assets; what it made is here.
+    // The background owns the assets; its results are here.
     burn_->surfaceOf = [this](const fwedit::Mesh& mesh) { return surfaceOf(mesh.id); };
     for (WhyCard* card : cards()) {
         card->asks = false;
-        card->time = -1e9;  // what it knows is of another fire
+        card->time = -1e9;  // the answer is about another fire
         card->error.clear();
         card->texelOf = nullptr;
     }
@@ -227,13 +227,13 @@ void LiveScene::adopt(Made made) {
     setUpStudio();
 }
 
-// The same scene before the fire, and the texels of its meshes, once the burn itself is there.
+// Prepares the unburnt scene and the texels of its meshes, once the burn itself is ready.
 void LiveScene::startRest() {
     if (!restWanted_ || restWork_.valid() || !burn_) return;
     restWanted_ = false;
     restWork_ = std::async(std::launch::async, [this, scene = burn_->scene, folder = folder_] {
         Rest made;
-        std::string ignored;  // what is left out was told by the burn
+        std::string ignored;  // the burn already reported skipped objects
         made.burn = fwedit::createBurn(context_, scene, {}, folder, assets_, ignored);
         if (!made.burn) return made;
         for (const fwedit::BurnPart& part : made.burn->parts) {
@@ -252,7 +252,7 @@ void LiveScene::startRest() {
 void LiveScene::adoptRest(Rest made) {
     vkDeviceWaitIdle(host_.device);
     rest_ = std::move(made);
-    // So that the first move of a hand waits for none of it.
+    // Prepare, so that the first scrub does not wait.
     for (const auto& [mesh, surface] : rest_.surfaces) burnt_.prepare(mesh, surface);
     restFresh_ = rest_.burn != nullptr;
     stale_ = true;
@@ -263,7 +263,7 @@ std::shared_ptr<const fwedit::PaintSurface> LiveScene::surfaceOf(fwedit::ObjectI
     return found == rest_.surfaces.end() ? nullptr : found->second;
 }
 
-// The backdrop stands below the meshes and catches their shadow.
+// The backdrop lies below the meshes and receives their shadow.
 void LiveScene::setUpStudio() {
     std::string key;
     for (const fwedit::BurnMesh& mesh : burn_->meshes) {
@@ -275,7 +275,7 @@ void LiveScene::setUpStudio() {
         }
     }
     for (const fwedit::Flame& flame : burn_->scene.flames) {
-        if (!burn_->meshes.empty()) break;  // it is as large as they are
+        if (!burn_->meshes.empty()) break;  // its size follows the meshes
         const fwedit::Vec3 place = fwedit::worldPosition(burn_->scene, flame.id);
         const float values[] = {place[0], place[1], place[2], flame.diameter, flame.power};
         key.append(reinterpret_cast<const char*>(values), sizeof values);
@@ -316,11 +316,11 @@ void LiveScene::endCompare() {
     stale_ = true;
 }
 
-bool LiveScene::otherLags() const {
+bool LiveScene::isOtherBehind() const {
     return compared_ && (!other_ || (burn_ && std::fabs(other_->time - burn_->time) > 1e-4));
 }
 
-// Its world is made, and made again where it is beyond the time and has kept no moment before it.
+// Creates its world, and recreates it if it is past the time without an earlier snapshot.
 void LiveScene::followOther() {
     if (!compared_ || otherWork_.valid() || restWork_.valid() || !burn_) return;
     if (other_ &&
@@ -348,7 +348,7 @@ void LiveScene::adoptOther(Made made) {
     stale_ = true;
 }
 
-// After the burn itself: to its time, or towards it.
+// Steps towards the time of the burn itself. Call it after that one.
 void LiveScene::stepOther(const FwVulkanFrame& frame) {
     FwVulkanFrame described = frame;
     described.deltaTime =
@@ -368,7 +368,7 @@ VkViewport LiveScene::half(bool right) const {
     return viewport;
 }
 
-// While a hand drags, the world that is there shows where things go.
+// During a drag, the current world shows the moved objects.
 void LiveScene::moveDragged(const fwedit::Document& document) {
     if (!burn_) return;
     for (const fwedit::BurnMesh& mesh : burn_->meshes) {
@@ -397,15 +397,15 @@ void LiveScene::seek(double time, bool held) {
     wanted_ = std::max(0.0, time);
     previewed_ = false;
     if (!burn_) return;
-    if (held && rest_.burn && !comparing() && memory_.knows(wanted_)) {
-        (previews() ? laid_ : stale_) = true;
+    if (held && rest_.burn && !isComparing() && memory_.isKnown(wanted_)) {
+        (isPreviewing() ? laid_ : stale_) = true;
         preview_ = wanted_;
         previewed_ = true;
         preview();
         return;
     }
     stale_ = true;
-    // Without a preview the last picture stays until the hand lets go.
+    // Without a preview, the last picture stays until the release.
     if (held && wanted_ + 1e-4 < burn_->time) {
         wanted_ = 0;
         return;
@@ -413,7 +413,7 @@ void LiveScene::seek(double time, bool held) {
     if (wanted_ + 1e-4 < burn_->time && !goBack()) restart_ = true;
 }
 
-// To the last moment before the wished one that was kept.
+// Restores the last snapshot before the target time.
 bool LiveScene::goBack() { return memory_.restore(*burn_, wanted_); }
 
 void LiveScene::preview() {
@@ -473,15 +473,15 @@ std::vector<WhyCard*> LiveScene::cards() {
     return all;
 }
 
-bool LiveScene::asks() const {
+bool LiveScene::hasOpenQuestion() const {
     return why.asks ||
            std::any_of(pins.begin(), pins.end(), [](const auto& pin) { return pin.asks; });
 }
 
-// One question at a time, the open card's first.
+// One query at a time; the open card has priority.
 void LiveScene::followWhy() {
-    constexpr double kAskAgain = 0.5;  // s of the fire
-    if (!burn_ || previews()) return;
+    constexpr double kAskAgain = 0.5;  // s of burn time
+    if (!burn_ || isPreviewing()) return;
     const std::vector<WhyCard*> all = cards();
     for (WhyCard* card : all)
         if (card->asks) return pollWhy(*card);
@@ -499,14 +499,14 @@ void LiveScene::followWhy() {
 
 void LiveScene::pollWhy(WhyCard& card) {
     ++card.waited;
-    // Asked anew, the old answer stands until the whole new one is there.
+    // While a query repeats, the old answer stays until the new one is complete.
     fwedit::WhyAnswer& answer = card.answered ? card.next : card.answer;
     const bool knew = card.question.pointKnown;
     const FwResult result = fwedit::pollWhy(*burn_, images_, card.question, answer, card.error);
     if (!card.answered && card.question.pointKnown && !knew) {
         card.answered = result >= 0;
         card.frames = card.waited - 1;
-        stale_ = true;  // the card is drawn with the next frame
+        stale_ = true;  // the card shows with the next frame
     }
     if (result == FW_NOT_READY) return;
     if (&answer == &card.next && result == FW_OK) card.answer = card.next;
@@ -522,30 +522,30 @@ FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame
     return result;
 }
 
-// The picture below is the one that is kept: only what lies over it is to be drawn.
+// The kept picture is current, so only the overlays must be drawn.
 bool LiveScene::canLayOver(bool moved) const {
-    return kept_ && laid_ && !stale_ && !moved && previews() && !seeking();
+    return kept_ && laid_ && !stale_ && !moved && isPreviewing() && !isSeeking();
 }
 
 void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime) {
     if (!burn_ || !studio_ || target.extent().width == 0) return;
-    if (preview_ >= 0 && !previewed_ && !seeking()) {
+    if (preview_ >= 0 && !previewed_ && !isSeeking()) {
         preview_ = -1;
         stale_ = true;
     }
-    const bool rests = shown == Shown::kRest || previews();
+    const bool rests = shown == Shown::kRest || isPreviewing();
     if (rests && !rest_.burn) return;
     const bool moved = !(camera == camera_);
-    const bool hurries = seeking();
-    const bool compares = comparesNow() && !rests;
-    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !hurries && !memory_.waits() && !asks() &&
-        !(compares && otherLags()))
+    const bool catchesUp = isSeeking();
+    const bool compares = showsComparison() && !rests;
+    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !catchesUp && !memory_.isPending() &&
+        !hasOpenQuestion() && !(compares && isOtherBehind()))
         return;
     const bool fresh = stale_, laysOver = canLayOver(moved);
     stale_ = laid_ = false;
     camera_ = camera;
 
-    fwedit::Scene seen;  // viewOf reads these alone
+    fwedit::Scene seen;  // viewOf reads only these fields
     seen.settings = scene_.settings;
     if (shown == Shown::kRest) seen.settings.daylight = fwedit::DaylightDay;
     seen.camera = camera;
@@ -555,9 +555,9 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     described.frameIndex = frame.index;
     described.completedFrameIndex = frame.completed;
     float step = deltaTime;
-    if (hurries) {
+    if (catchesUp) {
         step = std::min(float(wanted_ - burn_->time), kSeekStep * kSeekSteps);
-    } else if (!preparing() && !previews()) {
+    } else if (!isPreparing() && !isPreviewing()) {
         wanted_ = 0;
     }
     view = fwedit::viewOf(seen, target.extent().width / (compares ? 2 : 1), target.extent().height,
@@ -567,11 +567,11 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
 
     FwResult outside = FW_OK;
     memory_.beforeFrame(*burn_, step);
-    if (!rests || step > 0 || memory_.waits() || asks())
+    if (!rests || step > 0 || memory_.isPending() || hasOpenQuestion())
         outside = recordOutside(*burn_, described, view);
     memory_.afterFrame(*burn_);
     if (compares) {
-        fwedit::Scene other;  // in its own light
+        fwedit::Scene other;  // with its own light
         other.settings = other_->scene.settings;
         other.camera = camera;
         otherView_ =
@@ -585,10 +585,10 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     }
     const bool warms = restFresh_;
     restFresh_ = false;
-    burn_->scene.camera = camera;  // sides are said as the eye has them
+    burn_->scene.camera = camera;  // directions in answers are relative to the camera
     followWhy();
-    // A preview stays as it is while the burn behind it runs on to its time.
-    if (previews() && hurries && !moved && !fresh) return;
+    // A preview stays while the burn catches up behind it.
+    if (isPreviewing() && catchesUp && !moved && !fresh) return;
     overlay.upload(frame);
     burnt_.upload(frame);
     if (laysOver) {
@@ -609,11 +609,11 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     target.begin(frame);
     for (const Half& part : halves) drawSolids(frame, part, described);
     target.beginFlames(frame);
-    target.lendDepth(described);
+    target.setSampledDepth(described);
     for (const Half& part : halves)
         if (part.ready) recordInside(part, described, flames_);
     target.end(frame);
-    kept_ = previews();
+    kept_ = isPreviewing();
     if (kept_) target.keep(frame);
     if (!rests && !compares)
         film.take(frame, target,
@@ -628,7 +628,7 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (count > 0) milliseconds_ = sum;
 }
 
-// The burn's surfaces and what it stands in.
+// Draws the burn's surfaces and its surroundings.
 void LiveScene::drawSolids(const fwui::Frame& frame, const Half& part,
                            const FwVulkanFrame& described) {
     FwLight lights[8];
@@ -651,10 +651,10 @@ void LiveScene::recordInside(const Half& part, const FwVulkanFrame& described, F
 }
 
 void LiveScene::drawOverlays(const fwui::Frame& frame) {
-    if (!previews() && laidOver.empty()) return;
+    if (!isPreviewing() && laidOver.empty()) return;
     const glm::mat4 seen = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
     target.beginOver(frame);
-    if (comparesNow()) {
+    if (showsComparison()) {
         const VkViewport right = half(true);
         vkCmdSetViewport(frame.commands, 0, 1, &right);
     }
@@ -662,15 +662,15 @@ void LiveScene::drawOverlays(const fwui::Frame& frame) {
         const fwedit::Mesh* object = fwedit::findIn(scene_.meshes, mesh.id);
         if (!object || object->hidden) continue;
         const glm::mat4 clip = seen * poseOf(*object);
-        if (previews()) burnt_.draw(frame, mesh.id, clip, 1);
+        if (isPreviewing()) burnt_.draw(frame, mesh.id, clip, 1);
         if (std::find(laidOver.begin(), laidOver.end(), mesh.id) != laidOver.end())
             overlay.draw(frame, mesh.id, clip, 1);
     }
     target.endOver(frame);
 }
 
-// A preview's maps drawn once where none is seen: a driver may build the last of a pipeline at its
-// first draw, and a hand would wait for it.
+// Draws a preview's maps once off screen: a driver may finish a pipeline at its first draw, which
+// would delay the first scrub.
 void LiveScene::warmPreview(const fwui::Frame& frame) {
     target.beginOver(frame);
     for (const auto& [mesh, surface] : rest_.surfaces) burnt_.draw(frame, mesh, glm::mat4(0), 0);

@@ -1,5 +1,5 @@
-// The open scene, burning: a world made of the document, stepped and drawn into a picture of the
-// interface. Made anew in the background whenever the document changes; the last picture stays.
+// The open scene as a burning world, stepped and drawn into a texture of the interface. Each
+// document change rebuilds it in the background while the last picture stays.
 #pragma once
 
 #include <imgui.h>
@@ -25,112 +25,117 @@ namespace fwview {
 
 enum class Shown : uint32_t {
     kBurn,
-    kRest  // as it is before anything burns, without flames: to paint on
+    kRest  // unburnt and without flames, for painting
 };
 
-// A spot of the surface and what the burn says of it.
+// A spot on the surface and the burn's answer for it.
 struct WhyCard {
     bool open = false, answered = false, asks = false;
-    uint32_t frames = 0;  // after the one it was asked in, until it was answered
+    uint32_t frames = 0;  // frames from the query to the answer
     fwedit::ObjectId mesh = 0;
     glm::vec3 position{0};  // m, world
-    double time = 0;        // s that the answer is of
+    double time = 0;        // s, time of the answer
     fwedit::WhyQuestion question;
-    fwedit::WhyAnswer answer, next;  // next: on its way
+    fwedit::WhyAnswer answer, next;  // next: pending
     std::string error;
-    uint32_t waited = 0;  // frames since it was asked
-    // Of the burn map, nearest to the place; found when it is first needed.
+    uint32_t waited = 0;  // frames since the query
+    // Nearest burn map texel; resolved on first use.
     size_t texel = 0;
     const fwedit::PaintSurface* texelOf = nullptr;
 };
 
 class LiveScene {
  public:
-    // The context is lent the host's device and outlives this.
+    // The context uses the host's device and must outlive this object.
     LiveScene(const sample::VulkanHost& host, FwContext* context, fwui::UiRenderer& ui);
     ~LiveScene();
     LiveScene(const LiveScene&) = delete;
     LiveScene& operator=(const LiveScene&) = delete;
 
-    // Once a frame, before the panels: takes a finished world over, starts the next if the document
-    // has changed and no drag is under way; while one is, things move in the world that is there.
-    // `paints`: what only layers of paint change waits until the page of the burn is there again.
+    // Call it once per frame before the panels. Adopts a finished world and starts the next one if
+    // the document changed. During a drag, objects move in the current world instead. `paints`:
+    // changes of paint layers wait until the page that shows the burn is active.
     void follow(const fwedit::Document& document, bool paints = false);
-    void forget();  // another document: nothing of the old one stays
-    // Goes to that time: forward by running on, back from the nearest moment that was kept. While
-    // a hand holds it, a time that was simulated before is previewed at once; see BurnMemory.
+    void forget();  // drops all state of the previous document
+    // Goes to that time: forward by simulation, backward from the nearest snapshot. `held`: a
+    // simulated time is previewed at once; see BurnMemory.
     void seek(double time, bool held = false);
-    // Steps by `deltaTime` s (0: stands still) and draws, unless the picture would be the same.
+    // Steps by `deltaTime` s (0: paused) and draws, unless the picture would be equal.
     void record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime);
-    // Nothing of what is seen would change: no frame is needed for its sake.
-    [[nodiscard]] bool settled() const {
-        return !preparing() && !seeking() && !stale_ && !laid_ && !memory_.waits() &&
-               overlay.settled() && !asks() && !otherLags();
+    // Nothing visible would change, so no frame is necessary.
+    [[nodiscard]] bool isSettled() const {
+        return !isPreparing() && !isSeeking() && !stale_ && !laid_ && !memory_.isPending() &&
+               overlay.isSettled() && !hasOpenQuestion() && !isOtherBehind();
     }
-    // Beside this burn another one of the scene as it was: the picture is in two halves, the other
-    // one at the left, and both are at one time. It stays as it is while the document changes.
+    // Compares with another scene: the picture has two halves at the same time, the other scene on
+    // the left. The other scene ignores document changes.
     void compareWith(const fwedit::Scene& scene, const fwedit::PaintImages& images,
                      const std::filesystem::path& folder);
     void endCompare();
-    [[nodiscard]] bool comparing() const { return compared_ != nullptr; }
-    // Both halves are there; until then the picture is the burn alone.
-    [[nodiscard]] bool comparesNow() const { return other_ && shown == Shown::kBurn; }
-    // Pixels of the picture.
+    [[nodiscard]] bool isComparing() const { return compared_ != nullptr; }
+    // Both halves are ready. Until then the picture shows this burn alone.
+    [[nodiscard]] bool showsComparison() const { return other_ && shown == Shown::kBurn; }
+    // Size of the picture in pixels.
     void resize(uint32_t width, uint32_t height);
 
-    [[nodiscard]] bool preparing() const { return work_.valid() || pipelines_.valid(); }
-    // The context's pipelines are built while the first page is looked at; waits for them.
+    [[nodiscard]] bool isPreparing() const { return work_.valid() || pipelines_.valid(); }
+    // Waits for the context's pipelines, which are built during the first page.
     void awaitPipelines();
-    // What painting and scrubbing need is not there yet.
-    [[nodiscard]] bool resting() const { return restWanted_ || restWork_.valid(); }
-    [[nodiscard]] bool seeking() const {
+    // Data for painting and scrubbing is still being prepared.
+    [[nodiscard]] bool isPreparingRest() const { return restWanted_ || restWork_.valid(); }
+    [[nodiscard]] bool isSeeking() const {
         return burn_ && !previewed_ && burn_->time + 1e-4 < wanted_;
     }
-    [[nodiscard]] bool previews() const { return preview_ >= 0; }
-    [[nodiscard]] double time() const { return previews() ? preview_ : burn_ ? burn_->time : 0; }
+    [[nodiscard]] bool isPreviewing() const { return preview_ >= 0; }
+    [[nodiscard]] double time() const {
+        return isPreviewing() ? preview_ : burn_ ? burn_->time : 0;
+    }
     [[nodiscard]] const fwedit::Burn* burn() const { return burn_.get(); }
-    // What the background does, and how far it is, [0, 1].
+    // Returns the background stage and its progress, [0, 1].
     std::string stage(float& share) const;
-    // Leaves what is prepared: what was there before stays. Unwraps under way are finished first.
+    // Cancels the preparation and keeps the previous state. Running unwraps finish first.
     void cancel() { stop_ = true; }
-    // It was left; `goOn` takes it up again, as any change of the scene does.
-    [[nodiscard]] bool stopped() const { return stopped_; }
-    void goOn() { restart_ = true; }
-    // The surface under a pixel, x and y in [0, 1]; locked things are looked through if wished.
+    // The preparation was cancelled. `resume` or a change of the scene resumes it.
+    [[nodiscard]] bool isCancelled() const { return stopped_; }
+    void resume() { restart_ = true; }
+    // Returns the surface under a pixel, x and y in [0, 1]. `throughLocked`: ignores locked
+    // objects.
     SurfaceHit pick(float x, float y, bool throughLocked) const;
-    // The outline of a mesh as pairs of places in [0, 1] of a picture of so many pixels.
+    // Returns the outline of a mesh as pairs of points in [0, 1] of a picture of `size` pixels.
     void outlineOf(fwedit::ObjectId mesh, ImVec2 size, std::vector<glm::vec2>& lines);
-    // Asks the burn of a spot; the answer comes some frames later, and anew as the fire goes on.
+    // Queries the burn about a spot. The answer comes some frames later and updates as the fire
+    // goes on.
     void askWhy(fwedit::ObjectId mesh, glm::vec3 position);
-    // Keeps the card's spot: it is asked on as the fire goes, and as a hand scrubs.
+    // Pins the card's spot: its answer updates during playback and scrubbing.
     void pinWhy();
-    // s at which a spot catches, as far as it was simulated; < 0: not, or not known.
+    // s, ignition time of a spot as far as simulated; < 0: none or unknown.
     double caughtAt(WhyCard& card) const;
     [[nodiscard]] const std::filesystem::path& cache() const { return assets_.cache; }
-    // Texels to paint on; null: not made yet, or the mesh has none.
+    // Returns the texels to paint on; null: not ready, or the mesh has none.
     [[nodiscard]] std::shared_ptr<const fwedit::PaintSurface> surfaceOf(
         fwedit::ObjectId mesh) const;
-    // The overlay has changed: the picture is to be drawn again.
+    // The overlay has changed, so the picture must be redrawn.
     void redraw() { stale_ = true; }
-    // s until when it is known when each texel caught; < 0: not yet.
+    // s until which ignition times are known; < 0: not ready.
     [[nodiscard]] double knownTime() const { return rest_.burn ? memory_.known() : -1; }
-    // Colours the overlay by when each texel caught, as far as it was simulated.
+    // Colours the overlay by ignition time, as far as simulated.
     void colorBurnTimes(std::span<const fwui::MapStop> map);
-    bool bounds(glm::vec3& low, glm::vec3& high) const;    // of all meshes; false: there are none
-    double milliseconds() const { return milliseconds_; }  // the device's, of the last frame
-    std::vector<std::string> takeReport();                 // what was left out, for people
+    bool bounds(glm::vec3& low, glm::vec3& high) const;    // bounds of all meshes; false: there are
+                                                           // none
+    double milliseconds() const { return milliseconds_; }  // device time of the last frame
+    std::vector<std::string> takeReport();                 // skipped objects, messages for the user
 
     SceneTarget target;
-    FwView view{};  // of the last frame
+    FwView view{};  // view of the last frame
     Shown shown = Shown::kBurn;
     WhyCard why;
-    std::vector<WhyCard> pins;  // the first is number 1
+    std::vector<WhyCard> pins;  // numbered from 1
     MapOverlay overlay;
-    FilmStrip film;                          // of this burn, as far as it was seen
-    std::vector<fwedit::ObjectId> laidOver;  // meshes whose map of the overlay is on the picture
+    FilmStrip film;                          // of this burn, as far as played
+    std::vector<fwedit::ObjectId> laidOver;  // meshes whose overlay map is visible
 
  private:
-    struct Outline {  // as it was last asked for
+    struct Outline {  // as last requested
         glm::mat4 seen{0};
         glm::vec2 pixels{0};
         const fwimport::ImportedModel* model = nullptr;
@@ -140,16 +145,16 @@ class LiveScene {
         std::unique_ptr<fwedit::Burn> burn;
         std::string error;
     };
-    struct Rest {  // what painting and scrubbing need beside the burn
+    struct Rest {  // data for painting and scrubbing
         std::unique_ptr<fwedit::Burn> burn;
         std::map<fwedit::ObjectId, std::shared_ptr<const fwedit::PaintSurface>> surfaces;
     };
-    struct Half {  // a burn in its part of the picture
+    struct Half {  // a burn in its half of the picture
         fwedit::Burn& burn;
         sample::Studio& studio;
         const FwView& from;
         VkViewport viewport;
-        bool ready;  // to be drawn
+        bool ready;  // ready to draw
     };
     void adopt(Made made);
     void startRest();
@@ -161,12 +166,12 @@ class LiveScene {
     void followWhy();
     void pollWhy(WhyCard& card);
     [[nodiscard]] std::vector<WhyCard*> cards();
-    [[nodiscard]] bool asks() const;
+    [[nodiscard]] bool hasOpenQuestion() const;
     void adoptOther(Made made);
     void followOther();
     void stepOther(const FwVulkanFrame& frame);
-    // The burn that is compared with is at another time, or not made yet.
-    [[nodiscard]] bool otherLags() const;
+    // The comparison's burn is at another time, or not ready.
+    [[nodiscard]] bool isOtherBehind() const;
     std::unique_ptr<sample::Studio> makeStudio(const fwedit::Burn& burn) const;
     void drawSolids(const fwui::Frame& frame, const Half& part, const FwVulkanFrame& described);
     void recordInside(const Half& part, const FwVulkanFrame& described, FwTargetId id);
@@ -182,30 +187,30 @@ class LiveScene {
     fwedit::Assets assets_;
     std::unique_ptr<fwedit::Burn> burn_;
     std::unique_ptr<sample::Studio> studio_;
-    std::future<void> pipelines_;  // on their way; nothing of the plugin is shown before
+    std::future<void> pipelines_;  // pending; the plugin draws nothing before
     std::future<Made> work_;
     Rest rest_;
     std::future<Rest> restWork_;
     bool restWanted_ = false;
-    bool restFresh_ = false;  // nothing of it was recorded yet
+    bool restFresh_ = false;  // nothing has been recorded since it was created
     fwedit::BurnMemory memory_;
-    MapOverlay burnt_;        // of the preview
-    bool laid_ = false;       // what lies over the preview has changed, and nothing else
-    bool kept_ = false;       // the target keeps the picture below it
-    double preview_ = -1;     // s that are shown from memory; < 0: none
-    bool previewed_ = false;  // a hand holds the preview
+    MapOverlay burnt_;        // overlay of the preview
+    bool laid_ = false;       // only the overlays over the preview changed
+    bool kept_ = false;       // the target has a copy of the picture below the overlays
+    double preview_ = -1;     // s, time shown from memory; < 0: none
+    bool previewed_ = false;  // the user holds the preview
     bool owesPaint_ = false;
     std::atomic<bool> stop_{false};
     bool stopped_ = false;
     mutable std::mutex stageMutex_;
     std::string stage_;
     float share_ = 0;
-    fwedit::Scene scene_;  // as last followed
+    fwedit::Scene scene_;  // as of the last follow()
     fwedit::PaintImages images_;
     std::filesystem::path folder_;
-    uint64_t seen_ = ~0ull;  // revision that the world, or the one on its way, is of
+    uint64_t seen_ = ~0ull;  // revision of the current or pending world
     bool restart_ = false;
-    double wanted_ = 0;  // s, of seek
+    double wanted_ = 0;  // s, target of seek
     bool stale_ = true;
     fwedit::Camera camera_;
     std::map<fwedit::ObjectId, Outline> outlines_;
@@ -221,8 +226,8 @@ class LiveScene {
     std::future<Made> otherWork_;
     fwedit::BurnMemory otherMemory_;
     FwResult otherOutside_ = FW_OK;
-    FwView otherView_{};           // in its own light
-    std::vector<uint8_t> values_;  // by texel, of what is coloured
+    FwView otherView_{};           // with its own light
+    std::vector<uint8_t> values_;  // by texel, of the map in progress
     double milliseconds_ = 0;
     std::string studioKey_;
 };

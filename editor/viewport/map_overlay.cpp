@@ -10,9 +10,9 @@ namespace {
 #include "map_overlay.frag.h"
 #include "map_overlay.vert.h"
 
-constexpr uint32_t kMost = 64;  // meshes that are coloured at once
+constexpr uint32_t kMost = 64;  // limit of coloured meshes
 constexpr uint32_t kCornerBytes = 5 * sizeof(float);
-// Towards the eye, so that a map lies on the very triangles that the plugin drew.
+// Towards the camera, so that a map covers the same triangles that the plugin drew.
 constexpr float kDepthBias = -64, kDepthBiasSlope = -1.5f;
 
 struct OverlayPush {  // map_overlay.vert
@@ -38,7 +38,7 @@ std::vector<std::pair<uint32_t, uint32_t>> gutterOf(const fwedit::PaintSurface& 
         for (int32_t x = 0; x < width; ++x) {
             const auto texel = uint32_t(y * width + x);
             if (surface.real[texel]) continue;
-            // The nearest first: sides, then corners.
+            // Nearest first: sides, then corners.
             constexpr int32_t kX[] = {1, -1, 0, 0, 1, -1, 1, -1},
                               kY[] = {0, 0, 1, -1, 1, 1, -1, -1};
             for (int i = 0; i < 8; ++i) {
@@ -173,7 +173,7 @@ void MapOverlay::color(fwedit::ObjectId mesh,
             const size_t texel = size_t{y} * width + x;
             map.pixels[texel] = surface->real[texel] ? palette[values[texel]] : 0;
         }
-    // One texel around what changed repeats it.
+    // Include the gutter, one texel around the change.
     const fwedit::PaintedArea wide = {area.x0 > 0 ? area.x0 - 1 : 0, area.y0 > 0 ? area.y0 - 1 : 0,
                                       std::min(x1 + 1, width), std::min(y1 + 1, height)};
     const auto first = std::lower_bound(map.gutter.begin(), map.gutter.end(),
@@ -185,7 +185,7 @@ void MapOverlay::color(fwedit::ObjectId mesh,
     take(map.fresh, wide);
 }
 
-bool MapOverlay::settled() const {
+bool MapOverlay::isSettled() const {
     return std::all_of(maps_.begin(), maps_.end(),
                        [](const auto& entry) { return entry.second.fresh.empty(); });
 }

@@ -1,6 +1,5 @@
-// Colours over the burn maps of meshes: laid on them in the viewport, over the finished picture so
-// that they are those of the legend, and shown flat as the unwrap. What a texel's value looks like
-// is the caller's palette.
+// Colours over the burn maps of meshes: drawn over the tone-mapped picture, so that they match the
+// legend, and flat as the unwrap. The caller's palette maps values to colours.
 #pragma once
 
 #include <array>
@@ -21,7 +20,7 @@ namespace fwview {
 using Palette = std::array<uint32_t, 256>;  // RGBA8 by value, display values, premultiplied
 constexpr float kOverlayOpacity = 0.72f;
 uint32_t premultiplied(ImU32 color, float opacity);
-// Values 0 to 254 along the map, 255 not at all.
+// Maps values 0 to 254 along the ramp; 255 is transparent.
 Palette rampPalette(std::span<const fwui::MapStop> map, float opacity);
 
 class MapOverlay {
@@ -32,18 +31,18 @@ class MapOverlay {
     MapOverlay(const MapOverlay&) = delete;
     MapOverlay& operator=(const MapOverlay&) = delete;
 
-    // Makes what a mesh's map needs before it is coloured, if it is not there.
+    // Creates the resources of a mesh's map, if missing.
     void prepare(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface);
-    // Colours a part of a mesh's map by values over all of it; they are seen with the next frame.
+    // Colours a part of a mesh's map from values for the whole map. Shows with the next frame.
     void color(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface,
                std::span<const uint8_t> values, const Palette& palette,
                const fwedit::PaintedArea& area);
     void clear();  // waits for the device
-    // Nothing that was coloured is waiting for a frame.
-    [[nodiscard]] bool settled() const;
-    [[nodiscard]] void* texture(fwedit::ObjectId mesh) const;  // for ImGui; null: never coloured
+    // No coloured part waits for a frame.
+    [[nodiscard]] bool isSettled() const;
+    [[nodiscard]] void* texture(fwedit::ObjectId mesh) const;  // for ImGui; null: not coloured yet
 
-    void upload(const fwui::Frame& frame);  // outside a pass
+    void upload(const fwui::Frame& frame);  // call it outside a pass
     void draw(const fwui::Frame& frame, fwedit::ObjectId mesh, const glm::mat4& clip,
               float opacity) const;
 
@@ -56,13 +55,14 @@ class MapOverlay {
         VkDescriptorSet set = VK_NULL_HANDLE;
         void* texture = nullptr;
         std::vector<uint32_t> pixels;
-        // Texels beside the surface and the texel of it that they repeat, so that no border fades.
+        // Texels beside the surface, with the surface texel that they repeat, so that borders do
+        // not fade.
         std::vector<std::pair<uint32_t, uint32_t>> gutter;
-        fwedit::PaintedArea fresh;  // that the image does not have yet
+        fwedit::PaintedArea fresh;  // not uploaded yet
     };
     Map makeMap(const std::shared_ptr<const fwedit::PaintSurface>& surface);
     void destroy(Map& map);
-    // Null: there is no room for another.
+    // Returns null if all places are taken.
     Map* mapOf(fwedit::ObjectId mesh, const std::shared_ptr<const fwedit::PaintSurface>& surface);
 
     const sample::VulkanHost& host_;

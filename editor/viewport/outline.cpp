@@ -15,7 +15,7 @@ struct Mask {
     }
 };
 
-// Row by row between the edges; thin ones leave at least the cells that their corners are in.
+// Fills rows between the edges. Thin triangles still fill the cells of their corners.
 void fill(Mask& mask, glm::vec2 a, glm::vec2 b, glm::vec2 c) {
     const float low = std::max(0.0f, std::floor(std::min({a.y, b.y, c.y})));
     const float high = std::min(float(mask.height) - 1, std::max({a.y, b.y, c.y}));
@@ -47,7 +47,7 @@ void findOutline(std::span<const glm::vec2> corners, uint32_t width, uint32_t he
         fill(mask, corners[i], corners[i + 1], corners[i + 2]);
     lines.clear();
     const glm::vec2 unit(1.0f / float(width), 1.0f / float(height));
-    // Squares between four cells' middles: a line through those that are not all alike.
+    // Marching squares over the cell centres.
     for (uint32_t y = 0; y + 1 < height; ++y) {
         for (uint32_t x = 0; x + 1 < width; ++x) {
             const uint32_t kind = uint32_t(mask.at(x, y)) | uint32_t(mask.at(x + 1, y)) << 1 |

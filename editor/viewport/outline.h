@@ -1,5 +1,5 @@
-// The outline of a model as seen: where its shape on the picture ends. Found on a mask that is
-// filled as a device would fill it, so that boards inside a crate draw no lines.
+// The outline of a projected model. It is found on a mask that is filled like a rasteriser would,
+// so that boards inside a crate draw no lines.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 
 namespace fwview {
 
-// `corners`: three for each triangle, pixels of a picture of width x height, [1, 8192]; a triangle
-// with a corner behind the eye is left out by the caller. `lines`: pairs of places in [0, 1].
+// `corners`: three per triangle, pixels of a picture of width x height, [1, 8192]; without
+// triangles that have a corner behind the camera. `lines`: pairs of points in [0, 1].
 void findOutline(std::span<const glm::vec2> corners, uint32_t width, uint32_t height,
                  std::vector<glm::vec2>& lines);
 

@@ -1,5 +1,4 @@
-// What drawing by pictures needs and frees together: a sampler, sets of pictures, one layout, and
-// the pipelines made for it.
+// Shared resources for drawing textures: a sampler, descriptor sets, one layout, and its pipelines.
 #pragma once
 
 #include <vector>
@@ -10,14 +9,15 @@ namespace fwview {
 
 class PictureDrawing {
  public:
-    // Sets of `pictures` each, 1 or 2, at most `sets` at a time; `push`: the layout's constants.
+    // Sets of `pictures` each, 1 or 2; at most `sets` at a time. `push`: push constants of the
+    // layout.
     PictureDrawing(const sample::VulkanHost& host, uint32_t sets, uint32_t pictures,
                    const VkPushConstantRange& push);
     ~PictureDrawing();
     PictureDrawing(const PictureDrawing&) = delete;
     PictureDrawing& operator=(const PictureDrawing&) = delete;
 
-    // The request's layout is this one's. Kept until this goes.
+    // Creates a pipeline with this layout. This object owns it.
     VkPipeline pipeline(sample::PipelineRequest request);
     [[nodiscard]] VkDescriptorSet newSet() const;
     void freeSet(VkDescriptorSet set) const;

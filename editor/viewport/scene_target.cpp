@@ -16,7 +16,7 @@ using sample::checkVulkan;
 
 constexpr VkFormat kLight = VK_FORMAT_R16G16B16A16_SFLOAT, kDisplay = fwui::kUiFormat;
 
-struct Push {  // post.frag
+struct Push {  // push constants of post.frag
     float mode, exposure, bloom, vignette, aspect;
 };
 
@@ -83,7 +83,7 @@ FwVulkanTargetDef SceneTarget::flames() const {
     return def;
 }
 
-void SceneTarget::lendDepth(FwVulkanFrame& frame) const {
+void SceneTarget::setSampledDepth(FwVulkanFrame& frame) const {
     frame.sampledDepth = depth_.view;
     frame.sampledDepthLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL;
 }
@@ -222,7 +222,7 @@ void SceneTarget::resize(uint32_t width, uint32_t height) {
     drawing_.write(set_, 0, color_.view);
     drawing_.write(set_, 1, spread_.view);
     texture_ = ui_.addTexture(shown_.view, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
-    // Black until the first frame: what is shown before has a layout to be read in.
+    // Black until the first frame, so that the texture has a readable layout.
     host_.runNow([&](VkCommandBuffer commands) {
         sample::imageBarrier(commands, shown_.image, VK_IMAGE_LAYOUT_UNDEFINED,
                              VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL,
@@ -269,7 +269,7 @@ void SceneTarget::end(const fwui::Frame& frame) {
     drawPost(frame, shownPipeline_, shownPass_, shownFramebuffer_, extent_);
 }
 
-// `to` is left as it is sampled, or for copies if it is what is kept.
+// `to` ends in the sampled layout, or in the copy layout if it is the kept picture.
 void SceneTarget::copyPicture(const fwui::Frame& frame, const sample::Image& from,
                               VkImageLayout before, const sample::Image& to) const {
     const bool keeps = &to == &kept_;
@@ -320,7 +320,7 @@ void SceneTarget::beginOver(const fwui::Frame& frame) {
 
 void SceneTarget::endOver(const fwui::Frame& frame) { vkCmdEndRenderPass(frame.commands); }
 
-// Halves the scene again and again, for the bloom to add up.
+// Halves the scene repeatedly, for the bloom.
 void SceneTarget::spreadLight(const fwui::Frame& frame) {
     auto side = [](uint32_t length, uint32_t mip) { return int32_t(std::max(1u, length >> mip)); };
     for (uint32_t mip = 1; mip < mips_; ++mip) {

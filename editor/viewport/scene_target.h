@@ -1,6 +1,6 @@
-// A picture of a scene that the interface shows: what is solid is drawn in linear light, with
-// depth, flames over it fade where they meet it; then bloom, film curve and display values as the
-// samples have them. The host's side of a lent device, off screen.
+// An off-screen picture of a scene for the interface. Opaque objects are drawn in linear light with
+// depth. Flames composite over them and fade at surfaces. Bloom, filmic curve and display encoding
+// follow, as in the samples.
 #pragma once
 
 #include "common/stage.h"
@@ -18,28 +18,28 @@ class SceneTarget {
     SceneTarget(const SceneTarget&) = delete;
     SceneTarget& operator=(const SceneTarget&) = delete;
 
-    // Pixels; nothing happens if it has that size. Waits for the device.
+    // Resizes to pixels; does nothing if the size is equal. Waits for the device.
     void resize(uint32_t width, uint32_t height);
     void begin(const fwui::Frame& frame);
-    // After what is solid.
+    // After the opaque objects.
     void beginFlames(const fwui::Frame& frame);
     void end(const fwui::Frame& frame);
-    // After end: what it drew, for other frames to begin from instead of drawing the scene again.
+    // After end: keeps a copy of the picture, so that later frames can start from it.
     void keep(const fwui::Frame& frame);
     void restore(const fwui::Frame& frame);
-    // After end or restore: a pass over the display values, tested against the scene's depth.
+    // After end or restore: begins a pass over the display values, with the scene's depth test.
     void beginOver(const fwui::Frame& frame);
     void endOver(const fwui::Frame& frame);
     [[nodiscard]] sample::ScenePass pass() const;
-    // To be registered: for what is drawn after begin, and after beginFlames.
+    // Target definitions to register: for the pass after begin, and after beginFlames.
     [[nodiscard]] FwVulkanTargetDef solids() const;
     [[nodiscard]] FwVulkanTargetDef flames() const;
-    void lendDepth(FwVulkanFrame& frame) const;  // to who draws after beginFlames
+    void setSampledDepth(FwVulkanFrame& frame) const;  // sets the depth for draws after beginFlames
     [[nodiscard]] VkRenderPass overPass() const { return overPass_; }
     [[nodiscard]] void* texture() const { return texture_; }  // for ImGui
     [[nodiscard]] VkImage shownImage() const {
         return shown_.image;
-    }  // to be sampled, but in a pass
+    }  // sampled layout outside passes
     [[nodiscard]] VkExtent2D extent() const { return extent_; }
     [[nodiscard]] VkViewport viewport() const {
         return {0, 0, float(extent_.width), float(extent_.height), 0, 1};
@@ -52,7 +52,7 @@ class SceneTarget {
     struct PassRequest {
         VkFormat color;
         Depth depth;
-        VkImageLayout before, after;  // of the colour; undefined before: what is there is dropped
+        VkImageLayout before, after;  // of the colour; undefined before: drops the content
     };
     VkRenderPass makePass(const PassRequest& request) const;
     void beginPass(const fwui::Frame& frame, VkRenderPass pass, VkFramebuffer framebuffer) const;

@@ -10,7 +10,8 @@ SurfaceHit castRay(const fwimport::ImportedModel& model, const glm::mat4& transf
                    const Ray& ray) {
     const glm::mat4 back = glm::inverse(transform);
     const glm::vec3 origin(back * glm::vec4(ray.origin, 1));
-    const glm::vec3 direction(back * glm::vec4(ray.direction, 0));  // its length makes t metres
+    const glm::vec3 direction(back * glm::vec4(ray.direction, 0));  // not normalised, so that t is
+                                                                    // in metres
     auto vertex = [&](size_t i) {
         return glm::make_vec3(&model.positions[3 * size_t(model.indices[i])]);
     };

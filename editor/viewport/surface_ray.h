@@ -1,4 +1,4 @@
-// Where a ray meets an imported model, and the ray through a pixel.
+// Ray casts against an imported model, and the ray through a pixel.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -19,12 +19,12 @@ struct SurfaceHit {
     fwedit::ObjectId object = 0;
 };
 
-// The nearest triangle of a model that stands as `transform` says.
+// Returns the nearest hit on a model placed by `transform`.
 SurfaceHit castRay(const fwimport::ImportedModel& model, const glm::mat4& transform,
                    const Ray& ray);
-// x, y in [0, 1] from the top left of the view's picture.
+// x, y: [0, 1] from the top left of the picture.
 Ray rayThrough(const FwView& view, float x, float y);
-// x, y in [0, 1], z > 0 in front of the eye (m).
+// Projects a point: x, y in [0, 1]; z: m in front of the camera, > 0.
 glm::vec3 onPicture(const FwView& view, glm::vec3 position);
 
 }  // namespace fwview

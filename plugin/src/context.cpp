@@ -1,4 +1,4 @@
-// fwCreateContext and everything that takes a context.
+// Functions that create or take a context.
 #include "components/volumetric_fire.h"
 #include "core/owned.h"
 #include "objects.h"
@@ -21,7 +21,7 @@ void checkCallbacks(const FwCallbacks& callbacks) {
 }
 
 FwContext* makeContext(const FwContextDef& def) {
-    core::Memory first(def.callbacks);  // the context's own block comes before its counters
+    core::Memory first(def.callbacks);  // the context's own block precedes its counters
     FwContext* context =
         std::pmr::polymorphic_allocator<>(&first).new_object<FwContext>(def.callbacks);
     return context;
@@ -185,7 +185,7 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
         const uint64_t needed = bytes.size();
         const bool fits = buffer && *size >= needed;
         if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
-        if (!fits) {  // the caller comes back with room
+        if (!fits) {  // the caller calls again with a larger buffer
             const std::lock_guard lock(c.mutex);
             c.cooked.swap(bytes);
             c.cookedKey = key;

@@ -1,4 +1,4 @@
-// The cpu device: simulation without Vulkan.
+// The CPU device: simulation without Vulkan.
 #include "device.h"
 #include "gpu/cpu/cpu_backend.h"
 

@@ -1,4 +1,4 @@
-// flamewright_debug.h: what editors, tests and benches look at.
+// Functions of flamewright_debug.h, for editors, tests and benches.
 #include "flamewright/flamewright_debug.h"
 #include "objects.h"
 

@@ -1,4 +1,4 @@
-// Destruction that any thread may ask for while another one steps or records.
+// Deferred destruction: any thread may request it while another one steps or records.
 #include "flamewright/flamewright_vulkan.h"
 #include "objects.h"
 
@@ -27,7 +27,7 @@ void checkRef(const FwObjectRef& object) {
         core::fail(FW_ERROR_STALE_ID, "FwObjectRef::index1 is 0; the id is null.");
 }
 
-// False: something still uses it, and nothing changed.
+// False: the object is still in use, and nothing changed.
 bool destroyNow(world::World& w, const FwObjectRef& object) {
     try {
         switch (object.kind) {
@@ -97,11 +97,11 @@ void unregister(edge::Device& device, FwTargetId target) {
     try {
         device.unregisterTarget(target);
     } catch (const core::Error& error) {
-        if (error.result != FW_ERROR_STALE_ID) throw;  // the host has done so meanwhile
+        if (error.result != FW_ERROR_STALE_ID) throw;  // the host has unregistered it meanwhile
     }
 }
 
-// Takes one that is due off the list.
+// Removes an entry of a completed frame from the list.
 template <class What>
 bool takeDue(std::pmr::vector<edge::Deferred<What>>& list, uint64_t completed,
              What& what) noexcept {
@@ -130,12 +130,12 @@ void destroyDoomed(FwWorld& handle) {
             return destroyNow(*handle.world, object);
         } catch (const core::Error& error) {
             handle.context->log.write(FW_LOG_WARNING, "fwWorld_DestroyLater: %s", error.message);
-            return error.result == FW_ERROR_STALE_ID;  // else the next step tries again
+            return error.result == FW_ERROR_STALE_ID;  // other errors: the next step tries again
         } catch (...) {
-            return false;  // no memory: so it does
+            return false;  // no memory: the next step tries again
         }
     };
-    // Until nothing goes: an object's going may free what it used.
+    // Repeats, since a destroyed object may release others that it used.
     while (std::erase_if(due, goes) != 0) {
     }
 }

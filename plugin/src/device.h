@@ -1,4 +1,4 @@
-// What a context computes on. Two of them: the cpu (cpu.cpp) and Vulkan (vulkan.cpp).
+// The device of a context: CPU (cpu.cpp) or Vulkan (vulkan.cpp).
 #pragma once
 #include "core/log.h"
 #include "core/memory.h"
@@ -22,11 +22,10 @@ class Device {
     virtual void checkTarget(FwTargetId id) = 0;
     virtual void unregisterTarget(FwTargetId id) = 0;  // [any]
     virtual void prepare() = 0;
-    // One frame of deltaTime s that is over when the call returns; throws
-    // FW_ERROR_WRONG_BACKEND where the host records.
+    // Runs one frame of deltaTime s to its end. Throws FW_ERROR_WRONG_BACKEND on a host device.
     virtual void step(gpu::Backend& backend, world::World& world, float deltaTime) = 0;
     virtual void renderOffscreen(gpu::Backend& backend, const FwOffscreenDef& def) = 0;
-    // Answers come without a frame of the host's: a step of no time brings them.
+    // True: a step with deltaTime 0 answers requests, without a frame of the host.
     [[nodiscard]] virtual bool answersAtOnce() const noexcept = 0;
     virtual void destroy() noexcept = 0;  // frees itself
 
@@ -36,11 +35,11 @@ class Device {
 };
 
 Device* createCpuDevice(core::Memory& memory);
-// `host` null: an own device.
+// host null: creates an own device.
 Device* createVulkanDevice(const FwVulkanHost* host, uint64_t gpuMemoryBudget, core::Memory& memory,
                            const core::Log& log);
 
-// Tells a world how long its host's thread was in a call that counts against the budget.
+// Adds the duration of a call to the world's budget.
 class Stopwatch {
  public:
     explicit Stopwatch(world::World& world) noexcept : world_(world) {}

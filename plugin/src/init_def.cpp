@@ -1,4 +1,4 @@
-// Defaults of every def, and the two functions that need no context at all.
+// Defaults of every def, and functions without a context.
 #include "components/particle_field.h"
 #include "components/volumetric_fire.h"
 #include "edge.h"
@@ -187,7 +187,7 @@ void defaults(FwOffscreenDef& def) noexcept {
     def.background[3] = 1;
 }
 
-// Calls body.template operator()<Def>() for the def of that type; false: it is none of these.
+// Calls body.template operator()<Def>() for the def of that type. False: unknown type.
 template <class Body>
 bool visitDef(uint32_t type, Body body) {
     switch (type) {
@@ -323,7 +323,7 @@ void FW_CALL fwInitDef(uint32_t defType, void* def, uint32_t structSize) {
 }
 
 FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset) {
-    // No context to report to: the result says it all.
+    // Without a context there is no log or last message.
     const auto nobody = [](FwResult, const char*) {};
     return edge::guard("fwInitMaterialPreset", nobody, [&] {
         if (preset >= FW_MATERIAL_PRESET_COUNT)

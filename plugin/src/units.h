@@ -1,6 +1,6 @@
-// The unit in which a host gives and gets lengths. Inside of the library they are metres; this file
-// alone says which fields of the ABI's structs are lengths or speeds. A struct without an entry
-// here does not compile where a world's functions read or write it.
+// Conversion of lengths and speeds between a host's unit and metres. This file lists the fields of
+// the ABI's structs that are lengths or speeds; a struct without an entry does not compile in the
+// functions of a world.
 #pragma once
 #include "flamewright/flamewright.h"
 
@@ -15,9 +15,9 @@
 
 namespace fw::edge {
 
-// A ratio, since 0.01f is not a hundredth: 250 of the host's are 2.5 m exactly.
+// A ratio, since 0.01f is not exactly a hundredth: 250 cm must be exactly 2.5 m.
 struct Unit {
-    double metres = 1, units = 1;  // as many metres as units
+    double metres = 1, units = 1;  // this many metres are this many units
 
     static Unit of(float metersPerUnit) noexcept {
         const double per = 1 / double(metersPerUnit), whole = std::round(per);
@@ -28,16 +28,16 @@ struct Unit {
     bool operator==(const Unit&) const = default;
     [[nodiscard]] double perMetre() const noexcept { return units / metres; }
     [[nodiscard]] Unit inverse() const noexcept { return {units, metres}; }
-    // This unit, counted in the other one.
+    // This unit relative to the other one.
     [[nodiscard]] Unit in(const Unit& other) const noexcept {
         return {metres * other.units, units * other.metres};
     }
 };
 
-// Throws unless it is a length of a unit; 0: `otherwise`.
+// Throws unless metersPerUnit is in range; 0: returns `otherwise`.
 Unit checkedUnit(float metersPerUnit, const char* field, const Unit& otherwise);
 
-// Turns lengths of the unit into metres.
+// Converts lengths of the unit to metres.
 class Scale {
  public:
     explicit Scale(const Unit& unit) noexcept : unit_(unit) {}
@@ -46,11 +46,12 @@ class Scale {
     void operator()(Field&... fields) const noexcept {
         (scale(fields), ...);
     }
-    // A matrix that leads to the world: its translation.
+    // The translation of a matrix to world space.
     void transform(float (&matrix)[16]) const noexcept {
         for (int i = 12; i < 15; ++i) scale(matrix[i]);
     }
-    // A camera's: the same clip positions, but for a factor that leaves w the way along the axis.
+    // A camera: clip positions stay equal, except for a factor that keeps w the distance along the
+    // axis.
     void view(float (&view)[16], float (&projection)[16]) const noexcept {
         transform(view);
         const bool perspective = projection[15] == 0;
@@ -61,7 +62,7 @@ class Scale {
 
  private:
     void scale(float& value) const noexcept {
-        if (std::abs(value) != FLT_MAX)  // "nothing there"
+        if (std::abs(value) != FLT_MAX)  // means "none"
             value = float(double(value) * unit_.metres / unit_.units);
     }
     void scale(double& value) const noexcept { value = value * unit_.metres / unit_.units; }
@@ -73,7 +74,7 @@ class Scale {
     Unit unit_;
 };
 
-// ---- lengths of each struct, but for those behind pointers --------------------------------------
+// ---- lengths of each struct, except those behind pointers
 
 template <class T>
 inline constexpr bool kHasNoLengths = false;
@@ -182,9 +183,9 @@ void fromMetres(const Unit& unit, T& filled) noexcept {
     if (!unit.isMetre()) visitLengths(filled, Scale(unit.inverse()));
 }
 
-// ---- what functions take beside structs ---------------------------------------------------------
+// ---- function arguments besides structs
 
-// Three numbers of the host's in metres, while a call lasts. Null stays null.
+// Three numbers of the host in metres, for the duration of a call. Null stays null.
 class Metres {
  public:
     Metres(const Unit& unit, const float* given) noexcept : there_(given != nullptr) {
@@ -205,7 +206,7 @@ void fromMetres3(const Unit& unit, T* filled) noexcept {
     for (int i = 0; !unit.isMetre() && i < 3; ++i) host(filled[i]);
 }
 
-// The axes of a matrix from an object space of one unit to a world of another: metres to metres.
+// Converts the axes of a matrix from an object space to a world space of another unit.
 inline void scaleAxes(const Unit& object, const Unit& world, float (&matrix)[16]) noexcept {
     if (object == world) return;
     const Scale scale(world.in(object));
@@ -222,12 +223,12 @@ struct TransformInMetres {
     float matrix[16];
 };
 
-// Whole arrays, while a call lasts.
+// Arrays in metres, for the duration of a call.
 class MetreArrays {
  public:
     MetreArrays(const Unit& unit, std::pmr::memory_resource* memory)
         : unit_(unit), copies_(memory) {}
-    // More than `most` stay as they are: the world refuses them by their number.
+    // More than `most` elements stay unconverted: the world refuses their number.
     template <class T>
     const T* operator()(const T* given, uint64_t count, uint64_t most) {
         static_assert(sizeof(T) % sizeof(float) == 0);

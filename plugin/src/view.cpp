@@ -1,4 +1,4 @@
-// Checks of FwView: what a picture with a NaN in it would hide.
+// Checks of FwView.
 #include "edge.h"
 
 #include <cmath>
@@ -18,7 +18,7 @@ void checkRange(const float* values, unsigned count, const char* name, const cha
     }
 }
 
-// A view that is given row by row, or a projection that was left empty, would show nothing.
+// A row-major view or an empty projection would show nothing.
 void checkMatrices(const FwView& view, const char* name) {
     static constexpr unsigned kLastRow[4] = {3, 7, 11, 15};
     for (unsigned i = 0; i < 4; ++i) {

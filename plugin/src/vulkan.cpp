@@ -1,4 +1,4 @@
-// flamewright_vulkan.h: from what a host lends to the vk backend. The only file here that names Vk.
+// Functions of flamewright_vulkan.h. The only file of this folder that uses Vulkan types.
 #include "flamewright/flamewright_vulkan.h"
 
 #include "components/look_table.h"
@@ -37,7 +37,34 @@ void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VER
 void defaults(FwVulkanComposite&) noexcept {}
 void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 
-// How things look, handed down to a backend that does not know the components.
+// Calls body.template operator()<Def>() for the def of that type. False: unknown type.
+template <class Body>
+bool visitVulkanDef(uint32_t type, Body body) noexcept {
+    switch (type) {
+        case FW_DEF_VULKAN_HOST:
+            body.template operator()<FwVulkanHost>();
+            return true;
+        case FW_DEF_VULKAN_TARGET:
+            body.template operator()<FwVulkanTargetDef>();
+            return true;
+        case FW_DEF_VULKAN_FRAME:
+            body.template operator()<FwVulkanFrame>();
+            return true;
+        case FW_DEF_VULKAN_WISHES:
+            body.template operator()<FwVulkanWishes>();
+            return true;
+        case FW_DEF_VULKAN_COMPOSITE:
+            body.template operator()<FwVulkanComposite>();
+            return true;
+        case FW_DEF_VULKAN_VERTICES:
+            body.template operator()<FwVulkanVertices>();
+            return true;
+        default:
+            return false;
+    }
+}
+
+// View parameters for the backend, which does not include the components.
 void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
     components::ViewInputs inputs;
     std::copy_n(input.viewport, 4, inputs.viewport);
@@ -114,7 +141,7 @@ class VulkanDevice final : public Device {
             throw;
         }
         backend.endOwn();
-        world.collect();  // the submit is over: its readback is here
+        world.collect();  // the submit has finished, so its readback is available
     }
     void renderOffscreen(gpu::Backend& backend, const FwOffscreenDef& def) override {
         requireOwn();
@@ -128,8 +155,8 @@ class VulkanDevice final : public Device {
     gpu::vk::Context& context() noexcept { return context_; }
 
  private:
-    // A sixth of a second of work, so the first world pays, or who prepares: a program that has
-    // none yet shows its first picture without it. Worlds may be made on several threads.
+    // Baking takes 1/6 s, so the first world or fwContext_Prepare does it. Several threads may
+    // create worlds.
     const std::pmr::vector<std::byte>& lookTextures() {
         const std::lock_guard lock(looksMutex_);
         if (lookTextures_.empty()) lookTextures_ = components::bakeLookTextures(&memory_);
@@ -137,16 +164,15 @@ class VulkanDevice final : public Device {
     }
     void requireOwn() const {
         if (!context_.ownDevice())
-            core::fail(
-                FW_ERROR_WRONG_BACKEND,
-                "The device is lent: the host records with fwWorld_RecordOutside and submits "
-                "by itself.");
+            core::fail(FW_ERROR_WRONG_BACKEND,
+                       "The context uses the host's device; record with fwWorld_RecordOutside and "
+                       "submit the command buffer.");
     }
 
     core::Memory& memory_;
     const core::Log& log_;
     gpu::vk::Context context_;
-    // Kept for the worlds to come: a backend copies them when it is made.
+    // Kept for later worlds: a backend copies them at its creation.
     std::pmr::vector<gpu::MaterialLook> lookTable_;
     std::mutex looksMutex_;
     std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
@@ -159,12 +185,12 @@ VulkanDevice& vulkanOf(FwContext& context) {
     return static_cast<VulkanDevice&>(*context.device);
 }
 
-// The backend of a world whose host records.
+// The backend of a world on a host device.
 gpu::vk::VkBackend& hostBackendOf(FwWorld& world) {
     if (vulkanOf(*world.context).context().ownDevice())
         core::fail(FW_ERROR_WRONG_BACKEND,
                    "The context has its own device; use fwWorld_Step and "
-                   "fwWorld_RenderOffscreen, or lend a device in FwContextDef::vulkan.");
+                   "fwWorld_RenderOffscreen, or give a device in FwContextDef::vulkan.");
     return static_cast<gpu::vk::VkBackend&>(*world.backend);
 }
 
@@ -247,7 +273,7 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
     return frame;
 }
 
-// For fwWorld_DestroyAfterFrame, on whatever thread.
+// Read by fwWorld_DestroyAfterFrame on any thread.
 void noteFrame(FwWorld& world, const FwVulkanFrame& frame) noexcept {
     if (frame.frameIndex > world.newestFrame) world.newestFrame = frame.frameIndex;
 }
@@ -258,7 +284,7 @@ FwView checkedView(const FwWorld& world, const FwView* given) {
     return view;
 }
 
-// Of a host that knows fewer of their fields, or more, they lie closer together or further apart.
+// The stride is the host's structSize, which may be smaller or larger than the library's.
 std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32_t count,
                                std::array<FwView, FW_MAX_VIEWS>& out) {
     static_assert(FW_MAX_VIEWS == gpu::kMaxViews);
@@ -277,15 +303,15 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
         if (size != stride)
             core::fail(
                 FW_ERROR_INVALID_ARGUMENT,
-                "views[%u].structSize is %u and views[0].structSize is %u; they lie that far "
-                "apart, so it is the same in all.",
+                "views[%u].structSize is %u and views[0].structSize is %u; it is the array's "
+                "stride, so it is the same in all.",
                 i, size, stride);
         takeView(world.unit, out[i], name);
         for (uint32_t j = 0; j < i; ++j)
             if (out[j].viewId == out[i].viewId)
                 core::fail(FW_ERROR_INVALID_ARGUMENT,
                            "views[%u].viewId and views[%u].viewId are both %u; give each view of a "
-                           "frame a number of its own.",
+                           "frame its own number.",
                            j, i, out[i].viewId);
     }
     return std::span(out).first(count);
@@ -314,7 +340,7 @@ const char* encodingName(uint32_t encoding) noexcept {
                                              : "FW_OUTPUT_DISPLAY_UNORM (2)";
 }
 
-// A contradiction would show as a fire that is too dark or too bright, and nothing else.
+// A contradiction would only show as too dark or too bright a fire.
 void checkEncoding(const FwVulkanTargetDef& def, const core::Log& log) {
     const uint32_t asked = gpu::vk::Context::encodingOf(def.colorFormat);
     if (def.encoding == FW_OUTPUT_AUTO || def.encoding == asked) return;
@@ -336,7 +362,7 @@ void checkEncoding(const FwVulkanTargetDef& def, const core::Log& log) {
                encodingName(asked));
 }
 
-// Surfaces hide what is behind them by the depth that they write.
+// Surfaces need written depth to hide each other.
 void checkSurfaces(const FwVulkanTargetDef& def, const core::Log& log) {
     if (def.flags & FW_TARGET_NO_SURFACES) return;
     if (def.depthMode == FW_DEPTH_TEST_ONLY)
@@ -445,7 +471,7 @@ void checkVertices(const FwVulkanVertices& def) {
                    static_cast<unsigned long long>(def.offset));
 }
 
-// False: there is nothing to draw on.
+// False: the viewport is empty.
 bool checkViewport(const VkViewport* given) {
     checkPointer(given, "viewport");
     const float values[6] = {given->x,      given->y,        given->width,
@@ -463,47 +489,14 @@ bool checkViewport(const VkViewport* given) {
 }  // namespace
 
 size_t vulkanDefSize(uint32_t type) noexcept {
-    switch (type) {
-        case FW_DEF_VULKAN_HOST:
-            return sizeof(FwVulkanHost);
-        case FW_DEF_VULKAN_TARGET:
-            return sizeof(FwVulkanTargetDef);
-        case FW_DEF_VULKAN_FRAME:
-            return sizeof(FwVulkanFrame);
-        case FW_DEF_VULKAN_WISHES:
-            return sizeof(FwVulkanWishes);
-        case FW_DEF_VULKAN_COMPOSITE:
-            return sizeof(FwVulkanComposite);
-        case FW_DEF_VULKAN_VERTICES:
-            return sizeof(FwVulkanVertices);
-        default:
-            return 0;
-    }
+    size_t size = 0;
+    (void)visitVulkanDef(type, [&]<class Def>() { size = sizeof(Def); });
+    return size;
 }
 
 bool writeVulkanDefaults(uint32_t type, void* def) noexcept {
-    switch (type) {
-        case FW_DEF_VULKAN_HOST:
-            writeDef<FwVulkanHost>(def, [](FwVulkanHost& one) { defaults(one); });
-            return true;
-        case FW_DEF_VULKAN_TARGET:
-            writeDef<FwVulkanTargetDef>(def, [](FwVulkanTargetDef& one) { defaults(one); });
-            return true;
-        case FW_DEF_VULKAN_FRAME:
-            writeDef<FwVulkanFrame>(def, [](FwVulkanFrame& one) { defaults(one); });
-            return true;
-        case FW_DEF_VULKAN_WISHES:
-            writeDef<FwVulkanWishes>(def, [](FwVulkanWishes& one) { defaults(one); });
-            return true;
-        case FW_DEF_VULKAN_COMPOSITE:
-            writeDef<FwVulkanComposite>(def, [](FwVulkanComposite& one) { defaults(one); });
-            return true;
-        case FW_DEF_VULKAN_VERTICES:
-            writeDef<FwVulkanVertices>(def, [](FwVulkanVertices& one) { defaults(one); });
-            return true;
-        default:
-            return false;
-    }
+    return visitVulkanDef(
+        type, [&]<class Def>() { writeDef<Def>(def, [](Def& one) { defaults(one); }); });
 }
 
 Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
@@ -522,7 +515,7 @@ Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
 extern "C" {
 
 FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes) {
-    const auto nobody = [](FwResult, const char*) {};  // there is no context to tell
+    const auto nobody = [](FwResult, const char*) {};  // no context to report to
     return edge::guard("fwQueryVulkanWishes", nobody, [&] {
         const uint32_t size = edge::checkInfo(wishes, "FwVulkanWishes");
         FwVulkanWishes filled;

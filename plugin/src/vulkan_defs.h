@@ -1,4 +1,4 @@
-// The Vulkan header's defs, for code that does not name Vulkan. Implemented in vulkan.cpp.
+// Defs of the Vulkan header, for code without Vulkan types. Implemented in vulkan.cpp.
 #pragma once
 #include <cstddef>
 #include <cstdint>

@@ -1,8 +1,8 @@
-// Flipbooks: the file, which its reader does not trust, and looking into one.
+// Flipbooks: the file, whose reader trusts nothing, and samples.
 #include "book/book.h"
 
-#include "core/error.h"
 #include "core/hash.h"
+#include "core/stream.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,11 +15,8 @@ constexpr uint32_t kMagic = 0x4B425746;  // "FWBK"
 constexpr uint32_t kVersion = 1;
 constexpr size_t kSumEnd = 16, kHeaderBytes = kSumEnd + 40;
 
-uint32_t wordAt(std::span<const std::byte> bytes, size_t at) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 4; ++k) word |= uint32_t(bytes[at + k]) << (8 * k);
-    return word;
-}
+using core::wordAt;
+
 float floatAt(std::span<const std::byte> bytes, size_t at) {
     const uint32_t word = wordAt(bytes, at);
     float value = 0;
@@ -167,12 +164,16 @@ bool emitsAlone(const Book& book) noexcept {
 
 vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
+    FW_ASSERT(frame < f.frames && book.texels.size() == sizesOf(f).texels, "frame %u of %u", frame,
+              f.frames);
     return lookup<4>(book.texels.data() + size_t(4) * f.width * f.height * frame, f.width, f.height,
                      uv, false);
 }
 
 vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
+    FW_ASSERT(frame < f.frames && book.motion.size() == sizesOf(f).motion, "frame %u of %u", frame,
+              f.frames);
     const vec4 m =
         lookup<2>(book.motion.data() + size_t(2) * f.motionWidth * f.motionHeight * frame,
                   f.motionWidth, f.motionHeight, uv, true);

@@ -1,6 +1,5 @@
-// A flipbook: frames of fire, smoke or sparks, seen from the side, that particles and far fires
-// show; with the motion between them. Its file (.fwbook) and how it is read. Not its baking
-// (editor/tools).
+// A flipbook: side views of fire, smoke or sparks for particles and distant fires, with the motion
+// between frames; its file (.fwbook) and reader. editor/tools bakes flipbooks.
 #pragma once
 #include "shared/book.h"
 
@@ -22,12 +21,12 @@ constexpr uint32_t kKinds = 3;
 
 struct Facts {
     Kind kind = Kind::Fire;
-    uint32_t loops = 1;                            // 0: it is shown once
+    uint32_t loops = 1;                            // 0: plays once
     uint32_t width = 128, height = 128;            // texels of a frame, [8, 512]
     uint32_t frames = 64;                          // [2, 256]
     uint32_t motionWidth = 64, motionHeight = 64;  // [1, width], [1, height]
     float motionMost = 0.0f;                       // uv per frame of a full motion texel, [0, 1]
-    float seconds = 2.0f;                          // a turn, (0, 600]
+    float seconds = 2.0f;                          // s, length, (0, 600]
 };
 
 struct Rect {  // texels, the ends not included
@@ -39,30 +38,30 @@ struct Book {
     explicit Book(std::pmr::memory_resource* memory)
         : texels(memory), motion(memory), rects(memory) {}
     Facts facts;
-    // RGBA8: temperature (bookKelvin), how much of what lies behind its soot hides and glows, how
-    // much all of it hides, how thick it is (1 - exp(-tau / 4)).
+    // RGBA8: temperature (bookKelvin), opacity of glowing soot, total opacity, thickness
+    // (1 - exp(-tau / 4)).
     std::pmr::vector<uint8_t> texels;
     std::pmr::vector<uint8_t> motion;  // RG8, bookMotion
-    std::pmr::vector<Rect> rects;      // of each frame: all that it and the next show
+    std::pmr::vector<Rect> rects;      // per frame: the visible part of it and of the next
 };
 
-// Throws core::Error that names the field, the value and the limit.
+// Throws core::Error naming the field, the value and the limit.
 void checkFacts(const Facts& facts);
 
-// .fwbook, little-endian: u32 magic 'FWBK', u32 version, u64 FNV-1a of all that follows; u32 kind,
+// .fwbook, little-endian: u32 magic 'FWBK', u32 version, u64 FNV-1a of the rest; u32 kind,
 // loops, width, height, frames, motionWidth, motionHeight, f32 motionMost, seconds, u32 0; rects
 // (four u16 each), texels, motion.
 std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource* memory);
 // Throws core::Error; `book` is then unchanged.
 void readBook(std::span<const std::byte> bytes, Book& book);
 
-// No texel hides anything: what shows it is only added to what lies behind, in any order.
+// Whether no texel absorbs light: particles then add to the background in any order.
 bool emitsAlone(const Book& book) noexcept;
 
-// Bilinear, nothing beyond the borders; as a sampler has it.
+// Bilinear like a sampler, zero beyond the borders.
 vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept;
 vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame
-// Between two frames: shared/book.h by these. time: bookPlace's.
+// A texel between two frames (shared/book.h). time: see bookPlace.
 vec4 showBook(const Book& book, float time, vec2 uv) noexcept;
 
 }  // namespace fw::book

@@ -1,7 +1,8 @@
-// Blocks of frames on shelves: the tallest first, side by side, the next shelf above. A block is as
-// square as its frames allow.
+// Packs blocks of frames on shelves: tallest first, side by side, the next shelf above. A block is
+// as square as its frames allow.
 #include "book/picture.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -18,7 +19,7 @@ struct Block {
     uint32_t x = 0, y = 0;
 };
 
-constexpr uint32_t kBorder = 1;  // texels of nothing around a frame
+constexpr uint32_t kBorder = 1;  // empty texels around a frame
 
 Block blockOf(const Facts& f, uint32_t book, uint32_t level, bool motion, uint32_t columns) {
     const uint32_t rows = (f.frames + columns - 1) / columns;
@@ -28,16 +29,17 @@ Block blockOf(const Facts& f, uint32_t book, uint32_t level, bool motion, uint32
     return block;
 }
 
-// Whether frames have one: each texel is the mean of four.
+// Whether frames have this smaller level: each texel is the mean of four.
 bool hasLevel(const Facts& f, uint32_t level) {
     constexpr uint32_t kLeast = 4;  // texels
     const uint32_t parts = (1u << level) - 1;
     return ((f.width | f.height) & parts) == 0 && std::min(f.width, f.height) >> level >= kLeast;
 }
 
-// All frames at half the size. Temperatures count by what glows.
+// All frames at half the size. Temperatures are weighted by the glowing soot.
 std::pmr::vector<uint8_t> halved(std::span<const uint8_t> from, uint32_t width, uint32_t height,
                                  uint32_t frames, std::pmr::memory_resource* memory) {
+    FW_ASSERT(from.size() == size_t(4) * width * height * frames, "%zu bytes", from.size());
     const uint32_t w = width / 2, h = height / 2;
     std::pmr::vector<uint8_t> out(size_t(4) * w * h * frames, memory);
     for (uint32_t row = 0; row < h * frames; ++row)
@@ -56,7 +58,7 @@ std::pmr::vector<uint8_t> halved(std::span<const uint8_t> from, uint32_t width, 
     return out;
 }
 
-// As high as the shelves come in a picture so wide.
+// Places the blocks in a picture of this width; returns the shelves' height.
 uint32_t shelve(std::span<Block> blocks, uint32_t width) {
     uint32_t x = 0, y = 0, shelf = 0;
     for (Block& block : blocks) {
@@ -117,6 +119,7 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
                    picture.height, kMostPicture, kMostPicture);
     picture.texels.resize(size_t(4) * picture.width * picture.height);
     picture.words.resize(gpu::kBookWords);
+    FW_ASSERT(books.size() <= gpu::kMaxBooks, "%zu flipbooks", books.size());
     for (const Block& block : blocks) {
         const Book& book = *books[block.book];
         const Facts& f = book.facts;

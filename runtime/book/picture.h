@@ -1,6 +1,5 @@
-// All flipbooks of a world as a device has them: one picture of their frames, of those at smaller
-// sizes, which is what far ones show, and of motion; and the
-// words that say where each lies (shared/book.h).
+// All flipbooks of a world as one picture for the device: their frames, smaller copies for distant
+// particles, and motion; and the words with the place of each (shared/book.h).
 #pragma once
 #include "book/book.h"
 
@@ -13,10 +12,10 @@ struct Picture {
     std::pmr::vector<uint32_t> words;  // gpu::kBookWords
 };
 
-constexpr uint32_t kMostPicture = 4096;  // texels a side: every device has them
+constexpr uint32_t kMostPicture = 4096;  // texels a side; every device supports it
 
-// `books` by slot, at most gpu::kMaxBooks; null: there is none. Throws core::Error where they do
-// not fit.
+// `books` by slot, at most gpu::kMaxBooks; null: an empty slot. Throws core::Error if they do not
+// fit.
 Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* memory);
 
 }  // namespace fw::book

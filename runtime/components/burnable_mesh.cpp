@@ -28,7 +28,7 @@ fire::SpreadFacts facts(const BurnableMesh& object, const mesh::BurnDomain& doma
     return f;
 }
 
-// Notes how high, along up, the ground is that the object stands on.
+// Stores the height, along up, of the ground that the object stands on.
 void standOnGround(const mesh::BurnDomain& domain,
                    std::array<gpu::BurnMaterial, kMaterials>& materials) noexcept {
     const auto any = std::find_if(materials.begin(), materials.end(),
@@ -36,7 +36,7 @@ void standOnGround(const mesh::BurnDomain& domain,
     if (any == materials.end()) return;
     gpu::uvec4 up = any->upCeiling;
     int64_t low = INT64_MAX, high = INT64_MIN;
-    // A few thousand texels tell; odd strides meet all columns.
+    // A few thousand texels are enough; an odd stride meets all columns.
     const uint32_t count = domain.texelCount(), stride = (count / 4096) | 1u;
     for (uint32_t i = 0; i < count; i += stride) {
         if (!domain.real(i)) continue;
@@ -54,13 +54,8 @@ bool sameTurn(const Pose& a, const Pose& b) noexcept {
     return a.scale == b.scale && std::memcmp(a.rotation, b.rotation, sizeof a.rotation) == 0;
 }
 
-float meanTexelArea(const mesh::BurnDomain& domain) noexcept {
-    return domain.report.realTexels
-               ? float(domain.report.texelArea / double(domain.report.realTexels))
-               : domain.texelSide * domain.texelSide;
-}
-
-// A look was tuned at a rate of its own: one twice as fast ages twice as fast. 0: of no account.
+// A look was tuned at its own spread rate: a material twice as fast ages twice as fast. 0: no
+// ageing.
 float timeScale(const FwMaterialDef& def, float pace) noexcept {
     const float tuned = lookSpreadRate(def.look);
     return tuned > 0 && def.spreadRate > 0 ? pace * def.spreadRate / tuned : 0.0f;
@@ -74,7 +69,7 @@ FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFl
     if (worldFlags & FW_WORLD_NO_DAMAGE) def.flags |= FW_BURNABLE_NO_DAMAGE;
     if (worldFlags & FW_WORLD_NO_HOLES) def.flags |= FW_BURNABLE_NO_HOLES;
     if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
-    def.flags |= FW_BURNABLE_NO_HOLES;  // and nothing that only shows damage
+    def.flags |= FW_BURNABLE_NO_HOLES;  // and no feature that only shows damage
     def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_RECEDE |
                            FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS);
     return def;
@@ -86,14 +81,11 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
         FW_BURNABLE_LITE | FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL |
         FW_BURNABLE_SPRINGS | FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED |
         FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
-    if (def.flags & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
-                   kKnown);
+    checkFlags(def.flags, "FwBurnableMeshDef::flags", kKnown);
     BurnableMesh object;
     object.flags = def.flags;
     object.pose = makePose(def.transform, "FwBurnableMeshDef::transform");
-    std::copy_n(object.pose.stretch, 3, object.shape);  // the mesh takes it over
+    std::copy_n(object.pose.stretch, 3, object.shape);  // the mesh is stretched, not the pose
     std::fill_n(object.pose.stretch, 3, 1.0f);
     checkValue(def.moisture, "FwBurnableMeshDef::moisture", 0, 2);
     object.moisture = def.moisture;
@@ -120,6 +112,7 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
 }
 
 void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept {
+    FW_ASSERT(index < kMaterials, "material %u", index);
     object.materials[index] = def;
     object.materialMask |= 1u << index;
 }
@@ -145,6 +138,8 @@ bool CutOut::at(int64_t x, int64_t y) const noexcept {
         const int64_t rest = i % int64_t(side);
         return size_t(rest < 0 ? rest + side : rest);
     };
+    FW_ASSERT(width > 0 && height > 0 && pixelBits.size() == size_t((width + 7) / 8) * height,
+              "%u x %u pixels in %zu bytes", width, height, pixelBits.size());
     const size_t column = wrapped(x, width), row = wrapped(y, height);
     return (pixelBits[row * ((width + 7) / 8) + column / 8] >> (column & 7) & 1) != 0;
 }
@@ -209,7 +204,7 @@ bool isThere(const mesh::BurnDomain& domain, uint32_t texel, const CutOut& pictu
     for (int c = 0; c < 2; ++c) {
         middle[c] = frame.at[c] + frame.perX[c] * (double(texel % domain.width) + 0.5) +
                     frame.perY[c] * (double(texel / domain.width) + 0.5);
-        if (forced) {  // its middle is outside the triangle
+        if (forced) {  // the texel's middle is outside the triangle
             middle[c] = 0;
             for (size_t k = 0; k < 3; ++k)
                 middle[c] +=
@@ -225,7 +220,7 @@ bool isThere(const mesh::BurnDomain& domain, uint32_t texel, const CutOut& pictu
             int64_t pixel[2];
             for (int c = 0; c < 2; ++c) {
                 const double at = middle[c] + frame.perX[c] * x + frame.perY[c] * y;
-                // Coordinates of any size: whole turns fall away first.
+                // Coordinates of any size: whole repetitions are removed first.
                 pixel[c] = int64_t(std::floor((at - std::floor(at)) * sides[c]));
             }
             if (picture.at(pixel[0], pixel[1])) return true;
@@ -255,6 +250,8 @@ std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
                                         std::pmr::memory_resource* memory) {
     std::pmr::vector<uint16_t> slowness(memory);
     if (!def.multiplier && gone.empty()) return slowness;
+    FW_ASSERT(gone.empty() || gone.size() == domain.slowness.size(), "%zu of %zu texels",
+              gone.size(), domain.slowness.size());
     slowness.assign(domain.slowness.begin(), domain.slowness.end());
     for (size_t i = 0; i < gone.size(); ++i)
         if (gone[i]) slowness[i] = 0;
@@ -283,6 +280,7 @@ void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field) {
                    object.shape[0] < 0 ? "does" : "does not");
     bool even = true;
     for (int i = 0; i < 3; ++i) {
+        FW_ASSERT(object.shape[i] != 0, "axis %d", i);
         made.stretch[i] = pose.stretch[i] / object.shape[i];
         even &= std::abs(made.stretch[i] - 1) <= 2e-3f;
     }
@@ -336,6 +334,7 @@ bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const Dr
 }
 
 uint32_t holeTicks(const BurnableMesh& object, uint32_t material, float pace) noexcept {
+    FW_ASSERT(material < kMaterials, "material %u", material);
     const FwMaterialDef& def = object.materials[material];
     const float holeTime = materialLook(def.look).holeTime;
     const float scale = timeScale(def, pace);
@@ -367,6 +366,7 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
     }
     standOnGround(domain, records.materials);
     records.timing = fire::frontTiming(defs, f, winds, records.materials);
+    FW_ASSERT(records.timing.substepShift < 32, "shift %u", records.timing.substepShift);
     for (uint32_t i = 0; i < kMaterials; ++i) latch.flameTicks[i] = records.materials[i].flameTicks;
     latch.substepShift = records.timing.substepShift;
     latch.window = records.timing.window;
@@ -380,7 +380,7 @@ std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& 
                                                             float pace) noexcept {
     const FwMaterialDef stone = fire::presetDef(FW_MATERIAL_NONCOMBUSTIBLE);
     fire::HeatPlace place;
-    place.texelArea = meanTexelArea(domain) * object.pose.scale * object.pose.scale;
+    place.texelArea = float(domain.texelArea()) * object.pose.scale * object.pose.scale;
     place.pace = pace;
     place.moisture = object.moisture;
     std::array<gpu::HeatMaterial, kMaterials> made;
@@ -412,7 +412,7 @@ gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& d
     made.tileCount = domain.tileCount();
     made.window = records.timing.window;
     made.substepShift = records.timing.substepShift;
-    // Looks want to know of a front that comes within a minute of their own time.
+    // Surfaces show a front that arrives within a minute of the look's own time.
     uint32_t horizon = 0;
     for (uint32_t i = 0; i < kMaterials; ++i) {
         const gpu::BurnMaterial& m = records.materials[i];
@@ -443,7 +443,7 @@ void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept {
 gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {
     const float scale = object.pose.scale;
     return gpu::vec4(object.tint[0], object.tint[1], object.tint[2],
-                     meanTexelArea(domain) * scale * scale);
+                     float(domain.texelArea()) * scale * scale);
 }
 
 uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {

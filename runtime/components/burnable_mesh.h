@@ -1,4 +1,4 @@
-// A burnable mesh as plain data: pose, materials, what the host asked for; and the functions that
+// A burnable mesh as plain data: pose, materials and the def's other values; and the functions that
 // make a backend's records of it. It owns no ids and knows no device.
 #pragma once
 #include "components/pose.h"
@@ -17,10 +17,10 @@ namespace fw::components {
 constexpr uint32_t kMaterials = gpu::kMaterialsPerObject;
 
 struct BurnableMesh {
-    Pose pose;                   // of the mesh in its shape
-    float shape[3] = {1, 1, 1};  // what its mesh was stretched by at creation, see mesh/shaped.h
+    Pose pose;                   // of the stretched mesh
+    float shape[3] = {1, 1, 1};  // stretch of the mesh at creation, see mesh/shaped.h
     std::array<FwMaterialDef, kMaterials> materials{};  // by triangle material
-    uint32_t materialMask = 0;  // bit i: materials[i] was given; the others cannot burn
+    uint32_t materialMask = 0;  // bit i: materials[i] is set; the others cannot burn
     uint32_t flags = 0;         // FwBurnableFlags
     float moisture = 0;         // kg/kg, added to the materials' own, [0, 2]
     float tint[3] = {1, 1, 1};
@@ -35,9 +35,9 @@ struct DriveInput {           // of the world
     float pace = 1;
 };
 
-struct Latch {  // the drive that an object's front sees, and the filters before it
+struct Latch {  // the latched drive of an object's front, and the filters before it
     std::array<fire::WindFilter, kMaterials> filters{};
-    Pose pose;                                      // latched; translation is of no account
+    Pose pose;                                      // latched; its translation is not used
     std::array<uint32_t, kMaterials> flameTicks{};  // of the latched records; kNoneTexel: no end
     uint32_t substepShift = 0;                      // of the latched records
     uint32_t window = 0;                            // ticks, of the latched records
@@ -49,84 +49,84 @@ struct Records {
     fire::FrontTiming timing;
 };
 
-// A def as its world's flags (FwWorldFlags) change it: what shows damage is off without damage.
+// A def changed by its world's flags (FwWorldFlags): no feature shows damage where there is none.
 [[nodiscard]] FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given,
                                               uint32_t worldFlags) noexcept;
 // Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
-// Takes a new pose. A shape other than the object's stretches what is drawn alone: the front keeps
-// the metric of its creation, times the pose's mean scale. Throws when it mirrors otherwise.
+// Sets a new pose. A shape other than the object's stretches only the drawn mesh: the front keeps
+// the metric of its creation, times the pose's mean scale. Throws if exactly one of the two
+// mirrors.
 void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field);
 void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def) noexcept;
-// Ticks from a texel's ignition until it gives way there, in a world of this pace; 0: it never
-// does.
+// Ticks from a texel's ignition until it burns through, in a world of this pace; 0: never.
 [[nodiscard]] uint32_t holeTicks(const BurnableMesh& object, uint32_t material,
                                  float pace) noexcept;
-// Can it burn, be it after drying?
+// Whether the material can burn, possibly only after it dries.
 [[nodiscard]] bool burns(const BurnableMesh& object, uint32_t material) noexcept;
-// Has it temperature, fuel and water per texel?
+// Whether the object has temperature, fuel and water per texel.
 [[nodiscard]] bool hasHeat(const BurnableMesh& object) noexcept;
-// Does the world know what of its fuel has burnt?
+// Whether the world keeps an energy ledger of the object's fuel.
 [[nodiscard]] bool keepsBook(const BurnableMesh& object) noexcept;
 
-// Where a picture is, as its alpha says.
+// The opaque pixels of a picture, by its alpha.
 struct CutOut {
-    uint32_t width = 0, height = 0;       // pixels; 0: it is everywhere
-    std::pmr::vector<uint8_t> pixelBits;  // bit x & 7 of byte y * ceil(width / 8) + x / 8: there
+    uint32_t width = 0, height = 0;       // pixels; 0: opaque everywhere
+    std::pmr::vector<uint8_t> pixelBits;  // bit x & 7 of byte y * ceil(width / 8) + x / 8: opaque
     explicit CutOut(std::pmr::memory_resource* memory) : pixelBits(memory) {}
     [[nodiscard]] bool at(int64_t x, int64_t y) const noexcept;  // the picture is repeated
 };
 // `def` has been checked.
 CutOut makeCutOut(const FwImageDef& def, std::pmr::memory_resource* memory);
-// 1 for each real texel of which no part is there; empty: all are. By material index; null: no
-// picture, or one that is everywhere.
+// 1 for each real texel without any opaque pixel; empty: all have some. pictures: by material
+// index; null: no picture, or one that is opaque everywhere.
 std::pmr::vector<uint8_t> makeGone(const mesh::BurnDomain& domain,
                                    std::span<const CutOut* const, kMaterials> pictures,
                                    std::pmr::memory_resource* memory);
 
-// Q7 slowness per texel with the host's speed multiplier in it, 0 where the object is not; empty if
-// there is no multiplier and nothing is `gone`.
+// Q7 slowness per texel times the host's speed multiplier, 0 where the object is cut out. Empty
+// without a multiplier and without `gone`.
 std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
                                         const mesh::BurnDomain& domain,
                                         std::span<const uint8_t> gone,
                                         std::pmr::memory_resource* memory);
 
-// A latch as if wind and pose had always been these.
+// Sets the latch as if wind and pose had always been the present ones.
 void resetLatch(const BurnableMesh& object, const DriveInput& drive, Latch& latch) noexcept;
 // One step of the filters.
 void filterLatch(const BurnableMesh& object, const mesh::BurnDomain& domain,
                  const DriveInput& drive, Latch& latch) noexcept;
-// Takes over the filtered wind and the pose; false: they are what is latched already.
+// Latches the filtered wind and the pose; false: they are already latched.
 bool latchDrive(const BurnableMesh& object, Latch& latch) noexcept;
 [[nodiscard]] bool sameDrive(const BurnableMesh& object, const Latch& a, const Latch& b) noexcept;
-// Would filtering and latching change nothing, and does the backend know of it?
+// Whether filtering and latching would change nothing, and the backend has the latched records.
 [[nodiscard]] bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain,
                           const DriveInput& drive, const Latch& latch) noexcept;
-// Records under the latched drive; notes their flameTicks and substepShift in the latch.
+// Records under the latched drive; stores their flameTicks and substepShift in the latch.
 Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
                     const DriveInput& drive, Latch& latch) noexcept;
 
-// Of an object that has heat; where no material was given it is stone.
+// Of an object with heat; materials that are not set are stone.
 std::array<gpu::HeatMaterial, kMaterials> makeHeatMaterials(const BurnableMesh& object,
                                                             const mesh::BurnDomain& domain,
                                                             float pace) noexcept;
 
 struct Fuel {
     uint64_t energy = 0;  // 2^-20 J
-    uint32_t texels = 0;  // that it is in
+    uint32_t texels = 0;  // texels with fuel
 };
-// What an object is made with. texelsOf: real texels of its mesh, by material.
+// The fuel of a new object. texelsOf: real texels of its mesh, by material.
 [[nodiscard]] Fuel fuelOf(const BurnableMesh& object, const mesh::BurnDomain& domain,
                           std::span<const uint32_t, kMaterials> texelsOf, float pace) noexcept;
 
-// What the backend keeps of an object; bases are the backend's.
+// The backend's record of an object; the backend sets its bases.
 gpu::BurnObject makeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,
                            const Records& records) noexcept;
 void poseRows(const Pose& pose, gpu::vec4 (&rows)[3]) noexcept;
 gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept;
 uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept;
 
-// W/m^2 of what flames, the mean over the materials' texels.
+// W/m^2 of flaming texels, the mean over the materials' texels.
 float powerPerArea(const BurnableMesh& object,
                    const std::array<uint32_t, kMaterials>& texelsOf) noexcept;
 

@@ -10,16 +10,17 @@ namespace fw::components {
 namespace {
 
 constexpr uint32_t kTiers = FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS;
-constexpr uint32_t kOne = kTiers | FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED;  // of these
+// Flags of which a def may have one.
+constexpr uint32_t kOne = kTiers | FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED;
 
-// How thin things are in the air: m/s that a sheet falls at, flat, at 0.08 kg/m^2.
+// m/s at which a flat sheet of 0.08 kg/m^2 falls.
 constexpr float kFlutter = 1.2f;
 
 uint32_t ticksOf(float seconds) noexcept {
     return uint32_t(std::clamp(seconds * float(gpu::kTicksPerSecond), 1.0f, 4.0e9f));
 }
 
-// [0, 1] against bending, fresh.
+// Stiffness against bending of fresh material, [0, 1].
 float softness(uint32_t look) noexcept {
     switch (look) {
         case FW_MATERIAL_COTTON:
@@ -49,7 +50,7 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
     if (holes && opens > 0 && record.timeScale > 0) {
         made.holeSeconds = opens;
         made.holeTicks = ticksOf(opens / record.timeScale);
-        // A sheet is gone where it has a hole, and curls before.
+        // A sheet curls before it has a hole.
         if (sheet) made.charTicks = uint32_t(float(made.holeTicks) * 1.15f);
     }
     return made;
@@ -103,6 +104,7 @@ gpu::DeformObject makeDeform(const FwBurnableMeshDef& def, const BurnableMesh& o
     made.scale = object.pose.scale;
     constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
     made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
+    FW_ASSERT(def.pinCount <= gpu::kMaxPins, "%u pins", def.pinCount);
     made.pinCount = def.pinCount;
     for (uint32_t i = 0; i < def.pinCount; ++i) {
         const FwPin& pin = def.pins[i];

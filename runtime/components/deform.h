@@ -1,5 +1,4 @@
-// How an object of some materials deforms: the record that the deformation passes read. Plain
-// functions over defs; nothing moves here.
+// The record of an object that deforms, for the deformation passes, from its def and materials.
 #pragma once
 #include "components/burnable_mesh.h"
 #include "shared/deform.h"
@@ -9,7 +8,7 @@ namespace fw::components {
 // Throws core::Error naming the field.
 void checkDeform(const FwBurnableMeshDef& def);
 [[nodiscard]] bool deforms(const BurnableMesh& object) noexcept;
-// Bases are the backend's.
+// The backend sets the record's bases.
 gpu::DeformObject makeDeform(const FwBurnableMeshDef& def, const BurnableMesh& object,
                              const Records& records) noexcept;
 

@@ -2,6 +2,7 @@
 
 #include "components/lights.h"
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 #include "shared/particle.h"
 
@@ -14,11 +15,11 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
-constexpr float kAtOnce = 20.5f;  // particles that cover a fire with their sizes as written
-// Of a fire's flames, m/s^2, and as a share of its rise the speed at which drag holds that lift:
-// with both they end as high as a volumetric fire's. A flame's drag follows from them.
+constexpr float kAtOnce = 20.5f;  // particles that cover a fire at the sizes below
+// Lift of flames, m/s^2, and the speed at which drag balances it, of the fire's rise. With both,
+// flames reach as high as a volumetric fire's. A flame's drag follows from them.
 constexpr float kFireLift = 11.45f, kFireSpeed = 0.78f;
-constexpr float kStuckRates = 1.2f;  // most births where fuel sticks, of those of the stream
+constexpr float kStuckRates = 1.2f;  // most births from stuck fuel, of the stream's births
 
 float length3(const float v[3]) noexcept {
     return std::sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
@@ -35,7 +36,7 @@ void readDirection(const float given[3], const char* name, float (&out)[3]) {
 
 float orElse(float given, float own) noexcept { return given > 0 ? given : own; }
 
-// Slow waves that never meet again, in [-1, 1].
+// A sum of slow waves without a common period, in [-1, 1].
 float wave(double t, double phase) noexcept {
     return float(0.5 * std::sin(t + phase) + 0.3 * std::sin(2.27 * t + 2.1 * phase) +
                  0.2 * std::sin(4.13 * t + 5.3 * phase));
@@ -43,14 +44,14 @@ float wave(double t, double phase) noexcept {
 
 vec4 with(const float v[3], float w) noexcept { return {v[0], v[1], v[2], w}; }
 
-// Speeds and lasting of flames at a share of the power (Heskestad: height by its 0.4th): what were
-// as fast and lasting at little would be balls far above it. Follows the power so slowly that none
-// that is there gets younger by it.
-float vigourOf(float share, float before, bool anew, float seconds) noexcept {
+// Factor on speed and life of flames at a share of the power (Heskestad: height scales with its
+// 0.4th power). Without it, flames at low power would float far above the fire. Follows the power
+// slowly, so that no existing particle gets younger.
+float vigourOf(float share, float before, bool first, float seconds) noexcept {
     constexpr float kLeast = 0.25f, kPerSecond = 0.6f;
-    const float wish = std::max(std::pow(share, 0.2f), kLeast);
+    const float target = std::max(std::pow(share, 0.2f), kLeast);
     const float step = kPerSecond * seconds;
-    return anew ? wish : std::clamp(wish, before - step, before + step);
+    return first ? target : std::clamp(target, before - step, before + step);
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
     const float power = std::max(def.power, 0.01f);
     const bool jet = (def.flags & FW_EMITTER_JET) != 0;
     if (jet) {
-        // As tuned for 2 MW; others are like it in the large and in the small.
+        // Tuned for 2 MW, and scaled to other powers.
         const float scale = std::pow(power / 2000.0f, 0.25f);
         look.diameter = 0.2f * scale;
         look.rate = orElse(def.rate, 160);
@@ -83,7 +84,7 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
         look.pulse = 0.12f * def.turbulence;
         look.stretch = 5;
     } else {
-        // A pool fire: its width from its power, or as the host has it (Heskestad, McCaffrey).
+        // A pool fire: its diameter from its power or from the def (Heskestad, McCaffrey).
         const float own = std::pow(power / 1110.0f, 0.4f);
         look.diameter = std::max(def.shape == FW_EMITTER_DISC ? 2 * def.radius : 0.6f * own, 0.02f);
         const float tall = 0.235f * std::pow(power, 0.4f);
@@ -97,8 +98,8 @@ EmitterLook emitterLook(const FwFireEmitterDef& def) {
         const float rate = 50 + 10 * std::sqrt(power / 100);
         look.life = orElse(def.life, life);
         look.rate = orElse(def.rate, rate);
-        // The larger a fire the more there are at once, and the smaller for it: what they all
-        // cover, and with it their light, is a volumetric fire's of the same power.
+        // A larger fire has more particles, each smaller for its size. All together they cover as
+        // much, and shine as much, as a volumetric fire of the same power.
         const float fine = std::sqrt(kAtOnce / (rate * life));
         look.size0 = orElse(def.size0, fine * (0.26f * look.diameter + 0.04f * tall));
         const float size1 = orElse(def.size1, fine * (0.26f * look.diameter + 0.12f * tall));
@@ -122,9 +123,7 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     constexpr uint32_t kKnown = FW_EMITTER_HIDDEN | FW_EMITTER_NO_SMOKE | FW_EMITTER_NO_LIGHT |
                                 FW_EMITTER_GROUND | FW_EMITTER_JET | FW_EMITTER_IGNITES |
                                 FW_EMITTER_NO_COLLISION;
-    if (def.flags & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwFireEmitterDef::flags is 0x%x; the known flags are 0x%x.", def.flags, kKnown);
+    checkFlags(def.flags, "FwFireEmitterDef::flags", kKnown);
     checkWhole(def.shape, "FwFireEmitterDef::shape", 0, FW_EMITTER_MESH);
     checkWhole(def.reserved, "FwFireEmitterDef::reserved", 0, 0);
     checkWhole(def.maxParticles, "FwFireEmitterDef::maxParticles", 0, 1u << 20);
@@ -181,20 +180,21 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
 
 void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction) {
     checkLengths(position, 3, "position", -1e6f, 1e6f);
-    float way[3];
-    std::copy_n(emitter.direction, 3, way);
-    if (direction) readDirection(direction, "direction", way);
+    float turned[3];
+    std::copy_n(emitter.direction, 3, turned);
+    if (direction) readDirection(direction, "direction", turned);
     std::copy_n(position, 3, emitter.position);
-    std::copy_n(way, 3, emitter.direction);
+    std::copy_n(turned, 3, emitter.direction);
 }
 
 void setEmitterPower(FireEmitter& emitter, float power) {
     checkValue(power, "power", 0.0f, kMostPower);
     emitter.def.power = power;
-    if (power > 0) emitter.look = emitterLook(emitter.def);  // what still flies keeps its looks
+    if (power > 0) emitter.look = emitterLook(emitter.def);  // at 0, flying particles keep theirs
 }
 
 void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept {
+    FW_ASSERT(i < kJetRays, "ray %u", i);
     JetShield& has = emitter.shields[i];
     float apart = 0;
     for (int k = 0; k < 3; ++k)
@@ -224,7 +224,7 @@ uint32_t emitterNeeds(const FireEmitter& emitter) {
 
 namespace {
 
-// Where fuel sticks, into the record; births a second there.
+// Writes the patches of stuck fuel to the record. Returns their births per second.
 float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noexcept {
     record = {};
     if (!emitter.stream) return 0;
@@ -233,6 +233,7 @@ float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noex
     for (const JetPatch& patch : emitter.stream->patches) {
         if (patch.left == 0 || patch.power == 0) continue;
         const float watts = float(double(patch.power) * 1e-9);
+        FW_ASSERT(count < kJetPatches, "patch %u", count);
         births[count] = 22 * std::clamp(std::sqrt(watts / 20000), 0.15f, 1.5f);
         sum += births[count];
         record.patches[2 * count] = with(patch.place, sum);
@@ -247,81 +248,123 @@ float stuckBirths(const FireEmitter& emitter, gpu::ParticleEmitter& record) noex
 
 }  // namespace
 
+namespace {
+
+struct FrameOfEmitter {
+    float seconds = 0;      // s
+    float from[3] = {};     // m, place at the frame's start
+    float carried[3] = {};  // m/s, inherited speed
+    double rate = 0;        // 1/s
+    float stuckRate = 0;    // 1/s
+    uint32_t fresh = 0;     // births
+    bool burns = false;     // births go on
+};
+
+// The emitter's path in the frame.
+FrameOfEmitter followEmitter(FireEmitter& emitter, float frame) noexcept {
+    const FwFireEmitterDef& def = emitter.def;
+    FireEmitter::Births& births = emitter.next;
+    FrameOfEmitter f;
+    f.seconds = births.warms ? std::max(frame, emitterLasts(emitter)) : frame;
+    births.warms = false;
+    if (!births.placed) std::copy_n(emitter.position, 3, births.position);
+    float moved[3];
+    for (int i = 0; i < 3; ++i) {
+        f.from[i] = births.position[i];
+        moved[i] = emitter.position[i] - f.from[i];
+    }
+    const bool flew = f.seconds > 0 && length3(moved) <= kTeleport * f.seconds;
+    const float carry = flew && def.shape != FW_EMITTER_MESH ? def.inherit / f.seconds : 0;
+    for (int i = 0; i < 3; ++i) f.carried[i] = moved[i] * carry;
+    if (!flew) std::copy_n(emitter.position, 3, f.from);
+    std::copy_n(emitter.position, 3, births.position);
+    births.placed = true;
+    return f;
+}
+
+// Births of the frame into `next` and `f`.
+void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
+    const FwFireEmitterDef& def = emitter.def;
+    FireEmitter::Births& births = emitter.next;
+    FW_ASSERT(emitter.ring > 0 && births.filled <= emitter.ring, "%u of %u particles",
+              births.filled, emitter.ring);
+    const bool flows = def.power > 0 && emitter.share > 0;
+    f.burns = flows || f.stuckRate > 0;
+    if (def.shape == FW_EMITTER_MESH && flows)
+        births.vigour = vigourOf(emitter.share, births.vigour, births.filled == 0, f.seconds);
+    // Shorter lives and as many more births keep the same number of particles.
+    const double stream =
+        flows ? double(emitter.look.rate) * double(emitter.share / births.vigour) : 0.0;
+    f.rate = std::max(stream + double(f.stuckRate), 1e-3);
+    if (f.burns) {
+        const double sum = births.part + f.rate * double(f.seconds), whole = std::floor(sum);
+        births.part = sum - whole;
+        f.fresh = uint32_t(std::min(whole, double(emitter.ring)));
+    }
+    births.head = (births.head + f.fresh) % emitter.ring;
+    births.filled = std::min(births.filled + f.fresh, emitter.ring);
+    births.serial += f.fresh;
+    if (f.fresh > 0) births.last = now;
+    if (births.filled > 0 && now - births.last > double(emitterLasts(emitter)) + 0.1)
+        births.filled = 0;
+}
+
+// The discs that stop a jet.
+void writeShields(const FireEmitter& emitter, double now, gpu::ParticleEmitter& record) noexcept {
+    const auto add = [&](const JetShield& shield) {
+        FW_ASSERT(2 * record.shieldCount + 1 < std::size(record.shields), "%u discs",
+                  record.shieldCount);
+        record.shields[2 * record.shieldCount] = with(shield.place, shield.radius);
+        record.shields[2 * record.shieldCount + 1] = with(shield.normal, 0);
+        ++record.shieldCount;
+    };
+    for (const JetShield& shield : emitter.shields)
+        if (shield.met) add(shield);
+    for (const JetShield& shield : emitter.lastShields)
+        if (shield.met && shield.until > now) add(shield);
+}
+
+}  // namespace
+
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept {
     const FwFireEmitterDef& def = emitter.def;
     const EmitterLook& look = emitter.look;
     FireEmitter::Births& births = emitter.next;
     births = emitter.births;
-    const float seconds = births.warms ? std::max(frame, emitterLasts(emitter)) : frame;
-    births.warms = false;
-    if (!births.placed) std::copy_n(emitter.position, 3, births.position);
-    float from[3], moved[3];
-    for (int i = 0; i < 3; ++i) {
-        from[i] = births.position[i];
-        moved[i] = emitter.position[i] - from[i];
-    }
-    const bool flew = seconds > 0 && length3(moved) <= kTeleport * seconds;
-    const float carry = flew && seconds > 0 ? def.inherit / seconds : 0;
-    if (!flew) std::copy_n(emitter.position, 3, from);
-    std::copy_n(emitter.position, 3, births.position);
-    births.placed = true;
-
-    const bool onMesh = def.shape == FW_EMITTER_MESH;
-    const float stuckRate = stuckBirths(emitter, record);
-    const bool flows = def.power > 0 && emitter.share > 0;
-    const bool burns = flows || stuckRate > 0;
-    if (onMesh && flows)
-        births.vigour = vigourOf(emitter.share, births.vigour, births.filled == 0, seconds);
-    const float vigour = births.vigour;
-    uint32_t fresh = 0;
-    double part = births.part;
-    // Shorter lives, and as many more births: its share of all are there at once.
-    const double rate = std::max(
-        (flows ? double(look.rate) * double(emitter.share / vigour) : 0.0) + double(stuckRate),
-        1e-3);
-    if (burns) {
-        part += rate * double(seconds);
-        const double whole = std::floor(part);
-        part -= whole;
-        fresh = uint32_t(std::min(whole, double(emitter.ring)));
-    }
-    births.part = part;
-    births.head = (births.head + fresh) % emitter.ring;
-    births.filled = std::min(births.filled + fresh, emitter.ring);
-    births.serial += fresh;
-    if (fresh > 0) births.last = air.now;
-    if (births.filled > 0 && air.now - births.last > double(emitterLasts(emitter)) + 0.1)
-        births.filled = 0;
+    FrameOfEmitter f = followEmitter(emitter, frame);
+    f.stuckRate = stuckBirths(emitter, record);
+    countBirths(emitter, air.now, f);
     if (births.filled == 0) return false;
 
+    const bool onMesh = def.shape == FW_EMITTER_MESH;
     const bool smokes = !(def.flags & FW_EMITTER_NO_SMOKE);
+    const float vigour = births.vigour, seconds = f.seconds;
+    const double rate = f.rate;
     const float wind[3] = {air.wind[0] * def.windResponse, air.wind[1] * def.windResponse,
                            air.wind[2] * def.windResponse};
-    if (onMesh) moved[0] = moved[1] = moved[2] = 0;
-    const float carried[3] = {moved[0] * carry, moved[1] * carry, moved[2] * carry};
     const float none[3] = {};
-    record.stuck.x = stuckRate / float(rate);
-    record.from = with(from, seconds);
-    // The quads of what is born at a disc's edge reach to it, not beyond.
+    record.stuck.x = f.stuckRate / float(rate);
+    record.from = with(f.from, seconds);
+    // Quads born at a disc's edge reach to the edge, not beyond.
     const float disc = std::max(def.radius - 0.4f * look.size0, 0.5f * def.radius);
     record.place = with(emitter.position, def.shape == FW_EMITTER_DISC   ? disc
                                           : (def.flags & FW_EMITTER_JET) ? 0.1f * look.size0
                                                                          : 0.2f * look.diameter);
-    if (onMesh) record.place = record.from = vec4(0, 0, 0, 0);  // its tiles are the device's
+    if (onMesh) record.place = record.from = vec4(0, 0, 0, 0);  // the device has its tiles
     record.from.w = seconds;
     record.object = onMesh ? def.object.index1 : 0;
     record.direction = with(emitter.direction, look.cone);
     record.half_ = with(def.shape == FW_EMITTER_LINE ? def.extent : none, look.speed);
-    record.carried = with(carried, def.ground);
-    // Waves that the sum of many ages would not show wrap around unseen.
+    record.carried = with(f.carried, def.ground);
+    // The clock wraps: the sum over many ages hides it.
     record.wind = with(wind, float(std::fmod(air.now, 1024.0)));
     record.up = with(air.up, look.pulse);
     record.motion = {vigour * look.dragStream, vigour * look.dragTorn, look.liftTorn,
                      look.liftStream};
     record.turbulence = {look.eddies, look.eddyScale, look.eddyDrift, look.wander};
     record.size = {look.size0, look.grow, look.swell, look.stretch};
-    // Its smoke lasts as long as that of all; of more puffs each is as much thinner.
+    // Smoke lasts as long at any vigour; more puffs are thinner.
     record.life = {vigour * look.life, def.lifeVariance, def.smokeLife / vigour,
                    smokes ? def.smoke : 0.0f};
     record.heat = {look.kelvin0, look.kelvin1, vigour * def.smokeDensity, 0};
@@ -329,10 +372,10 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.ring = emitter.ring;
     record.head = births.head;
     record.filled = births.filled;
-    record.fresh = fresh;
+    record.fresh = f.fresh;
     record.serial = births.serial;
     record.apart = float(1.0 / rate);
-    record.age = burns ? float(part / rate) : 0.0f;
+    record.age = f.burns ? float(births.part / rate) : 0.0f;
     record.seed = emitter.seed;
     record.books = emitter.books.fire;
     record.otherBooks = emitter.books.other;
@@ -340,18 +383,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u) |
                    (emitter.books.fireEmits ? gpu::kEmitterEmits : 0u);
-    if (isSwept(def)) {
-        const auto add = [&](const JetShield& shield) {
-            record.shields[2 * record.shieldCount] = with(shield.place, shield.radius);
-            record.shields[2 * record.shieldCount + 1] = with(shield.normal, 0);
-            ++record.shieldCount;
-        };
-        for (const JetShield& shield : emitter.shields)
-            if (shield.met) add(shield);
-        for (const JetShield& shield : emitter.lastShields)
-            if (shield.met && shield.until > air.now) add(shield);
-    }
-    // Waves of the stream, now and at the frame's start: births lie between.
+    if (isSwept(def)) writeShields(emitter, air.now, record);
+    // Waves of the stream at the frame's start and now: births lie between.
     const double phase = double(emitter.seed & 1023u) * 0.137;
     const auto waves = [&](double t) {
         return vec4(look.wander * wave(9 * t, phase), look.wander * wave(9 * t, phase + 3.3),
@@ -369,7 +402,7 @@ FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t
     const EmitterLook& look = emitter.look;
     FwLight light{};
     const bool jet = (emitter.def.flags & FW_EMITTER_JET) != 0;
-    // Where most of it burns: half way, and a stream's later part.
+    // The middle of the flames, and a later part of a jet.
     const float along = jet ? 0.6f * look.reach : 0.15f * look.reach;
     for (int i = 0; i < 3; ++i)
         light.position[i] = emitter.position[i] + emitter.direction[i] * along +
@@ -379,13 +412,13 @@ FwLight emitterLight(const FireEmitter& emitter, const EmitterAir& air, uint32_t
     light.color[2] = 0.292f;
     light.radius = std::max(0.5f * look.diameter, 0.25f * look.reach);
     const double phase = double(emitter.seed & 1023u) * 0.137;
-    // It fades with its last particles.
+    // The light fades with the last particles.
     const double since = air.now - emitter.births.last - 0.1;
     const auto left = float(std::clamp(1.0 - since / double(look.life), 0.0, 1.0));
     light.power = 1000.0f * emitter.def.power;
     const float shines = flicker(air.now, phase);
     light.intensity = light.power * (kLightShare / kSphere) * shines * left;
-    // Of a jet that no longer flows the fuel that sticks shines on.
+    // A jet without power shines from its stuck fuel.
     if (emitter.stream && !(emitter.def.power > 0)) {
         double sum = 0, at[3] = {};
         for (const JetPatch& patch : emitter.stream->patches) {

@@ -1,5 +1,5 @@
-// A fire emitter as plain data: what the host asked for, checked; what its power makes of the rest;
-// and its frames as the device gets them. Counts births, never touches a particle. Looks alone.
+// A fire emitter as plain data: its checked def, the particle parameters that follow from its
+// power, and its record per frame for the device. Counts births, touches no particle. Cosmetic.
 #pragma once
 #include "components/jet.h"
 #include "core/owned.h"
@@ -14,7 +14,7 @@ struct ParticleEmitter;  // shared/particle.h
 
 namespace fw::components {
 
-// What particles are like, all of it known: of the def, or of its power.
+// Parameters of the particles, from the def or else from its power.
 struct EmitterLook {
     float diameter = 0.3f;                                  // m, of the fire
     float rate = 30, speed = 1, cone = 0.3f;                // 1/s, m/s, rad
@@ -24,14 +24,14 @@ struct EmitterLook {
     float eddies = 1, eddyScale = 1, eddyDrift = 1;         // m/s, 1/m, m/s
     float wander = 0, pulse = 0, stretch = 1;               // rad; shares
     float kelvin0 = 1560, kelvin1 = 1330;
-    float reach = 1;  // m that particles come, about
+    float reach = 1;  // m, about how far particles fly
 };
 
-// Where a jet is stopped: a disc that particles do not pass.
+// A disc that a jet's particles do not pass.
 struct JetShield {
     bool met = false;
     float place[3] = {}, normal[3] = {}, radius = 0;  // m
-    double until = 0;                                 // s; of one that a ray no longer strikes
+    double until = 0;                                 // s; end of a disc that no ray strikes now
 };
 
 struct JetHole {
@@ -39,7 +39,7 @@ struct JetHole {
     uint32_t texel = 0;
 };
 
-// An object without heat of its own under a jet.
+// An object without its own heat under a jet.
 struct JetTouch {
     FwBurnableMeshId object{};
     uint64_t since = 0;  // tick
@@ -58,69 +58,69 @@ struct EmitterAir {
 };
 
 struct EmitterBooks {
-    uint32_t fire = 0, other = 0;  // as ParticleEmitter has them
-    uint32_t spark = 0;            // as SparkSource
-    bool fireEmits = false;        // books of fire are given, and none of them hides anything
+    uint32_t fire = 0, other = 0;  // see ParticleEmitter
+    uint32_t spark = 0;            // see SparkSource
+    bool fireEmits = false;        // has flipbooks of fire, and none of them absorbs light
 };
 
-// Where it was and how many sparks a second it threw there, at steps of the clock, the last first.
+// Places and spark rates of the emitter at steps of the clock, latest first.
 constexpr uint32_t kSparkNotes = 11;
 struct SparkHistory {
     std::array<std::array<float, 4>, kSparkNotes> notes{};  // m, 1/s
-    int64_t step = 0;                                       // of the last
+    int64_t step = 0;                                       // of notes[0]
     bool begun = false;
 };
 
-constexpr float kTeleport = 100;  // m/s: what is faster was put there, it did not fly
+constexpr float kTeleport = 100;  // m/s; a faster move is a teleport
 
 struct FireEmitter {
     FwFireEmitterDef def{};
     EmitterLook look;
     EmitterBooks books;
-    float share = 1;  // of its births: of a mesh, by what burns there
+    float share = 1;  // of its births; on a mesh, the burning share of it
     uint32_t seed = 0;
-    uint32_t first = 0, ring = 0;  // particles of the world's
+    uint32_t first = 0, ring = 0;  // its range of the world's particles
     float position[3] = {}, direction[3] = {0, 1, 0};
-    // Of a jet, as it was last swept: in frame `swept` of the world's.
+    // Of a jet, as of its last sweep.
     JetHits hits{};
-    uint64_t swept = 0;
-    std::array<JetHole, kJetRays> holes{};  // as of the last readback: for what is seen alone
+    uint64_t swept = 0;                     // the world's frame of that sweep
+    std::array<JetHole, kJetRays> holes{};  // as of the last readback; cosmetic
     std::array<JetShield, kJetRays> shields{}, lastShields{};
     uint32_t nextLast = 0;
-    uint32_t struck = 0;  // rays that something stopped
-    float freeWay = 0;    // m to the nearest of it
+    uint32_t struck = 0;  // rays that an obstacle stopped
+    float freeWay = 0;    // m to the nearest obstacle
     float heated = 0;     // W that reached burnable meshes at the last exchange
     std::array<JetTouch, 8> touches{};
-    core::Owned<JetStream> stream;  // of what ignites
+    core::Owned<JetStream> stream;  // of an emitter that ignites
     // As of the last frame.
     struct Births {
         float position[3] = {};
         double part = 0;  // of the next birth, [0, 1)
         uint32_t head = 0, filled = 0, serial = 0;
         double last = -1e9;  // s of the last birth
-        float vigour = 1;    // of a mesh: how fast its fire rises and for how long, of all burning
+        float vigour = 1;    // on a mesh: factor on flames' speed and life, 1 if all of it burns
         bool placed = false;
-        bool warms = false;  // its next frame makes all that would fly by then
+        bool warms = false;  // the next frame makes all particles that would fly by then
         SparkHistory sparks;
     } births, next;
 };
 
-// Throw where a value is out of its limits, and then changed nothing.
+// Throw core::Error if a value is out of its limits, and then change nothing.
 void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter& emitter);
 void moveFireEmitter(FireEmitter& emitter, const float position[3], const float* direction);
 void setEmitterPower(FireEmitter& emitter, float power);
-// Whether something may stop it.
+// Whether obstacles may stop it.
 inline bool isSwept(const FwFireEmitterDef& def) noexcept {
     return (def.flags & FW_EMITTER_JET) && !(def.flags & FW_EMITTER_NO_COLLISION);
 }
-// What ray `i` strikes now; what it struck before still stops what is on its way there.
+// Sets the disc that ray `i` strikes; the disc before it still stops particles on their way there.
 void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept;
 EmitterLook emitterLook(const FwFireEmitterDef& def);
-// Particles that it needs at its power, and s that one of them lasts at most.
+// Particles that the emitter needs at its power; s that a particle lasts at most.
 uint32_t emitterNeeds(const FireEmitter& emitter);
 float emitterLasts(const FireEmitter& emitter);
-// Its next frame, of so many seconds, into `next` and the record. False: nothing of it is left to
-// show.
+// Computes the next frame, of `frame` seconds, into `next` and the record. False: no particle is
+// left.
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
                     gpu::ParticleEmitter& record) noexcept;
 inline void commitEmitter(FireEmitter& emitter) noexcept { emitter.births = emitter.next; }

@@ -9,10 +9,10 @@ namespace {
 using gpu::vec3;
 using gpu::vec4;
 
-constexpr float kOut = 1e-4f;              // kW below which nothing is left to see
-constexpr size_t kNearColliders = 16;      // that one flame minds
+constexpr float kOut = 1e-4f;              // kW; a flame below it is invisible
+constexpr size_t kNearColliders = 16;      // most colliders of one flame
 constexpr float kFluxMost = 200000.0f;     // W/m^2
-constexpr float kLumensPerWatt = 0.4f;     // as FlameLight::flux counts
+constexpr float kLumensPerWatt = 0.4f;     // of FlameLight::flux
 constexpr float kFullCircle = 12.566371f;  // sr of a sphere
 
 // Two directions across `up`.
@@ -31,8 +31,8 @@ struct Near {
     size_t count = 0;
 };
 
-// Those that may be within the flame's bounds. A height field tells heights, not distances: it is
-// near where the flame is over it; a picture of depth tells of what is near a point alone.
+// Collects colliders that may be within the flame's bounds. Height fields and depth pictures have
+// no distance to test: they are always near.
 void findNear(const FireFlame& f, std::span<const volume::Collider> all, float seconds,
               Near& near) noexcept {
     near.count = 0;
@@ -51,6 +51,7 @@ void findNear(const FireFlame& f, std::span<const volume::Collider> all, float s
 }
 
 const gpu::FlameNode& nodeAt(const volume::Flame& f, float s) noexcept {
+    FW_ASSERT(f.nodes.size() >= 2, "%zu nodes", f.nodes.size());
     const float step = std::max(f.nodes[1].along.w - f.nodes[0].along.w, 1e-6f);
     return f.nodes[size_t(std::clamp(s / step + 0.5f, 0.0f, float(f.nodes.size() - 1)))];
 }
@@ -66,6 +67,7 @@ size_t FireFlames::findRoom(size_t more) {
     next_.reserve(room);
     others_.reserve(room);
     met_.reserve(room);
+    FW_ASSERT(room >= wanted && room <= gpu::kMaxVolumeFlames, "%zu of %zu flames", room, wanted);
     return room;
 }
 
@@ -81,9 +83,10 @@ void FireFlames::carry(vec3 by) noexcept {
     }
 }
 
-// What is asked of a flame by its fire, and the height that a line gives it.
+// Sets a flame's def from its fire.
 void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     const VolumetricFire& fire = *f.fire;
+    FW_ASSERT(f.part < fire.parts.size(), "part %u", f.part);
     const volume::Flamelet& part = fire.parts[f.part];
     volume::Flame& flame = f.flame;
     volume::FlameDef& def = flame.def;
@@ -156,6 +159,7 @@ FireState FireFlames::foresee(VolumetricFire& fire, const FireAir& air) const no
 void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
     fire.nextState = {};
     fire.nextState.lit = true;
+    FW_ASSERT(fire.partCount <= 32, "%u parts", fire.partCount);
     uint32_t there = 0;  // bit per part
     for (FireFlame& f : next_) {
         if (f.fire != &fire) continue;
@@ -183,7 +187,7 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
         place(f, air);
         const volume::FlameDef wanted = f.flame.def;
         volume::FlameDef first = wanted;
-        if (fire.state.lit) first.power = 0;  // it catches; a new fire has burnt for long
+        if (fire.state.lit) first.power = 0;  // it grows; a new fire starts at full height
         volume::FlameAir still;
         still.wind = volume::vecOf(fire.wind) * fire.windResponse;
         volume::startFlame(f.flame, first, still);
@@ -197,7 +201,7 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
     others_.clear();
     for (FireFlame& f : next_) {
         volume::Flame& flame = f.flame;
-        volume::followTeleport(flame, double(seconds));  // colliders are sought where it is then
+        volume::followTeleport(flame, double(seconds));  // before the search for colliders
         const bool led = flame.def.driver == volume::FlameDriver::Host;
         if (led) {
             flame.given = f.fire->points;
@@ -205,15 +209,18 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
         }
         const float alone = aloneHeight(flame.power, flame.def.diameter);
         flame.def.height = 0;
-        if (flame.givenCount > 0 && flame.tracked > 0) {  // as high as its line is long
+        if (flame.givenCount > 0 && flame.tracked > 0) {  // its height is its line's length
             volume::Curve line;
             line.set(std::span(flame.given).first(flame.givenCount), up);
             flame.def.height =
                 std::clamp(glm::mix(alone, line.length(), flame.tracked), 1e-3f, 200.0f);
         }
+        FW_ASSERT(others_.size() < others_.capacity(), "%zu flames", others_.size());
         others_.push_back(
             {flame.def.position, flame.power * (1.0f - flame.tracked), flame.def.diameter, alone});
     }
+    FW_ASSERT(others_.size() <= met_.capacity(), "%zu of %zu flames", others_.size(),
+              met_.capacity());
     met_.resize(others_.size());
     volume::meetNeighbours(others_, up, met_);
     for (size_t i = 0; i < next_.size(); ++i) {
@@ -230,10 +237,10 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
     }
     std::erase_if(
         next_, [](const FireFlame& f) { return f.flame.power < kOut && f.flame.def.power < kOut; });
-    tell();
+    sumStates();
 }
 
-void FireFlames::tell() noexcept {
+void FireFlames::sumStates() noexcept {
     for (const FireFlame& f : next_) {
         FireState& s = f.fire->nextState;
         const volume::Flame& flame = f.flame;
@@ -288,6 +295,8 @@ FireAnswer askFires(std::span<const FireFlame> flames,
     FireAnswer all;
     float most = 0;
     for (const FireFlame& f : flames) {
+        FW_ASSERT(f.fire->profile < profiles.size(), "profile %u of %zu", f.fire->profile,
+                  profiles.size());
         const volume::FlameAnswer a =
             volume::askFlame(f.flame, *profiles[f.fire->profile], point, walls);
         all.air.inside |= a.inside;

@@ -1,7 +1,8 @@
-// The flames that a world's volumetric fires burn as: which there are, how a frame moves them
-// together, and what they give to drawing, lights and questions. Looks alone, no device.
+// The flames of a world's volumetric fires: creation, a frame's step of all of them together, and
+// their records for drawing, lights and queries. Cosmetic, without a device.
 #pragma once
 #include "components/volumetric_fire.h"
+#include "core/assert.h"
 #include "core/owned.h"
 #include "shared/volume_flame.h"
 
@@ -17,31 +18,36 @@ struct FireFlame {
     VolumetricFire* fire = nullptr;
     uint32_t part = 0, split = 0;  // of its fire
     uint32_t trackVersion = 0;
-    uint32_t key = 0;       // no other flame's
-    bool leaving = false;   // its fire burns as others now
-    gpu::vec3 stood{0.0f};  // m, world: where its fire was when it was placed last
+    uint32_t key = 0;       // unique
+    bool leaving = false;   // its fire has other flames now
+    gpu::vec3 stood{0.0f};  // m, world: place of its fire at the last `place`
 };
 
-// A frame makes the next flames of the last ones, and they count once it is recorded.
+// A frame computes the next flames from the last ones; `commit` makes them current.
 class FireFlames {
  public:
     explicit FireFlames(std::pmr::memory_resource* memory)
         : now_(memory), next_(memory), others_(memory), met_(memory) {}
 
-    // So that frames need no memory: for so many flames beside those that burn. Throws. How many.
+    // Reserves memory for `more` further flames, so that frames need none. Throws. Returns
+    // capacity.
     size_t findRoom(size_t more);
-    void drop(const VolumetricFire& fire) noexcept;  // of a fire that goes
-    void carry(gpu::vec3 by) noexcept;               // all of them, m
+    void drop(const VolumetricFire& fire) noexcept;  // the flames of a destroyed fire
+    void carry(gpu::vec3 by) noexcept;               // moves all flames, m
 
-    // What its first frame will nearly say of a fire that has not been through one.
+    // An estimate of the fire's state after its first frame.
     FireState foresee(VolumetricFire& fire, const FireAir& air) const noexcept;
 
-    void begin() noexcept { next_ = now_; }  // room was found
-    // Which flames the fire has from now on; those without room are left out.
+    void begin() noexcept {
+        FW_ASSERT(now_.size() <= next_.capacity(), "%zu of %zu flames", now_.size(),
+                  next_.capacity());
+        next_ = now_;
+    }
+    // Makes the fire's flames match its parts. Flames beyond the capacity are left out.
     void settle(VolumetricFire& fire, const FireAir& air) noexcept;
-    // All of them `seconds` on; fills nextState of their fires.
+    // Advances all flames by `seconds`; fills nextState of their fires.
     void advance(const FireAir& air, float seconds) noexcept;
-    // Those that are drawn; how many.
+    // Writes the drawn flames; returns their count.
     uint32_t write(std::span<gpu::VolumeFlame> out) const noexcept;
     void commit() noexcept { now_.swap(next_); }
 
@@ -49,7 +55,7 @@ class FireFlames {
 
  private:
     void place(FireFlame& flame, const FireAir& air) const noexcept;
-    void tell() noexcept;
+    void sumStates() noexcept;
 
     uint32_t lastKey_ = 0;
     std::pmr::vector<FireFlame> now_, next_;
@@ -57,7 +63,8 @@ class FireFlames {
     std::pmr::vector<volume::Neighbourhood> met_;
 };
 
-// Together, at a point; `walls` shade what radiates. fire: who heats it most, or null.
+// The effect of all flames at a point; `walls` stop radiation. fire: the one that heats most, or
+// null.
 struct FireAnswer {
     volume::FlameAnswer air;
     const VolumetricFire* fire = nullptr;

@@ -1,6 +1,7 @@
 #include "components/gusts.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "shared/burn.h"
@@ -20,7 +21,7 @@ constexpr int64_t kMostMoved = 1000000000;  // m that an origin may move, see mo
 
 int64_t floorDivide(int64_t a, int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
-// Q14, [-1, 1], of a lattice's corner.
+// Q14, [-1, 1], at a corner of the lattice.
 int64_t corner(const std::array<int64_t, 3>& cell, uint32_t seed) noexcept {
     uint32_t hash = seed;
     for (const int64_t part : cell) hash = core::hash32(hash * 0x9E3779B9u + uint32_t(part));
@@ -29,6 +30,7 @@ int64_t corner(const std::array<int64_t, 3>& cell, uint32_t seed) noexcept {
 
 // Q14, [-1, 1]; smooth between corners `size` mm apart.
 int64_t noise(const std::array<int64_t, 3>& place, int64_t size, uint32_t seed) noexcept {
+    FW_ASSERT(size > 0, "%lld mm", static_cast<long long>(size));
     std::array<int64_t, 3> cell;
     int64_t weight[3];
     for (size_t i = 0; i < 3; ++i) {
@@ -66,13 +68,15 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
 bool plausible(const Gusts& gusts, uint64_t tick) noexcept {
     if (gusts.since > tick || gusts.strength < 0 || gusts.strength > kGustOne) return false;
     const int64_t most = kMostGustWind * int64_t(gusts.since) + kMostMoved * kDriftMetre;
-    for (const int64_t way : gusts.drift)
-        if (way < -most || way > most) return false;
+    for (const int64_t drift : gusts.drift)
+        if (drift < -most || drift > most) return false;
     return gusts.strength == 0 ||
            (gusts.size >= millimetres(kLeastGust) && gusts.size <= millimetres(kMostGust));
 }
 
 void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noexcept {
+    FW_ASSERT(tick >= gusts.since, "tick %llu, %u", static_cast<unsigned long long>(tick),
+              gusts.since);
     const auto ticks = int64_t(tick - gusts.since);
     for (size_t i = 0; i < 3; ++i) gusts.drift[i] += wind[i] * ticks;
     gusts.since = uint32_t(tick);
@@ -90,6 +94,7 @@ fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVecto
     std::array<int64_t, 3> off{place.x, place.y, place.z};
     for (size_t i = 0; i < 3; ++i)
         off[i] -= floorDivide((gusts.drift[i] + wind[i] * ticks) * 1000, kDriftMetre);
+    FW_ASSERT(gusts.size >= 2, "%lld mm", static_cast<long long>(gusts.size));
     const int64_t both = (2 * noise(off, gusts.size, seed) + noise(off, gusts.size / 2, ~seed)) / 3;
     const int64_t gain = kGustOne + gusts.strength * both / kGustOne;
     fire::WindVector out;

@@ -2,6 +2,7 @@
 
 #include "components/pose.h"
 #include "components/wind_zone.h"
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -35,7 +36,7 @@ gpu::ivec3 placeOf(const float place[3]) noexcept {  // mm
             int(millimetres(std::clamp(double(place[2]), -2e6, 2e6)))};
 }
 
-// Cells that are filled so far, and how near to its middle the texel of each is.
+// The cells filled so far, and the distance of each cell's texel from its middle.
 class ShieldFill {
  public:
     ShieldFill(const ShieldShape& shape, std::pmr::vector<ShieldCell>& out)
@@ -44,7 +45,7 @@ class ShieldFill {
           index_(shape.cells(), kEmpty, out.get_allocator()),
           nearest_(out.get_allocator()) {}
 
-    // half: mm that it reaches along its surface, not through it. normal: Q12.
+    // half: mm, reach of the texel along its surface, not through it. normal: Q12.
     void texel(const gpu::ivec3& at, const gpu::ivec3& normal, double half, uint32_t what,
                uint32_t texel) {
         const int side = int(shape_.cell);
@@ -75,7 +76,9 @@ class ShieldFill {
 
  private:
     void take(const ShieldCell& cell, uint64_t distance) {
+        FW_ASSERT(cell.cell < index_.size(), "%u of %zu cells", cell.cell, index_.size());
         uint32_t& entry = index_[cell.cell];
+        FW_ASSERT(entry == kEmpty || entry < out_.size(), "entry %u of %zu", entry, out_.size());
         if (entry == kEmpty) {
             if (out_.size() >= gpu::kShieldBaked)
                 core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -105,10 +108,7 @@ uint32_t countsOf(const ShieldShape& shape) noexcept {
 
 ShieldShape makeShieldShape(const FwHeatShieldDef& def) {
     ShieldShape shape;
-    if (def.flags & ~uint32_t(FW_HEAT_SHIELD_ALL_OBJECTS))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwHeatShieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
-                   uint32_t(FW_HEAT_SHIELD_ALL_OBJECTS));
+    checkFlags(def.flags, "FwHeatShieldDef::flags", FW_HEAT_SHIELD_ALL_OBJECTS);
     for (uint32_t i = 0; i < 3; ++i)
         if (def.counts[i] < 1 || def.counts[i] > gpu::kShieldSide)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -165,7 +165,7 @@ void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
     ShieldFill fill(shape, out);
     for (const ShieldObject& object : objects) {
         const mesh::BurnDomain& domain = *object.domain;
-        // Half of a texel, but no more than a cell and a half: larger ones leave gaps.
+        // Half of a texel, at most a cell and a half: larger texels leave gaps.
         const double half = std::min(0.5 * object.texelSide, 1.5 * shape.cell);
         for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
             if (!domain.real(texel)) continue;
@@ -185,6 +185,10 @@ void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
 
 void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
     const size_t count = shield.shape.words();
+    FW_ASSERT(shield.solid.size() == count, "%zu of %zu words", shield.solid.size(), count);
+    FW_ASSERT(
+        std::is_sorted(shield.baked.begin(), shield.baked.end(),
+                       [](const ShieldCell& a, const ShieldCell& b) { return a.cell < b.cell; }));
     words.assign(3 * count + 2 * shield.baked.size(), 0);
     std::copy(shield.solid.begin(), shield.solid.end(), words.begin());
     size_t at = 0;
@@ -201,14 +205,15 @@ void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
     }
 }
 
-float sweepShield(const HeatShield& shield, const float from[3], const float way[3],
+float sweepShield(const HeatShield& shield, const float from[3], const float direction[3],
                   float most) noexcept {
     if (shield.solid.empty()) return most;
     const float far = std::min(most, 0.001f * float(gpu::kExchangeFar - 1));
     float to[3];
-    for (int i = 0; i < 3; ++i) to[i] = from[i] + way[i] * far;
+    for (int i = 0; i < 3; ++i) to[i] = from[i] + direction[i] * far;
     gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
     for (bool open = w.passed > 0; w.within; gpu::shieldStep(w, shield.shape.cell)) {
+        FW_ASSERT(w.cell < shield.shape.cells(), "%u of %u cells", w.cell, shield.shape.cells());
         const bool solid = shield.solid[w.cell / 32] >> w.cell % 32 & 1;
         if (solid && open) return std::min(most, far * float(w.passed) / float(w.of));
         open |= !solid;
@@ -221,18 +226,22 @@ bool shieldShades(const ShieldView& shield, const float from[3], const float to[
     if (shield.words.empty()) return false;
     const uint32_t words = shield.shape.words(), side = shield.shape.cell;
     gpu::ShieldEnds ends;
-    ends.from = ends.to = gpu::kNoneTexel;  // nobody's own: all cells are alike
+    ends.from = ends.to = gpu::kNoneTexel;  // no object's: all cells count
     ends.fromSpare = side + uint32_t(std::clamp(spare, 0.0f, 10.0f) * 1000);
     ends.toSpare = side;
     gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
     for (; w.within; gpu::shieldStep(w, side)) {
         const uint32_t at = w.cell / 32, bit = 1u << w.cell % 32;
+        FW_ASSERT(words + 2 * at + 1 < shield.words.size(), "word %u of %zu", at,
+                  shield.words.size());
         if ((shield.words[at] & bit) == 0) continue;
         if (gpu::shieldSpares(w, ends, gpu::kNoneTexel, side)) continue;
         const uint32_t baked = shield.words[words + 2 * at];
         if ((baked & bit) == 0) return true;
         const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
         const uint32_t i = shield.words[words + 2 * at + 1] + before;
+        FW_ASSERT(3 * words + 2 * i < shield.words.size(), "cell %u, %zu words", i,
+                  shield.words.size());
         const uint32_t slot = shield.words[3 * words + 2 * i] & gpu::kShieldSlot;
         if (slot >= shield.fallen.size() || shield.fallen[slot] == 0) return true;
     }

@@ -1,6 +1,6 @@
-// What stands between fires and what they would warm: a grid of solid cells, the host's and those
-// that objects fill. Whole numbers once the def is read. Not what a way between two places meets of
-// it (shared/exchange.h), nor whether an object's cell is still there (the backends).
+// Heat-occlusion grid: solid cells that stop heat between objects, the host's own and those that
+// objects fill. Integers once the def is read. shared/exchange.h walks rays through the grid; the
+// backends decide whether an object's cell still stands.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "mesh/burn_domain.h"
@@ -18,7 +18,7 @@ struct ShieldShape;
 // Whether makeShieldShape may have made it.
 [[nodiscard]] bool plausible(const ShieldShape& shape) noexcept;
 
-struct ShieldShape {  // where its cells are; no counts: there is no shield
+struct ShieldShape {  // places of the cells; counts of 0: there is no grid
     std::array<uint32_t, 3> counts{};
     std::array<int32_t, 3> origin{};  // mm, low corner
     uint32_t cell = 0;                // mm
@@ -33,9 +33,9 @@ struct ShieldShape {  // where its cells are; no counts: there is no shield
     }
 };
 
-[[nodiscard]] uint32_t countsOf(const ShieldShape& shape) noexcept;  // as ExchangePush has them
+[[nodiscard]] uint32_t countsOf(const ShieldShape& shape) noexcept;  // packed as in ExchangePush
 
-struct ShieldCell {     // one that an object fills
+struct ShieldCell {     // a cell that an object fills
     uint32_t cell = 0;  // x runs fastest, then y, then z
     uint32_t what = 0;  // slot | material << 24 | kShieldStays
     uint32_t texel = 0;
@@ -81,38 +81,38 @@ struct HeatShield {
     }
 };
 
-// What these throw is a core::Error that names the field.
+// Throw core::Error naming the field.
 [[nodiscard]] ShieldShape makeShieldShape(const FwHeatShieldDef& def);
-// Asks the def's callback of every cell, and reads its bytes.
+// Calls the def's callback for every cell, and reads its bytes.
 void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
                      std::pmr::vector<uint32_t>& solid);
 
-struct ShieldObject {  // that fills cells
+struct ShieldObject {  // an object that fills cells
     uint32_t slot = 0;
     const mesh::BurnDomain* domain = nullptr;
     gpu::RemoteObject place{};
     uint32_t texelSide = 0;  // mm
-    uint32_t stays = 0;      // bit i: its material i never gives way
+    uint32_t stays = 0;      // bit i: its material i never burns through
 };
-// The cells that their texels reach into, each by the texel that is nearest to its middle. Replaces
-// `out`. Throws where they are too many.
+// The cells that the objects' texels reach into, each with the texel nearest to its middle.
+// Replaces `out`. Throws if there are more than gpu::kShieldBaked.
 void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
                 std::pmr::vector<ShieldCell>& out);
 
-// As the backends read it.
+// Packs the grid for the backends.
 void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words);
 
-// m along a way until it comes into a cell of the host's from one that is open, or `most`. Places
-// in m; what begins in solid cells leaves them first.
-[[nodiscard]] float sweepShield(const HeatShield& shield, const float from[3], const float way[3],
-                                float most) noexcept;
+// m along a ray until it enters a solid cell of the host from an open one, or `most`. A ray that
+// begins in solid cells leaves them first.
+[[nodiscard]] float sweepShield(const HeatShield& shield, const float from[3],
+                                const float direction[3], float most) noexcept;
 
-struct ShieldView {  // as who stands beside it sees it: for what only shows
+struct ShieldView {  // the packed grid, for cosmetic questions
     ShieldShape shape;
-    std::span<const uint32_t> words;  // packed; empty: there is none
-    std::span<const uint8_t> fallen;  // by slot: 1: its cells are there no longer
+    std::span<const uint32_t> words;  // packed; empty: there is no grid
+    std::span<const uint8_t> fallen;  // by slot, 1: the object's cells have fallen
 };
-// Is there a cell between two places, further than `spare` m from the first?
+// Whether a cell lies between two places, further than `spare` m from the first.
 [[nodiscard]] bool shieldShades(const ShieldView& shield, const float from[3], const float to[3],
                                 float spare) noexcept;
 

@@ -1,6 +1,7 @@
 #include "components/jet.h"
 
 #include "components/fire_emitter.h"
+#include "core/assert.h"
 #include "shared/exchange.h"
 
 #include <algorithm>
@@ -35,9 +36,10 @@ JetFlight jetFlight(const EmitterLook& look) noexcept {
     return flight;
 }
 
-uint32_t jetArrival(const JetFlight& flight, uint32_t exchange, uint32_t way) noexcept {
+uint32_t jetArrival(const JetFlight& flight, uint32_t exchange, uint32_t millimetres) noexcept {
+    FW_ASSERT(exchange < kJetParcels, "exchange %u", exchange);
     const uint32_t first = flight[exchange], length = flight[exchange + 1] - first;
-    const uint32_t part = std::min(way - std::min(way, first), length);
+    const uint32_t part = std::min(millimetres - std::min(millimetres, first), length);
     const uint64_t within =
         length > 0 ? uint64_t(part) * (gpu::kExchangeTicks - 1) / length : uint64_t(0);
     return exchange * gpu::kExchangeTicks + uint32_t(within);
@@ -50,6 +52,8 @@ uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept {
         patch.fuel -= std::min(patch.fuel, patch.water);
         patch.water = 0;
     }
+    FW_ASSERT(patch.fuel <= kPatchMost, "%llu of fuel",
+              static_cast<unsigned long long>(patch.fuel));
     patch.power = patch.fuel / patch.left;
     patch.fuel -= patch.power;
     --patch.left;
@@ -67,7 +71,7 @@ uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept 
 }
 
 void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept {
-    // Of 0.2 m^2, in whole units: grams * J * units / 5.
+    // A patch has 0.2 m^2; in integers: grams * J * units / 5.
     constexpr uint64_t kOfGram = kPatchJoulesPerGram * kPatchUnitsPerJoule / 5;
     const uint64_t most = kPatchMost / kOfGram;
     const uint64_t takes = grams < most ? grams * kOfGram : kPatchMost;
@@ -77,6 +81,7 @@ void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept {
 
 uint64_t shareJet(uint64_t power, std::span<const uint64_t> areas,
                   std::span<uint32_t> flux) noexcept {
+    FW_ASSERT(areas.size() <= flux.size(), "%zu areas, %zu fluxes", areas.size(), flux.size());
     uint64_t all = 0;
     for (const uint64_t area : areas) all += area;
     if (all == 0) return power;

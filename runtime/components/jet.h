@@ -1,7 +1,6 @@
-// The stream of a jet, as far as it heats what it strikes: parcels that left the nozzle one
-// exchange apart, where each is by now, and how the power of a ray is shared out. Times and power
-// are integers: the same on every backend and at every rate of frames. Not the particles that are
-// seen.
+// The heating stream of a jet: parcels that leave the nozzle one exchange apart, their flight, and
+// the share of a ray's power per texel. Times and power are integers, equal on every backend and at
+// every frame rate. The visible particles are fire_emitter's.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "shared/burn.h"
@@ -15,14 +14,14 @@ namespace fw::components {
 struct EmitterLook;
 
 constexpr uint32_t kJetRays = 16;
-constexpr uint32_t kJetParcels = 16;  // in flight at a time: two seconds of stream
+constexpr uint32_t kJetParcels = 16;  // in flight at once: two seconds of stream
 constexpr uint32_t kJetNever = 0xFFFFFFFFu;
 
 constexpr double kJetReach = 4e6;  // m: what a jet strikes lies beyond where it stands
 
 struct JetHit {  // of one ray of a jet
     bool met = false;
-    float distance = 0;  // m from where the ray began
+    float distance = 0;  // m from the ray's start
     float place[3] = {}, normal[3] = {};
     FwBurnableMeshId object{};  // null: a collider or blocker
     uint32_t texel = 0;
@@ -38,20 +37,21 @@ struct JetHit {  // of one ray of a jet
 };
 using JetHits = std::array<JetHit, kJetRays>;
 
-// mm that a parcel has flown at each exchange after it left: as particles of the stream do, slowed
-// by the air while they tear.
+// mm that a parcel has flown at each exchange after its launch. Air slows it as it slows the
+// stream's particles.
 using JetFlight = std::array<uint32_t, kJetParcels + 1>;
 [[nodiscard]] JetFlight jetFlight(const EmitterLook& look) noexcept;
-// Ticks after it left that it has come `way` mm, which it does before exchange `exchange` + 1.
+// Ticks from launch until the parcel has flown `millimetres`, between `exchange` and `exchange`
+// + 1.
 [[nodiscard]] uint32_t jetArrival(const JetFlight& flight, uint32_t exchange,
-                                  uint32_t way) noexcept;
+                                  uint32_t millimetres) noexcept;
 
-// A texel that may have burnt away when a ray comes to it: the backend knows, we do not. So what
-// stands there is heated if it still does, and what lies behind if it does not.
+// A texel that may have burnt away before a ray reaches it; only the backend knows. The ray heats
+// the texel if it still stands, and the surface behind it if not.
 struct JetGate {
     uint32_t object = 0, texel = 0;  // slot
-    uint32_t holeTicks = 0;          // from its ignition until it gives way
-    float distance = 0;              // m from where the ray began
+    uint32_t holeTicks = 0;          // ticks from ignition to burn-through
+    float distance = 0;              // m from the ray's start
     bool operator==(const JetGate&) const = default;
 
     template <class A>
@@ -60,13 +60,13 @@ struct JetGate {
         a(holeTicks, distance);
     }
 };
-constexpr uint32_t kJetGates = gpu::kGates;  // that a ray passes; then it is spent
+constexpr uint32_t kJetGates = gpu::kGates;  // a ray ends at a further gate
 
 struct JetRay {
-    float way[3] = {};  // of length 1
-    JetHit hit;         // in what the world was at `version` of its geometry
+    float way[3] = {};  // direction, unit
+    JetHit hit;         // in the world's geometry of `version`
     uint64_t version = 0;
-    uint32_t spent = kJetNever;  // exchange at which it struck something, a tick
+    uint32_t spent = kJetNever;  // tick of the exchange at which it ended
     std::array<JetGate, kJetGates> gates{};
     std::array<uint32_t, kJetGates> passed{};  // exchanges, ticks
     uint32_t gateCount = 0;
@@ -85,11 +85,11 @@ struct JetRay {
 
 struct JetParcel {
     uint32_t launched = kJetNever;  // tick
-    uint64_t power = 0;             // nW of each ray, and of it
-    uint64_t sticks = 0;            // nW that stay as fuel
+    uint64_t power = 0;             // nW of each ray
+    uint64_t sticks = 0;            // nW of that, which stays as stuck fuel
     float from[3] = {};             // m, world
-    float wide = 0;                 // rad, half
-    uint32_t most = 0;              // mm that it comes
+    float wide = 0;                 // rad, half angle
+    uint32_t most = 0;              // mm, length of its flight
     JetFlight flight{};
     std::array<JetRay, kJetRays> rays{};
 
@@ -104,19 +104,19 @@ struct JetParcel {
     }
 };
 
-// Fuel that sticks where rays struck. Counted in nW for the time of an exchange.
+// Stuck fuel where rays struck, in nW times the length of an exchange.
 constexpr uint32_t kJetPatches = 16;
 constexpr float kPatchRadius = 0.25f;                  // m
 constexpr uint64_t kPatchMost = uint64_t(1) << 61;     // of fuel
 constexpr uint64_t kPatchUnitsPerJoule = 8000000000u;  // exchanges a second, nW in a W
-constexpr uint64_t kPatchJoulesPerGram = 2600;         // that water takes: warmed and boiled off
+constexpr uint64_t kPatchJoulesPerGram = 2600;         // heat to warm and boil off water
 struct JetPatch {
     FwBurnableMeshId object{};  // null: of a collider
     uint32_t texel = 0;
-    uint32_t left = 0;             // exchanges that it burns on; 0: there is none
-    uint64_t fuel = 0, power = 0;  // power: what it gave at the last exchange
-    uint64_t water = 0;            // fuel that water takes at the first exchange from `waterAt` on
-    uint32_t waterAt = 0;          // tick
+    uint32_t left = 0;             // exchanges until burnt out; 0: an empty patch
+    uint64_t fuel = 0, power = 0;  // power: of the last exchange
+    uint64_t water = 0;    // fuel that water removes at the first exchange from `waterAt` on
+    uint32_t waterAt = 0;  // tick
     float place[3] = {}, normal[3] = {};  // m, world
 
     template <class A>
@@ -132,18 +132,18 @@ struct JetPatch {
     }
 };
 using JetPatches = std::array<JetPatch, kJetPatches>;
-// One exchange of one: what it gives. With the last of its time goes the last of its fuel.
+// Burns a patch for one exchange and returns its power. The last exchange burns the last fuel.
 uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept;
-// Adds what came, and starts its time anew; what it has no room for comes back.
+// Adds fuel and restarts the patch's time. Returns the fuel beyond kPatchMost.
 uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept;
-// g/m^2 of water that fall on it at a tick; kPatchDrowned: all that it takes.
+// `grams`: g/m^2 of water at a tick; kPatchDrowned: enough to put the patch out.
 constexpr uint32_t kPatchDrowned = 0xFFFFFFFFu;
 void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept;
 
 struct JetStream {
     std::array<JetParcel, kJetParcels> parcels{};
-    uint64_t kept = 0;  // nW that no texel was small enough for: given with the next
-    // As of exchange `patchedAt`, and as the last frame left them: one that failed comes again.
+    uint64_t kept = 0;  // nW too small for any texel: added to the next exchange
+    // As of exchange `patchedAt`, and before it: a failed frame is repeated from there.
     JetPatches patches{}, before{};
     uint32_t patchedAt = 0;  // tick
 
@@ -153,9 +153,8 @@ struct JetStream {
     }
 };
 
-// W/m^2 for each of the texels, whose areas are in 1e-9 m^2, that together are `power` nW but for
-// what comes back: less than the smallest of them takes for 1 W/m^2, unless all have
-// gpu::kFluxMost.
+// Shares `power` nW as W/m^2 over texels with `areas` in 1e-9 m^2. Returns the rest: less than the
+// smallest texel takes for 1 W/m^2, unless all texels have gpu::kFluxMost.
 uint64_t shareJet(uint64_t power, std::span<const uint64_t> areas,
                   std::span<uint32_t> flux) noexcept;
 

@@ -1,5 +1,7 @@
 #include "components/lights.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,10 +9,10 @@
 namespace fw::components {
 namespace {
 
-constexpr float kKeptGain = 1.6f;   // more than two flicker apart (1.22 / 0.78)
+constexpr float kKeptGain = 1.6f;   // above the largest ratio of two flickers (1.22 / 0.78)
 constexpr float kFollow = 0.1f;     // s
-constexpr float kFaintest = 0.01f;  // of all light that is shown: what fades below this is gone
-constexpr float kReach = 8;         // radii (and 2 m): what is nearer draws a light to itself
+constexpr float kFaintest = 0.01f;  // of all light; a fading light below it ends
+constexpr float kReach = 8;         // radii (and 2 m) within which a fire moves its light
 
 float squareDistance(const FwLight& a, const FwLight& b) noexcept {
     float sum = 0;
@@ -21,7 +23,7 @@ float squareDistance(const FwLight& a, const FwLight& b) noexcept {
     return sum;
 }
 
-// `light` shines for `other`, too.
+// Adds `other` to `light`.
 void join(FwLight& light, const FwLight& other) noexcept {
     const float both = light.intensity + other.intensity;
     const float share = both > 0 ? other.intensity / both : 0.0f;
@@ -76,7 +78,7 @@ uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t
     taken.assign(sources.size(), 0);
     uint32_t count = 0;
     std::array<const FwLight*, kMostLights> chosen;
-    // One after the other: a source beside a chosen one waits, or one corner takes all lights.
+    // One by one: a source beside a chosen one scores less, or one corner would take all lights.
     while (count < most && count < sources.size()) {
         size_t best = sources.size();
         float bestScore = -1;
@@ -96,6 +98,7 @@ uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t
             bestScore = score;
             best = i;
         }
+        FW_ASSERT(best < sources.size(), "no source scores above -1");
         taken[best] = 1;
         chosen[count] = &sources[best];
         out[count++] = sources[best];
@@ -118,6 +121,7 @@ uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t
 
 void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> known, float seconds,
                   uint32_t most) {
+    FW_ASSERT(seconds >= 0, "%g s", double(seconds));
     const float share = 1 - std::exp(-seconds / kFollow);
     float all = 0;
     for (const FwLight& light : known) all += light.intensity;
@@ -144,7 +148,7 @@ void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> kno
         fresh.intensity *= share;
         fresh.power *= share;
     }
-    // What fades gives way: first what is too faint to see, then whatever there is no room for.
+    // Fading lights end: the faint ones, then those beyond the limit.
     for (size_t i = shown.size(); i-- > 0;) {
         const bool faint = shown[i].intensity <= kFaintest * all || known.empty();
         if (findLight(known, shown[i].id) || (!faint && shown.size() <= most)) continue;

@@ -1,5 +1,5 @@
-// Lights that a host can afford, of all fires there are. What burns stays as bright: a fire without
-// a light of its own shines from another one's.
+// A limited number of lights for all fires. Total brightness stays: a fire without its own light
+// shines from another one's.
 #pragma once
 #include "flamewright/flamewright.h"
 
@@ -11,25 +11,24 @@
 namespace fw::components {
 
 constexpr uint32_t kMostLights = 64;
-constexpr float kLightShare = 0.3f;         // of a fire's power leaves as light and heat
+constexpr float kLightShare = 0.3f;         // radiated share of a fire's power
 constexpr float kSphere = 12.56637f;        // sr
-constexpr double kFlickerStep = 0.07 * 60;  // 1/s: how fast a steady fire's light changes at most
+constexpr double kFlickerStep = 0.07 * 60;  // 1/s, fastest change of a steady fire's light
 
-// Relative brightness of a fire at a time (s), 1 on the mean: three sines that never meet again, so
-// that nothing repeats and no two fires of different phase (rad) flicker alike.
+// Relative brightness of a fire at a time (s), mean 1: three sines without a common period, so that
+// the flicker never repeats. `phase`: rad, different for each fire.
 float flicker(double now, double phase) noexcept;
-// Of a light's id, rad.
+// rad, from a light's id.
 double flickerPhase(uint32_t id) noexcept;
 
-// Chooses at most `most` of `sources` and lets them shine for the others too: `out` holds as much
-// intensity and power as `sources`, strongest first. Those whose id is among `kept` count 1.6
-// times, so that two that flicker do not take turns. Returns how many; `out` has room for
-// `most`, which is at most kMostLights. `taken` is scratch.
+// Chooses at most `most` of `sources`, which take over the intensity and power of the others.
+// `out`: strongest first. Ids in `kept` count 1.6 times, so that two flickering lights do not
+// alternate. Returns the count. `out` holds `most`, at most kMostLights. `taken` is scratch.
 uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t> kept,
                       uint32_t most, std::span<FwLight> out, std::pmr::vector<uint8_t>& taken);
 
-// Moves what is shown towards what is known, by its id, as one filter of 0.1 s for all: new ones
-// grow, those that went fade (at most `most` in all), and the sum changes as that of `known` does.
+// Moves `shown` towards `known`, by id, with one filter of 0.1 s: new lights grow, missing ones
+// fade (at most `most` in all), and the sum follows the sum of `known`.
 void followLights(std::pmr::vector<FwLight>& shown, std::span<const FwLight> known, float seconds,
                   uint32_t most);
 

@@ -1,4 +1,4 @@
-// Presets are written as differences from a near relative, so that what is shared stays shared.
+// Presets are written as differences from a near relative.
 #include "components/look_table.h"
 
 #include "flamewright/flamewright.h"

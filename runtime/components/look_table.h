@@ -1,5 +1,5 @@
-// How each material preset looks while it burns: the rows of the looks table that shaders read.
-// Tuned by eye on lit pictures; nothing authoritative depends on it.
+// Appearance of each material preset while it burns: the rows of the look table that shaders read.
+// Tuned by eye on lit pictures. Cosmetic.
 #pragma once
 #include "mesh/refine/roughen.h"
 #include "shared/look.h"
@@ -12,9 +12,9 @@ constexpr uint32_t kLookCount = 14;  // FW_MATERIAL_PRESET_COUNT
 
 // Row of a FwMaterialPreset; a number beyond the table gets row 0, which never burns.
 [[nodiscard]] gpu::MaterialLook materialLook(uint32_t preset) noexcept;
-// Its holes, for meshes that are cut.
+// Parameters of its holes, for refined meshes.
 [[nodiscard]] mesh::RefineHoles holesOf(const gpu::MaterialLook& look) noexcept;
-// s after ignition when nothing of it is left to see, with the latest noise.
+// s after ignition until nothing of it is visible, at the latest noise.
 [[nodiscard]] float lookHoleEnd(const gpu::MaterialLook& look) noexcept;
 // m/s at which the row's seconds were tuned; 0: never burns. BurnMaterial::timeScale is
 // spread rate (pace included) over this.

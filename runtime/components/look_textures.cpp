@@ -1,7 +1,9 @@
-// Noise is gradient noise on an integer hash; char blocks are columns of random width, split at
-// random, because regular cells read as masonry. Not used for anything authoritative.
+// Gradient noise on an integer hash; char blocks are columns of random width, split at random,
+// because regular cells look like masonry. Cosmetic.
 #include "components/look_textures.h"
 
+#include "core/assert.h"
+#include "core/hash.h"
 #include "shared/look.h"
 
 #include <algorithm>
@@ -19,19 +21,11 @@ struct Texel {
 };
 using Plane = std::pmr::vector<Texel>;
 
-uint32_t mixBits(uint32_t x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16);
-}
-
 // Random number in [0, 1) of a lattice point.
 float random(int x, int y, int seed) {
     const uint32_t h = static_cast<uint32_t>(x) * 73856093u ^ static_cast<uint32_t>(y) * 19349663u ^
                        static_cast<uint32_t>(seed) * 83492791u;
-    return static_cast<float>(mixBits(h) >> 8) * (1.0f / 16777216.0f);
+    return static_cast<float>(core::hash32(h) >> 8) * (1.0f / 16777216.0f);
 }
 
 int wrap(int value, int period) { return ((value % period) + period) % period; }
@@ -47,13 +41,14 @@ constexpr std::array<float, 16> kCos{1.0f,     0.9239f,  0.7071f, 0.3827f,  0.0f
                                      -0.7071f, -0.9239f, -1.0f,   -0.9239f, -0.7071f, -0.3827f,
                                      0.0f,     0.3827f,  0.7071f, 0.9239f};
 
-// A number near [0, period), by one period at most: a division would cost more than all else here.
+// Wraps a number within one period of [0, period), without a division, which would dominate the
+// cost.
 int wrapNear(int value, int period) {
     return value < 0 ? value + period : value >= period ? value - period : value;
 }
 
-// Fractal noise over [0, 1)^2, tiling. Each octave has a lattice twice as fine as the one before,
-// whose random directions are drawn once.
+// Fractal noise over [0, 1)^2, tiling. Each octave has a lattice twice as fine as the octave before
+// it.
 class Noise {
  public:
     Noise(int period, int octaves, int seed, bool ridged, std::pmr::memory_resource* memory)
@@ -114,7 +109,7 @@ class Voronoi {
                                     spread * (random(x, y, seed + 9) - 0.5f)});
     }
     struct Cell {
-        float dx = 0, dy = 0;  // from the place that is asked for to the cell's point
+        float dx = 0, dy = 0;  // from the given place to the cell's point
         int x = 0, y = 0;
     };
     Cell nearest(float u, float v) const {
@@ -134,7 +129,7 @@ class Voronoi {
         }
         return cell;
     }
-    // Random, of the nearest cell.
+    // Random number of the nearest cell.
     float id(float u, float v) const {
         const Cell cell = nearest(u, v);
         return random(wrapNear(cell.x, n_), wrapNear(cell.y, n_), seed_ + 33);
@@ -265,8 +260,8 @@ void bakeChar(Plane& plane, std::pmr::memory_resource* memory) {
     }
 }
 
-// Slopes of what is carved into char, so that a normal costs no sample of its own: those of cracks
-// take the place of the blocks' numbers and heights in `charred`.
+// Slopes of the relief of char, so that a normal needs no further sample. The cracks' slopes
+// replace the blocks' numbers and heights in `charred`.
 void bakeRelief(const Plane& noise, Plane& charred, Plane& plane) {
     const auto at = [](const Plane& p, int x, int y) -> const Texel& {
         return p[static_cast<size_t>((y & (kSide - 1)) * kSide + (x & (kSide - 1)))];
@@ -308,7 +303,7 @@ void store(Plane& plane, std::byte* out) {
             }
         }
         if (side == 1) return;
-        const int half = side / 2;  // in place: a texel is read before its place is written
+        const int half = side / 2;  // in place: every texel is read before it is overwritten
         for (int y = 0; y < half; ++y) {
             for (int x = 0; x < half; ++x) {
                 Texel sum;
@@ -325,6 +320,8 @@ void store(Plane& plane, std::byte* out) {
 }  // namespace
 
 size_t lookTextureOffset(uint32_t layer, uint32_t mip) noexcept {
+    FW_ASSERT(layer <= kLookTextureLayers && mip < kLookTextureMips, "layer %u, mip %u", layer,
+              mip);
     size_t chain = 0, before = 0;
     for (uint32_t i = 0; i < kLookTextureMips; ++i) {
         const size_t bytes = size_t{kLookTextureSide >> i} * (kLookTextureSide >> i) * 4;

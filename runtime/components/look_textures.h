@@ -1,5 +1,5 @@
-// The two kinds of noise every burning surface is drawn with, and the slopes baked from them: one
-// 512^2 RGBA8 array of three tiling layers with mips. Pure function of nothing; no device.
+// Noise textures of burning surfaces: two kinds of noise and the slopes baked from them, one 512^2
+// RGBA8 array of three tiling layers with mips. Constant data, computed without a device.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -14,7 +14,7 @@ constexpr uint32_t kLookTextureLayers = 3;
 
 // RGBA8 texels: layer by layer, each with its mips, largest first. See shaders/shared/look.h.
 [[nodiscard]] std::pmr::vector<std::byte> bakeLookTextures(std::pmr::memory_resource* memory);
-// Where a mip of a layer starts, in bytes.
+// Offset of a mip of a layer, bytes.
 [[nodiscard]] size_t lookTextureOffset(uint32_t layer, uint32_t mip) noexcept;
 
 }  // namespace fw::components

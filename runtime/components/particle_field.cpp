@@ -1,6 +1,7 @@
 #include "components/particle_field.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -41,10 +42,7 @@ const char* fieldPresetName(uint32_t preset) noexcept {
 }
 
 void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, ParticleField& field) {
-    if (def.flags & ~kFlags)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwParticleFieldDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
-                   kFlags);
+    checkFlags(def.flags, "FwParticleFieldDef::flags", kFlags);
     checkWhole(def.shape, "FwParticleFieldDef::shape", 0, FW_FIELD_DISPLACED);
     checkLengths(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
     checkLengths(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
@@ -111,7 +109,7 @@ void setFieldPlace(ParticleField& field, const float position[3], const float ro
 void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) noexcept {
     const float* q = field.rotation;
     gpu::vec3 p((u - 0.5f) * field.size[0], v * field.size[1], 0);
-    if (field.shape != FW_FIELD_CARD) {  // as field_draw.vert has it
+    if (field.shape != FW_FIELD_CARD) {  // as field_draw.vert
         const float lon = 6.2831853f * u, lat = 3.1415927f * (v - 0.5f);
         p = gpu::vec3(std::cos(lat) * std::cos(lon) * field.size[0],
                       (std::sin(lat) + 1) * field.size[1],
@@ -131,6 +129,8 @@ void setFieldAmount(ParticleField& field, float amount) {
 void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept {
     if (paint) std::copy_n(paint, field.paint.size(), field.paint.begin());
     if (walls) std::copy_n(walls, field.walls.size(), field.walls.begin());
+    FW_ASSERT(field.paint.size() == field.masks.size() && field.walls.size() == field.masks.size(),
+              "%zu, %zu and %zu cells", field.paint.size(), field.walls.size(), field.masks.size());
     for (size_t i = 0; i < field.masks.size(); ++i)
         field.masks[i] = field.walls[i] ? uint8_t(gpu::kFieldWall)
                                         : std::min<uint8_t>(field.paint[i], gpu::kFieldWall - 1);
@@ -138,7 +138,7 @@ void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls
 
 field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept {
     field::FieldDef def = field.def;
-    // Along its own x axis, turned into the world.
+    // The wind along the field's own x axis.
     const float* q = field.rotation;
     const float x[3] = {1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] + q[2] * q[3]),
                         2 * (q[0] * q[2] - q[1] * q[3])};
@@ -163,7 +163,7 @@ field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexc
         return rules;
     }
     const int wide = std::clamp(int(field.sourceSize * float(w) + 0.5f), 1, w);
-    // As many at any resolution: what is in a cell then is the same.
+    // The same number of rows at any resolution, so that cells fill equally.
     const int rows = 2, left = (w - wide) / 2;
     const bool falls = def.look.rise < 0;
     source.cells = {left, falls ? h - rows : 0, left + wide, falls ? h : rows};

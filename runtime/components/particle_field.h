@@ -1,5 +1,5 @@
-// A particle field as plain data: what the host asked for, checked, as rules and masks of its cells
-// and as what it is drawn with. The step is in field/field.h.
+// A particle field as plain data: its checked def as rules and masks of its cells, and its draw
+// record. The step is in field/field.h.
 #pragma once
 #include "field/field.h"
 #include "flamewright/flamewright.h"
@@ -22,29 +22,29 @@ struct ParticleField {
     float sourceSize = 0.2f, sourceAt[2] = {};
     float tint[3] = {1, 1, 1}, opacity = 1;
     uint64_t userData = 0;
-    std::pmr::vector<uint8_t> paint, walls;  // the host's, as many as cells
-    std::pmr::vector<uint8_t> masks;         // what the backend gets of them
+    std::pmr::vector<uint8_t> paint, walls;  // the host's, one per cell
+    std::pmr::vector<uint8_t> masks;         // both combined, for the backend
 };
 
 void setFieldPreset(FwParticleFieldDef& def, uint32_t preset) noexcept;
 const char* fieldPresetName(uint32_t preset) noexcept;
 
-// Throws where a value is out of its limits. `field` is new.
+// Throws core::Error if a value is out of its limits. `field` is new.
 void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, ParticleField& field);
-// Throw likewise, and then changed nothing.
+// Throw likewise, and then change nothing.
 void setFieldPlace(ParticleField& field, const float position[3], const float rotation[4]);
 void setFieldAmount(ParticleField& field, float amount);
-// Null: as before. Masks follow.
+// Null: unchanged. Updates the masks.
 void paintField(ParticleField& field, const uint8_t* paint, const uint8_t* walls) noexcept;
-// In this wind, m/s.
+// The field's rules in a wind, m/s.
 [[nodiscard]] field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexcept;
-// Where a part of it is, m, world; u, v: over the field, [0, 1]. Of a card: as it was placed.
+// Place of a point of the field, m, world; u, v: over the field, [0, 1]. A card is not turned to
+// the camera here.
 void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) noexcept;
-// How many steps it has made `ticks` after it began.
+// Number of steps in `ticks` after the field's start.
 [[nodiscard]] uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept;
 
-// As it is shown `ticks` after it began, when it has made so many steps; `clock`: the world's
-// ticks.
+// The draw record `ticks` after the field's start, after `steps` steps; `clock`: the world's ticks.
 [[nodiscard]] gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t steps,
                                        double clock) noexcept;
 

@@ -1,5 +1,6 @@
 #include "components/pose.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -17,9 +18,16 @@ void checkRotation(const float q[4], const char* name) {
 }
 
 void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
+    FW_ASSERT(low <= most, "%s: [%u, %u]", name, low, most);
     if (value < low || value > most)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
                    low, most);
+}
+
+void checkFlags(uint32_t flags, const char* name, uint32_t known) {
+    if (flags & ~known)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is 0x%x; the known flags are 0x%x.", name, flags,
+                   known);
 }
 
 void checkValue(float value, const char* field, float low, float high) {
@@ -29,6 +37,7 @@ void checkValue(float value, const char* field, float low, float high) {
 }
 
 void checkValues(const float* values, unsigned count, const char* field, float low, float high) {
+    FW_ASSERT(values && low <= high, "%s: [%g, %g]", field, double(low), double(high));
     for (unsigned i = 0; i < count; ++i)
         if (!(values[i] >= low && values[i] <= high))
             core::fail(FW_ERROR_INVALID_ARGUMENT, "%s[%u] is %g; the limits are [%g, %g].", field,
@@ -135,6 +144,10 @@ void toWorld(const Pose& pose, const float point[3], double (&out)[3]) noexcept 
 }
 
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept {
+    FW_ASSERT(
+        pose.scale > 0 && pose.stretch[0] != 0 && pose.stretch[1] != 0 && pose.stretch[2] != 0,
+        "scale %g, stretch (%g, %g, %g)", double(pose.scale), double(pose.stretch[0]),
+        double(pose.stretch[1]), double(pose.stretch[2]));
     float from[3];
     for (int i = 0; i < 3; ++i)
         from[i] = float(double(point[i]) - pose.translation[i]) / pose.scale;

@@ -1,5 +1,5 @@
-// Where an object stands: a rotation, a scale along each of its axes and a translation, checked
-// once on entry.
+// Pose of an object: a rotation, a scale along each of its axes and a translation, checked on
+// entry; and the checks of other numbers of a def.
 #pragma once
 #include "flamewright/flamewright.h"
 
@@ -11,7 +11,7 @@ struct Pose {
     float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows, object to world, no scale
     float scale = 1;               // mean of the three axes, [1e-3, 1e3]
     float stretch[3] = {1, 1, 1};  // of each object axis, beyond scale; x < 0: mirrored
-    double translation[3] = {};    // m, within +-1e6: exact however far the origin moved
+    double translation[3] = {};    // m, [-1e6, 1e6]; double: exact however far the origin moved
     bool operator==(const Pose&) const = default;
 
     template <class A>
@@ -34,8 +34,8 @@ Pose makePose(const float transform[16], const char* field);
 void toWorld(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
 void toWorld(const Pose& pose, const float point[3], double (&out)[3]) noexcept;
 void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
-[[nodiscard]] bool uniform(const Pose& pose) noexcept;  // and not mirrored
-// Directions: rotation only.
+[[nodiscard]] bool uniform(const Pose& pose) noexcept;  // one scale, not mirrored
+// A direction: rotated only.
 void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept;
 
 constexpr float kMostPower = 1e5f;  // kW, of a fire
@@ -43,12 +43,14 @@ constexpr float kMostPower = 1e5f;  // kW, of a fire
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);
 void checkValue(float value, const char* field, float low, float high);
-// The same of metres or m/s; the message has them in the unit of the host's world.
+// Likewise for metres or m/s; the message is in the unit of the host's world.
 void checkLengths(const float* values, unsigned count, const char* field, float low, float high);
 void checkLength(float value, const char* field, float low, float high);
-// Throws unless it is a unit quaternion.
+// Throws unless `q` is a unit quaternion.
 void checkRotation(const float q[4], const char* name);
-// The same of a whole number: "field is v; ...".
+// Throws unless the whole number is within [low, most]: "field is v; ...".
 void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most);
+// Throws unless all flags are known.
+void checkFlags(uint32_t flags, const char* name, uint32_t known);
 
 }  // namespace fw::components

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kMillimetres = 1000;
 constexpr double kFarthest = 2.0e6;  // m: poses end at 1e6 m, boxes a little later
-constexpr double kWeakest = 1000;    // W/m^2 that matter: nothing ignites below 4300
-constexpr double kCoolest = 40;      // K of a plume that matter
+constexpr double kWeakest = 1000;    // W/m^2, least flux that counts: nothing ignites below 4300
+constexpr double kCoolest = 40;      // K, least excess of a plume that counts
 
 int whole(double value) noexcept { return int(std::lround(std::clamp(value, -2.0e9, 2.0e9))); }
 int placeOf(double metres) noexcept {  // mm
@@ -24,11 +24,6 @@ void turn(const Pose& pose, gpu::ivec4 (&rows)[3]) noexcept {
             rows[r][c] = whole(double(pose.rotation[r][c]) * (pose.stretch[c] < 0 ? -4096 : 4096));
 }
 
-double texelAreaOf(const mesh::BurnDomain& domain) noexcept {  // m^2 at scale 1
-    return domain.report.realTexels ? domain.report.texelArea / double(domain.report.realTexels)
-                                    : double(domain.texelSide) * double(domain.texelSide);
-}
-
 double powerOf(const FwMaterialDef& def) noexcept {
     return double(def.heatOfCombustion) * double(def.burningFlux);
 }
@@ -39,6 +34,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
                  gpu::RemoteObject& out) noexcept {
     // Three products of 16 bits of position and a row must stay below 2^31.
     const double unit = double(domain.quantum) * double(pose.scale) * kMillimetres;
+    FW_ASSERT(unit > 0, "%g mm", unit);
     out.shift = 0;
     double longest = 0;
     for (const float s : pose.stretch) longest = std::max(longest, std::fabs(double(s)));
@@ -80,6 +76,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
         }
     }
     for (int i = 0; i < 3; ++i) {
+        FW_ASSERT(boxLow[i] < boxHigh[i], "axis %d: %d to %d mm", i, boxLow[i], boxHigh[i]);
         (*turns[i])[3] = boxLow[i];
         out.high[i] = boxHigh[i];
     }
@@ -89,7 +86,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
 void fillRemote(const BurnableMesh& object, const mesh::BurnDomain& domain,
                 const Governance& governance, gpu::RemoteObject& out) noexcept {
     const double scale = double(object.pose.scale);
-    const double area = texelAreaOf(domain) * scale * scale;
+    const double area = domain.texelArea() * scale * scale;
     out.texelArea = uint32_t(std::clamp(area * 1e6, 1.0, 4e9));
     double damping = 0;
     for (uint32_t i = 0; i < kMaterials; ++i) {
@@ -128,7 +125,7 @@ void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) 
 uint32_t remoteReach(const BurnableMesh& object, const mesh::BurnDomain& domain,
                      const std::array<uint32_t, kMaterials>& texelsOf) noexcept {
     const double scale = double(object.pose.scale);
-    const double area = texelAreaOf(domain) * scale * scale;
+    const double area = domain.texelArea() * scale * scale;
     double watts = 0;
     for (uint32_t i = 0; i < kMaterials; ++i)
         if (burns(object, i)) watts += powerOf(object.materials[i]) * area * double(texelsOf[i]);

@@ -1,28 +1,29 @@
-// An object as others see it across a distance: pose and powers become integers once, here, so that
-// every backend weighs the same numbers. Not who is near whom (world/remote).
+// An object's record for the exchange: pose and powers become integers here, so that every backend
+// computes with the same numbers. Neighbours are world/remote's.
 #pragma once
 #include "components/burnable_mesh.h"
 #include "shared/exchange.h"
 
 namespace fw::components {
 
-struct Governance {          // of spread, for an object or a world
+struct Governance {          // limits of spread, for an object or a world
     float chance = 1;        // of each jump from object to object and of each ember, [0, 1]
-    uint32_t hopsMost = 0;   // jumps that may have brought a fire that still gives; 0: no limit
+    uint32_t hopsMost = 0;   // jumps after which a fire does not spread further; 0: no limit
     uint32_t tilesMost = 0;  // burning tiles of 8 x 8 texels; 0: no limit
-    float life = 0;          // s that a front advances after the object caught, 0: no limit
+    float life = 0;          // s that a front advances after the object's ignition; 0: no limit
 };
 [[nodiscard]] constexpr bool caps(const Governance& g) noexcept { return g.tilesMost != 0; }
 [[nodiscard]] constexpr bool governs(const Governance& g) noexcept { return caps(g) || g.life > 0; }
 
 // Rotation, place and box of a mesh in the world.
 void placeRemote(const Pose& pose, const mesh::BurnDomain& domain, gpu::RemoteObject& out) noexcept;
-// All else but what the world and its backend fill: neighbours and sources. `out` is placed.
+// Fills all other fields except neighbours and sources, which the world and its backend fill. `out`
+// is placed.
 void fillRemote(const BurnableMesh& object, const mesh::BurnDomain& domain,
                 const Governance& governance, gpu::RemoteObject& out) noexcept;
 void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) noexcept;
 
-// mm within which a fire of the whole object may matter to another one.
+// mm within which a fire of the whole object may affect another one.
 uint32_t remoteReach(const BurnableMesh& object, const mesh::BurnDomain& domain,
                      const std::array<uint32_t, kMaterials>& texelsOf) noexcept;
 

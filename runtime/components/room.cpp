@@ -1,6 +1,7 @@
 #include "components/room.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ constexpr float kMostHalf = 1000, kLeastHalf = 0.05f;
 constexpr float kMostVolume = 1e6f, kLeastVolume = 0.1f;  // m^3
 constexpr float kMostVent = 1e4f;                         // m^3/s
 constexpr uint32_t kKnownRoomFlags = FW_ROOM_REFILL;
-// m^3 of oxygen that a J of fire takes: 13.1 MJ/kg (Huggett), 1.330 kg/m^3 at 293 K.
+// m^3 of oxygen per J of fire: 13.1 MJ/kg (Huggett), 1.330 kg/m^3 at 293 K.
 constexpr double kOxygenPerJoule = 1 / (13.1e6 * 1.330);
 constexpr double kPeriod = double(gpu::kRoomPeriod) / gpu::kTicksPerSecond;  // s
 
@@ -79,7 +80,7 @@ bool plausible(const Room& room) noexcept {
 bool isIn(const Room& room, const WindPlace& place) noexcept {
     const int64_t off[3] = {place.x - room.middle[0], place.y - room.middle[1],
                             place.z - room.middle[2]};
-    // No room reaches as far, and nothing below is too large for its bits.
+    // No room reaches as far; the products below fit 64 bits.
     const auto far = int64_t(kMostHalf) * 2000;
     for (const int64_t value : off)
         if (std::abs(value) > far) return false;
@@ -92,7 +93,7 @@ bool isIn(const Room& room, const WindPlace& place) noexcept {
 }
 
 // Thomas (1981): 7.8 kW for each m^2 of walls, floor and ceiling, and 378 kW for each m^2.5 of
-// A sqrt(h) of the opening, of which 0.4 m^3/s come in (Kawagoe, as FwRoomDef::vent has it).
+// A sqrt(h) of the opening, through which 0.4 m^3/s enter (Kawagoe; see FwRoomDef::vent).
 uint64_t Room::flashPower() const noexcept {
     const auto a = uint64_t(half[0]), b = uint64_t(half[1]), c = uint64_t(half[2]);
     const uint64_t walls = 8 * (a * b + b * c + c * a);  // mm^2
@@ -101,7 +102,8 @@ uint64_t Room::flashPower() const noexcept {
 
 gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) noexcept {
     const double volume = double(room.volume) / 1000;
-    // An implicit step: no vent is too strong for its length.
+    FW_ASSERT(room.volume > 0, "a room without air");
+    // An implicit step: stable for any vent.
     const double changes = double(room.vent) / 1e6 / volume * kPeriod * double(pace);
     gpu::Room record{};
     record.takes = uint32_t(wholeOf(kOxygenPerJoule * kWholeAir * 1048576 / volume));
@@ -110,7 +112,7 @@ gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) n
     record.epoch = begins.epoch;
     record.power = begins.power;
     record.flash = begins.flash;
-    // More than the mean holds is no fire that there is.
+    // Powers beyond the range of the mean never occur.
     const double flashes = double(room.flashPower()) * kPeriod * double(pace);
     if (flashes <= double(gpu::kFlashMost))
         record.flashes = std::max(uint32_t(wholeOf(flashes)), 1u);

@@ -1,6 +1,6 @@
-// A room of the host's: where it is, and how fires use its air and get it back. Integers once the
-// def is read, so that fire starves alike on every machine. Not what has become of its air: that
-// is the backend's (shared/room.h).
+// A room: its box, and the rates at which fires use its air and vents renew it. Integers once the
+// def is read, so that fire starves equally on every machine. The backend keeps the air's state
+// (shared/room.h).
 #pragma once
 #include "components/wind_zone.h"
 #include "shared/room.h"
@@ -16,9 +16,9 @@ struct Room {
     std::array<int64_t, 3> half{};                       // mm, half of its sides
     std::array<int64_t, 9> axes{};                       // rows: its axes in the world, Q14
     uint64_t volume = 0;                                 // litres of air
-    uint64_t vent = 0;                                   // of it that comes from outside, ml/s
-    uint32_t oxygen = 0;                                 // that it is filled with, 2^-32 of the air
-    [[nodiscard]] uint64_t flashPower() const noexcept;  // W at which it flashes over
+    uint64_t vent = 0;                                   // ml/s of outside air
+    uint32_t oxygen = 0;                                 // at the start, 2^-32 of the air
+    [[nodiscard]] uint64_t flashPower() const noexcept;  // W of flashover
     bool operator==(const Room&) const = default;
 
     template <class A>
@@ -33,7 +33,7 @@ struct Room {
 
 [[nodiscard]] bool isIn(const Room& room, const WindPlace& place) noexcept;
 
-// As backends have it, at that pace. `begins`: the air that its beginning, of that epoch, has.
+// The backend's record, at the world's pace. `begins`: the air at the start of its epoch.
 [[nodiscard]] gpu::Room roomRecord(const Room& room, float pace,
                                    const gpu::RoomAir& begins) noexcept;
 

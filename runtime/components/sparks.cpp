@@ -1,5 +1,6 @@
 #include "components/sparks.h"
 
+#include "core/assert.h"
 #include "shared/spark.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@ using gpu::vec4;
 
 constexpr float kPlume = 1.7f;      // m/s of a fire of 1 kW, as its power to 0.2 (McCaffrey)
 constexpr float kJetPlume = 0.15f;  // of a jet's speed
-constexpr float kBrighter = 290;    // K that sparks are hotter than the flame at its foot
+constexpr float kBrighter = 290;    // K above the flame's temperature at its base
 constexpr float kTileSpeed = 1.0f;  // m/s off burning tiles
 
 static_assert(kSparkNotes == gpu::kSparkKeys - 1);
@@ -21,7 +22,7 @@ int64_t stepOf(double seconds) noexcept {
     return int64_t(std::floor(seconds / double(gpu::kSparkKeyStep)));
 }
 
-// 1/s; of what is thrown by burning tiles 1/s for each of their kW.
+// 1/s; on a mesh 1/s per kW of its burning tiles.
 float sparkRate(const FireEmitter& emitter) noexcept {
     const FwFireEmitterDef& def = emitter.def;
     if (!(def.power > 0)) return 0;
@@ -33,7 +34,7 @@ void note(SparkHistory& history, const float place[3], float rate) noexcept {
     history.notes[0] = {place[0], place[1], place[2], rate};
 }
 
-// Of the discs that stop a jet that of the most rays' middle: sparks meet one wall.
+// Sparks meet one wall: the mean of the discs that stop the jet.
 void findWall(const FireEmitter& emitter, gpu::SparkSource& record) noexcept {
     gpu::vec3 place(0.0f), normal(0.0f);
     float count = 0, radius = 0;
@@ -45,7 +46,7 @@ void findWall(const FireEmitter& emitter, gpu::SparkSource& record) noexcept {
         count += 1;
     }
     const float length = glm::length(normal);
-    if (count == 0 || length < 0.7f * count) return;  // a corner is no wall
+    if (count == 0 || length < 0.7f * count) return;  // the discs of a corner disagree
     record.flags |= gpu::kSparkWall;
     record.wall = vec4(place / count, 2 * radius);
     record.wallNormal = vec4(normal / length, 0);
@@ -73,13 +74,14 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     float moved = 0;
     for (int i = 0; i < 3; ++i) moved = std::hypot(moved, emitter.position[i] - from[i]);
     if (!history.begun || moved > kTeleport * seconds) {
-        // What it threw where it was before is gone with it.
+        // A teleport ends the sparks at the old place.
         for (auto& one : history.notes)
             one = {emitter.position[0], emitter.position[1], emitter.position[2], 0};
         history.step = history.begun ? stepOf(air.now) : stepOf(start);
         history.begun = true;
         from = emitter.position;
     }
+    FW_ASSERT(seconds >= 0, "%g s", double(seconds));
     const int64_t step = stepOf(air.now);
     history.step = std::max(history.step, step - int64_t(gpu::kSparkKeys));
     while (history.step < step) {
@@ -103,8 +105,8 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     const EmitterLook& look = emitter.look;
     const bool jet = (def.flags & FW_EMITTER_JET) != 0, onMesh = def.shape == FW_EMITTER_MESH;
     if (isSwept(def)) findWall(emitter, record);
-    const float* way = emitter.direction;
-    record.direction = {way[0], way[1], way[2], look.cone};
+    const float* along = emitter.direction;
+    record.direction = {along[0], along[1], along[2], look.cone};
     record.half_.w = onMesh ? kTileSpeed : look.speed;
     if (def.shape == FW_EMITTER_LINE)
         record.half_ = {def.extent[0], def.extent[1], def.extent[2], look.speed};

@@ -1,5 +1,5 @@
-// Sparks of a fire emitter: its way and its power over the last turn of them, noted at steps of the
-// clock, and the record that a device makes them from. Never touches a spark. Looks alone.
+// Sparks of a fire emitter: its path and power at steps of the clock over one turn, and the record
+// from which the device makes sparks. Touches no spark. Cosmetic.
 #pragma once
 #include "components/fire_emitter.h"
 
@@ -9,13 +9,13 @@ struct SparkSource;  // shared/spark.h
 
 namespace fw::components {
 
-// Its next frame, of `seconds`, into `next` and the record, once `advanceEmitter` began it. False:
-// it throws none, and none of its fly.
+// Computes the next frame, of `seconds`, into `next` and the record, after `advanceEmitter`. False:
+// the emitter throws no sparks, and none fly.
 bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
                    gpu::SparkSource& record) noexcept;
-// From now on as if it had always been where it is, with the power that it has: what a seek needs.
+// Sets the history as if place and power had always been the present ones. For seeks.
 void settleSparks(FireEmitter& emitter, double now) noexcept;
-// Quads of the most that it may show.
+// Most quads of a record.
 uint32_t sparkQuads(const gpu::SparkSource& record) noexcept;
 
 }  // namespace fw::components

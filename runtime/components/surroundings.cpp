@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kRadiant = 0.3f;      // of a fire's power
 constexpr float kConvection = 25.0f;  // W/(m^2 K), of hot gas on a body
-constexpr float kLeastFlux = 20.0f;   // W/m^2: below it no wall is asked for
+constexpr float kLeastFlux = 20.0f;   // W/m^2; below it walls are not tested
 // Soot of a kJ of wood, g: 0.015 of its fuel at 15 kJ/g. Its cross-section, m^2/g.
 constexpr float kSootPerKilojoule = 0.015f / 15.0f, kSmokeArea = 8.7f;
 constexpr float kLeastSmoke = 1e-5f;  // 1/m
@@ -23,22 +23,22 @@ struct InPlume {
     float share = 0;  // of the axis' excess
 };
 
-// A plume leans as wind and rise have it, and is as wide as its fire and 0.12 of its way.
+// A plume leans by wind over rise; it widens by 0.12 of its height.
 InPlume inPlume(const FireSource& fire, const SurroundingAir& air, vec3 point) noexcept {
-    const vec3 way = point - fire.base;
-    const float z = glm::dot(way, air.up);
+    const vec3 offset = point - fire.base;
+    const float z = glm::dot(offset, air.up);
     if (z <= -0.1f * fire.radius || fire.power <= 0) return {};
     const float high = std::max(z, 0.05f * std::max(fire.height, 0.05f));
     const float rise = std::max(volume::plumeSpeed(fire.power, high), 0.3f);
-    const vec3 off = way - air.up * z - air.wind * (std::max(z, 0.0f) / rise);
+    const vec3 off = offset - air.up * z - air.wind * (std::max(z, 0.0f) / rise);
     const float wide = fire.radius + 0.12f * std::max(z, 0.0f);
     return {high, std::exp(-glm::dot(off, off) / (wide * wide))};
 }
 
 float smokeOf(const FireSource& fire, const SurroundingAir& air, vec3 point) noexcept {
     const InPlume at = inPlume(fire, air, point);
-    if (at.share < 1e-4f || at.z < 0.5f * fire.height) return 0;  // in the flame soot burns
-    // The soot of a second lies in what rises past in it; a Gaussian's mean is half its middle.
+    if (at.share < 1e-4f || at.z < 0.5f * fire.height) return 0;  // soot burns inside the flame
+    // Soot per second over the flow of gas; the mean of a Gaussian is half its peak.
     const float wide = fire.radius + 0.12f * at.z;
     const float flow =
         0.5f * 3.14159265f * wide * wide * std::max(volume::plumeSpeed(fire.power, at.z), 0.3f);
@@ -52,7 +52,7 @@ FireSource fireSource(vec3 base, float radius, float power, uint32_t id) noexcep
     source.base = base;
     source.radius = std::max(radius, 0.02f);
     source.power = power;
-    // A wide, weak fire is many small ones.
+    // A wide, weak fire burns as many small ones.
     const float tall = 0.235f * std::pow(std::max(power, 1e-3f), 0.4f);
     source.height = std::max(volume::flameHeight(power, 2 * source.radius), 0.45f * tall);
     source.id = id;
@@ -71,9 +71,9 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
     for (const FireSource& fire : sources) {
         if (!(fire.power > 0)) continue;
         // The flame is a line from its base to its tip, as wide as its fire.
-        const vec3 way = point - fire.base;
-        const float along = std::clamp(glm::dot(way, air.up), 0.0f, fire.height);
-        const vec3 off = way - air.up * along;
+        const vec3 offset = point - fire.base;
+        const float along = std::clamp(glm::dot(offset, air.up), 0.0f, fire.height);
+        const vec3 off = offset - air.up * along;
         const float edge = std::max(std::sqrt(glm::dot(off, off)) - fire.radius, 0.0f);
         if (edge < all.nearest) {
             all.nearest = edge;
@@ -105,11 +105,11 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
 
 float sightThrough(std::span<const FireSource> sources, const SurroundingAir& air, vec3 from,
                    vec3 to) noexcept {
-    const vec3 way = to - from;
-    const float part = glm::length(way) / float(kSightParts);
+    const vec3 path = to - from;
+    const float part = glm::length(path) / float(kSightParts);
     float depth = 0;
     for (int i = 0; i < kSightParts; ++i)
-        depth += part * smokeAt(sources, air, from + way * ((float(i) + 0.5f) / kSightParts));
+        depth += part * smokeAt(sources, air, from + path * ((float(i) + 0.5f) / kSightParts));
     return std::exp(-depth);
 }
 

@@ -1,6 +1,8 @@
-// The clip matrix works on positions relative to the eye, so that it stays precise far from the
+// The clip matrix takes positions relative to the camera, so that it stays precise far from the
 // world's origin.
 #include "components/view_params.h"
+
+#include "core/assert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,6 +25,8 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     const vec3 eye = -(glm::transpose(rotation) * vec3(toView[3]));
     const glm::mat4 clip = projection * glm::mat4(rotation);
 
+    FW_ASSERT(inputs.quadShare > 0 && inputs.lastLight > 0, "quads %g, last light %g",
+              double(inputs.quadShare), double(inputs.lastLight));
     gpu::ViewParams p{};
     p.clip0 = clip[0];
     p.clip1 = clip[1];
@@ -31,7 +35,7 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     const float height = std::max(inputs.viewport[3], 1.0f);
     const float zoom = std::max(std::fabs(projection[1][1]), 1e-6f);
     p.eye = vec4(eye, 2.0f / (zoom * height));
-    // Clip w grows along it, whichever way the host's view space looks.
+    // The direction in which clip w grows, whatever the host's view space.
     const float side = projection[2][3] > 0.0f ? 1.0f : -1.0f;
     const vec3 forward = side * vec3(rotation[0][2], rotation[1][2], rotation[2][2]);
     p.forward = vec4(forward, projection[2][3] != 0.0f ? 1.0f : 0.0f);
@@ -41,7 +45,7 @@ gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noe
     p.ambientSky = rgb(view.ambientSky, std::fmod(view.time, 4096.0f));
     p.ambientGround = rgb(view.ambientGround, inputs.tickFraction);
     p.up = rgb(inputs.up, inputs.paceFactor);
-    // Depth at 1 and at 2 m from the eye: reversed, it falls.
+    // Depth at 1 and at 2 m from the camera: reversed depth falls.
     const auto depthAt = [&](float metres) {
         const float z = side * metres;
         return (projection[2][2] * z + projection[3][2]) /

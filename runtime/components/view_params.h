@@ -1,4 +1,4 @@
-// What a host says of a view, made into the uniform block that shaders read. Pure; no device.
+// The host's view as the uniform block that shaders read.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "shared/look.h"
@@ -7,12 +7,12 @@
 
 namespace fw::components {
 
-struct ViewInputs {          // what the host's view does not know
+struct ViewInputs {          // values that are not in FwView
     float viewport[4] = {};  // px: x, y, width, height
     uint32_t now = 0;        // tick after the last step
     float tickFraction = 0;  // [0, 1) into the next
     uint32_t lightCount = 16;
-    float lastLight = 1;  // (0, 1], share of its own fires that the last of them shines for
+    float lastLight = 1;  // (0, 1], share of its own fires that the last light takes
     uint32_t flameCapacity = gpu::kFlameCapacity;
     uint32_t seed = 1;
     float quadShare = 1;  // (0, 1]

@@ -1,6 +1,7 @@
 #include "components/volumetric_fire.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 #include "core/hash.h"
 
@@ -22,7 +23,8 @@ void checkPoint(const FwFirePoint& point, const char* name, uint32_t index) {
     checkLength(point.radius, field, 0.0f, 100.0f);
 }
 
-// Into one flame or many, but seldom anew: what burns keeps its place while power wavers.
+// Divides the fire into one flame or many. Small changes of power keep the division, so that flames
+// keep their places.
 void splitAgain(VolumetricFire& fire) noexcept {
     std::array<volume::Flamelet, volume::kMaxFlamelets> parts;
     uint32_t count = 1;
@@ -31,6 +33,8 @@ void splitAgain(VolumetricFire& fire) noexcept {
         parts[0] = {0, 0, fire.power, fire.diameter, 0};
     else
         count = volume::splitFire(fire.power, fire.diameter, parts);
+    FW_ASSERT(count >= 1 && count <= parts.size() && fire.diameter > 0, "%u parts of %g m", count,
+              double(fire.diameter));
     const uint32_t before = fire.partCount;
     const float tall = volume::flameHeight(fire.power, fire.diameter) / fire.diameter;
     bool keep = before > 0 && !led;
@@ -49,6 +53,7 @@ void splitAgain(VolumetricFire& fire) noexcept {
         ++fire.split;
         return;
     }
+    FW_ASSERT(before >= 1 && before <= fire.parts.size(), "%u parts", before);
     for (uint32_t i = 0; i < before; ++i) fire.parts[i].power = fire.power / float(before);
     if (before == 1) fire.parts[0].diameter = fire.diameter;
 }
@@ -109,10 +114,7 @@ void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* mem
 void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, VolumetricFire& fire) {
     constexpr uint32_t kKnown = FW_FIRE_HIDDEN | FW_FIRE_NO_SMOKE | FW_FIRE_NO_LIGHT |
                                 FW_FIRE_NO_COLLISION | FW_FIRE_IGNITES;
-    if (def.flags & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVolumetricFireDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
-                   kKnown);
+    checkFlags(def.flags, "FwVolumetricFireDef::flags", kKnown);
     checkWhole(def.preset, "FwVolumetricFireDef::preset", 0, FW_FIRE_PRESET_COUNT - 1);
     checkLength(def.diameter, "FwVolumetricFireDef::diameter", 0.002f, 20.0f);
     checkValue(def.windResponse, "FwVolumetricFireDef::windResponse", 0.0f, 4.0f);

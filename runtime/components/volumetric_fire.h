@@ -1,5 +1,5 @@
-// A volumetric fire as plain data: what the host asked for, checked, and what is told of it. The
-// flames that it burns as are in fire_flames.h. Looks alone: floats, and nothing decides by them.
+// A volumetric fire as plain data: its checked def and its reported state. Its flames are in
+// fire_flames.h. Cosmetic: floats, and no decision of the simulation depends on them.
 #pragma once
 #include "components/pose.h"
 #include "flamewright/flamewright.h"
@@ -17,8 +17,8 @@ namespace fw::components {
 
 static_assert(gpu::kFirePresets == FW_FIRE_PRESET_COUNT);
 
-struct FireState {      // what is told of it, see FwVolumetricFireState
-    bool lit = false;   // it has been through a frame
+struct FireState {      // reported state, see FwVolumetricFireState
+    bool lit = false;   // a frame has advanced it
     bool mean = false;  // sums have become means
     uint32_t flames = 0;
     float power = 0, height = 0, pulseRate = 0, contactPower = 0;
@@ -68,13 +68,13 @@ struct VolumetricFire : FireControls {
     FwFireProfileId ownProfile{};  // the host's, or null
     float diameter = 0;            // m
     float windResponse = 1, blend = 0.3f;
-    float wind[3] = {};   // m/s, that blows where it stands
+    float wind[3] = {};  // m/s, at its place
     volume::Track track;  // no keys: none
     float trackWeight = 1;
     uint32_t trackVersion = 0;
     uint64_t userData = 0;
-    // As what it burns: one flame, or many small ones. Another division is another `split`; its
-    // flames grow while those of the last die down.
+    // Its division into one flame or many small ones. A new division has a new `split`; its flames
+    // grow while the flames of the last one die down.
     std::array<volume::Flamelet, volume::kMaxFlamelets> parts{};
     uint32_t partCount = 0, split = 0;
     FireState state, nextState;
@@ -84,16 +84,16 @@ struct VolumetricFire : FireControls {
 
 void setFirePreset(FwVolumetricFireDef& def, uint32_t preset);
 const char* firePresetName(uint32_t preset) noexcept;
-// As LookSources::profiles wants them.
+// The data of LookSources::profiles.
 std::pmr::vector<std::byte> bakeFireProfiles(std::pmr::memory_resource* memory);
-// Of a host's texels or cooked bytes. Throws core::Error; `profile` is then unchanged.
+// From a host's texels or cooked bytes. Throws core::Error; `profile` is then unchanged.
 void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* memory,
                      volume::Profile& profile);
 
-// Throw where a value is out of its limits, and then changed nothing. The profile's layer is the
-// caller's to set.
+// Throw core::Error if a value is out of its limits, and then change nothing. The caller sets the
+// profile's layer.
 void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, VolumetricFire& fire);
-uint32_t mostParts(float power, float diameter) noexcept;  // that it would be divided into
+uint32_t mostParts(float power, float diameter) noexcept;  // flames that it would divide into
 void setFirePower(VolumetricFire& fire, float power);
 void setFirePosition(VolumetricFire& fire, const float position[3]);
 void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name);

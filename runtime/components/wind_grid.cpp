@@ -1,6 +1,7 @@
 #include "components/wind_grid.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -83,9 +84,11 @@ fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,
                             const WindPlace& place) noexcept {
     const WindGridShape& shape = grid.shape;
     if (shape.points() == 0) return wind;
+    FW_ASSERT(grid.points.size() == shape.points() && shape.cell > 0, "%zu of %u points",
+              grid.points.size(), shape.points());
     const int64_t at[3] = {place.x, place.y, place.z};
     uint32_t corner[3];
-    int64_t share[3];  // of the way to the next point, Q14
+    int64_t share[3];  // of the distance to the next point, Q14
     int64_t depth = INT64_MAX;
     for (size_t i = 0; i < 3; ++i) {
         const int64_t off = at[i] - shape.origin[i], size = (shape.counts[i] - 1) * shape.cell;
@@ -99,6 +102,8 @@ fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,
     for (size_t axis = 0; axis < 3; ++axis) {
         const auto pointAt = [&](uint32_t x, uint32_t y, uint32_t z) -> int64_t {
             const uint32_t row = (corner[2] + z) * shape.counts[1] + corner[1] + y;
+            FW_ASSERT(corner[0] + x < shape.counts[0] && corner[1] + y < shape.counts[1] &&
+                      corner[2] + z < shape.counts[2]);
             return grid.points[size_t{row} * shape.counts[0] + corner[0] + x][axis];
         };
         const auto between = [&](int64_t a, int64_t b, size_t along) {

@@ -1,5 +1,5 @@
-// Wind that the host gives on a grid of points: trilinear between them, none of it outside. Whole
-// numbers once the def is read, as zones are; not a solver of any wind.
+// The host's wind on a grid of points: trilinear inside, without effect outside. Integers once the
+// def is read, like zones. Solves nothing.
 #pragma once
 #include "components/wind_zone.h"
 
@@ -14,7 +14,7 @@ struct WindGridShape;
 // Whether makeWindGridShape may have made it.
 [[nodiscard]] bool plausible(const WindGridShape& shape) noexcept;
 
-struct WindGridShape {  // where its points are; no counts: there is no grid
+struct WindGridShape {  // places of the points; counts of 0: there is no grid
     uint32_t blend = 0;
     std::array<uint32_t, 3> counts{};
     std::array<int64_t, 3> origin{};  // mm, of the first point
@@ -56,13 +56,13 @@ struct WindGrid {
     }
 };
 
-// What these throw is a core::Error that names the field.
+// Throw core::Error naming the field.
 [[nodiscard]] WindGridShape makeWindGridShape(const FwWindGridDef& def);
 void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& points);
-// m/s, of the point of that number.
+// velocity: m/s. point: its number, for the message.
 [[nodiscard]] WindPoint makeWindPoint(const float velocity[3], uint32_t point);
 
-// What blows at a place where `wind` blows around the grid.
+// The wind at a place. `wind`: around the grid.
 [[nodiscard]] fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,
                                           const WindPlace& place) noexcept;
 

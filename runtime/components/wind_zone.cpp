@@ -1,6 +1,7 @@
 #include "components/wind_zone.h"
 
 #include "components/pose.h"
+#include "core/assert.h"
 #include "core/error.h"
 #include "shared/wind.h"
 
@@ -36,15 +37,16 @@ int64_t dot(const Vector& a, const Vector& b) noexcept {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-// Q14; no length has no way.
+// Q14; zero for a vector without length.
 Vector unit(const Vector& v) noexcept {
     const int64_t length = lengthOf(v);
     if (length == 0) return {};
     return {v[0] * kOne / length, v[1] * kOne / length, v[2] * kOne / length};
 }
 
-// Where a place lies between the zone's middle, 0, and its edge, Q14.
+// Place between the zone's middle, 0, and its edge, 1; Q14.
 int64_t depthOf(const WindZone& zone, const Vector& off) noexcept {
+    FW_ASSERT(zone.size[0] > 0, "size %lld mm", static_cast<long long>(zone.size[0]));
     switch (zone.shape) {
         case FW_WIND_BOX: {
             int64_t most = 0;
@@ -81,7 +83,7 @@ Vector flowOf(const WindZone& zone, const Vector& off) noexcept {
     }
 }
 
-// A sphere has one size, a cone two, a box three; the others are not looked at.
+// Number of sizes in use: a sphere has one, a cone two, a box three.
 unsigned sizesOf(uint32_t shape) noexcept {
     return shape == FW_WIND_SPHERE ? 1 : shape == FW_WIND_CONE ? 2 : 3;
 }
@@ -166,12 +168,15 @@ WindPlace windPlace(const double place[3]) noexcept {
 
 fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,
                         const WindPlace& place) noexcept {
+    FW_ASSERT(std::is_sorted(zones.begin(), zones.end(), [](const WindZone& a, const WindZone& b) {
+        return a.priority < b.priority;
+    }));
     Vector sum{wind[0], wind[1], wind[2]};
     const int64_t far = millimetres(2 * kMostZoneSize);
     for (const WindZone& zone : zones) {
         const Vector off{place.x - zone.middle[0], place.y - zone.middle[1],
                          place.z - zone.middle[2]};
-        // No zone is as large, and nothing below is too large for its bits.
+        // No zone reaches as far; the products below fit 64 bits.
         if (std::any_of(off.begin(), off.end(), [&](int64_t v) { return std::abs(v) > far; }))
             continue;
         const int64_t depth = depthOf(zone, off);

@@ -1,5 +1,5 @@
-// Wind of a place's own: zones that the host puts around it, each with a shape and a flow. Integers
-// once the def is read, so that every machine's fire leans alike. Not what wind does to anything.
+// Wind zones: local wind with a shape and a flow. Integers once the def is read, so that fire leans
+// equally on every machine.
 #pragma once
 #include "fire/wind_filter.h"
 #include "flamewright/flamewright.h"
@@ -21,11 +21,11 @@ struct WindZone;
 struct WindZone {
     uint32_t shape = 0, flow = 0, blend = 0;  // FwWindShape, FwWindFlow, FwWindBlend
     int32_t priority = 0;
-    std::array<int64_t, 3> middle{};  // mm; of a cone its tip
+    std::array<int64_t, 3> middle{};  // mm; the tip of a cone
     std::array<int64_t, 3> axis{};    // Q14, unit
-    std::array<int64_t, 3> size{};    // mm; half sides; a radius; length and radius at its end
+    std::array<int64_t, 3> size{};    // mm; half sides; a radius; a cone's length and end radius
     int64_t speed = 0;                // 1/128 m/s
-    int64_t fades = 0;                // Q14 of the way from its middle to its edge
+    int64_t fades = 0;                // Q14 of the distance from its middle to its edge
     bool operator==(const WindZone&) const = default;
 
     template <class A>
@@ -38,21 +38,19 @@ struct WindZone {
 // Throws core::Error naming the field.
 [[nodiscard]] WindZone makeWindZone(const FwWindZoneDef& def);
 
-// In the order in which they count: of one priority they stay as they are.
+// Sorts zones into their order of effect: by priority; zones of one priority keep their order.
 void sortWindZones(std::span<WindZone> zones) noexcept;
 
-// m to mm.
-// The nearest; halves go up everywhere, so that what moves by whole metres moves exactly.
+// m to the nearest mm. Halves round up everywhere, so that moves by whole metres are exact.
 [[nodiscard]] int64_t millimetres(double metres) noexcept;
 [[nodiscard]] WindPlace windPlace(const float place[3]) noexcept;
 [[nodiscard]] WindPlace windPlace(const double place[3]) noexcept;
 
-// What blows at a place where `wind` blows around all zones; these are in the order in which they
-// count. Within +-120 m/s along each axis.
+// The wind at a place, within +-120 m/s along each axis. `wind`: around all zones. `zones`: sorted.
 [[nodiscard]] fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector& wind,
                                       const WindPlace& place) noexcept;
 
-// As records of objects hold it: three times 10 bits of 1/4 m/s; 0: none.
+// Packed for object records: three times 10 bits of 1/4 m/s; 0: no wind.
 [[nodiscard]] uint32_t packWind(const fire::WindVector& wind) noexcept;
 
 }  // namespace fw::components

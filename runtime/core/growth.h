@@ -5,8 +5,8 @@
 
 namespace fw::core {
 
-// Capacity for `count` entries in all; throws std::bad_alloc. At least twice the capacity that
-// there was, because a reserve of exactly as many as are needed copies all entries with every call.
+// Reserves `count` entries in all, at least doubling the capacity: exact reserves would copy all
+// entries with every call. Throws std::bad_alloc.
 template <class Vector>
 void growTo(Vector& vector, std::size_t count) {
     if (vector.capacity() < count) vector.reserve(std::max(count, vector.capacity() * 2));

@@ -1,6 +1,7 @@
-// Slots with generations: what turns a public id {index1, generation} into a value, and tells a
-// stale id from a wrong one. Indices are reused lowest first, so runs repeat slot for slot.
+// Slots with generations: maps a public id {index1, generation} to a value, and distinguishes stale
+// ids from wrong ones. Indices are reused lowest first, so runs repeat slot for slot.
 #pragma once
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -25,6 +26,8 @@ class HandlePool {
         uint32_t index = 0;
         if (!free_.empty()) {
             index = free_.back();  // sorted descending: the lowest index is last
+            FW_ASSERT(index < slots_.size() && !slots_[index].value, "slot %u of %zu", index,
+                      slots_.size());
             Slot& slot = slots_[index];
             slot.value.emplace(std::forward<Arguments>(arguments)...);
             free_.pop_back();
@@ -44,7 +47,7 @@ class HandlePool {
         return Id{index + 1, slots_[index].generation};
     }
 
-    // Null when the id is null, stale or from nowhere.
+    // Null if the id is null, stale or unknown.
     Value* find(Id id) noexcept {
         if (id.index1 == 0 || id.index1 > slots_.size()) return nullptr;
         Slot& slot = slots_[id.index1 - 1];
@@ -52,7 +55,7 @@ class HandlePool {
     }
     const Value* find(Id id) const noexcept { return const_cast<HandlePool*>(this)->find(id); }
 
-    // As find, but throws Error in plain words.
+    // As find, but throws Error.
     Value& get(Id id) {
         if (Value* value = find(id)) return *value;
         if (id.index1 == 0) fail(FW_ERROR_STALE_ID, "%s id is null.", noun_);
@@ -70,6 +73,8 @@ class HandlePool {
         slot.value.reset();
         ++slot.generation;
         const uint32_t index = id.index1 - 1;
+        FW_ASSERT(free_.size() < free_.capacity() && live_ > 0, "%zu free slots, %u live",
+                  free_.size(), live_);
         free_.insert(std::lower_bound(free_.begin(), free_.end(), index, std::greater<>()), index);
         --live_;
     }
@@ -78,12 +83,16 @@ class HandlePool {
     [[nodiscard]] uint32_t slotCount() const noexcept { return uint32_t(slots_.size()); }
     // Null for an empty slot. For loops in slot order.
     Value* at(uint32_t index) noexcept {
+        FW_ASSERT(index < slots_.size(), "slot %u of %zu", index, slots_.size());
         return slots_[index].value ? &*slots_[index].value : nullptr;
     }
     const Value* at(uint32_t index) const noexcept {
-        return slots_[index].value ? &*slots_[index].value : nullptr;
+        return const_cast<HandlePool*>(this)->at(index);
     }
-    Id idOf(uint32_t index) const noexcept { return Id{index + 1, slots_[index].generation}; }
+    Id idOf(uint32_t index) const noexcept {
+        FW_ASSERT(index < slots_.size(), "slot %u of %zu", index, slots_.size());
+        return Id{index + 1, slots_[index].generation};
+    }
 
  private:
     struct Slot {

@@ -1,4 +1,4 @@
-// Hashes: lowbias32 for counter-based random numbers, FNV-1a over words for state hashes and over
+// Hashes: lowbias32 for counter-based random numbers; FNV-1a over words for state hashes and over
 // bytes for files.
 #pragma once
 #include <cstddef>

@@ -1,4 +1,4 @@
-// Messages to the host's log callback. Never formats when nobody listens.
+// Messages to the host's log callback. Formats nothing without a callback.
 #pragma once
 #include "flamewright/flamewright.h"
 

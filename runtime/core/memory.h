@@ -15,7 +15,7 @@ class Memory final : public std::pmr::memory_resource {
     Memory(const Memory&) = delete;
     Memory& operator=(const Memory&) = delete;
 
-    // Bytes and blocks alive now, and the number of allocations ever made.
+    // Bytes allocated now, and the number of all allocations.
     [[nodiscard]] size_t bytes() const noexcept { return bytes_.load(std::memory_order_relaxed); }
     [[nodiscard]] uint64_t allocations() const noexcept {
         return allocations_.load(std::memory_order_relaxed);

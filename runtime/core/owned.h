@@ -1,5 +1,7 @@
 // One object in pmr memory with a stable address: a unique pointer that knows its resource.
 #pragma once
+#include "core/assert.h"
+
 #include <memory_resource>
 #include <utility>
 
@@ -29,8 +31,14 @@ class Owned {
     }
 
     [[nodiscard]] T* get() const noexcept { return value_; }
-    T& operator*() const noexcept { return *value_; }
-    T* operator->() const noexcept { return value_; }
+    T& operator*() const noexcept {
+        FW_ASSERT(value_);
+        return *value_;
+    }
+    T* operator->() const noexcept {
+        FW_ASSERT(value_);
+        return value_;
+    }
     explicit operator bool() const noexcept { return value_ != nullptr; }
 
  private:

@@ -1,5 +1,7 @@
-// Which slots of a table are meant, in order: a bit each, so that a walk skips 64 others at once.
+// A set of slots of a table, in order: a bit each, so that a walk skips 64 slots at once.
 #pragma once
+#include "core/assert.h"
+
 #include <bit>
 #include <cstdint>
 #include <memory_resource>
@@ -11,18 +13,23 @@ class SlotSet {
  public:
     explicit SlotSet(std::pmr::memory_resource* memory) : words_(memory) {}
 
-    // Room for slots below `end`: nothing else here throws.
+    // Makes space for slots below `end`. Only this function throws.
     void atLeast(uint32_t end) {
         if (words_.size() < (end + 63) / 64) words_.resize((end + 63) / 64);
     }
-    void insert(uint32_t slot) noexcept { words_[slot / 64] |= bit(slot); }
-    void erase(uint32_t slot) noexcept { words_[slot / 64] &= ~bit(slot); }
+    void insert(uint32_t slot) noexcept {
+        FW_ASSERT(slot / 64 < words_.size(), "slot %u of %zu", slot, words_.size() * 64);
+        words_[slot / 64] |= bit(slot);
+    }
+    void erase(uint32_t slot) noexcept {
+        FW_ASSERT(slot / 64 < words_.size(), "slot %u of %zu", slot, words_.size() * 64);
+        words_[slot / 64] &= ~bit(slot);
+    }
     [[nodiscard]] bool contains(uint32_t slot) const noexcept {
         return slot / 64 < words_.size() && (words_[slot / 64] & bit(slot)) != 0;
     }
 
-    // Lowest first. The slot that a walk is at may be erased; what is inserted meanwhile may be
-    // missed.
+    // Lowest first. A walk may erase its current slot; it may miss slots inserted meanwhile.
     struct End {};
     class Walk {
      public:
@@ -30,7 +37,10 @@ class SlotSet {
             rest_ = words.empty() ? 0 : words[0];
             skip();
         }
-        uint32_t operator*() const noexcept { return at_ * 64 + uint32_t(std::countr_zero(rest_)); }
+        uint32_t operator*() const noexcept {
+            FW_ASSERT(rest_ != 0, "the walk has ended");
+            return at_ * 64 + uint32_t(std::countr_zero(rest_));
+        }
         Walk& operator++() noexcept {
             rest_ &= rest_ - 1;
             skip();

@@ -1,6 +1,7 @@
-// Bytes of a file in a fixed order, little-endian. The reader trusts nothing: every number is
-// checked against what is left before it is used, and refusals name what is read.
+// Bytes of a file in a fixed order, little-endian. The reader trusts nothing: it checks every
+// number against the bytes left before use, and its errors name the file.
 #pragma once
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <bit>
@@ -20,6 +21,14 @@ template <typename T>
 using WordOf = std::conditional_t<sizeof(T) == 8, uint64_t,
                                   std::conditional_t<sizeof(T) == 4, uint32_t, uint16_t>>;
 
+// The word at a byte of a file; the caller checked the size.
+inline uint32_t wordAt(std::span<const std::byte> bytes, size_t at) noexcept {
+    FW_ASSERT(at + 4 <= bytes.size(), "byte %zu of %zu", at, bytes.size());
+    uint32_t word = 0;
+    for (size_t k = 0; k < 4; ++k) word |= uint32_t(bytes[at + k]) << (8 * k);
+    return word;
+}
+
 class Writer {
  public:
     static constexpr bool kReads = false;
@@ -30,9 +39,10 @@ class Writer {
         for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
     }
     void number(bool value) { out_.push_back(std::byte(value ? 1 : 0)); }
-    // Over what was written there: a sum of what follows is known when that is written.
+    // Overwrites a number: a checksum of later bytes is known only after them.
     template <Number T>
     void numberAt(size_t at, const T& value) noexcept {
+        FW_ASSERT(at + sizeof(T) <= out_.size(), "byte %zu of %zu", at, out_.size());
         const auto word = std::bit_cast<WordOf<T>>(value);
         for (size_t k = 0; k < sizeof(T); ++k) out_[at + k] = std::byte(word >> (8 * k));
     }
@@ -45,7 +55,7 @@ class Writer {
 class Reader {
  public:
     static constexpr bool kReads = true;
-    // `what` stands in messages: "save". It must outlive the reader.
+    // `what` names the file in messages: "save". It must outlive the reader.
     Reader(std::span<const std::byte> bytes, const char* what) : bytes_(bytes), what_(what) {}
     template <Number T>
     void number(T& value) {
@@ -62,7 +72,7 @@ class Reader {
                  what_, word);
         value = word == 1;
     }
-    // A count of things that need at least `bytesEach` bytes each.
+    // A count of items of at least `bytesEach` bytes each.
     uint32_t count(const char* name, size_t bytesEach) {
         uint32_t value = 0;
         number(value);

@@ -1,7 +1,7 @@
-// The step of a particle field on one thread, and from a designer's parameters to its integers.
+// The step of a particle field on one thread, and the conversion of its parameters to integers.
 #include "field/field.h"
 
-#include "core/error.h"
+#include "core/assert.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,16 +11,10 @@ namespace {
 
 using namespace gpu;
 
-// Of a ring, the column that is meant.
+// The column, wrapped in a ring.
 int column(const Field& field, const FieldRules& rules, int x) noexcept {
     const int w = int(field.width);
     return (rules.open & kFieldRing) == 0 ? x : x < 0 ? x + w : x >= w ? x - w : x;
-}
-
-void check(const char* name, float value, float low, float high) {
-    if (!(value >= low && value <= high))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %g; it must lie in [%g, %g].", name,
-                   double(value), double(low), double(high));
 }
 
 uint32_t fixed(float value, float one, float most) noexcept {
@@ -41,31 +35,12 @@ FieldLook fieldPreset(FieldPreset preset) noexcept {
     return {};
 }
 
-void checkField(const FieldDef& def) {
-    check("width", float(def.width), 4, float(kFieldSideMost));
-    check("height", float(def.height), 4, float(kFieldSideMost));
-    check("stepRate", float(def.stepRate), 1, 120);
-    check("wind.x", def.wind.x, -4, 4);
-    check("wind.y", def.wind.y, -4, 4);
-    check("look.amount", def.look.amount, 0, 4);
-    check("look.rise", def.look.rise, -4, 4);
-    check("look.spread", def.look.spread, 0, 1);
-    check("look.memory", def.look.memory, 0, 1);
-    check("look.chaos", def.look.chaos, 0, 4);
-    check("look.life", def.look.life, 0.01f, 1e6f);
-    check("look.detail", def.look.detail, 0, 1);
-    check("look.body", def.look.body, 0, 2);
-    if (def.open > 31)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "open is %u; it holds five bits, up to 31.",
-                   def.open);
-}
-
 FieldRules fieldRules(const FieldDef& def) noexcept {
     const FieldLook& look = def.look;
     FieldRules rules{};
     rules.forceX = int(std::lround(std::clamp(def.wind.x, -4.0f, 4.0f) * 128));
     rules.forceY = int(std::lround(std::clamp(look.rise + def.wind.y, -4.0f, 4.0f) * 128));
-    // Half: with all of it, what moves would never slow down.
+    // Half: with all of it, particles would never slow down.
     rules.inertia = fixed(0.5f * look.memory, 256, 256);
     rules.chaos = fixed(look.chaos, 256, 1024);
     rules.spread = fixed(look.spread, float(kFieldSpreadMost), float(kFieldSpreadMost));
@@ -78,19 +53,11 @@ FieldRules fieldRules(const FieldDef& def) noexcept {
     return rules;
 }
 
-void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept {
-    if (rules.sourceCount >= kFieldSources) return;
-    const int w = int(rules.width), h = int(rules.height);
-    const int half = std::max(w / 10, 1), rows = std::max(h / 32, 1);
-    const bool falls = look.rise < 0;
-    FieldSource& source = rules.sources[rules.sourceCount++];
-    source.cells = {w / 2 - half, falls ? h - rows : 0, w / 2 + half, falls ? h : rows};
-    source.rate = emissionRate(look.amount);
-}
-
 uint32_t emissionRate(float amount) noexcept { return fixed(amount * 255 / 12, 256, 1u << 16); }
 
 void startField(Field& field, uint32_t width, uint32_t height) {
+    FW_ASSERT(width >= 4 && height >= 4 && width <= kFieldSideMost && height <= kFieldSideMost,
+              "%u x %u cells", width, height);
     const size_t count = size_t(width) * height;
     std::pmr::memory_resource* memory = field.cells.get_allocator().resource();
     Field fresh(memory);
@@ -103,6 +70,8 @@ void startField(Field& field, uint32_t width, uint32_t height) {
 }
 
 void maskField(Field& field, std::span<const uint8_t> masks) noexcept {
+    FW_ASSERT(masks.size() == field.cells.size(), "%zu of %zu cells", masks.size(),
+              field.cells.size());
     for (size_t i = 0; i < field.cells.size(); ++i) {
         const bool wall = masks[i] == kFieldWall;
         if (wall) field.died += fieldNumber(field.cells[i]);
@@ -114,13 +83,13 @@ void maskField(Field& field, std::span<const uint8_t> masks) noexcept {
     }
 }
 
-void fillCell(Field& field, uint32_t x, uint32_t y, uint32_t n) noexcept {
-    field.cells[size_t(y) * field.width + x] =
-        fieldCell(std::min(n, kFieldCellMost), uvec2(kFieldStill));
-}
-
 void stepField(Field& field, const FieldRules& rules) noexcept {
     const int w = int(field.width), h = int(field.height);
+    FW_ASSERT(rules.width == field.width && rules.height == field.height,
+              "%u x %u and %u x %u cells", rules.width, rules.height, field.width, field.height);
+    FW_ASSERT(field.next.size() == field.cells.size() && field.given.size() == field.cells.size(),
+              "%zu and %zu of %zu cells", field.next.size(), field.given.size(),
+              field.cells.size());
     const FieldWeights weights = fieldWeights(rules);
     const uint giving = fieldKey(field.step, rules.seed, 0);
     const uint chance = fieldKey(field.step >> 2, rules.seed, 1);
@@ -131,7 +100,7 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
         const int i = column(field, rules, x);
         return i >= 0 && y >= 0 && i < w && y < h;
     };
-    const auto open = [&](int x, int y) {  // of what lies outside
+    const auto open = [&](int x, int y) {  // for places outside
         return (x >= 0 || (rules.open & kFieldOpenLeft)) &&
                (x < w || (rules.open & kFieldOpenRight)) &&
                (y >= 0 || (rules.open & kFieldOpenBottom)) &&
@@ -148,7 +117,7 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
                 const ivec2 d = fieldNeighbour(k);
                 const int i = (rules.open & kFieldRing) ? column(field, rules, x + d.x) : x + d.x;
                 const bool is = inside(x + d.x, y + d.y);
-                // Walls are full, and nothing spreads over a border.
+                // Walls are full, and no particle spreads over a border.
                 const uint there =
                     is ? field.cells[at(x + d.x, y + d.y)] & kFieldCellMost : kFieldCellMost;
                 around.k[k] = there * rules.spread;
@@ -182,7 +151,10 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
             next = kFieldWallCell;
             if (cell == kFieldWallCell) continue;
             uint n = fieldNumber(cell);
-            for (const uint16_t to : field.given[at(x, y)]) n -= to;
+            for (const uint16_t to : field.given[at(x, y)]) {
+                FW_ASSERT(to <= n, "%u of %u particles leave", to, n);
+                n -= to;
+            }
             const uvec2 motion = fieldMotionOf(cell);
             uint sumX = n * fieldCarried(motion.x, 0, rules.memory);
             uint sumY = n * fieldCarried(motion.y, 0, rules.memory);
@@ -212,6 +184,7 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
 }
 
 uint32_t cellAt(const Field& field, uint32_t x, uint32_t y) noexcept {
+    FW_ASSERT(x < field.width && y < field.height, "cell (%u, %u)", x, y);
     return fieldNumber(field.cells[size_t(y) * field.width + x]);
 }
 

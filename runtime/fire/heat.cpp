@@ -1,6 +1,8 @@
 // Forms and ranges of the charring rate: Pirk et al. 2017 and Haedrich et al. 2021.
 #include "fire/heat.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -9,18 +11,21 @@ namespace fw::fire {
 namespace {
 
 constexpr double kLeastSkin = 0.0002;  // m
-constexpr float kSheet = 0.002f;       // m: a sheet of at most this is as warm inside as outside
+constexpr float kSheet = 0.002f;       // m; up to it a sheet is evenly warm
 constexpr double kKelvin = 16;         // units per K
 
 }  // namespace
 
 uint32_t fixed(double value, double unit, double most) noexcept {
+    FW_ASSERT(most <= 4294967295.0 && !std::isnan(value), "%g of %g", value, most);
     return uint32_t(std::llround(std::clamp(value * unit, 0.0, most)));
 }
 
 gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float ambient) noexcept {
     const double volumetric = double(facts.density) * double(facts.specificHeat);  // J/m^3/K
     const double depth = double(facts.thickness);
+    FW_ASSERT(seconds > 0 && depth > 0 && volumetric > 0, "%g s, %g m, %g J/m^3/K", seconds, depth,
+              volumetric);
     gpu::HeatMaterial m{};
     m.absorbs = fixed(double(facts.absorptivity), 256, 256);
     m.radiates = fixed(double(facts.emissivity), 256, 256);
@@ -58,14 +63,6 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
     return m;
 }
 
-gpu::HeatTexel heatAtRest(float ambient, float moisture) noexcept {
-    gpu::HeatTexel x{};
-    x.fuel = gpu::kFuelFull;
-    x.heat = fixed(double(ambient), kKelvin, 16000);
-    x.moist = fixed(double(moisture), 128, gpu::kMoistMost);
-    return x;
-}
-
 HeatFacts heatFacts(const FwMaterialDef& def) noexcept {
     HeatFacts facts;
     facts.burns = def.spreadRate > 0;
@@ -82,7 +79,7 @@ HeatFacts heatFacts(const FwMaterialDef& def) noexcept {
     facts.extinction = def.ignitionTemperature - 50;
     facts.filmMost = def.waterHeld;
     facts.extinctionMoisture = def.extinctionMoisture;
-    // The mean of 1 / share over its depth: how much longer char makes it last.
+    // The mean of 1 / share over its depth: the factor by which char prolongs burning.
     const double span =
         double(facts.charResistance) * double(facts.charShare) * double(facts.thickness);
     const double floor = double(facts.charFloor);

@@ -1,7 +1,7 @@
 // Sources: paper from mass rates per width of 3.5-5.6 mg/cm/s (Stott; Atallah, in Thomas & Law
 // 1965); cotton and polyester from vertical panels (Mathur, Vikas, Kale); grass from head fires at
 // 20 % of the wind (Cruz, Alexander, Kilinc 2022); softwood char 0.65 mm/min (EN 1995-1-2). The
-// rest are starting points. Rates are as measured, so moisture is 0 but for green leaves.
+// rest are starting points. Rates are as measured, so moisture is 0 except for green leaves.
 #include "fire/presets.h"
 
 namespace fw::fire {
@@ -101,7 +101,5 @@ FwMaterialDef presetDef(uint32_t preset) noexcept {
 const char* presetName(uint32_t preset) noexcept {
     return preset < FW_MATERIAL_PRESET_COUNT ? kPresets[preset].name : "unknown";
 }
-
-float paperSpreadRate(float gramsPerSquareMetre) noexcept { return 0.44f / gramsPerSquareMetre; }
 
 }  // namespace fw::fire

@@ -1,5 +1,6 @@
 #include "fire/spread_law.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 #include "fire/heat.h"
 #include "shared/front.h"
@@ -56,6 +57,7 @@ uint32_t durationTicks(double seconds) {
 
 // Largest head/back speed ratio of an ellipse of this length to breadth.
 double headToBack(double lengthToBreadth) {
+    FW_ASSERT(lengthToBreadth >= 1, "%g", lengthToBreadth);
     const double root = lengthToBreadth + std::sqrt(lengthToBreadth * lengthToBreadth - 1);
     return root * root;
 }
@@ -84,8 +86,8 @@ Drive driveOf(const FwMaterialDef& def, const SpreadFacts& facts, const WindVect
     return drive;
 }
 
-// Window in links of the base rate: how much later than a texel the neighbours that correct it may
-// ignite, which grows with the ellipse's length.
+// Correction window in links of the base rate: the delay after which neighbours may still correct a
+// texel. It grows with the ellipse's length.
 double windowLinks(double lengthToBreadth) {
     return lengthToBreadth <= 1.5 ? 0 : lengthToBreadth <= 2.0 ? 1 : 2;
 }
@@ -123,7 +125,7 @@ float moistureFactor(float moisture, float extinctionMoisture) noexcept {
 
 float baseRate(const FwMaterialDef& def, const SpreadFacts& facts) noexcept {
     float factor = moistureFactor(def.moisture + facts.moisture, def.extinctionMoisture);
-    if (factor <= 0 && facts.heat) factor = 1;  // its texels wait until heat has dried them
+    if (factor <= 0 && facts.heat) factor = 1;  // its texels wait until heat dries them
     return def.spreadRate * factor * facts.pace;
 }
 
@@ -157,6 +159,7 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
 
     m.flags = 1;
     const double unit = double(facts.quantum) * double(facts.scale) / 8;  // m per 1/8 unit
+    FW_ASSERT(unit > 0 && facts.pace > 0, "%g m, pace %g", unit, double(facts.pace));
     m.sigma0 =
         uint32_t(std::clamp(std::round(kTicks / rate * unit * 4194304.0), 16.0, 4294967295.0));
     m.headGain = fixed(double(def.headGain), 256, 65280);
@@ -177,12 +180,12 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
     if (def.burnTime > 0) {
         m.burnTicks = durationTicks(double(def.burnTime) / double(facts.pace));
         m.flameTicks = m.burnTicks;
-    } else {  // thick: a source without end, flames until it is consumed
+    } else {  // thick: flames until consumed, a source for ever
         const double consumed =
             double(def.burningFlux) > 0 ? double(arealFuel(def)) / double(def.burningFlux) : 0;
         m.flameTicks =
             consumed > 0 ? durationTicks(consumed / double(facts.pace)) : gpu::kNoneTexel;
-        // How long it really flames its heat decides; what is surely dead lights nothing.
+        // Heat decides the real duration; twice the nominal one bounds it.
         if (facts.heat && m.flameTicks < kMaxBurnTicks / 2) m.burnTicks = 2 * m.flameTicks;
     }
     m.powerPerArea = def.heatOfCombustion * def.burningFlux;
@@ -195,6 +198,7 @@ gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& fact
 FrontTiming frontTiming(std::span<const FwMaterialDef* const> defs, const SpreadFacts& facts,
                         std::span<const WindVector> winds,
                         std::span<gpu::BurnMaterial> records) noexcept {
+    FW_ASSERT(winds.size() >= defs.size(), "%zu winds, %zu materials", winds.size(), defs.size());
     const double step = double(gpu::kStepTicks) / kTicks;
     double window = 4 * double(gpu::kStepTicks), windowMax = window, substeps = 1;
     for (size_t i = 0; i < defs.size(); ++i) {

@@ -1,5 +1,6 @@
 #include "fire/wind_filter.h"
 
+#include "core/assert.h"
 #include "shared/burn.h"
 
 #include <algorithm>
@@ -22,13 +23,17 @@ WindVector windUnits(const float wind[3]) noexcept {
 }
 
 void resetWind(WindFilter& filter, const WindVector& wind) noexcept {
-    for (size_t i = 0; i < 3; ++i) filter.value[i] = int64_t(wind[i]) << kFractionBits;
+    for (size_t i = 0; i < 3; ++i) {
+        FW_ASSERT(wind[i] >= -kMostWindUnits && wind[i] <= kMostWindUnits, "%d units", wind[i]);
+        filter.value[i] = int64_t(wind[i]) << kFractionBits;
+    }
     filter.latched = wind;
 }
 
 void filterWind(WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept {
     const int64_t tau = std::max<int64_t>(tauTicks, gpu::kStepTicks);
     for (size_t i = 0; i < 3; ++i) {
+        FW_ASSERT(wind[i] >= -kMostWindUnits && wind[i] <= kMostWindUnits, "%d units", wind[i]);
         const int64_t gap = (int64_t(wind[i]) << kFractionBits) - filter.value[i];
         filter.value[i] += gap * int64_t(gpu::kStepTicks) / tau;
     }

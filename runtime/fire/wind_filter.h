@@ -1,6 +1,6 @@
-// Low pass for wind on its way to a slow front: without it a gust that lasts a hundredth of a link
-// time would move the whole front, because the least arrival is kept. Integers; one per material of
-// an object. Not a wind model.
+// Low pass of the wind for a slow front. Without it, a gust that lasts a hundredth of a link time
+// would move the whole front, because the front keeps the least arrival. Integers; one per material
+// of an object.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -16,7 +16,7 @@ constexpr int32_t kMostWindUnits = int32_t(kMostWind / kWindUnit);
 
 struct WindFilter {
     std::array<int64_t, 3> value{};  // 1/128 m/s with 24 more bits
-    WindVector latched{};            // what the front sees
+    WindVector latched{};            // the front's wind
 
     template <class A>
     void serialize(A& a) {
@@ -27,18 +27,18 @@ struct WindFilter {
     }
 };
 
-// m/s, |component| <= kMostWind, to units; not a number becomes 0.
+// m/s to units, clamped to +-kMostWind; NaN becomes 0.
 WindVector windUnits(const float wind[3]) noexcept;
 
-// As if `wind` had blown for ever.
+// Sets the filter as if `wind` had always blown.
 void resetWind(WindFilter& filter, const WindVector& wind) noexcept;
 // One step of 1/32 s. tauTicks: the material's link time (see linkTicks), ticks.
 void filterWind(WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
-// True, and `latched` is new, if the filtered wind is another one by a unit or more.
+// Latches the filtered wind. True: it differs by a unit or more.
 bool latchWind(WindFilter& filter) noexcept;
-// Would a step and a latch leave it exactly as it is?
+// Whether a step and a latch would change nothing.
 bool windAtRest(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
-// What latchWind would latch.
+// The wind that latchWind would latch.
 WindVector filteredWind(const WindFilter& filter) noexcept;
 
 }  // namespace fw::fire

@@ -1,4 +1,4 @@
-// Judges the mesh's own layout; what of it is unique and even stays, the rest is cut and packed.
+// Judges the mesh's own layout: unique and even parts stay, the rest is cut into charts and packed.
 #include "mesh/atlas.h"
 
 #include <cmath>
@@ -9,26 +9,15 @@ namespace {
 constexpr double kMargin = 2;            // texels left free around the mesh's own layout
 constexpr double kAspectLimit = 2.02;    // 2 : 1 with room for rounding
 constexpr double kDensityLimit = 4;      // texel area against the mean: within 1/4 .. 4
-constexpr double kBadAreaLimit = 0.01;   // own UVs stand if less of the surface is worse than that
-constexpr double kOverlapLimit = 0.001;  // and fewer texels than this lie twice
-constexpr double kTrustedCover = 4;      // trusted UVs may cover the largest atlas so many times
-// Texels that the edges of all triangles may pass: per texel of the largest atlas, and at least.
-// A disc of needles would cost minutes for a spot at its middle.
+constexpr double kBadAreaLimit = 0.01;   // own UVs stay if less of the surface is worse than that
+constexpr double kOverlapLimit = 0.001;  // and fewer texels than this overlap
+constexpr double kTrustedCover = 4;      // trusted UVs may cover the largest atlas this many times
+// Limit of the texels that the edges of all triangles pass: per texel of the largest atlas, and at
+// least. Without it a disc of needles would cost minutes for a spot at its middle.
 constexpr double kEdgesPerTexel = 8, kEdgesAtLeast = 1 << 23;
-constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut anew as a whole
-constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut anew
-constexpr double kIslandTexels = 16;     // a smaller island is joined to our charts
-
-struct Extent2 {
-    glm::dvec2 low{1e300}, high{-1e300};
-    void add(const Triangle& t) {
-        for (const glm::dvec2& u : t.uv) {
-            low = glm::min(low, u);
-            high = glm::max(high, u);
-        }
-    }
-    [[nodiscard]] glm::dvec2 size() const { return high - low; }
-};
+constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut again as a whole
+constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut again
+constexpr double kIslandTexels = 16;     // a smaller island joins our charts
 
 uint32_t roundUp8(double texels) { return (uint32_t(std::ceil(texels)) + 7) & ~7u; }
 
@@ -40,8 +29,9 @@ bool badTexels(const Triangle& t, double meanArea) {
     return ratio > kDensityLimit || ratio < 1 / kDensityLimit;
 }
 
-// The highest density at which edges of `metres` in all pass no more texels than they may.
+// The highest density at which edges of `metres` in all pass no more texels than the limit.
 double edgeDensity(double metres, uint32_t maxSide) {
+    FW_ASSERT(metres > 0, "%g m", metres);
     return std::max(kEdgesPerTexel * maxSide * maxSide, kEdgesAtLeast) / metres;
 }
 
@@ -52,7 +42,8 @@ double uvEdges(const Surface& surface) {
     return sum;
 }
 
-// The mesh's own layout at the asked density, or lower if it must be. uv becomes texels.
+// Scales the mesh's own layout to the requested density, or to a lower one that fits. uv becomes
+// texels.
 AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     Extent2 extent;
     for (const Triangle& t : surface.triangles) extent.add(t);
@@ -62,7 +53,7 @@ AtlasPlan scaleOwn(Surface& surface, const BakeInput& input, double uvAreaSum) {
     AtlasPlan plan;
     plan.ownUv = true;
     plan.density = std::min(input.texelsPerMetre, side / std::max(size.x, size.y));
-    // A thousand sheets on each other would be drawn a thousand times.
+    // A thousand overlapping sheets would be rasterised a thousand times.
     if (input.trustUvs)
         plan.density = std::min({plan.density, side * std::sqrt(kTrustedCover / surface.area),
                                  edgeDensity(uvEdges(surface) * perUnit, input.maxSide)});
@@ -86,7 +77,7 @@ bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& 
     }
     const double fill = texels / (double(plan.width) * plan.height);
     const bool wasteful = plan.density < 0.5 * input.texelsPerMetre && fill < 0.25;
-    // More than its box holds lies on itself: a tiled terrain would take minutes to test.
+    // UVs of more area than their box overlap: a tiled terrain would take minutes to test.
     const bool stacked = texels > (1 + kOverlapLimit) * extent.size().x * extent.size().y;
     const bool crowded = edgeDensity(uvEdges(surface), input.maxSide) < 1;
     if (badArea > kBadAreaLimit * surface.area || wasteful || stacked || crowded) return false;
@@ -100,8 +91,8 @@ bool ownIsGood(const Surface& surface, const BakeInput& input, const AtlasPlan& 
     return true;
 }
 
-// Brings every island to the surface's own scale (uv in metres), marks the triangles that cannot
-// stay in it with chart kNone and numbers the islands that remain. Returns how many do.
+// Brings every island to the surface's own scale (uv in metres), marks triangles that cannot stay
+// in it with chart kNone and numbers the islands that remain. Returns their count.
 uint32_t keepIslands(Surface& surface, double density, double longest,
                      std::pmr::memory_resource* memory) {
     const Groups groups = groupByChart(surface, surface.chartCount, memory);
@@ -150,6 +141,8 @@ uint32_t keepIslands(Surface& surface, double density, double longest,
 uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
     Triangle moved;
     for (int k = 0; k < 3; ++k) moved.uv[k] = (t.uv[k] + offset) * scale;
+    FW_ASSERT(owner_.size() == size_t(width_) * height_, "%zu of %u x %u texels", owner_.size(),
+              width_, height_);
     const RowSpan rows = rowsOf(moved, int(height_));
     uint32_t conflicts = 0;
     for (int pass = 0; pass < 2 && conflicts == 0; ++pass)  // look first, then mark
@@ -170,15 +163,8 @@ uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
 }
 
 Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_resource* memory) {
-    Groups groups(memory);
-    groups.start.assign(size_t(charts) + 2, 0);
-    for (const Triangle& t : surface.triangles) ++groups.start[size_t(t.chart) + 2];
-    for (size_t c = 2; c < groups.start.size(); ++c) groups.start[c] += groups.start[c - 1];
-    groups.items.resize(surface.triangles.size());
-    for (uint32_t i = 0; i < surface.triangles.size(); ++i)
-        groups.items[groups.start[size_t(surface.triangles[i].chart) + 1]++] = i;
-    groups.start.pop_back();
-    return groups;
+    return groupBy(charts, uint32_t(surface.triangles.size()), memory,
+                   [&](uint32_t i) { return surface.triangles[i].chart; });
 }
 
 AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory) {
@@ -189,7 +175,7 @@ AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_re
         const AtlasPlan own = scaleOwn(surface, input, uvAreaSum);
         if (input.trustUvs || ownIsGood(surface, input, own, memory)) return own;
     }
-    // Tests are made at a density the atlas can hold.
+    // The tests use a density that the atlas can hold.
     const double side = double(input.maxSide & ~7u);
     double edges = 0;  // m
     for (const Triangle& t : surface.triangles)
@@ -207,6 +193,8 @@ AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_re
     const uint32_t recharted = uint32_t(pool.size());
     const uint32_t charts = growCharts(surface, pool, kept, density, longest, memory);
     AtlasPlan plan = packCharts(surface, charts, asked, input.maxSide, memory);
+    FW_ASSERT(plan.width % kTileSide == 0 && plan.height % kTileSide == 0, "%u x %u texels",
+              plan.width, plan.height);
     plan.recharted = recharted;
     return plan;
 }

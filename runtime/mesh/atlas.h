@@ -1,5 +1,5 @@
-// Where every triangle lies in the burn atlas. Uses the mesh's own UVs when they are unique and
-// even enough, else keeps its good islands, cuts the rest into flat charts and packs them anew.
+// The place of every triangle in the burn atlas. Uses the mesh's own UVs where they are unique and
+// even enough; otherwise keeps its good islands, cuts the rest into flat charts and packs them all.
 #pragma once
 #include "mesh/surface.h"
 
@@ -7,7 +7,7 @@ namespace fw::mesh {
 
 struct AtlasPlan {
     uint32_t width = 0, height = 0;  // texels, multiples of 8
-    double density = 0;              // texels per metre, at most what was asked
+    double density = 0;              // texels per metre, at most BakeInput::texelsPerMetre
     bool ownUv = false;              // the mesh's own layout, scaled
     uint32_t recharted = 0;          // triangles that got a chart of ours
 };
@@ -32,14 +32,7 @@ class Coverage {
     uint32_t width_ = 0, height_ = 0;
 };
 
-// Triangles listed chart by chart: those of chart c are items[start[c]] .. items[start[c + 1] - 1].
-struct Groups {
-    explicit Groups(std::pmr::memory_resource* memory) : start(memory), items(memory) {}
-    std::pmr::vector<uint32_t> start, items;
-    [[nodiscard]] std::span<const uint32_t> of(uint32_t c) const {
-        return {items.data() + start[c], start[c + 1] - start[c]};
-    }
-};
+// Triangles by chart; every triangle has one.
 Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_resource* memory);
 
 // Cuts the triangles of `pool` into flat charts numbered from `firstChart`; sets chart and uv in

@@ -1,4 +1,4 @@
-// The bake as a list of steps, and the last of them: from working doubles to integer texels.
+// The bake as a list of steps, and its last step: working doubles to integer texels.
 #include "mesh/bake.h"
 
 #include "mesh/atlas.h"
@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kUnitsPerTexel = 1024;  // finer positions would only make links overflow
 
-// Positions, normals, flags: what the simulation reads of each texel.
+// The texels' data for the simulation: positions, normals, flags.
 void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain) {
     // A mesh smaller than a texel still gets a thousand units.
     const double coarse = std::min(grid.side, surface.extent) / kUnitsPerTexel;
@@ -29,6 +29,8 @@ void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain)
     domain.triangleOf.assign(grid.count(), kNone);
     for (uint32_t i = 0; i < grid.count(); ++i) {
         if (!grid.real(i)) continue;
+        FW_ASSERT(grid.owner[i] < surface.triangles.size(), "owner %u of texel %u", grid.owner[i],
+                  i);
         const Triangle& t = surface.triangles[grid.owner[i]];
         const glm::vec3 p = grid.position[i];
         domain.texels[i] = {units(p.x), units(p.y), units(p.z),
@@ -61,6 +63,8 @@ void measureShapes(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_r
 
 void fillHeader(const BakeInput& input, const Surface& surface, const AtlasPlan& plan,
                 const TexelGrid& grid, BurnDomain& domain) {
+    FW_ASSERT(plan.width == grid.width && plan.height == grid.height, "%u x %u and %u x %u texels",
+              plan.width, plan.height, grid.width, grid.height);
     domain.width = plan.width;
     domain.height = plan.height;
     domain.tilesX = plan.width / kTileSide;

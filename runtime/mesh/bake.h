@@ -1,6 +1,6 @@
-// From triangle arrays to a burn domain. CPU only, once per mesh; doubles are allowed inside
-// because its output is integer data that every device receives as is. Deterministic: the same
-// input gives the same bytes on every run and thread count.
+// Bakes triangle arrays to a burn domain, on the CPU, once per mesh. The bake may use doubles: its
+// output is integer data that every device receives unchanged. Equal input gives equal bytes on
+// every run and thread count.
 #pragma once
 #include "mesh/burn_domain.h"
 

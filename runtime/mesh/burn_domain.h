@@ -1,8 +1,10 @@
-// The burn domain: what the bake makes of a triangle mesh. A unique-UV atlas of texels with rest
-// positions, normals and areas, links across chart borders, tiles and who reads them. Immutable,
-// shared by all objects that use the mesh; integers wherever the simulation reads. Doubles and
-// floats are for the bake, drawing and queries only.
+// The burn domain of a triangle mesh, made by the bake: a unique-UV atlas of texels with rest
+// positions, normals and areas, links across chart borders, tiles and their readers. Immutable and
+// shared by all objects of the mesh. The simulation reads integers only; doubles and floats serve
+// the bake, drawing and queries.
 #pragma once
+#include "core/assert.h"
+
 #include <array>
 #include <cstdint>
 #include <memory_resource>
@@ -13,6 +15,7 @@ namespace fw::mesh {
 
 constexpr uint32_t kNone = 0xFFFFFFFFu;
 constexpr uint32_t kTileSide = 8;  // texels; a tile is 8x8 = 64 lanes, lane = (y % 8) * 8 + x % 8
+constexpr uint32_t kTileLanes = kTileSide * kTileSide;
 // Ring order: counter-clockwise, odd = diagonal. All link records use it.
 constexpr std::array<int, 8> kRingX{1, 1, 0, -1, -1, -1, 0, 1};
 constexpr std::array<int, 8> kRingY{0, 1, 1, 1, 0, -1, -1, -1};
@@ -37,6 +40,15 @@ struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/sha
     uint32_t rimMaskHigh = 0;
     uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
     uint32_t reserved = 0;
+};
+
+// The texels of a tile, by lane.
+struct TileTexels {
+    uint32_t corner = 0, width = 0;  // lane 0; texels of a row of the atlas
+    [[nodiscard]] uint32_t operator[](uint32_t lane) const noexcept {
+        FW_ASSERT(lane < kTileLanes, "lane %u", lane);
+        return corner + lane / kTileSide * width + lane % kTileSide;
+    }
 };
 
 struct TileBounds {  // of a tile's real texels, in position units; low > high: none
@@ -114,10 +126,28 @@ struct BurnDomain {
     std::pmr::vector<uint32_t> indices;       // 3 per triangle
     BakeReport report;
 
+    // m^2, mean over the real texels, at scale 1.
+    [[nodiscard]] double texelArea() const noexcept {
+        return report.realTexels ? report.texelArea / double(report.realTexels)
+                                 : double(texelSide) * double(texelSide);
+    }
     [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
     [[nodiscard]] uint32_t tileCount() const noexcept { return tilesX * tilesY; }
     [[nodiscard]] bool real(uint32_t texel) const noexcept {
+        FW_ASSERT(texel < texels.size(), "%u of %zu texels", texel, texels.size());
         return (texels[texel].materialFlags & kTexelReal) != 0;
+    }
+    [[nodiscard]] uint32_t tileOf(uint32_t texel) const noexcept {
+        FW_ASSERT(texel < texelCount(), "%u of %u texels", texel, texelCount());
+        return texel / width / kTileSide * tilesX + texel % width / kTileSide;
+    }
+    [[nodiscard]] uint32_t laneOf(uint32_t texel) const noexcept {
+        FW_ASSERT(texel < texelCount(), "%u of %u texels", texel, texelCount());
+        return texel / width % kTileSide * kTileSide + texel % width % kTileSide;
+    }
+    [[nodiscard]] TileTexels texelsOf(uint32_t tile) const noexcept {
+        FW_ASSERT(tile < tileCount(), "%u of %u tiles", tile, tileCount());
+        return {tile / tilesX * kTileSide * width + tile % tilesX * kTileSide, width};
     }
 };
 

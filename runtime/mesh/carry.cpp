@@ -25,18 +25,17 @@ Place micrometresOf(const BurnDomain& domain, uint32_t texel) noexcept {
     return place;
 }
 
-struct PlacedTile {  // of 8 x 8 texels, some of which are real
-    uint32_t corner = 0;
+struct PlacedTile {  // a tile with real texels
+    uint32_t tile = 0;
     Place low{}, high{};
 };
 
 // Calls visit(texel) for the real texels of a tile.
 template <class Visit>
-void eachTexel(const BurnDomain& domain, uint32_t corner, Visit&& visit) {
-    for (uint32_t lane = 0; lane < kTileSide * kTileSide; ++lane) {
-        const uint32_t texel = corner + lane / kTileSide * domain.width + lane % kTileSide;
-        if (domain.real(texel)) visit(texel);
-    }
+void eachTexel(const BurnDomain& domain, uint32_t tile, Visit&& visit) {
+    const TileTexels texels = domain.texelsOf(tile);
+    for (uint32_t lane = 0; lane < kTileLanes; ++lane)
+        if (domain.real(texels[lane])) visit(texels[lane]);
 }
 
 // `places`: by texel.
@@ -45,9 +44,9 @@ std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<
     std::pmr::vector<PlacedTile> tiles(places.get_allocator().resource());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         PlacedTile tile;
-        tile.corner = t / domain.tilesX * kTileSide * domain.width + t % domain.tilesX * kTileSide;
+        tile.tile = t;
         bool any = false;
-        eachTexel(domain, tile.corner, [&](uint32_t texel) {
+        eachTexel(domain, tile.tile, [&](uint32_t texel) {
             const Place& place = places[texel] = micrometresOf(domain, texel);
             for (size_t i = 0; i < 3; ++i) {
                 tile.low[i] = any ? std::min(tile.low[i], place[i]) : place[i];
@@ -60,7 +59,7 @@ std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<
     return tiles;
 }
 
-// Square of the distance between two boxes; more than `most` squared is as good as that and one.
+// Square of the distance between two boxes, or most * most + 1 if it is larger than most * most.
 int64_t gapOf(const Place& lowA, const Place& highA, const PlacedTile& b, int64_t most) noexcept {
     int64_t sum = 0;
     for (size_t i = 0; i < 3; ++i) {
@@ -91,6 +90,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
     out.assign(to.texelCount(), kNone);
     const auto farthest = int64_t(std::min(double(reach) * 1e6, kFarthest));
     const int64_t least = farthest * farthest;
+    FW_ASSERT(farthest >= 0, "reach %g m", double(reach));
     uint32_t matched = 0;
     for (const PlacedTile& tile : tiles) {
         near.clear();
@@ -98,7 +98,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
             if (const int64_t gap = gapOf(tile.low, tile.high, sources[k], farthest); gap <= least)
                 near.push_back({gap, k});
         std::sort(near.begin(), near.end());
-        eachTexel(to, tile.corner, [&](uint32_t texel) {
+        eachTexel(to, tile.tile, [&](uint32_t texel) {
             const Place& place = toPlaces[texel];
             const gpu::ivec3 normal = gpu::decodeNormal(to.normals[texel]);
             uint32_t& taken = out[texel];
@@ -108,7 +108,7 @@ uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                 if (one.gap > best) break;
                 const PlacedTile& source = sources[one.tile];
                 if (gapOf(place, place, source, farthest) > std::min(best, least)) continue;
-                eachTexel(from, source.corner, [&](uint32_t other) {
+                eachTexel(from, source.tile, [&](uint32_t other) {
                     const Place& there = fromPlaces[other];
                     int64_t square = 0;
                     for (size_t i = 0; i < 3; ++i)

@@ -1,12 +1,13 @@
-// Which texel of one mesh each texel of another one takes its burn from, where both have the same
-// shape: levels of detail.
+// Matches the texels of two meshes of the same shape (levels of detail): each texel of one takes
+// its burn from a texel of the other.
 #pragma once
 #include "mesh/burn_domain.h"
 
 namespace fw::mesh {
 
-// By texel of `to`: the nearest of `from` in object space, of those that face the same way before
-// others; kNone: none is within `reach` m, or it is no real texel. Returns how many have one.
+// out, by texel of `to`: the nearest texel of `from` in object space, with preference for texels
+// that face the same way. kNone: none is within `reach` m, or the texel is not real. Returns the
+// number of matches.
 uint32_t matchTexels(const BurnDomain& from, const BurnDomain& to, float reach,
                      std::pmr::vector<uint32_t>& out);
 

@@ -1,6 +1,6 @@
-// Our own charts: discs grown over neighbours whose normals agree, flattened by projection.
-// No unwrap by minimisation: a plane keeps stretch under 2 : 1 by its angle alone, and the front
-// measures distances in 3D, so a seam more costs nothing but a few link records.
+// Our own charts: discs grown over neighbours with similar normals, flattened by projection. A
+// plane keeps stretch under 2 : 1 by its angle alone, so no minimisation is needed. The front
+// measures distances in 3D, so one more seam costs only a few link records.
 #include "mesh/atlas.h"
 
 #include <cmath>
@@ -12,9 +12,9 @@ constexpr double kGrowCosine = 0.74;    // smoothed normal against the chart's a
 constexpr double kRoughCosine = 0.55;   // the triangle's own normal against it
 constexpr double kProjectCosine = 0.5;  // aspect 2
 constexpr double kAbsorbCosine = 0.6;
-constexpr double kSmallTexels = 32;  // charts below this are given to their neighbours
+constexpr double kSmallTexels = 32;  // smaller charts go to their neighbours
 constexpr double kTestSide = 4096;   // texels, largest image of the overlap test
-constexpr double kTestCells = 4096;  // cells any chart may have in it, and
+constexpr double kTestCells = 4096;  // cells that any chart may have in it, and
 constexpr double kTestSparse = 64;   // cells per texel of its area
 constexpr int kRounds = 6;           // then every triangle left becomes a chart of its own
 
@@ -31,10 +31,6 @@ struct Candidate {
     }
 };
 
-glm::dvec3 unit(glm::dvec3 v, glm::dvec3 otherwise) {
-    const double l = glm::length(v);
-    return l > 1e-300 ? v / l : otherwise;
-}
 glm::dvec3 centre(const Triangle& t) {
     return (t.position[0] + t.position[1] + t.position[2]) / 3.0;
 }
@@ -51,7 +47,7 @@ void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
             glm::dvec3 sum = smooth[i] * triangles[i].area;
             for (uint32_t n : triangles[i].neighbour)
                 if (n != kNone) sum += smooth[n] * triangles[n].area;
-            next[i] = unit(sum, triangles[i].normal);
+            next[i] = unitOr(sum, triangles[i].normal);
         }
         smooth.swap(next);
     }
@@ -68,7 +64,7 @@ class Grower {
         smoothNormals(surface, smooth_, memory);
     }
 
-    // Gives every triangle of the pool a chart number, from `first`. Returns the number after.
+    // Gives every triangle of the pool a chart number, from `first` on. Returns the next number.
     uint32_t grow(std::span<const uint32_t> pool, uint32_t first, double smallArea) {
         charts_.clear();
         std::fill(inPool_.begin(), inPool_.end(), uint8_t(0));
@@ -79,6 +75,7 @@ class Grower {
         for (uint32_t seed : pool)
             if (triangles_[seed].chart == kNone) growOne(seed, first + uint32_t(charts_.size()));
         absorbSmall(pool, first, smallArea);
+        FW_ASSERT(pool.empty() || !charts_.empty());
         return first + uint32_t(charts_.size());
     }
 
@@ -102,7 +99,7 @@ class Grower {
             t.chart = chart;
             sum += t.normal * t.area;
             area += t.area;
-            if (area > 0) axis = unit(sum + axis * (0.1 * area), axis);
+            if (area > 0) axis = unitOr(sum + axis * (0.1 * area), axis);
             for (uint32_t n : t.neighbour) {
                 if (n == kNone || !inPool_[n] || triangles_[n].chart != kNone) continue;
                 const glm::dvec3 d = centre(triangles_[n]) - from;
@@ -110,7 +107,7 @@ class Grower {
                 std::push_heap(heap_.begin(), heap_.end());
             }
         }
-        charts_.push_back({unit(sum, axis), area});
+        charts_.push_back({unitOr(sum, axis), area});
     }
 
     void absorbSmall(std::span<const uint32_t> pool, uint32_t first, double smallArea) {
@@ -152,7 +149,8 @@ class Grower {
 void flatten(Surface& surface, std::span<const uint32_t> members) {
     glm::dvec3 sum(0);
     for (uint32_t i : members) sum += surface.triangles[i].normal * surface.triangles[i].area;
-    const glm::dvec3 axis = unit(sum, surface.triangles[members[0]].normal);
+    FW_ASSERT(!members.empty());
+    const glm::dvec3 axis = unitOr(sum, surface.triangles[members[0]].normal);
     const glm::dvec3 size = glm::abs(axis);
     const glm::dvec3 helper = size.x <= size.y && size.x <= size.z ? glm::dvec3(1, 0, 0)
                               : size.y <= size.z                   ? glm::dvec3(0, 1, 0)
@@ -176,17 +174,13 @@ void flatten(Surface& surface, std::span<const uint32_t> members) {
         for (glm::dvec2& uv : surface.triangles[i].uv) uv *= scale;
 }
 
-// A chart longer than `longest` becomes several along its longer side. Returns charts after.
+// Cuts a chart longer than `longest` into several along its longer side. Returns the next number.
 uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t nextChart,
                    double longest) {
-    glm::dvec2 low(1e300), high(-1e300);
+    Extent2 extent;
     for (uint32_t i : members)
-        if (surface.triangles[i].chart != kNone)
-            for (const glm::dvec2& u : surface.triangles[i].uv) {
-                low = glm::min(low, u);
-                high = glm::max(high, u);
-            }
-    const glm::dvec2 size = high - low;
+        if (surface.triangles[i].chart != kNone) extent.add(surface.triangles[i]);
+    const glm::dvec2 size = extent.size(), low = extent.low;
     const double side = std::max(size.x, size.y);
     if (!(side > longest)) return nextChart;
     const int axis = size.x >= size.y ? 0 : 1;
@@ -204,39 +198,25 @@ uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t
 // A triangle that lies over another of its chart loses its chart.
 void dropOverlaps(Surface& surface, std::span<const uint32_t> members, double density,
                   Coverage& coverage) {
-    glm::dvec2 low(1e300), high(-1e300);
+    Extent2 extent;
     double area = 0;
     for (uint32_t i : members) {
         const Triangle& t = surface.triangles[i];
         if (t.chart == kNone) continue;
         area += t.area;
-        for (const glm::dvec2& u : t.uv) {
-            low = glm::min(low, u);
-            high = glm::max(high, u);
-        }
+        extent.add(t);
     }
     if (members.size() < 2 || !(area > 0)) return;
     // Huge or sparse charts are tested more coarsely.
-    const glm::dvec2 size = high - low;
+    const glm::dvec2 size = extent.size();
     const double cells = kTestCells + kTestSparse * area * density * density;
     const double scale = std::min({density, kTestSide / std::max(size.x, size.y),
                                    std::sqrt(cells / std::max(size.x * size.y, 1e-300))});
     coverage.clear(uint32_t(size.x * scale) + 2, uint32_t(size.y * scale) + 2);
     for (uint32_t i : members) {
         Triangle& t = surface.triangles[i];
-        if (t.chart != kNone && coverage.add(t, -low, scale) > 0) t.chart = kNone;
+        if (t.chart != kNone && coverage.add(t, -extent.low, scale) > 0) t.chart = kNone;
     }
-}
-
-// Lists the pool by chart; afterwards chart first + c ends before order[ends[c]].
-void listByChart(const Surface& surface, std::span<const uint32_t> pool, uint32_t first,
-                 uint32_t charts, std::pmr::vector<uint32_t>& order,
-                 std::pmr::vector<uint32_t>& ends) {
-    ends.assign(size_t(charts) + 1, 0);
-    for (uint32_t i : pool) ++ends[surface.triangles[i].chart - first + 1];
-    for (size_t c = 1; c < ends.size(); ++c) ends[c] += ends[c - 1];
-    order.resize(pool.size());
-    for (uint32_t i : pool) order[ends[surface.triangles[i].chart - first]++] = i;
 }
 
 }  // namespace
@@ -246,21 +226,25 @@ uint32_t growCharts(Surface& surface, std::pmr::vector<uint32_t>& pool, uint32_t
     if (pool.empty()) return firstChart;
     Grower grower(surface, memory);
     Coverage coverage(memory);
-    std::pmr::vector<uint32_t> order(memory), ends(memory);
-    // What a round throws out (too steep, overlapping) is grown among itself in the next.
+    // Triangles that a round throws out (too steep, overlapping) form charts in the next.
     for (int round = 0; round < kRounds && !pool.empty(); ++round) {
         uint32_t next = grower.grow(pool, firstChart, kSmallTexels / (density * density));
         const uint32_t grown = next - firstChart;
-        listByChart(surface, pool, firstChart, grown, order, ends);
-        for (uint32_t c = 0, begin = 0; c < grown; begin = ends[c++]) {
-            const std::span<const uint32_t> members(order.data() + begin, ends[c] - begin);
+        // Members are in the pool's order: the pool is sorted.
+        FW_ASSERT(std::is_sorted(pool.begin(), pool.end()));
+        Groups groups = groupBy(grown, uint32_t(pool.size()), memory, [&](uint32_t i) {
+            return surface.triangles[pool[i]].chart - firstChart;
+        });
+        for (uint32_t& item : groups.items) item = pool[item];
+        for (uint32_t c = 0; c < grown; ++c) {
+            const std::span<const uint32_t> members = groups.of(c);
             if (members.empty()) continue;
             flatten(surface, members);
             dropOverlaps(surface, members, density, coverage);
             next = splitLong(surface, members, next, longest);
         }
         pool.clear();
-        for (uint32_t i : order)
+        for (uint32_t i : groups.items)
             if (surface.triangles[i].chart == kNone) pool.push_back(i);
         std::sort(pool.begin(), pool.end());
         firstChart = next;

@@ -1,7 +1,7 @@
 // The cooked form of a burn domain: bytes in a fixed order, little-endian, checksummed.
 //   header: u32 magic 'FWBD', u32 version, u64 key, u64 payload bytes, u64 FNV-1a of all the rest
 //   payload: the scalars, the counts, then every array, in the order of `transfer` below
-// The reader trusts nothing: a file with a right checksum but absurd indices is refused too.
+// The reader trusts nothing: it also refuses a file with a right checksum and wrong indices.
 #include "core/hash.h"
 #include "core/stream.h"
 #include "mesh/texels.h"
@@ -98,7 +98,7 @@ void require(bool holds, const char* what, uint64_t element) {
 }
 bool usable(float v) { return std::isfinite(v) && std::abs(v) < 1e7f; }
 
-// Every index in range and every promise of burn_domain.h that others rely on.
+// Every index is in range, and every invariant of burn_domain.h holds.
 void checkTexels(const BurnDomain& d) {
     for (uint32_t i = 0; i < d.texelCount(); ++i) {
         const uint32_t flags = d.texels[i].materialFlags;
@@ -130,9 +130,9 @@ void checkTiles(const BurnDomain& d) {
                 "Readers of a tile", t);
         records += uint32_t(std::popcount(rim));
         readers += tile.readerCount;
-        const uint32_t corner = t / d.tilesX * kTileSide * d.width + t % d.tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t texel = corner + lane / kTileSide * d.width + lane % kTileSide;
+        const TileTexels texels = d.texelsOf(t);
+        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
+            const uint32_t texel = texels[lane];
             const bool isRim = (d.texels[texel].materialFlags & kTexelRim) != 0;
             require(isRim == ((rim >> lane & 1) != 0), "Rim mask of a tile", t);
         }
@@ -148,8 +148,8 @@ void checkTiles(const BurnDomain& d) {
     }
 }
 
-// Limits of the integer products of shaders/shared/front.h: a link of at most kLongest units, and a
-// normal that is not longer than one of unit length is after rounding.
+// Limits of the integer products of shaders/shared/front.h: links of at most kLongest units, and
+// normals no longer than a rounded unit vector.
 void checkFront(const BurnDomain& d) {
     constexpr int64_t kLongest = 8191;
     constexpr double kUnit = 16384 * 1.01;  // Q14
@@ -168,9 +168,9 @@ void checkFront(const BurnDomain& d) {
     double area = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         uint32_t record = d.tiles[t].rimBase;
-        const uint32_t corner = t / d.tilesX * kTileSide * d.width + t % d.tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t texel = corner + lane / kTileSide * d.width + lane % kTileSide;
+        const TileTexels texels = d.texelsOf(t);
+        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
+            const uint32_t texel = texels[lane];
             if (!d.real(texel)) continue;
             ++real;
             area += double(d.areas[texel]);
@@ -274,6 +274,11 @@ std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
                 domain.tiles.size() * sizeof(TileStatic) + domain.links.size() * 4 +
                 domain.readers.size() * 4 + domain.vertices.size() * (sizeof(RenderVertex) + 4) +
                 domain.indices.size() * 4);
+    FW_ASSERT(domain.tiles.size() == domain.tileCount() &&
+                  domain.texels.size() == domain.texelCount() &&
+                  domain.sources.size() == domain.vertices.size(),
+              "%zu tiles, %zu texels, %zu sources", domain.tiles.size(), domain.texels.size(),
+              domain.sources.size());
     out.resize(kHeaderBytes);
     Writer writer(out);
     Counts counts{uint32_t(domain.links.size()), uint32_t(domain.readers.size()),
@@ -289,6 +294,7 @@ std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
     headerWriter.number(key);
     headerWriter.number(uint64_t(out.size() - kHeaderBytes));
     headerWriter.number(checksumOf(header, std::span(out).subspan(kHeaderBytes)));
+    FW_ASSERT(header.size() == kHeaderBytes, "%zu bytes", header.size());
     std::copy(header.begin(), header.end(), out.begin());
     return out;
 }
@@ -340,7 +346,7 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     checkScalars(domain);
     domain.tilesX = domain.width / kTileSide;
     domain.tilesY = domain.height / kTileSide;
-    // Sizes before memory: what the arrays need must be exactly what is left.
+    // Sizes before memory: the arrays must need exactly the bytes that are left.
     const uint64_t texels = domain.texelCount();
     const uint64_t expected = texels * kTexelBytes +
                               uint64_t(domain.tileCount()) * sizeof(TileStatic) +

@@ -1,4 +1,4 @@
-// The drawn mesh: input corners with their place in the atlas, split where the atlas is cut.
+// The drawn mesh: input corners with their places in the atlas, split where the atlas is cut.
 #include "mesh/texels.h"
 
 #include <cmath>
@@ -49,6 +49,7 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
 }  // namespace
 
 uint32_t packNormal(glm::dvec3 normal) {
+    FW_ASSERT(normal == normal, "a component is NaN");
     const auto field = [](double v, int one) {
         return uint32_t(std::clamp(int(std::floor(v * one + 0.5)), -one, one));
     };
@@ -60,13 +61,14 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
                 std::pmr::memory_resource* memory) {
     std::pmr::vector<glm::dvec3> computed(memory);
     if (input.normals.empty()) computeNormals(surface, computed, memory);
-    // Every input vertex keeps a chain of the corners made of it.
+    // Per input vertex: a chain of the corners made of it.
     std::pmr::vector<uint32_t> first(input.positions.size() / 3, kNone, memory), next(memory);
     domain.indices.reserve(surface.triangles.size() * 3);
     for (uint32_t i = 0; i < surface.triangles.size(); ++i) {
         const Triangle& t = surface.triangles[i];
         for (uint32_t k = 0; k < 3; ++k) {
             const size_t source = t.corner[k];
+            FW_ASSERT(source < first.size(), "vertex %zu of %zu", source, first.size());
             RenderVertex v;
             glm::dvec3 normal = t.normal;
             if (!input.normals.empty()) {
@@ -87,7 +89,7 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
             if (!input.tints.empty()) v.tint = input.tints[source];
             v.material = t.material;
             uint32_t same = first[source];
-            int tries = 0;  // corners that share one vertex and agree in nothing cost a vertex each
+            int tries = 0;  // beyond kChainLimit different corners, each gets a vertex of its own
             while (same != kNone && std::memcmp(&domain.vertices[same], &v, sizeof v) != 0)
                 same = ++tries < kChainLimit ? next[same] : kNone;
             if (same == kNone) {

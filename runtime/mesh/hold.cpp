@@ -8,11 +8,11 @@
 namespace fw::mesh {
 namespace {
 
-// Takes what is on the stack and, over links, all real texels that `joins` (it marks what it
-// takes).
+// Takes the texels of the stack and all real texels that `joins` accepts over links; `joins` marks
+// the texels that it accepts.
 template <class Stack, class Joins>
 void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
-    std::array<uint32_t, 8> around;  // of a texel that is no rim, whose ring is in the image
+    std::array<uint32_t, 8> around;  // offsets of an inner texel, whose ring lies in the image
     for (size_t k = 0; k < 8; ++k) around[k] = uint32_t(kRingY[k] * int(domain.width) + kRingX[k]);
     while (!stack.empty()) {
         const uint32_t texel = stack.back();
@@ -20,7 +20,9 @@ void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
         const bool rim = (domain.texels[texel].materialFlags & kTexelRim) != 0;
         for (uint32_t k = 0; k < 8; ++k) {
             const uint32_t other = rim ? ringOf(domain, texel, k) : texel + around[k];
-            if (other != kNone && joins(other)) stack.push_back(other);
+            if (other == kNone || !joins(other)) continue;
+            FW_ASSERT(other < domain.texelCount(), "%u of %u texels", other, domain.texelCount());
+            stack.push_back(other);
         }
     }
 }
@@ -58,6 +60,10 @@ void markFeet(const BurnDomain& domain, const Pieces& pieces, const int32_t (&up
         const TexelPosition& p = domain.texels[i];
         return int64_t(up[0]) * p.x + int64_t(up[1]) * p.y + int64_t(up[2]) * p.z;
     };
+    FW_ASSERT(pieces.of.size() == domain.texelCount() && scratch.marks.size() == pieces.of.size(),
+              "%zu and %zu of %u texels", pieces.of.size(), scratch.marks.size(),
+              domain.texelCount());
+    FW_ASSERT(pieces.count <= scratch.lowest.capacity(), "%u pieces", pieces.count);
     scratch.lowest.assign(pieces.count, INT64_MAX);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
         if (pieces.of[i] != kNone) {
@@ -70,6 +76,8 @@ void markFeet(const BurnDomain& domain, const Pieces& pieces, const int32_t (&up
 }
 
 void markHeld(const BurnDomain& domain, HoldScratch& scratch) noexcept {
+    FW_ASSERT(scratch.stack.capacity() >= domain.texelCount(), "a stack of %zu texels",
+              scratch.stack.capacity());
     scratch.stack.clear();
     const auto joins = [&](uint32_t texel) {
         uint8_t& mark = scratch.marks[texel];
@@ -90,6 +98,8 @@ bool nextLost(const BurnDomain& domain, uint32_t& from, HoldScratch& scratch) no
         uint8_t& mark = scratch.marks[texel];
         if ((mark & (kHoldStands | kHoldHeld | kHoldSeen)) != kHoldStands) return false;
         mark |= kHoldSeen;
+        FW_ASSERT(scratch.lost.size() < scratch.lost.capacity(), "%zu lost texels",
+                  scratch.lost.size());
         scratch.lost.push_back(texel);
         return true;
     };

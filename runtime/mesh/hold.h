@@ -1,25 +1,25 @@
-// What is left of a surface that fire eats, and what of that still hangs on something: a board
-// whose middle is gone, the end of which falls. Texels and their links alone: it knows no heat and
-// no object.
+// Structural support of a burnt surface: the texels that remain, and those of them that still
+// connect to a support. The end of a board whose middle is gone falls. Works on texels and links
+// only.
 #pragma once
 #include "mesh/burn_domain.h"
 
 namespace fw::mesh {
 
-// The parts that an object consists of as it was made: by texel, and how many.
+// The connected pieces of an object before it burns: piece by texel, and their number.
 struct Pieces {
     explicit Pieces(std::pmr::memory_resource* memory) : of(memory) {}
-    std::pmr::vector<uint32_t> of;  // kNone: the texel is none, or cut out
+    std::pmr::vector<uint32_t> of;  // kNone: the texel is not real, or cut out
     uint32_t count = 0;
 };
 // `gone`: by texel, 1 where the object is cut out; empty: nowhere. Throws std::bad_alloc.
 void findPieces(const BurnDomain& domain, std::span<const uint8_t> gone, Pieces& pieces);
 
 enum HoldMark : uint8_t {  // of a texel
-    kHoldStands = 1,       // it is real, and there: neither gone nor lost
-    kHoldBears = 2,        // it rests on something, as long as it is there
-    kHoldHeld = 4,
-    kHoldSeen = 8,
+    kHoldStands = 1,       // real, and neither burnt away nor lost
+    kHoldBears = 2,        // a support, as long as it stands
+    kHoldHeld = 4,         // connected to a support
+    kHoldSeen = 8,         // reported by nextLost
 };
 
 struct HoldScratch {
@@ -30,15 +30,16 @@ struct HoldScratch {
     std::pmr::vector<int64_t> lowest;  // by piece
     std::pmr::vector<uint32_t> lost;   // texels of one part
 };
-// What all of the below need for a mesh, and no more after it. Throws std::bad_alloc.
+// Reserves the memory that the functions below need for a mesh. Throws std::bad_alloc.
 void reserveHold(const BurnDomain& domain, const Pieces& pieces, HoldScratch& scratch);
 
-// Marks what each piece stands on where `up` points up (any scale, |up| <= 1024): its lowest
-// texels, and those up to `reach` (in units of up times position units) above them.
+// Marks each piece's supports where `up` points up (any scale, |up| <= 1024): its lowest texels,
+// and those up to `reach` (in units of up times position units) above them.
 void markFeet(const BurnDomain& domain, const Pieces& pieces, const int32_t (&up)[3], int64_t reach,
               HoldScratch& scratch) noexcept;
-// The first part from texel `from` on, in the order of their least texels, that stands and is not
-// held; it is in scratch.lost, and marked as seen. After markHeld. False: there are no more.
+// nextLost finds the first part from texel `from` on that stands and is not held, in the order of
+// their least texels; it marks the part as seen and lists it in scratch.lost. Needs markHeld
+// before. False: no part is left.
 void markHeld(const BurnDomain& domain, HoldScratch& scratch) noexcept;
 bool nextLost(const BurnDomain& domain, uint32_t& from, HoldScratch& scratch) noexcept;
 

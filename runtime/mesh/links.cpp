@@ -1,6 +1,6 @@
-// Ring links: whom a texel reads where the atlas is cut. Found by walking over the surface from the
-// texel by one texel step; never by trusting what happens to lie beside it in the image. A walk
-// that ends where no texel is gets the texel nearest to its end of those within two links.
+// Ring links: the texels that a texel reads across cuts of the atlas. A walk over the surface by
+// one texel step finds them, never the texel's neighbours in the image. A walk that ends between
+// texels gets the texel within two links that is nearest to its end.
 #include "mesh/texels.h"
 
 #include <cmath>
@@ -10,10 +10,10 @@ namespace {
 
 constexpr int kWalkSteps = 200;  // triangles crossed by one walk, at most
 constexpr int kWeakSteps = 4;    // likewise, once the crossings below are used up
-// Crossings of all walks, and more per texel of the atlas: far above what any mesh needs whose
-// triangles are not hundreds of times smaller than a texel.
+// Crossings of all walks, and the further ones per texel of the atlas. Only meshes with triangles
+// hundreds of times smaller than a texel use them up.
 constexpr int64_t kWalkBudget = 1 << 25, kWalkPerTexel = 8;
-constexpr int kDeafRounds = 64;       // of looking for texels that read nobody
+constexpr int kDeafRounds = 64;       // searches for texels that read no other
 constexpr int kReaches = 3;           // a chart too small to own a texel is stepped over
 constexpr int kLandingSearch = 3;     // texels around a landing place that owns none
 constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
@@ -28,10 +28,7 @@ struct Walk {
     int crossed = 0;  // triangles
 };
 
-glm::dvec3 unitOr0(glm::dvec3 v) {
-    const double l = glm::length(v);
-    return l > 0 ? v / l : glm::dvec3(0);
-}
+glm::dvec3 unitOr0(glm::dvec3 v) { return unitOr(v, glm::dvec3(0)); }
 
 // From a point of a triangle along a step in its plane (m), unfolding at every edge by in-plane
 // direction: winding does not matter.
@@ -89,7 +86,7 @@ Walk walkSurface(const Surface& surface, uint32_t triangle, glm::dvec3 weights, 
     return walk;
 }
 
-// Chart borders in the atlas, listed by the texels they pass.
+// Chart borders in the atlas, by the texels that they pass.
 class Borders {
  public:
     Borders(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory)
@@ -111,7 +108,7 @@ class Borders {
 
     [[nodiscard]] bool near(uint32_t texel) const { return near_[texel] != 0; }
 
-    // Does the segment between two texel centres (neighbours) cross a border?
+    // Whether the segment between the centres of two neighbouring texels crosses a border.
     [[nodiscard]] bool between(uint32_t i, uint32_t j) const {
         const glm::dvec2 p(i % grid_.width + 0.5, i / grid_.width + 0.5);
         const glm::dvec2 q(j % grid_.width + 0.5, j / grid_.width + 0.5);
@@ -192,12 +189,14 @@ class Linker {
         return grid_.real(texel) && grid_.linkRecord[texel] != kNone;
     }
     [[nodiscard]] uint32_t* ringOf(uint32_t rimTexel) const {
+        FW_ASSERT(size_t(grid_.linkRecord[rimTexel]) * 8 + 7 < grid_.links.size(), "record %u",
+                  grid_.linkRecord[rimTexel]);
         return &grid_.links[size_t(grid_.linkRecord[rimTexel]) * 8];
     }
 
-    // One texel step in ring direction k, in metres on the texel's own triangle. From the texel's
-    // point: that of a forced one is off its centre, and the centres around it would not lie on
-    // all sides.
+    // One texel step in ring direction k, in metres on the texel's own triangle, from the texel's
+    // point. The point of a forced texel is off its centre, and the centres around would not lie on
+    // all sides of it.
     [[nodiscard]] glm::dvec3 stepOf(uint32_t texel, size_t k) const {
         const double x = kRingX[k], y = kRingY[k];
         const TexelShape& shape = grid_.shapes[grid_.owner[texel]];
@@ -238,6 +237,8 @@ class Linker {
             if (!exact) loose = uint8_t(loose | 1u << k);
         }
         if (!rim) return;
+        FW_ASSERT(loose_.size() == grid_.links.size() / 8, "%zu records, %zu links", loose_.size(),
+                  grid_.links.size());
         loose_.push_back(loose);
         grid_.linkRecord[texel] = uint32_t(grid_.links.size() / 8);
         grid_.flags[texel] |= kTexelRim;
@@ -297,14 +298,14 @@ class Linker {
         return best;
     }
 
-    // A forced texel that reads nobody could never burn: it leaves, its area goes to a neighbour.
-    // One that is alone on its piece of the surface (a leaf) stays: other objects may light it.
+    // A forced texel that reads no other could never burn: it leaves, and a neighbour takes its
+    // area. A texel alone on its piece of the surface (a leaf) stays: other objects may light it.
     void dropDeaf() {
         AreaHeir heir(surface_, grid_, memory_);
         std::pmr::vector<uint32_t> forced(memory_);
         for (uint32_t i = 0; i < grid_.count(); ++i)
             if (grid_.real(i) && (grid_.flags[i] & kTexelForced)) forced.push_back(i);
-        bool again = true;  // who read only those that leave is deaf in turn
+        bool again = true;  // a texel that read only leaving ones leaves in the next round
         for (int round = 0; again && round < kDeafRounds; ++round) {
             again = false;
             for (uint32_t i : forced) {
@@ -332,8 +333,8 @@ class Linker {
             if (link != kNone && !grid_.real(link)) link = kNone;
     }
 
-    // Where a slot of a texel's ring should lead: a walk's end, of about one texel side whatever
-    // the texel's shape, so that the ring lies evenly around.
+    // The place that a slot of a texel's ring should lead to: the end of a walk of about one texel
+    // side, whatever the texel's shape, so that the ring lies evenly around the texel.
     struct Aim {
         glm::dvec3 point{0};  // m, from Surface::low
         double reach = 0;     // m, a longer link is refused
@@ -353,8 +354,8 @@ class Linker {
         return glm::length(glm::dvec3(grid_.position[texel]) - aim.point);
     }
 
-    // Slots whose step ends in no texel, or in one that another slot has too, take the free texel
-    // nearest to their aim: a ring that misses a direction hears fronts from there late.
+    // Slots whose step ends in no texel, or in the texel of another slot, take the free texel
+    // nearest to their aim. A ring that misses a direction would notice fronts from there late.
     void tighten(uint32_t i) {
         uint32_t* ring = ringOf(i);
         for (size_t k = 0; k < 8; ++k) {
@@ -379,8 +380,8 @@ class Linker {
         }
     }
 
-    // i reads j and j, a rim texel, does not read i: use a spare slot of j, beside the ring
-    // neighbour that lies nearest to i.
+    // If i reads j and j, a rim texel, does not read i: i takes a spare slot of j, beside the ring
+    // neighbour nearest to i.
     void answerReaders(uint32_t i) {
         for (int k = 0; k < 8; ++k) {
             const uint32_t j = grid_.ring(i, k);
@@ -412,8 +413,8 @@ class Linker {
                     heard_[j] = uint8_t(std::min(heard_[j] + 1, 255));
     }
 
-    // Nobody reads i, so a fire lit there would stay there: of those that i reads, the one whose
-    // aim is nearest takes it, in the place of a texel that others read too.
+    // For a texel i that no other reads, where a fire would stay: among the texels that i reads,
+    // the slot with the nearest aim takes i instead of a texel that others read too.
     void findReader(uint32_t i) {
         double least = kMissLimit * grid_.side;
         uint32_t* slot = nullptr;
@@ -432,6 +433,8 @@ class Linker {
             }
         }
         if (slot == nullptr) return;
+        FW_ASSERT(*slot == kNone || heard_[*slot] > 1, "texel %u would lose its only reader",
+                  *slot);
         if (*slot != kNone) --heard_[*slot];
         *slot = i;
         ++heard_[i];

@@ -1,4 +1,4 @@
-// Packs charts of any outline: each falls onto the skyline of those before it, tallest first.
+// Packs charts of any outline: each falls onto the skyline of the earlier ones, tallest first.
 #include "core/error.h"
 #include "mesh/atlas.h"
 
@@ -9,7 +9,7 @@ namespace {
 
 constexpr int kEmpty = 0x3FFFFFFF;
 constexpr int kTurns = 16;  // orientations tried per chart, over a quarter turn
-// How finely the density is searched that fits, and how once so many places were looked at.
+// Ratio between densities that are tried, and the ratio after kPlaces places.
 constexpr double kStep = 1.015, kWideStep = 1.2;
 constexpr double kPlaces = 3e8;
 
@@ -22,6 +22,10 @@ struct Piece {
     uint32_t x = 0, y = 0;  // placed here
 };
 
+glm::dvec2 turned(glm::dvec2 u, glm::dvec2 cosSin) {
+    return {u.x * cosSin.x - u.y * cosSin.y, u.x * cosSin.y + u.y * cosSin.x};
+}
+
 // Turns a chart so that its box is smallest and upright, and moves it to the origin.
 Piece layPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
     glm::dvec2 bestCosSin(1, 0);
@@ -29,31 +33,26 @@ Piece layPiece(Surface& surface, std::span<const uint32_t> members, uint32_t cha
     for (int turn = 0; turn < kTurns; ++turn) {
         const double s = double(turn) / kTurns;  // tangent of the half angle: no libm needed
         const glm::dvec2 cs((1 - s * s) / (1 + s * s), 2 * s / (1 + s * s));
-        glm::dvec2 low(1e300), high(-1e300);
+        Extent2 extent;
         for (uint32_t i : members)
-            for (const glm::dvec2& u : surface.triangles[i].uv) {
-                const glm::dvec2 p(u.x * cs.x - u.y * cs.y, u.x * cs.y + u.y * cs.x);
-                low = glm::min(low, p);
-                high = glm::max(high, p);
-            }
-        const double area = (high.x - low.x) * (high.y - low.y);
+            for (const glm::dvec2& u : surface.triangles[i].uv) extent.add(turned(u, cs));
+        const glm::dvec2 size = extent.size();
+        const double area = size.x * size.y;
         if (area >= bestArea * (1 - 1e-9)) continue;
         bestArea = area;
         bestCosSin = cs;
-        if (high.x - low.x > high.y - low.y) bestCosSin = {-cs.y, cs.x};  // a quarter turn more
+        if (size.x > size.y) bestCosSin = {-cs.y, cs.x};  // a quarter turn more
     }
-    glm::dvec2 low(1e300), high(-1e300);
+    Extent2 extent;
+    for (uint32_t i : members) {
+        for (glm::dvec2& u : surface.triangles[i].uv) u = turned(u, bestCosSin);
+        extent.add(surface.triangles[i]);
+    }
     for (uint32_t i : members)
-        for (glm::dvec2& u : surface.triangles[i].uv) {
-            u = {u.x * bestCosSin.x - u.y * bestCosSin.y, u.x * bestCosSin.y + u.y * bestCosSin.x};
-            low = glm::min(low, u);
-            high = glm::max(high, u);
-        }
-    for (uint32_t i : members)
-        for (glm::dvec2& u : surface.triangles[i].uv) u -= low;
+        for (glm::dvec2& u : surface.triangles[i].uv) u -= extent.low;
     Piece piece;
     piece.chart = chart;
-    piece.size = high - low;
+    piece.size = extent.size();
     return piece;
 }
 
@@ -77,8 +76,7 @@ class Packer {
 
     [[nodiscard]] size_t pieces() const { return pieces_.size(); }
 
-    // Column outlines of all charts at this density. Returns the texels they take, borders
-    // included.
+    // Column outlines of all charts at this density. Returns their texels, borders included.
     double outline(double density) {
         bottoms_.clear();
         tops_.clear();
@@ -118,8 +116,9 @@ class Packer {
     [[nodiscard]] uint32_t widest() const { return widest_ + 2; }
     [[nodiscard]] uint32_t tallest() const { return tallest_ + 2; }
 
-    // Drops all pieces into a strip of this width. Returns the height they take.
+    // Drops all pieces into a strip of this width. Returns the strip's height.
     uint32_t drop(uint32_t width) {
+        FW_ASSERT(widest() <= width, "a piece of %u columns, a strip of %u", widest(), width);
         skyline_.assign(width, 1);
         int used = 0;
         for (Piece& piece : pieces_) {
@@ -141,6 +140,7 @@ class Packer {
                 bestX = x;
                 bestWaste = waste;
             }
+            FW_ASSERT(bestX >= 1 && bestY < kEmpty, "at %d, %d", bestX, bestY);
             piece.x = uint32_t(bestX);
             piece.y = uint32_t(bestY);
             for (int c = 0; c < columns; ++c)
@@ -160,6 +160,7 @@ class Packer {
  private:
     // Widens the plain outline by the texels that the segment a-b touches.
     void traceEdge(glm::dvec2 a, glm::dvec2 b) {
+        FW_ASSERT(!plainBottoms_.empty() && plainBottoms_.size() == plainTops_.size());
         if (a.x > b.x) std::swap(a, b);
         const int last = int(plainBottoms_.size()) - 1;
         const int c0 = std::clamp(int(std::floor(a.x)), 0, last);
@@ -191,7 +192,7 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
     Packer packer(surface, charts, memory);
     const uint32_t side = maxSide & ~7u;
     const double room = double(side) * side;
-    // Nine texels is the least a chart takes: one and its border.
+    // A chart takes at least nine texels: one and its border.
     const double least = 9.0 * double(packer.pieces());
     // An upper bound first, so that absurd sizes cost no memory.
     density = std::min({density, double(side) / std::sqrt(surface.area),
@@ -219,7 +220,7 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
                 return plan;
             }
         }
-        // Height shrinks with the square of the density, until borders are all that is left.
+        // Height shrinks with the square of the density, until only borders are left.
         density /= std::clamp(std::sqrt(over), places < kPlaces ? kStep : kWideStep, 2.0);
     }
     core::fail(FW_ERROR_INVALID_ARGUMENT,

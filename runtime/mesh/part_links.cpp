@@ -1,5 +1,5 @@
-// Parts of one mesh that share no edge but lie within a flame's lick of each other. Each block of
-// 4 x 4 texels knows the nearest place of another part, so that a tile's links have a fixed room.
+// Parts of one mesh that share no edge but lie within kContactGap of each other. Each block of 4 x
+// 4 texels stores the nearest place of another part, so that every tile has four links.
 #include "mesh/part_links.h"
 
 #include "mesh/hold.h"
@@ -13,10 +13,10 @@ namespace fw::mesh {
 namespace {
 
 constexpr int kFarthest = 32767;   // units: squares of three of these fit in 32 bits
-constexpr size_t kCandidates = 4;  // blocks that are looked at texel by texel
+constexpr size_t kCandidates = 4;  // blocks that are compared texel by texel
 constexpr uint32_t kBlockTexels = 16;
 
-struct Entry {  // what a block has of one part
+struct Entry {  // one part's texel in a block
     uint64_t key = 0;
     int place[3] = {};
     uint32_t block = 0;  // tile * 4 + block of it
@@ -107,15 +107,16 @@ struct Blocks {
 
 PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
                       uint32_t link) noexcept {
-    const uint32_t corner =
-        tile / domain.tilesX * kTileSide * domain.width + tile % domain.tilesX * kTileSide;
+    FW_ASSERT(link != kNone && block < 4, "word %u of block %u", link, block);
     const uint32_t lane = gpu::partFrom(link, block);
-    return {lane, corner + lane / kTileSide * domain.width + lane % kTileSide,
-            link % gpu::kPartTexels};
+    return {lane, domain.texelsOf(tile)[lane], link % gpu::kPartTexels};
 }
 
 PartWay partWay(const BurnDomain& domain, std::span<const gpu::BurnMaterial> materials,
                 const PartLink& link) noexcept {
+    FW_ASSERT(domain.real(link.from) && domain.real(link.to), "from texel %u to %u", link.from,
+              link.to);
+    FW_ASSERT(materials.size() >= gpu::kMaterialsPerObject, "%zu materials", materials.size());
     const TexelPosition &p = domain.texels[link.from], &q = domain.texels[link.to];
     const auto materialOf = [&](const TexelPosition& at) {
         return &materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];

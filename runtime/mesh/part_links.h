@@ -1,4 +1,4 @@
-// Links between the parts of one mesh, as BurnDomain::partLinks has them: see linkParts.
+// Links between the parts of one mesh, read from BurnDomain::partLinks: see linkParts.
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/burn.h"
@@ -8,16 +8,16 @@
 namespace fw::mesh {
 
 struct PartLink {
-    uint32_t lane = 0;          // of its tile, that fire leaves from
+    uint32_t lane = 0;          // lane of `from` in its tile
     uint32_t from = 0, to = 0;  // texels
 };
-// `link`: of block `block` of the tile, another than kNone.
+// `link`: the word of block `block` of the tile, not kNone.
 [[nodiscard]] PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
                                     uint32_t link) noexcept;
 
-struct PartWay {  // over such a link
+struct PartWay {  // fire's path over a link
     const gpu::BurnMaterial *left = nullptr, *reached = nullptr;
-    uint32_t delay = 0;  // ticks; gpu::kNever: what it leads to does not burn
+    uint32_t delay = 0;  // ticks; gpu::kNever: the material reached does not burn
 };
 // `materials`: the object's, kMaterialsPerObject of them.
 [[nodiscard]] PartWay partWay(const BurnDomain& domain,

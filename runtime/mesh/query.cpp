@@ -1,5 +1,5 @@
-// Texels near a point. Integers after the point is brought to position units, so that every
-// machine picks the same texels. Nothing is built: tiles are skipped by their bounds.
+// Texels near a point. The point is rounded to position units first, so that every machine picks
+// the same texels. Tiles are skipped by their bounds.
 #include "mesh/texels.h"
 
 #include <algorithm>
@@ -9,9 +9,8 @@
 namespace fw::mesh {
 namespace {
 
-// A point in units of 2^shift position units. Points near the mesh have a shift of 0; those so far
-// away that a square would not fit into 64 bits have a larger one, which is still finer than the
-// float that they came as.
+// A point in units of 2^shift position units. Points near the mesh have a shift of 0. Points whose
+// square would not fit into 64 bits have a larger one, still finer than the host's float.
 struct Units {
     int64_t at[3];  // position units
     uint32_t shift;
@@ -54,13 +53,14 @@ int64_t squareTo(const TileBounds& b, const Units& u) {
 // Calls visit(texel, square) for the real texels within a square distance that may shrink.
 template <typename Visit>
 void visitWithin(const BurnDomain& domain, const Units& point, const int64_t& limit, Visit visit) {
+    FW_ASSERT(domain.tileBounds.size() == domain.tileCount(), "%zu of %u tiles",
+              domain.tileBounds.size(), domain.tileCount());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         const TileBounds& bounds = domain.tileBounds[t];
         if (bounds.low[0] > bounds.high[0] || squareTo(bounds, point) > limit) continue;
-        const uint32_t corner =
-            t / domain.tilesX * kTileSide * domain.width + t % domain.tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < kTileSide * kTileSide; ++lane) {
-            const uint32_t texel = corner + lane / kTileSide * domain.width + lane % kTileSide;
+        const TileTexels texels = domain.texelsOf(t);
+        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
+            const uint32_t texel = texels[lane];
             if (!domain.real(texel)) continue;
             const int64_t square = squareTo(domain.texels[texel], point);
             if (square <= limit) visit(texel, square);
@@ -86,10 +86,10 @@ int64_t unitsOf(const BurnDomain& domain, float metres) {
 
 uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance) {
     const Units units = unitsOf(domain, point);
-    // No texel is farther away than kMostUnits twice, in its units.
+    // No texel is farther away than twice kMostUnits.
     const int64_t reach = unitsOf(domain, maxDistance) >> units.shift;
     const int64_t coarse = std::min(reach + (units.shift > 0 ? 1 : 0), 2 * kMostUnits);
-    // Half a unit of rounding on each side must not lose a texel that is just in reach.
+    // The 2: half a unit of rounding on each side must not lose a texel at the very reach.
     return nearestWithin(domain, units, coarse * coarse + 2);
 }
 
@@ -107,6 +107,8 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
 }
 
 void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3]) noexcept {
+    FW_ASSERT(domain.real(texel) && domain.triangleOf[texel] < domain.indices.size() / 3,
+              "texel %u has no triangle", texel);
     const TexelPosition& t = domain.texels[texel];
     const uint16_t units[3] = {t.x, t.y, t.z};
     double corner[3][3], at[3];

@@ -1,5 +1,5 @@
-// Texels from triangles: a texel is owned by the triangle that holds its centre; parts too thin
-// for a centre are forced; area is exact by clipping, whoever owns the texel.
+// Texels from triangles: the triangle that holds a texel's centre owns the texel; parts too thin
+// for a centre are forced. Clipping gives exact areas, whichever triangle owns the texel.
 #include "mesh/texels.h"
 
 #include <cmath>
@@ -120,6 +120,8 @@ class Rasteriser {
     }
 
     void own(uint32_t texel, uint32_t triangle, glm::dvec3 weights) {
+        FW_ASSERT(texel < grid_.count() && triangle < surface_.triangles.size(), "texel %u, %u",
+                  texel, triangle);
         grid_.owner[texel] = triangle;
         grid_.chart[texel] = surface_.triangles[triangle].chart;
         grid_.weights[texel] = glm::vec2(float(weights.x), float(weights.y));
@@ -131,7 +133,7 @@ class Rasteriser {
             const Triangle& t = surface_.triangles[i];
             const double flat = std::abs(uvArea(t));
             const RowSpan rows = rowsOf(t, int(grid_.height));
-            if (flat < 1e-9) {  // no area in the atlas: its whole area is a part somewhere near
+            if (flat < 1e-9) {  // no area in the atlas: all of it is one part, at its first corner
                 const glm::dvec2 at = t.uv[0];
                 const int x = std::clamp(int(at.x), 0, int(grid_.width) - 1);
                 const int y = std::clamp(int(at.y), 0, int(grid_.height) - 1);
@@ -160,8 +162,8 @@ class Rasteriser {
         });
     }
 
-    // A part whose chart owns no texel beside it would not burn: it gets its texel. Decided for all
-    // from the state before, so that the order does not matter.
+    // A part whose chart owns no texel beside it would not burn: it gets its texel. All parts are
+    // decided from the same state, so that their order does not matter.
     void forceTexels() {
         std::pmr::vector<Part> forced(memory_);
         for (const Part& part : parts_) {
@@ -236,6 +238,7 @@ AreaHeir::AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memo
 }
 
 uint32_t AreaHeir::onSurface(uint32_t from) {
+    FW_ASSERT(from < visited_.size(), "triangle %u of %zu", from, visited_.size());
     ++stamp_;
     queue_.assign(1, from);
     visited_[from] = stamp_;
@@ -254,7 +257,7 @@ uint32_t AreaHeir::onSurface(uint32_t from) {
 uint32_t AreaHeir::anywhere(uint32_t from, uint32_t hint) {
     const uint32_t near = onSurface(from);
     if (near != kNone) return near;
-    // Nothing on this piece of the surface: the nearest in the image, by rings of growing size.
+    // No texel on this piece of the surface: the nearest in the image, by rings of growing size.
     const int x = int(hint % grid_.width), y = int(hint / grid_.width);
     for (int r = 0; r < int(std::max(grid_.width, grid_.height)); ++r)
         for (int dy = -r; dy <= r; ++dy)
@@ -268,6 +271,8 @@ uint32_t AreaHeir::anywhere(uint32_t from, uint32_t hint) {
 
 TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
                     BakeReport& report, std::pmr::memory_resource* memory) {
+    FW_ASSERT(density > 0 && width % kTileSide == 0 && height % kTileSide == 0,
+              "%u x %u texels at %g per m", width, height, density);
     TexelGrid grid(memory);
     grid.width = width;
     grid.height = height;

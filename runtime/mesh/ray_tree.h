@@ -1,4 +1,4 @@
-// A median-split tree over a surface's triangles, for rays of the bake. Floats, relative to
+// A median-split tree over a surface's triangles, for the bake's rays. Floats, relative to
 // Surface::low. Internal to runtime/mesh.
 #pragma once
 #include "mesh/surface.h"
@@ -11,10 +11,10 @@ namespace fw::mesh {
 
 class RayTree {
  public:
-    static constexpr float kReach = 6.5534f;  // m, farther is not looked for
-    // Boxes and triangles one ray may be tested against; only where thousands lie across each
-    // other are there more, and a bake must not take minutes for them. With the steps of all rays
-    // used up, a ray has only the few of kWeakSteps.
+    static constexpr float kReach = 6.5534f;  // m, length of a ray
+    // Limits of the boxes and triangles tested per ray and in all, so that a bake of thousands of
+    // overlapping triangles does not take minutes. Once the budget of all rays is used up, a ray
+    // has kWeakSteps.
     static constexpr uint32_t kMostSteps = 4096, kWeakSteps = 48;
     static constexpr int64_t kStepBudget = 1 << 26, kStepsPerTexel = 192;
 
@@ -34,6 +34,7 @@ class RayTree {
             centres_[i] =
                 glm::vec3((t.position[0] + t.position[1] + t.position[2]) / 3.0 - surface.low);
         }
+        FW_ASSERT(count > 0);
         nodes_.reserve(size_t(count) + 2);
         build(0, count);
         shapes_.reserve(count);
@@ -45,8 +46,8 @@ class RayTree {
         }
     }
 
-    // Distance to the first triangle beyond `least`, other than `self`, of those tested; kReach or
-    // more: none. What it cost is taken from `stepsLeft`.
+    // Distance to the first tested triangle beyond `least`, other than `self`; kReach or more:
+    // none. Subtracts the ray's steps from `stepsLeft`.
     [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least, uint32_t self,
                              int64_t& stepsLeft) const {
         const glm::vec3 inverse(invert(direction.x), invert(direction.y), invert(direction.z));
@@ -74,13 +75,14 @@ class RayTree {
             const Visit a{visit.node + 1, enter(nodes_[visit.node + 1], from, inverse, nearest)};
             const Visit b{node.first, enter(nodes_[node.first], from, inverse, nearest)};
             const bool aFirst = a.enter <= b.enter;  // the nearer one goes on top
+            FW_ASSERT(depth + 2 <= 64, "depth %d", depth);
             stack[depth++] = aFirst ? b : a;
             stack[depth++] = aFirst ? a : b;
         }
         stepsLeft -= steps;
         return nearest;
     }
-    // Likewise, for the few rays that no budget watches over.
+    // Likewise, without a budget of all rays.
     [[nodiscard]] float cast(glm::vec3 from, glm::vec3 direction, float least,
                              uint32_t self) const {
         int64_t steps = kMostSteps;
@@ -135,7 +137,7 @@ class RayTree {
         build(middle, end);
     }
 
-    // Where a ray enters a node's box, or infinity if it misses it nearer than `nearest`.
+    // Distance at which a ray enters a node's box; infinity: it misses the box before `nearest`.
     static float enter(const Node& node, glm::vec3 from, glm::vec3 inverse, float nearest) {
         const glm::vec3 a = (node.low - from) * inverse, b = (node.high - from) * inverse;
         const glm::vec3 in = glm::min(a, b), out = glm::max(a, b);

@@ -18,10 +18,9 @@ struct TileSum {
 
 TileSum sumTile(const BurnDomain& domain, uint32_t tile) noexcept {
     TileSum sum;
-    const uint32_t corner =
-        tile / domain.tilesX * kTileSide * domain.width + tile % domain.tilesX * kTileSide;
-    for (uint32_t lane = 0; lane < 64; ++lane) {
-        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+    const TileTexels texels = domain.texelsOf(tile);
+    for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
+        const uint32_t texel = texels[lane];
         if (!domain.real(texel)) continue;
         const TexelPosition& p = domain.texels[texel];
         sum.position[0] += p.x;
@@ -51,6 +50,7 @@ Grid gridOf(const BurnDomain& domain) noexcept {
 }
 
 uint32_t cellAt(const uint32_t (&middle)[3], const Grid& grid) noexcept {
+    FW_ASSERT(grid.sides >= 1 && grid.unit >= 1, "%u cells of %u units", grid.sides, grid.unit);
     uint32_t cell = 0;
     for (int i = 2; i >= 0; --i)
         cell = cell * grid.sides + std::min(middle[i] / grid.unit, grid.sides - 1);
@@ -69,21 +69,24 @@ uint32_t packSum(const int64_t (&sum)[3]) noexcept {
            (part(2, 511) & 0x3FFu) << 22;
 }
 
-// Cells of the search, which hold at least the gap.
+// Side of the search's cells: at least the gap.
 constexpr int kCellShift = 6;  // mm: 64
 static_assert(gpu::kContactGap <= 1u << kCellShift);
 
-// Places that one object has near another, by cells: these have numbers of their own, wherever in
-// the world that is.
+// One object's places near another object, by cells. Cells are numbered from the lowest of them,
+// wherever in the world they are.
 struct ContactCells {
     static constexpr size_t kMostListed = 4096;
     int low[3] = {}, high[3] = {};
     uint64_t sideY = 0, sideZ = 0;
-    bool listed = false;                           // they are few enough for `starts`
+    bool listed = false;                           // few enough cells for `starts`
     std::array<uint32_t, kMostListed + 1> starts;  // by cell: its first place
     std::span<const Contacts::Place> places;       // by cell
 
     [[nodiscard]] uint64_t keyOf(int x, int y, int z) const noexcept {
+        FW_ASSERT(x >= low[0] && y >= low[1] && z >= low[2] && x <= high[0] && y <= high[1] &&
+                      z <= high[2],
+                  "cell (%d, %d, %d)", x, y, z);
         return (uint64_t(x - low[0]) * sideY + uint64_t(y - low[1])) * sideZ + uint64_t(z - low[2]);
     }
     [[nodiscard]] uint64_t keyOf(const Contacts::Place& place) const noexcept {
@@ -117,9 +120,10 @@ struct ContactCells {
         for (Contacts::Place& place : given) ++starts[place.cell = uint32_t(keyOf(place))];
         uint32_t end = 0;
         for (uint64_t cell = 0; cell <= cells; ++cell) end = starts[cell] += end;
+        FW_ASSERT(end == given.size(), "%u of %zu places", end, given.size());
         for (const Contacts::Place& place : given) sorted[--starts[place.cell]] = place;
     }
-    // The places in some cells of a row along z.
+    // The places in cells `first` to `last` of a row along z.
     [[nodiscard]] std::span<const Contacts::Place> row(int x, int y, int first,
                                                        int last) const noexcept {
         first = std::max(first, low[2]);
@@ -168,12 +172,11 @@ void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Conta
         if (bounds.low[0] > bounds.high[0]) continue;
         if (gapOf(placedBox(*side.place, bounds.low, bounds.high), other) > int(gpu::kContactGap))
             continue;
-        const uint32_t corner =
-            tile / domain.tilesX * kTileSide * domain.width + tile % domain.tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t block = lane >> 4;
-            const uint32_t x = (block & 1) * 4 + (lane & 3), y = (block >> 1) * 4 + (lane >> 2 & 3);
-            const uint32_t texel = corner + y * domain.width + x;
+        const TileTexels texels = domain.texelsOf(tile);
+        for (uint32_t i = 0; i < kTileLanes; ++i) {
+            const uint32_t block = i >> 4;
+            const uint32_t x = (block & 1) * 4 + (i & 3), y = (block >> 1) * 4 + (i >> 2 & 3);
+            const uint32_t texel = texels[y * kTileSide + x];
             if (!burnsAt(side, texel)) continue;
             const gpu::ivec3 p = placeOf(side, texel);
             if (!inside(p, other, int(gpu::kContactGap))) continue;
@@ -182,15 +185,14 @@ void placeNear(const ContactSide& side, const Box& other, std::pmr::vector<Conta
     }
 }
 
-// Cubes of kContactGap, whose order decides between places that are equally near.
+// Cubes of kContactGap; their order decides between equally near places.
 int cubeOf(int mm) noexcept {
     constexpr int kSide = int(gpu::kContactGap);
     return mm >= 0 ? mm / kSide : -((kSide - 1 - mm) / kSide);
 }
 
-// The nearest pair of a block's texels and those in `cells`. Of pairs that are equally near it is
-// the one with the first texel of the block, then with the first cube, then with the first texel
-// there.
+// The nearest pair of a block's texel and a texel in `cells`. Equally near pairs: the first texel
+// of the block wins, then the first cube, then the first texel in it.
 struct NearestPair {
     const ContactCells& cells;
     const Contacts::Place *to = nullptr, *from = nullptr;
@@ -219,7 +221,7 @@ struct NearestPair {
         const int z = a.at[2] >> kCellShift;
         offer(a, cells.row(a.at[0] >> kCellShift, a.at[1] >> kCellShift, z, z));
     }
-    // Cells around, as far as they may hold a nearer one.
+    // Cells around that may hold a nearer one.
     void offerAround(const Contacts::Place& a) noexcept {
         constexpr int kSide = 1 << kCellShift;
         int before[3], after[3];  // squared mm along each axis to the next cell
@@ -230,13 +232,13 @@ struct NearestPair {
         }
         const int x = a.at[0] >> kCellShift, y = a.at[1] >> kCellShift, z = a.at[2] >> kCellShift;
         for (int dx = before[0] <= limit ? -1 : 0; dx <= (after[0] <= limit ? 1 : 0); ++dx) {
-            const int wayX = dx == 0 ? 0 : dx < 0 ? before[0] : after[0];
-            for (int dy = wayX + before[1] <= limit ? -1 : 0;
-                 dy <= (wayX + after[1] <= limit ? 1 : 0); ++dy) {
-                const int way = wayX + (dy == 0 ? 0 : dy < 0 ? before[1] : after[1]);
-                if (way > limit) continue;
-                const bool below = way + before[2] <= limit, above = way + after[2] <= limit;
-                if (way != 0) {
+            const int squareX = dx == 0 ? 0 : dx < 0 ? before[0] : after[0];
+            for (int dy = squareX + before[1] <= limit ? -1 : 0;
+                 dy <= (squareX + after[1] <= limit ? 1 : 0); ++dy) {
+                const int square = squareX + (dy == 0 ? 0 : dy < 0 ? before[1] : after[1]);
+                if (square > limit) continue;
+                const bool below = square + before[2] <= limit, above = square + after[2] <= limit;
+                if (square != 0) {
                     offer(a, cells.row(x + dx, y + dy, z - below, z + above));
                     continue;
                 }
@@ -253,7 +255,7 @@ void findNearest(std::span<const Contacts::Place> places, const ContactCells& ce
         size_t end = first + 1;
         while (end < places.size() && places[end].block == places[first].block) ++end;
         NearestPair nearest{cells};
-        // All of the own cells first: the pair that they give rules out most of the cells around.
+        // Own cells first: their nearest pair rules out most of the cells around.
         for (size_t i = first; i < end; ++i) nearest.offerOwnCell(places[i]);
         for (size_t i = first; i < end; ++i) nearest.offerAround(places[i]);
         if (nearest.from)
@@ -282,6 +284,8 @@ uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>
             const auto most =
                 uint32_t(std::max_element(std::begin(sum.materials), std::end(sum.materials)) -
                          std::begin(sum.materials));
+            FW_ASSERT(number < gpu::kSourcesPerObject, "%u of %u sources", number,
+                      gpu::kSourcesPerObject);
             made.xy = middle[0] | middle[1] << 16;
             made.z = middle[2] | number << 16 | most << 24;
             made.normal = packSum(sum.normal);
@@ -303,6 +307,7 @@ uint32_t sourceCells(const BurnDomain& domain) noexcept {
         if (sum.texels == 0) continue;
         uint32_t middle[3];
         for (int i = 0; i < 3; ++i) middle[i] = uint32_t(sum.position[i] / sum.texels);
+        FW_ASSERT(cellAt(middle, grid) < 64, "cell %u", cellAt(middle, grid));
         seen |= uint64_t(1) << cellAt(middle, grid);
     }
     uint32_t cells = 0;

@@ -1,12 +1,12 @@
-// A mesh's tiles as places that give and receive fire at a distance, and the texels of two objects
-// that come so near that flames lick across. Integers; not who burns, nor what is received.
+// A mesh's tiles as sources and receivers of heat between objects, and the contacts of two objects:
+// texels within kContactGap, where flames lick across. Geometry in integers; no state of a fire.
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/exchange.h"
 
 namespace fw::mesh {
 
-// One per tile, in their order; replaces `out`. Returns how many source cells they are in.
+// One per tile, in their order; replaces `out`. Returns the number of their source cells.
 uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>& out);
 // The same count, without the tiles.
 uint32_t sourceCells(const BurnDomain& domain) noexcept;
@@ -30,21 +30,21 @@ struct ContactSide {
     uint32_t burns = 0;  // bit i: its material i can burn
 };
 
-// Contacts of one object take no more; the rest of its tiles is left out.
+// Most contacts of one object; its further tiles have none.
 constexpr size_t kMostContacts = 8192;
 
-// Memory that searches for contacts share, and what the last of them found.
+// Memory that searches for contacts share, and the last search's contacts.
 struct Contacts {
     struct Place {  // a burnable texel near the other object
         int at[3] = {};
         uint32_t texel = 0, block = 0;  // block: of 4 x 4 texels
-        uint32_t cell = 0;              // of the search, if it lists its cells
+        uint32_t cell = 0;              // of the search, where ContactCells::listed
     };
     explicit Contacts(std::pmr::memory_resource* memory)
         : found{std::pmr::vector<Contact>(memory), std::pmr::vector<Contact>(memory)},
           places{std::pmr::vector<Place>(memory), std::pmr::vector<Place>(memory)},
           byCell(memory) {}
-    // [k]: per block of side k its texel that is nearest to one of the other side.
+    // [k]: per block of side k the texel nearest to a texel of the other side.
     std::pmr::vector<Contact> found[2];
     std::pmr::vector<Place> places[2], byCell;
 };

@@ -15,7 +15,7 @@ glm::dvec3 unpackNormal(uint32_t packed) {
     return glm::dvec3(n.x, n.y, n.z) / 16384.0;
 }
 
-// Places of texels, m, stretched; and from them the lengths that the front needs to know.
+// Stretched places of texels, m.
 struct Places {
     const BurnDomain& from;
     glm::dvec3 shape;
@@ -59,6 +59,7 @@ void measure(const Places& places, BurnDomain& out, std::pmr::memory_resource* m
 
 BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory_resource* memory) {
     const glm::dvec3 shape(given[0], given[1], given[2]);
+    FW_ASSERT(shape.x != 0 && shape.y > 0 && shape.z > 0, "%g, %g, %g", shape.x, shape.y, shape.z);
     const double volume = std::abs(shape.x * shape.y * shape.z);
     BurnDomain out(memory);
     out = from;  // vectors keep `memory`
@@ -76,7 +77,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     }
     const glm::dvec3 size = high - low;
     const double extent = std::max({size.x, size.y, size.z, 1e-12});
-    // As fine as the bake's own: a flattened axis keeps its share of the units.
+    // As fine as the bake: a flattened axis keeps its share of the units.
     const double fine = double(from.quantum) * std::cbrt(volume);
     const double quantum = std::max({extent / 65535, fine, double(out.linkMax) / kLongestLink});
     out.quantum = float(quantum);
@@ -93,7 +94,7 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
         const glm::dvec3 normal = rest / shape;
         const double grown = glm::length(normal) / std::max(glm::length(rest), 1e-12);
         out.normals[i] = packNormal(glm::normalize(normal));
-        // Area and the width of a slab along its normal trade against each other.
+        // A slab that grows in area thins along its normal.
         out.areas[i] = float(double(from.areas[i]) * volume * grown);
         areas += double(out.areas[i]);
         before += double(from.areas[i]);

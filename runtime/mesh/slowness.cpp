@@ -1,5 +1,5 @@
 // Raggedness of the front: a factor on slowness per texel, coherent in object space, so that seams
-// do not show. Integer hashes and + - * / only: the same on every machine.
+// do not show. Integer hashes and + - * / only: equal on every machine.
 #include "core/hash.h"
 #include "mesh/texels.h"
 
@@ -8,14 +8,15 @@
 namespace fw::mesh {
 namespace {
 
-// A front finds the fast paths, so noise speeds it up. Factors to divide its speed by, measured
-// with this noise on planes at several tilts: features of half a texel, and of two or more (from 2
-// to 8 they hardly differ).
+// A front finds the fast paths, so noise speeds it up. Its speed is divided by these factors,
+// measured with this noise on planes at several tilts: features of half a texel, and of two texels
+// or more (2 to 8 hardly differ).
 constexpr double kAmplitudes[] = {0, 0.10, 0.15, 0.25, 0.50};
 constexpr double kSpeedUpFine[] = {1, 1.005, 1.010, 1.024, 1.078};
 constexpr double kSpeedUpCoarse[] = {1, 1.0093, 1.0172, 1.037, 1.106};
 
 double speedUp(double amplitude, double featureTexels) {
+    FW_ASSERT(amplitude >= 0 && amplitude <= 0.5, "amplitude %g", amplitude);
     size_t k = 1;
     while (k < 4 && amplitude > kAmplitudes[k]) ++k;
     const double s = (amplitude - kAmplitudes[k - 1]) / (kAmplitudes[k] - kAmplitudes[k - 1]);
@@ -24,7 +25,7 @@ double speedUp(double amplitude, double featureTexels) {
     return fine + std::clamp((featureTexels - 0.5) / 1.5, 0.0, 1.0) * (coarse - fine);
 }
 
-// -1..1 at a lattice point.
+// [-1, 1] at a lattice point.
 double lattice(int32_t x, int32_t y, int32_t z, uint32_t seed) {
     uint32_t h = core::hash32(uint32_t(x) + seed);
     h = core::hash32(h ^ (uint32_t(y) * 0x9E3779B9u));
@@ -52,7 +53,7 @@ void bakeSlowness(const BakeInput& input, const TexelGrid& grid, glm::dvec3 low,
                   std::pmr::vector<uint16_t>& slowness) {
     slowness.assign(grid.count(), 0);
     const double amplitude = double(input.noiseAmplitude);
-    // The lattice must fit 32 bits: a feature far below anything visible is enlarged.
+    // The lattice must fit 32 bits, so invisibly small features are enlarged.
     const double farthest = std::max({std::abs(low.x), std::abs(low.y), std::abs(low.z)}) + extent;
     const double feature =
         std::max({double(input.noiseFeature), 1e-3 * grid.side, 1e-9 * farthest});

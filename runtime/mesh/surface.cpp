@@ -1,4 +1,4 @@
-// Welds vertices, drops triangles without area, finds who borders whom.
+// Welds vertices, drops triangles without area, pairs the triangles at edges.
 #include "mesh/surface.h"
 
 #include "core/error.h"
@@ -41,7 +41,7 @@ uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t
         const glm::dvec3 cell =
             glm::dvec3(std::floor(p.x / (2 * distance)), std::floor(p.y / (2 * distance)),
                        std::floor(p.z / (2 * distance)));
-        uint32_t found = kNone;  // the lowest point in reach: independent of the hash
+        uint32_t found = kNone;  // the lowest point in reach, whatever the order of the hash
         for (int d = 0; d < 27; ++d) {
             const uint64_t h =
                 cellHash(int64_t(cell.x) + d % 3 - 1, int64_t(cell.y) + d / 3 % 3 - 1,
@@ -61,16 +61,6 @@ uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t
     return uint32_t(first.size());
 }
 
-struct EdgeUse {
-    uint32_t low, high, triangle, edge;
-    bool sameEdge(const EdgeUse& o) const { return low == o.low && high == o.high; }
-    bool operator<(const EdgeUse& o) const {
-        if (low != o.low) return low < o.low;
-        if (high != o.high) return high < o.high;
-        return triangle != o.triangle ? triangle < o.triangle : edge < o.edge;
-    }
-};
-
 bool near(glm::dvec2 a, glm::dvec2 b) { return glm::length(a - b) < kUvTouch; }
 
 struct Fit {
@@ -80,15 +70,28 @@ struct Fit {
 Fit fitOf(const Surface& surface, const EdgeUse& a, const EdgeUse& b, bool uvMeaningful) {
     const Triangle& ta = surface.triangles[a.triangle];
     const Triangle& tb = surface.triangles[b.triangle];
-    const uint32_t a1 = (a.edge + 1) % 3, b1 = (b.edge + 1) % 3;
-    const bool opposite = ta.point[a.edge] == tb.point[b1];
-    const glm::dvec2 start = tb.uv[opposite ? b1 : b.edge], end = tb.uv[opposite ? b.edge : b1];
+    const uint32_t a1 = (a.side + 1) % 3, b1 = (b.side + 1) % 3;
+    const bool opposite = ta.point[a.side] == tb.point[b1];
+    const glm::dvec2 start = tb.uv[opposite ? b1 : b.side], end = tb.uv[opposite ? b.side : b1];
     // The two sheets must also lie on different sides of the edge in the atlas.
     const bool sides = (uvArea(ta) > 0) == (opposite == (uvArea(tb) > 0));
-    return {uvMeaningful && sides && near(ta.uv[a.edge], start) && near(ta.uv[a1], end), opposite};
+    FW_ASSERT(a.sameEdge(b) && a.triangle != b.triangle);
+    return {uvMeaningful && sides && near(ta.uv[a.side], start) && near(ta.uv[a1], end), opposite};
 }
 
 }  // namespace
+
+glm::dvec3 Faces::offset() const {
+    FW_ASSERT(weight > 0, "weight %g", weight);
+    const glm::dvec3 mean = sum / weight;
+    const double square = glm::dot(mean, mean);
+    if (square < 1e-6) return glm::dvec3(0);
+    const glm::dvec3 guess = -mean / std::max(square, 0.25);
+    const double little = 1e-3 * weight;
+    const glm::dvec3 o = glm::inverse(squares + glm::dmat3(little)) * (guess * little - sum);
+    const double length = glm::length(o);
+    return length > kLongestOffset ? o * (kLongestOffset / length) : o;
+}
 
 RowSpan rowsOf(const Triangle& t, int height) {
     const double low = std::min({t.uv[0].y, t.uv[1].y, t.uv[2].y});
@@ -164,6 +167,7 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
     // Never finer than positions can tell apart, never so coarse that the shape goes.
     const double distance =
         std::clamp(weldDistance, surface.extent / 131070, surface.extent / 8192);
+    FW_ASSERT(input.indices.size() % 3 == 0, "%zu indices", input.indices.size());
     surface.pointCount = weld(input, distance, pointOf, memory);
     surface.triangles.reserve(count);
     for (size_t i = 0; i < count; ++i) {
@@ -204,16 +208,14 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
 void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory) {
     auto& triangles = surface.triangles;
     surface.openEdges = surface.nonManifoldEdges = surface.seamEdges = surface.chartCount = 0;
-    std::pmr::vector<EdgeUse> uses(memory);
-    uses.reserve(triangles.size() * 3);
-    for (uint32_t i = 0; i < triangles.size(); ++i)
+    for (Triangle& t : triangles)
         for (uint32_t e = 0; e < 3; ++e) {
-            triangles[i].neighbour[e] = kNone;
-            triangles[i].seam[e] = false;
-            const uint32_t a = triangles[i].point[e], b = triangles[i].point[(e + 1) % 3];
-            uses.push_back({std::min(a, b), std::max(a, b), i, e});
+            FW_ASSERT(t.point[e] < surface.pointCount, "point %u of %u", t.point[e],
+                      surface.pointCount);
+            t.neighbour[e] = kNone;
+            t.seam[e] = false;
         }
-    std::sort(uses.begin(), uses.end());
+    const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, memory);
 
     std::pmr::vector<uint32_t> parent(triangles.size(), memory);
     std::iota(parent.begin(), parent.end(), 0u);
@@ -239,11 +241,11 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
             used[i] = used[best] = 1;
             const EdgeUse &a = uses[i], &b = uses[best];
             Triangle &ta = triangles[a.triangle], &tb = triangles[b.triangle];
-            ta.neighbour[a.edge] = b.triangle;
-            ta.neighbourEdge[a.edge] = uint8_t(b.edge);
-            tb.neighbour[b.edge] = a.triangle;
-            tb.neighbourEdge[b.edge] = uint8_t(a.edge);
-            ta.seam[a.edge] = tb.seam[b.edge] = !bestFit.continuous;
+            ta.neighbour[a.side] = b.triangle;
+            ta.neighbourEdge[a.side] = uint8_t(b.side);
+            tb.neighbour[b.side] = a.triangle;
+            tb.neighbourEdge[b.side] = uint8_t(a.side);
+            ta.seam[a.side] = tb.seam[b.side] = !bestFit.continuous;
             if (bestFit.continuous)
                 parent[rootOf(parent, a.triangle)] = rootOf(parent, b.triangle);
             else

@@ -5,20 +5,21 @@
 
 #include <algorithm>
 #include <glm/geometric.hpp>
+#include <glm/mat3x3.hpp>
+#include <glm/matrix.hpp>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
 namespace fw::mesh {
 
-// Of the way from a point of the outer skin to where the inner one lies, per metre of thickness:
-// how long it may be where the surface bends, and how much of the way to the wall behind it may
-// take.
+// Limits of the offset from the outer skin to the inner one, per metre of thickness: its length
+// where the surface bends, and its share of the distance to the wall behind.
 constexpr double kLongestOffset = 2;
 constexpr double kDepthShare = 0.45;
 
-// The one that stands for all that are joined with `i` (union-find; parents are shortened on the
-// way).
+// The representative of the set of `i` (union-find with path halving).
 inline uint32_t rootOf(std::span<uint32_t> parent, uint32_t i) noexcept {
+    FW_ASSERT(i < parent.size(), "%u of %zu", i, parent.size());
     while (parent[i] != i) i = parent[i] = parent[parent[i]];
     return i;
 }
@@ -36,6 +37,75 @@ struct Triangle {
     bool seam[3] = {};                              // the atlas is cut along this edge
     uint32_t chart = kNone;                         // connected piece of the atlas
     uint32_t material = 0;
+};
+
+// An edge of a triangle by its points, for sorting; equal ones are one edge.
+struct EdgeUse {
+    uint32_t low, high, triangle, side;
+    [[nodiscard]] bool sameEdge(const EdgeUse& o) const { return low == o.low && high == o.high; }
+    bool operator<(const EdgeUse& o) const {
+        if (low != o.low) return low < o.low;
+        if (high != o.high) return high < o.high;
+        return triangle != o.triangle ? triangle < o.triangle : side < o.side;
+    }
+};
+// Of Triangle or CoarseTriangle.
+template <class Triangles>
+std::pmr::vector<EdgeUse> sortedUses(const Triangles& triangles,
+                                     std::pmr::memory_resource* memory) {
+    std::pmr::vector<EdgeUse> uses(memory);
+    uses.reserve(triangles.size() * 3);
+    for (uint32_t i = 0; i < triangles.size(); ++i)
+        for (uint32_t e = 0; e < 3; ++e) {
+            const uint32_t a = triangles[i].point[e], b = triangles[i].point[(e + 1) % 3];
+            uses.push_back({std::min(a, b), std::max(a, b), i, e});
+        }
+    std::sort(uses.begin(), uses.end());
+    return uses;
+}
+
+// Items listed by a key, in their own order: those of key k are items[start[k]] up to
+// items[start[k + 1] - 1].
+struct Groups {
+    explicit Groups(std::pmr::memory_resource* memory) : start(memory), items(memory) {}
+    std::pmr::vector<uint32_t> start, items;
+    [[nodiscard]] std::span<const uint32_t> of(uint32_t key) const {
+        FW_ASSERT(key + 1 < start.size(), "%u of %zu keys", key, start.size() - 1);
+        return {items.data() + start[key], start[key + 1] - start[key]};
+    }
+};
+// Items are 0 to `count`; keyOf(item) is below `keys`, or kNone: in no group.
+template <class KeyOf>
+Groups groupBy(uint32_t keys, uint32_t count, std::pmr::memory_resource* memory, KeyOf keyOf) {
+    Groups groups(memory);
+    groups.start.assign(size_t(keys) + 2, 0);
+    for (uint32_t i = 0; i < count; ++i)
+        if (const uint32_t key = keyOf(i); key != kNone) {
+            FW_ASSERT(key < keys, "%u of %u keys", key, keys);
+            ++groups.start[size_t(key) + 2];
+        }
+    for (size_t k = 2; k < groups.start.size(); ++k) groups.start[k] += groups.start[k - 1];
+    groups.items.resize(groups.start.back());
+    for (uint32_t i = 0; i < count; ++i)
+        if (const uint32_t key = keyOf(i); key != kNone)
+            groups.items[groups.start[size_t(key) + 1]++] = i;
+    groups.start.pop_back();
+    return groups;
+}
+
+// Faces at a vertex, summed up; and from them the offset o with o.N = -1 for every face: least
+// squares, and along the mean normal where the faces leave a direction free. Zero between the two
+// sides of a sheet, which cannot recede.
+struct Faces {
+    glm::dmat3 squares{0};  // sum of N * N^T
+    glm::dvec3 sum{0};
+    double weight = 0;
+    void add(glm::dvec3 normal, double share) {
+        squares += glm::outerProduct(normal, normal) * share;
+        sum += normal * share;
+        weight += share;
+    }
+    [[nodiscard]] glm::dvec3 offset() const;
 };
 
 struct Surface {
@@ -57,6 +127,19 @@ struct TexelShape {
     bool usable = false;              // false: the triangle has no area in the atlas
 };
 
+// A box in the atlas.
+struct Extent2 {
+    glm::dvec2 low{1e300}, high{-1e300};
+    void add(glm::dvec2 uv) {
+        low = glm::min(low, uv);
+        high = glm::max(high, uv);
+    }
+    void add(const Triangle& t) {
+        for (const glm::dvec2& u : t.uv) add(u);
+    }
+    [[nodiscard]] glm::dvec2 size() const { return high - low; }
+};
+
 inline double cross2(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 inline double uvArea(const Triangle& t) {  // texels^2, signed
     return 0.5 * cross2(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0]);
@@ -66,6 +149,11 @@ inline glm::dvec3 positionAt(const Triangle& t, glm::dvec3 weights) {
 }
 inline glm::dvec2 uvAt(const Triangle& t, glm::dvec3 weights) {
     return t.uv[0] * weights.x + t.uv[1] * weights.y + t.uv[2] * weights.z;
+}
+// `otherwise` where `v` has no direction.
+inline glm::dvec3 unitOr(glm::dvec3 v, glm::dvec3 otherwise) {
+    const double length = glm::length(v);
+    return length > 1e-300 ? v / length : otherwise;
 }
 // Columns that a triangle of the atlas touches in texel row y; first > last: none.
 struct RowSpan {

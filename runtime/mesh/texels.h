@@ -1,11 +1,11 @@
-// The bake's texel grid while it is being filled: who owns a texel, where it lies, whom it reads.
-// Internal to runtime/mesh.
+// The bake's texel grid while the bake fills it: owner, place and links of each texel. Internal to
+// runtime/mesh.
 #pragma once
 #include "mesh/surface.h"
 
 namespace fw::mesh {
 
-constexpr double kLongestLink = 8000;  // units; the front's squares hold 8191
+constexpr double kLongestLink = 8000;  // units; below the front's limit of 8191
 
 struct TexelGrid {
     explicit TexelGrid(std::pmr::memory_resource* memory)
@@ -37,13 +37,20 @@ struct TexelGrid {
     [[nodiscard]] bool inside(int x, int y) const {
         return x >= 0 && y >= 0 && x < int(width) && y < int(height);
     }
-    [[nodiscard]] uint32_t at(int x, int y) const { return uint32_t(y) * width + uint32_t(x); }
-    [[nodiscard]] bool real(uint32_t texel) const { return (flags[texel] & kTexelReal) != 0; }
+    [[nodiscard]] uint32_t at(int x, int y) const {
+        FW_ASSERT(inside(x, y), "texel (%d, %d) of %u x %u", x, y, width, height);
+        return uint32_t(y) * width + uint32_t(x);
+    }
+    [[nodiscard]] bool real(uint32_t texel) const {
+        FW_ASSERT(texel < flags.size(), "%u of %zu texels", texel, flags.size());
+        return (flags[texel] & kTexelReal) != 0;
+    }
     [[nodiscard]] glm::dvec3 weightsOf(uint32_t texel) const {
         const glm::dvec2 w(weights[texel]);
         return {w.x, w.y, 1 - w.x - w.y};
     }
     [[nodiscard]] uint32_t ring(uint32_t texel, int k) const {
+        FW_ASSERT(texel < linkRecord.size() && k >= 0 && k < 8, "texel %u, slot %d", texel, k);
         if (linkRecord[texel] != kNone) return links[size_t(linkRecord[texel]) * 8 + size_t(k)];
         return uint32_t(int(texel) + kRingY[size_t(k)] * int(width) + kRingX[size_t(k)]);
     }
@@ -52,11 +59,11 @@ struct TexelGrid {
     }
 };
 
-// Texels, their owners, places and areas. Every part of the surface's area lands on some texel.
+// Texels, their owners, places and areas. Every part of the surface's area goes to some texel.
 TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, double density,
                     BakeReport& report, std::pmr::memory_resource* memory);
-// Who inherits area that has no texel of its own chart: a texel nearby on the surface of triangle
-// `from`, or (anywhere) else the one nearest to texel `hint` in the image. kNone if there is none.
+// Finds a texel for area whose chart has none: a texel nearby on the surface of triangle `from`, or
+// (anywhere) the texel nearest to texel `hint` in the image. kNone if there is none.
 class AreaHeir {
  public:
     AreaHeir(const Surface& surface, const TexelGrid& grid, std::pmr::memory_resource* memory);
@@ -68,11 +75,11 @@ class AreaHeir {
     const TexelGrid& grid_;
     std::pmr::vector<uint32_t> texelOf_, visited_, queue_;
     uint32_t stamp_ = 0;
-    // Triangles looked at in all. Where the atlas has texels for few of a surface's triangles,
-    // every search would cross all of it; with none left, onSurface finds nothing.
+    // Limits the triangles that all searches visit; at 0 onSurface finds nothing. Where only few
+    // triangles have texels, every search would cross the whole surface.
     uint32_t visitsLeft_ = 1u << 22;
 };
-// Link records of all texels whose ring is not just the image around them.
+// Link records of all texels whose ring differs from the image around them.
 void linkTexels(const Surface& surface, TexelGrid& grid, BakeReport& report,
                 std::pmr::memory_resource* memory);
 void bakeThickness(const Surface& surface, const TexelGrid& grid,
@@ -84,7 +91,7 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
                 std::pmr::memory_resource* memory);
 // Bounds of every tile's real texels, for queries.
 void buildTileBounds(BurnDomain& domain);
-// Where parts that share no edge come near each other: a roof on its walls, a cart's wheel.
+// Links parts that share no edge but come near each other: a roof on its walls, a cart's wheel.
 void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory);
 uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10; 1023, 1023, 511 are 1
 

@@ -1,4 +1,4 @@
-// How thick the solid is under a texel: the first surface met by a ray into it.
+// Thickness of the solid under a texel: distance to the first surface that an inward ray meets.
 #include "mesh/ray_tree.h"
 #include "mesh/texels.h"
 
@@ -13,7 +13,7 @@ void bakeThickness(const Surface& surface, const TexelGrid& grid,
                    std::pmr::vector<uint16_t>& thickness, std::pmr::memory_resource* memory) {
     thickness.assign(grid.count(), 0xFFFF);
     const RayTree tree(surface, memory);
-    // Not the surface we stand on, nor its neighbours where it bends.
+    // Skips the texel's own surface, and its neighbours where the surface bends.
     const float least = float(std::max(0.01 * grid.side, 1e-5 * surface.extent));
     int64_t stepsLeft = RayTree::kStepBudget + RayTree::kStepsPerTexel * int64_t(grid.count());
     for (uint32_t texel = 0; texel < grid.count(); ++texel) {

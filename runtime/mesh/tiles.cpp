@@ -1,4 +1,4 @@
-// Tiles: which texels have link records, which are read from other tiles, and by whom.
+// Tiles: their texels with link records, their texels that other tiles read, and those readers.
 // Also the bounds that make queries fast.
 #include "mesh/texels.h"
 
@@ -18,31 +18,27 @@ void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
 }  // namespace
 
 void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_resource* memory) {
-    const uint32_t width = grid.width;
-    const auto tileOf = [&](uint32_t texel) {
-        return texel / width / kTileSide * domain.tilesX + texel % width / kTileSide;
-    };
-    const auto laneOf = [&](uint32_t texel) {
-        return texel / width % kTileSide * kTileSide + texel % width % kTileSide;
-    };
+    FW_ASSERT(grid.count() == domain.texelCount(), "%u and %u texels", grid.count(),
+              domain.texelCount());
+    FW_ASSERT(domain.links.empty() && domain.readers.empty());
     domain.tiles.assign(domain.tileCount(), TileStatic{});
     std::pmr::vector<Read> reads(memory);
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         TileStatic& tile = domain.tiles[t];
         tile.rimBase = uint32_t(domain.links.size() / 8);
-        const uint32_t corner =
-            t / domain.tilesX * kTileSide * width + t % domain.tilesX * kTileSide;
-        for (uint32_t lane = 0; lane < kTileSide * kTileSide; ++lane) {
-            const uint32_t texel = corner + lane / kTileSide * width + lane % kTileSide;
+        const TileTexels texels = domain.texelsOf(t);
+        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
+            const uint32_t texel = texels[lane];
             if (!grid.real(texel) || grid.linkRecord[texel] == kNone) continue;
             setBit(tile.rimMaskLow, tile.rimMaskHigh, lane);
             for (int k = 0; k < 8; ++k) {
                 const uint32_t link = grid.ring(texel, k);
                 domain.links.push_back(link);
-                if (link == kNone || tileOf(link) == t) continue;
-                reads.push_back({tileOf(link), t});
-                TileStatic& source = domain.tiles[tileOf(link)];
-                setBit(source.seamMaskLow, source.seamMaskHigh, laneOf(link));
+                const uint32_t of = link == kNone ? t : domain.tileOf(link);
+                if (of == t) continue;
+                reads.push_back({of, t});
+                TileStatic& source = domain.tiles[of];
+                setBit(source.seamMaskLow, source.seamMaskHigh, domain.laneOf(link));
             }
         }
     }
@@ -50,6 +46,7 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_reso
     reads.erase(std::unique(reads.begin(), reads.end()), reads.end());
     domain.readers.reserve(reads.size());
     size_t next = 0;
+    FW_ASSERT(domain.links.size() % 8 == 0, "%zu links", domain.links.size());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         domain.tiles[t].readerStart = uint32_t(next);
         for (; next < reads.size() && reads[next].of == t; ++next)
@@ -62,9 +59,7 @@ void buildTileBounds(BurnDomain& domain) {
     domain.tileBounds.assign(domain.tileCount(), TileBounds{});
     for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
         if (!domain.real(texel)) continue;
-        const uint32_t tile =
-            texel / domain.width / kTileSide * domain.tilesX + texel % domain.width / kTileSide;
-        TileBounds& bounds = domain.tileBounds[tile];
+        TileBounds& bounds = domain.tileBounds[domain.tileOf(texel)];
         const TexelPosition& p = domain.texels[texel];
         const uint16_t at[3] = {p.x, p.y, p.z};
         for (int k = 0; k < 3; ++k) {

@@ -1,5 +1,5 @@
-// Refuses what cannot be baked, in plain words. What is merely ugly (degenerate, non-manifold,
-// overlapping) is not refused here: later steps live with it.
+// Refuses input that the bake cannot use. Degenerate triangles, non-manifold edges and overlaps are
+// no reason to refuse: later steps handle them.
 #include "core/error.h"
 #include "mesh/surface.h"
 

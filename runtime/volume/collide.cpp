@@ -1,6 +1,7 @@
-// Distances to shapes, and what they do to a tube.
+// Distances to shapes, and the flattening of a tube against them.
 #include "volume/collide.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 #include "volume/depth_picture.h"
 
@@ -12,9 +13,9 @@ namespace {
 
 constexpr float kMostSqueeze = 0.88f;
 constexpr float kMostWiden = 1.7f;
-constexpr float kBelow = 0.1f;         // m below ground that is still counted as on it
-constexpr float kSkin = 1e-3f;         // m, of what a ray may touch
-constexpr uint32_t kMostFeeler = 48u;  // steps along a ray that has to be felt
+constexpr float kBelow = 0.1f;         // m below ground that still counts as on it
+constexpr float kSkin = 1e-3f;         // m by which a ray may graze a shape
+constexpr uint32_t kMostFeeler = 48u;  // samples along a ray
 
 vec3 normalOr(vec3 v, vec3 fallback) noexcept {
     const float l = glm::length(v);
@@ -55,6 +56,7 @@ Slope slopeOf(const Collider& c, float x, float z) noexcept {
     slope.within = u >= 0.0f && v >= 0.0f && u <= most[0] && v <= most[1];
     u = std::clamp(u, 0.0f, most[0]), v = std::clamp(v, 0.0f, most[1]);
     const uint32_t i = std::min(uint32_t(u), c.columns - 2), k = std::min(uint32_t(v), c.rows - 2);
+    FW_ASSERT(i + 1 < c.columns && k + 1 < c.rows, "cell (%u, %u)", i, k);
     const auto at = [&](uint32_t x1, uint32_t z1) {
         return c.heights[size_t(z1) * c.columns + x1];
     };
@@ -75,7 +77,7 @@ Surface ofHeights(const Collider& c, vec3 point) noexcept {
     return {distance, normal};
 }
 
-// Squared distance from a point to a piece of a line.
+// Squared distance from a point to a line segment.
 float awayFrom(vec3 a, vec3 b, vec3 point) noexcept {
     const vec3 along = b - a, to = point - a;
     const float l2 = glm::dot(along, along);
@@ -84,7 +86,7 @@ float awayFrom(vec3 a, vec3 b, vec3 point) noexcept {
     return glm::dot(off, off);
 }
 
-// Of two pieces of lines; where they are skew in between, that is where they are nearest.
+// Squared distance between two segments.
 float awayFrom(vec3 a, vec3 b, vec3 c, vec3 d) noexcept {
     const vec3 u = b - a, v = d - c, w = a - c;
     const float uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
@@ -123,7 +125,7 @@ bool feels(const Collider& c, vec3 from, vec3 to) noexcept {
     for (float t = 0.0f; t < length;) {
         const float d = surfaceOf(c, from + (to - from) * (t / length)).distance;
         if (d < -kSkin) return true;
-        // Heights are no distances, and beside their field there are none.
+        // A height is not a distance, and outside the field there is none.
         t += c.kind == ColliderKind::HeightField ? least : std::max(0.9f * d, least);
     }
     return false;
@@ -264,6 +266,7 @@ void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode>
         const float squeeze = std::clamp(1.0f - s.distance / radius, 0.0f, 1.0f) * most;
         if (squeeze <= 0.0f) continue;
         const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMostWiden);
+        FW_ASSERT(squeeze < 1.0f, "squeeze %g", double(squeeze));
         node.squeeze = vec4(normalOr(across, vec3(0, 1, 0)), squeeze);
         node.side.w = widen;
         node.centre.w = radius * widen;

@@ -1,6 +1,8 @@
 // The spline of a flame: uniform cubic B-spline, arc length by Simpson, double-reflection frames.
 #include "volume/curve.h"
 
+#include "core/assert.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -61,6 +63,7 @@ void Curve::set(std::span<const ControlPoint> points, vec3 up) noexcept {
     };
     points_[0] = phantom(points_[1], points_[2]);
     points_[n + 1] = phantom(points_[n], points_[n - 1]);
+    FW_ASSERT(n >= 2 && n + 1 < points_.size(), "%u points", n);
     spans_ = n - 1;
 
     arc_[0] = 0.0f;
@@ -103,17 +106,19 @@ CurveSample Curve::at(float s) const noexcept {
     }
     const auto above = std::upper_bound(arc_.begin(), arc_.end(), s);
     const uint32_t k = uint32_t(above - arc_.begin()) - 1;
+    FW_ASSERT(k < kArcEntries, "piece %u", k);
     const float piece = arc_[k + 1] - arc_[k];
     return evaluate((float(k) + (piece > 0.0f ? (s - arc_[k]) / piece : 0.0f)) /
                     float(kArcEntries));
 }
 
 void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept {
+    FW_ASSERT(std::isfinite(length), "%g m", double(length));
     const float step = std::max(length, 1e-4f) / float(nodes.size() - 1);
     vec3 tangent = curve.at(0.0f).tangent;
     for (size_t k = 0; k < nodes.size(); ++k) {
         const CurveSample at = curve.at(step * float(k));
-        // Where the spline stands still its slope says nothing; what was before it does.
+        // Where the spline's slope is zero, the previous tangent holds.
         tangent = unitOr(at.tangent, tangent);
         nodes[k].centre = vec4(at.position, at.radius);
         nodes[k].along = vec4(tangent, step * float(k));
@@ -127,7 +132,7 @@ void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weig
     for (gpu::FlameNode& node : nodes) {
         const float level =
             weight - weight * glm::smoothstep(0.0f, std::max(over, kTiny), node.along.w);
-        // Where gas flows down or along, its own way counts.
+        // Gas that flows down or sideways keeps its direction.
         const float upright = glm::smoothstep(0.05f, 0.4f, glm::dot(vec3(node.along), up));
         node.along =
             vec4(unitOr(glm::mix(vec3(node.along), up, level * upright), up), node.along.w);
@@ -149,7 +154,7 @@ void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept {
         nodes[k].side = vec4(side, nodes[k].side.w);
         before = along;
     }
-    // Of neighbours a and b, a point c_a + p of a's plane lies before b's while p.t_b < h.t_b.
+    // For neighbours a and b: a point c_a + p of a's plane lies before b's while p.t_b < h.t_b.
     const auto limit = [&](const gpu::FlameNode& a, const gpu::FlameNode& b) {
         const vec3 ta = vec3(a.along), tb = vec3(b.along), h = vec3(b.centre) - vec3(a.centre);
         const float lean = glm::length(tb - ta * glm::dot(ta, tb)) * gpu::kFlameReach;
@@ -162,7 +167,7 @@ void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept {
         if (k + 1 < n) most = std::min(most, limit(nodes[k], nodes[k + 1]));
         nodes[k].centre.w = std::isfinite(most) ? std::max(most, 0.0f) : 0.0f;
     }
-    // Necks open and close gently.
+    // Limits the slope of the radius.
     for (size_t k = 1; k < n; ++k)
         nodes[k].centre.w = std::min(
             nodes[k].centre.w,

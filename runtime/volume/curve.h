@@ -1,6 +1,6 @@
-// The curve of a flame: a cubic B-spline through a base, with a radius along it, laid out as evenly
-// spaced nodes with bisector planes and a frame that does not twist. Fixed storage, no heap.
-// Any finite points are fine: coincident, collinear, looping, few. What moves them: motion.h.
+// The curve of a flame: a cubic B-spline from a base, with a radius along it, as evenly spaced
+// nodes with bisector planes and a twist-free frame. Fixed storage, no heap. Takes any finite
+// points: coincident, collinear, looping, few. motion.h moves them.
 #pragma once
 #include "shared/volume.h"
 
@@ -34,8 +34,7 @@ struct CurveSample {
 // The spline itself, by parameter and by arc length.
 class Curve {
  public:
-    // Takes the first kMaxControlPoints. Points that are all one become a short straight piece
-    // along `up`.
+    // Uses the first kMaxControlPoints. Coincident points become a short straight piece along `up`.
     void set(std::span<const ControlPoint> points, vec3 up) noexcept;
     [[nodiscard]] float length() const noexcept { return arc_[kArcEntries]; }  // m, > 0
     // At s metres from the base; straight on beyond either end.
@@ -56,14 +55,14 @@ using FlameNodes = std::array<gpu::FlameNode, gpu::kFlameNodes>;
 // Nodes every length / (kFlameNodes - 1) metres. Radii are clamped so that no two neighbouring
 // bisector planes meet inside the tube: each point of it then lies between one pair of planes.
 void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept;
-// Turns the lowest planes level, so that a leaning flame stands on its bed and not on edge: wholly
-// at the base, no more at `over` metres; all of it `weight` much.
+// Levels the lowest planes, so that a leaning flame stands flat on its bed: fully at the base, not
+// at all from `over` metres on; scaled by `weight`.
 void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept;
-// Clamp and frames alone, for nodes that something moved; `nodes` keep their places.
+// Computes radius limits and frames again after nodes moved; `nodes` keep their places.
 void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept;
 
-// The place of a point in the curve's coordinates: of all pairs of planes that it lies between, the
-// one whose axis it is nearest to, counted in radii. None: before the base or beyond the end.
+// The place of a point in the curve's coordinates, between the pair of planes whose axis is nearest
+// in radii. None: before the base or beyond the end.
 struct Located {
     gpu::FlamePlace place;
     float rho = 0.0f;    // |p| over radius

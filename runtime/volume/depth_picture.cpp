@@ -1,6 +1,7 @@
-// Depths to patches, and the nearest of those around a point.
+// Depths to patches, and the search for the nearest patch around a point.
 #include "volume/depth_picture.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 
 #include <glm/gtc/matrix_inverse.hpp>
@@ -11,22 +12,22 @@
 namespace fw::volume {
 namespace {
 
-constexpr float kFarthest = 1e5f;  // m, clip w of what still counts as something
-constexpr float kGrazing = 0.03f;  // cosine to the eye of what is seen too much on edge to be known
-// Of the reach: so far behind what is seen a point is still inside of it, and not behind a post.
+constexpr float kFarthest = 1e5f;  // m, largest clip w of a surface
+constexpr float kGrazing = 0.03f;  // cosine to the camera; below it the slope is unknown
+// Thickness of surfaces, of the reach: a point further behind is not inside.
 constexpr float kThick = 0.1f;
-// Texels from the point's own at which the picture is looked at, eight to each ring; and then,
-// nearer and nearer, from the best of them.
+// Distances in texels of the search around the point's own texel, eight texels a ring; and then of
+// the search around the best of them.
 constexpr int kRings[] = {1, 2, 4, 8, 16, 32};
 constexpr int kCloser[] = {8, 4, 2, 1};
 constexpr int kAround[8][2] = {{1, 0},  {1, 1},   {0, 1},  {-1, 1},
                                {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
-constexpr float kStraight = 0.8f;  // cosine, of ways to two texels in a row on one surface
-constexpr float kPatch = 0.6f;  // of the way to the next texel: so far from its middle one reaches
-// Looked for up and down over the reach; so often closer.
+constexpr float kStraight = 0.8f;  // least cosine between two steps along one surface
+constexpr float kPatch = 0.6f;     // half side of a patch, of the distance to the next texel
+// Steps of the search for a shelf over the reach, and its bisections.
 constexpr int kShelfSteps = 12, kShelfCloser = 4;
-constexpr float kShelfLevel = 0.5f;   // its normal's share of up, at least
-constexpr float kShelfInside = 0.7f;  // of its thickness: gas in it is put back down, above it up
+constexpr float kShelfLevel = 0.5f;   // least upward part of a shelf's normal
+constexpr float kShelfInside = 0.7f;  // of its thickness: gas below that leaves downwards
 
 glm::mat4 matrixOf(const float m[16]) noexcept {
     glm::mat4 out;
@@ -42,20 +43,21 @@ bool finite(const glm::mat4& m) noexcept {
     return true;
 }
 
-// To the texel beside it, `step` and `count` of which lie before and after: over an edge it is the
-// nearer one, and the surface must go on so, there or to the other side. Zero: nobody knows.
+// The step to the neighbouring place along a row or column; `before` and `after`: texels on each
+// side. At an edge the nearer neighbour counts, if the surface continues straight on either side of
+// the step. Zero: unknown.
 vec3 slopeAt(const DepthPicture& picture, uint32_t at, uint32_t step, uint32_t before,
              uint32_t after) noexcept {
-    const auto way = [&](uint32_t from, uint32_t to, vec3& out) {
+    const auto between = [&](uint32_t from, uint32_t to, vec3& out) {
         const DepthTexel &a = picture.texels[from], &b = picture.texels[to];
         out = b.place - a.place;
         return a.shown && b.shown;
     };
     vec3 ways[4];  // from two before it to two after
-    const bool there[4] = {before > 1 && way(at - 2 * step, at - step, ways[0]),
-                           before > 0 && way(at - step, at, ways[1]),
-                           after > 0 && way(at, at + step, ways[2]),
-                           after > 1 && way(at + step, at + 2 * step, ways[3])};
+    const bool there[4] = {before > 1 && between(at - 2 * step, at - step, ways[0]),
+                           before > 0 && between(at - step, at, ways[1]),
+                           after > 0 && between(at, at + step, ways[2]),
+                           after > 1 && between(at + step, at + 2 * step, ways[3])};
     vec3 slope(0.0f);
     float least = 1e30f;
     for (const int k : {1, 2}) {
@@ -78,13 +80,13 @@ struct Nearest {
     Surface surface;
 };
 
-// Whether it is nearer than what is known. `behind`: the point is not seen.
+// Keeps the texel's patch if it is the nearest so far. `behind`: the camera does not see the point.
 bool meet(const DepthTexel& texel, float reach, vec3 point, bool behind,
           Nearest& nearest) noexcept {
     if (!texel.known) return false;
     const vec3 off = point - texel.place;
     const float above = glm::dot(off, texel.normal);
-    // What is seen is not inside of anything, however far a patch is taken to reach.
+    // A visible point is inside nothing, however far a patch reaches.
     if (above < (behind ? -kThick * reach : 0.0f)) return false;
     vec3 beside = off - above * texel.normal;
     for (const vec3& side : {texel.across, texel.down})
@@ -99,7 +101,7 @@ bool meet(const DepthTexel& texel, float reach, vec3 point, bool behind,
     return true;
 }
 
-// What the picture has where a point from the eye is; null: it is beside the picture.
+// The texel at a point from the camera; null: the point is beside the picture.
 const DepthTexel* texelAt(const DepthPicture& picture, vec3 off, int& column, int& row) noexcept {
     const vec4 clip = picture.toClip * vec4(off, 1.0f);
     if (!(clip.w > 1e-6f)) return nullptr;
@@ -108,6 +110,7 @@ const DepthTexel* texelAt(const DepthPicture& picture, vec3 off, int& column, in
     if (!(x >= 0.0f && y >= 0.0f && x < float(picture.columns) && y < float(picture.rows)))
         return nullptr;
     column = int(x), row = int(y);
+    FW_ASSERT(picture.texels.size() == size_t(picture.columns) * picture.rows);
     return &picture.texels[size_t(row) * picture.columns + size_t(column)];
 }
 
@@ -115,8 +118,9 @@ bool isBehind(const DepthTexel& texel, vec3 off) noexcept {
     return texel.known && glm::dot(off - texel.place, texel.normal) < 0.0f;
 }
 
-// The underside of what is seen from above over a point, where the room below it is seen too: as
-// far below its top as it is taken to be thick, or where that room ends. Ground has no such room.
+// Keeps the underside of a shelf over a point: a surface seen from above whose room below is also
+// visible. The underside lies kThick below the top, or where the visible room ends. Ground has no
+// such room.
 void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& nearest) noexcept {
     const vec3 step(0.0f, reach / float(kShelfSteps), 0.0f);
     const auto hides = [&](vec3 at, const DepthTexel*& texel) {
@@ -124,7 +128,7 @@ void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& near
         texel = texelAt(picture, at, column, row);
         return texel && isBehind(*texel, at);
     };
-    const DepthTexel* texel = nullptr;  // where a point was last looked for
+    const DepthTexel* texel = nullptr;  // of the last point
     bool hidden = hides(off, texel);
     int up = 1;
     for (; up <= kShelfSteps; ++up) {
@@ -134,7 +138,7 @@ void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& near
         if (before && !hidden) break;
     }
     if (up > kShelfSteps) return;
-    // Close over its top: further up rays to the eye pass over what is behind it.
+    // Bisects to the top: from higher points, rays to the camera pass over surfaces behind it.
     vec3 over = off + float(up) * step, under = over - step;
     for (int k = 0; k < kShelfCloser; ++k) {
         const DepthTexel* at = nullptr;
@@ -149,7 +153,7 @@ void meetShelf(const DepthPicture& picture, float reach, vec3 off, Nearest& near
     }
     if (!texel->known || texel->normal.y < kShelfLevel) return;
     const float top = over.y - glm::dot(over - texel->place, texel->normal) / texel->normal.y;
-    if (over.y - top > step.y) return;  // what is seen there lies far behind
+    if (over.y - top > step.y) return;  // the texel shows a surface far behind
     float room = 1e9f;
     for (int down = up - 1; down >= up - 2 * kShelfSteps && room == 1e9f; --down) {
         const vec3 at = off + float(down) * step;
@@ -176,6 +180,8 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
     if (!finite(toView) || !finite(toClip) || !finite(fromClip))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "view and projection of the picture of depth have no inverse.");
+    FW_ASSERT(depths.size() == size_t(columns) * rows, "%zu depths, %u x %u texels", depths.size(),
+              columns, rows);
     picture.texels.resize(size_t(columns) * rows);
     picture.columns = columns;
     picture.rows = rows;
@@ -189,11 +195,11 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
             const vec4 there = fromClip * clip;
             DepthTexel& texel = picture.texels[at];
             texel = {};
-            if (!(there.w > 1.0f / kFarthest)) continue;  // the end of an endless view
+            if (!(there.w > 1.0f / kFarthest)) continue;  // the background
             texel.place = vec3(there) / there.w;
             texel.shown = true;
         }
-    // Clip w grows along it, whichever way the host's view space looks.
+    // The direction in which clip w grows, whatever the host's view space.
     const float side = toScreen[2][3] > 0.0f ? 1.0f : -1.0f;
     const vec3 forward = side * vec3(rotation[0][2], rotation[1][2], rotation[2][2]);
     const bool perspective = toScreen[2][3] != 0.0f;
@@ -204,10 +210,10 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
             if (!texel.shown) continue;
             const vec3 x = slopeAt(picture, at, 1, column, columns - 1 - column);
             const vec3 y = slopeAt(picture, at, columns, row, rows - 1 - row);
-            const vec3 way = perspective ? texel.place : forward;
+            const vec3 ray = perspective ? texel.place : forward;
             const vec3 normal = glm::cross(x, y);
-            const float size = glm::length(normal) * glm::length(way);
-            const float facing = size > 0.0f ? glm::dot(normal, way) / size : 0.0f;
+            const float size = glm::length(normal) * glm::length(ray);
+            const float facing = size > 0.0f ? glm::dot(normal, ray) / size : 0.0f;
             if (!(std::abs(facing) > kGrazing)) continue;
             texel.normal = glm::normalize(facing > 0.0f ? -normal : normal);
             texel.across = x;
@@ -230,11 +236,11 @@ Surface surfaceOf(const DepthPicture& picture, float reach, vec3 point) noexcept
     };
     look(column, row);
     for (const int ring : kRings)
-        for (const auto& way : kAround) look(column + ring * way[0], row + ring * way[1]);
+        for (const auto& off2 : kAround) look(column + ring * off2[0], row + ring * off2[1]);
     if (nearest.away <= reach)
         for (const int ring : kCloser) {
             const int i = nearest.column, j = nearest.row;
-            for (const auto& way : kAround) look(i + ring * way[0], j + ring * way[1]);
+            for (const auto& off2 : kAround) look(i + ring * off2[0], j + ring * off2[1]);
         }
     meetShelf(picture, reach, off, nearest);
     return nearest.away <= reach ? nearest.surface : Surface{};

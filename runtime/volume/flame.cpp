@@ -1,7 +1,7 @@
-// A flame's frame: power, drivers, curve, walls, record, bounds, light; and answers about it.
+// A flame's frame: power, drivers, curve, walls, record, bounds, light; and queries.
 #include "volume/flame.h"
 
-#include "core/error.h"
+#include "core/assert.h"
 #include "core/hash.h"
 
 #include <algorithm>
@@ -13,9 +13,9 @@ namespace {
 constexpr float kPowerLag = 0.3f;       // s
 constexpr float kStefan = 5.67e-8f;     // W/(m^2 K^4)
 constexpr float kConvection = 25.0f;    // W/(m^2 K), of flames on small bodies
-constexpr float kLumensPerWatt = 0.4f;  // of what a flame radiates, soot of about 1720 K
-constexpr float kLeastFlux = 1.0f;      // W/m^2 that is worth a look for walls
-constexpr float kFadePower = 0.02f;     // kW below which a flame grows thin, per m of diameter
+constexpr float kLumensPerWatt = 0.4f;  // of a flame's radiation, soot of about 1720 K
+constexpr float kLeastFlux = 1.0f;      // W/m^2; below it walls are not tested
+constexpr float kFadePower = 0.02f;     // kW per m of diameter; below it a flame fades
 
 MotionRules rulesOf(const Flame& f, const FlameAir& air) noexcept {
     MotionRules r;
@@ -36,7 +36,7 @@ float heightOf(const Flame& f, const FlameAir& air) noexcept {
     float height = f.def.height;
     if (!(height > 0.0f))
         height = std::max(flameHeight(f.power, f.def.diameter), 0.5f * f.def.diameter);
-    // A fire that dies down is lower than the law says for its bed.
+    // A dying fire is lower than the law's height for its bed.
     if (f.def.power > 0.0f) height *= std::pow(std::clamp(f.power / f.def.power, 0.0f, 1.0f), 0.2f);
     return std::max({height, air.neighbours.height, 1e-3f});
 }
@@ -45,10 +45,12 @@ void describe(Flame& f, const FlameAir& air) noexcept {
     f.size.power = f.power;
     f.size.diameter = f.def.diameter;
     f.size.height = heightOf(f, air);
-    f.size.pulse = 1.0f;  // the mean; finish() puts the rhythm on
+    f.size.pulse = 1.0f;  // the mean; finish() adds the puffing
     f.record = describeFlame(f.def.look, f.size, f.scroll, f.def.seed);
     f.record.puff *= f.tracked;  // live curves carry it in their radii
     f.record.profile = f.def.profile;
+    FW_ASSERT(f.def.diameter > 0 && f.power >= 0, "%g m, %g kW", double(f.def.diameter),
+              double(f.power));
     f.record.air.w = std::clamp(f.power / (kFadePower * f.def.diameter), 0.0f, 1.0f);
 }
 
@@ -59,18 +61,19 @@ void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept 
         f.givenCount = sampleTrack(*air.track, f.trackTime, f.given);
         for (uint32_t k = 0; k < f.givenCount; ++k) f.given[k].position += f.def.position;
     }
+    FW_ASSERT(f.givenCount <= f.given.size(), "%u points", f.givenCount);
     const std::span<const ControlPoint> other = std::span(f.given).first(f.givenCount);
     n = blendPoints(std::span(live).first(n), other, f.tracked, f.def.up, points);
     Curve curve;
     curve.set(std::span(points).first(n), f.def.up);
-    // As far as the highest puff, so that nodes do not slide with the rhythm.
+    // Up to the highest puff, so that nodes do not slide while the flame puffs.
     layNodes(curve, rules.top * (1.0f + rules.puff), f.nodes);
     standNodes(f.nodes, f.def.up, std::min(f.size.diameter, 0.7f * f.size.height),
                1.0f - f.tracked);
     squeezeNodes(air.colliders, f.nodes);
 }
 
-// Pink: three slow noises, each of the flame's own.
+// Pink noise: three slow octaves, different for each flame.
 float flicker(const Flame& f) noexcept {
     const float t = float(std::fmod(f.age, 512.0)),
                 own = 61.0f * float(core::hash32(f.def.seed) & 1023u);
@@ -105,7 +108,7 @@ void shine(Flame& f) noexcept {
     const float now = 1.0f + l.flicker * (0.6f * pulse + 2.0f * flicker(f));
     f.light = lightOf(f, vec3(nodeAt(f, 0.4f * f.size.height).centre));
     f.light.flux *= std::max(now, 0.0f);
-    // Smoke is lit from there: radiance m^2 of about the flame's size.
+    // Light on the smoke: radiance times m^2, of about the flame's size.
     f.record.glow = vec4(f.light.position, 0.06f * f.size.diameter * f.size.diameter * now);
 }
 
@@ -114,6 +117,8 @@ void finish(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
     f.record.high.w *= f.size.pulse;
     layCurve(f, air, rules);
     f.bounds = flameBounds(f.record, f.nodes);
+    FW_ASSERT(f.bounds.low.x <= f.bounds.high.x && f.bounds.low.y <= f.bounds.high.y &&
+              f.bounds.low.z <= f.bounds.high.z);
     f.record.low = vec4(f.bounds.low, f.record.low.w);
     f.record.high = vec4(f.bounds.high, f.record.high.w);
     shine(f);
@@ -124,54 +129,6 @@ float clampPower(float power) noexcept {
 }
 
 }  // namespace
-
-void checkFlame(const FlameDef& d) {
-    const auto range = [](const char* name, float value, float low, float high) {
-        if (!(value >= low && value <= high))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s of the volumetric fire is %g; it must lie in [%g, %g].", name,
-                       double(value), double(low), double(high));
-    };
-    for (int k = 0; k < 3; ++k) {
-        range("position", d.position[k], -1e6f, 1e6f);
-        range("up", d.up[k], -1.01f, 1.01f);
-    }
-    range("length of up", glm::length(d.up), 0.99f, 1.01f);
-    range("power (kW)", d.power, 0.0f, 1e6f);
-    range("diameter (m)", d.diameter, 1e-3f, 100.0f);
-    range("height (m)", d.height, 0.0f, 200.0f);
-    range("blend (s)", d.blend, 0.0f, 60.0f);
-    range("weight", d.weight, 0.0f, 1.0f);
-    const FlameLook& l = d.look;
-    range("turbulence", l.turbulence, 0.0f, 2.0f);
-    range("stretch", l.stretch, 0.5f, 8.0f);
-    range("lambda", l.lambda, 0.05f, 4.0f);
-    range("lambdaWarp", l.lambdaWarp, 0.05f, 4.0f);
-    range("lambdaColumn", l.lambdaColumn, 0.05f, 4.0f);
-    range("ridge", l.ridge, 0.0f, 1.0f);
-    range("converge", l.converge, 0.0f, 1.3f);
-    range("puff", l.puff, 0.0f, 0.5f);
-    range("burn", l.burn, 0.01f, 10.0f);
-    range("dispersion", l.dispersion, 0.0f, 1.0f);
-    range("thickness", l.thickness, 0.0f, 100.0f);
-    range("erode", l.erode, 0.0f, 0.9f);
-    range("filament", l.filament, 0.0f, 1.0f);
-    range("filamentWidth", l.filamentWidth, 0.01f, 2.0f);
-    range("filamentHeight", l.filamentHeight, 0.01f, 2.0f);
-    range("blueHeight", l.blueHeight, 0.01f, 10.0f);
-    range("smoke (1/m)", l.smoke, 0.0f, 20.0f);
-    range("smokeTop", l.smokeTop, 0.0f, 8.0f);
-    for (float c : l.tint) range("tint", c, 0.0f, 1.0f);
-    for (float c : l.coreTint) range("coreTint", c, 0.0f, 1.0f);
-    if (l.octaves < 1 || l.octaves > gpu::kFlameOctaves)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "octaves of the volumetric fire is %u; it must lie in [1, %u].", l.octaves,
-                   gpu::kFlameOctaves);
-    if (uint32_t(d.driver) > uint32_t(FlameDriver::Host))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "driver of the volumetric fire is %u; the last one is %u.", uint32_t(d.driver),
-                   uint32_t(FlameDriver::Host));
-}
 
 FlameLight meanLight(const FlameDef& def) noexcept {
     Flame f;
@@ -197,7 +154,7 @@ void carryFlame(Flame& f, vec3 by) noexcept {
     f.bounds.low += by, f.bounds.high += by;
     f.light.position += by;
     for (gpu::FlameNode& node : f.nodes) node.centre += vec4(by, 0.0f);
-    // A track's points follow the base by themselves, the host's are the host's.
+    // A track's points follow the base already; a host's points stay the host's.
     if (f.def.driver == FlameDriver::Live)
         for (uint32_t k = 0; k < f.givenCount; ++k) f.given[k].position += by;
 }
@@ -228,15 +185,6 @@ void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
     finish(f, air, rules);
 }
 
-bool isSeen(const Bounds& b, std::span<const vec4> planes) noexcept {
-    const vec3 middle = 0.5f * (b.low + b.high), half = 0.5f * (b.high - b.low);
-    for (const vec4& plane : planes) {
-        const vec3 n(plane);
-        if (glm::dot(n, middle) + plane.w < -glm::dot(glm::abs(n), half)) return false;
-    }
-    return true;
-}
-
 FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
                      std::span<const Collider> walls) noexcept {
     FlameAnswer a;
@@ -245,7 +193,7 @@ FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
     const auto at = locate(f.nodes, point);
     if (at && at->rho < 3.0f) {
         a.s = at->place.s, a.rho = at->rho;
-        const float y = at->place.s / height;  // of what is seen
+        const float y = at->place.s / height;  // of the visible height
         const vec2 burns = profile.sample(at->rho, y);
         a.inside = y <= 1.0f && burns.y > 0.05f;
         // Plume around and above: the law's centreline, Gaussian across.
@@ -253,7 +201,7 @@ FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
         const float off = at->rho * at->place.radius / wide;
         const float share = std::exp(-off * off);
         const float plume = plumeExcess(f.power, std::max(at->place.s, 0.05f * height)) * share;
-        // Gas in the flame is cooler on the mean than the soot that shines.
+        // On the mean, gas in the flame is cooler than luminous soot.
         a.kelvin =
             kAmbientKelvin +
             (a.inside ? std::max(0.62f * (1000.0f * burns.x - kAmbientKelvin), plume) : plume);

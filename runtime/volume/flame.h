@@ -1,5 +1,5 @@
-// One volumetric flame: what is asked of it, what moves it, and what it gives to drawing, lighting
-// and gameplay. Plain data and functions; owns no device memory and, but for a track, no heap.
+// One volumetric flame: its def, its motion, and its output for drawing, lighting and gameplay.
+// Plain data and functions; owns no device memory and, except for a track, no heap.
 #pragma once
 #include "volume/march.h"
 #include "volume/motion.h"
@@ -9,31 +9,29 @@ namespace fw::volume {
 
 enum class FlameDriver : uint32_t { Live, Track, Host };
 
-// What a host asks for. Maps one to one to the public def.
+// Parameters of a flame. A fire of the public def burns as one or many flames.
 struct FlameDef {
     vec3 position{0.0f};        // m, of the fuel's middle
     vec3 up{0.0f, 1.0f, 0.0f};  // against gravity
     float power = 60.0f;        // kW, [0, 1e6]; 0: it goes out
     float diameter = 0.6f;      // m, (0, 100]
-    float height = 0.0f;        // m that is seen; 0: Heskestad's, of power and diameter
+    float height = 0.0f;        // m, visible; 0: Heskestad's, from power and diameter
     FlameLook look;
     FlameDriver driver = FlameDriver::Live;
     float blend = 0.3f;   // s from one driver to another
-    float weight = 1.0f;  // [0, 1] of the track or the host over what is live
+    float weight = 1.0f;  // [0, 1] of the track or the host over the live motion
     uint32_t seed = 1;
     uint32_t profile = 0;  // layer of the fire-profile
 };
-// Throws core::Error that names the field, the value and the limit.
-void checkFlame(const FlameDef& def);
 
 struct FlameLight {       // one per flame
     vec3 position{0.0f};  // m
-    float radius = 0.0f;  // m, of the area that shines
+    float radius = 0.0f;  // m, of the luminous area
     vec3 colour{0.0f};    // linear, luminance 1
     float flux = 0.0f;    // lm
 };
 
-// Of a flame that has not been advanced yet, without flicker.
+// The light of a new flame, without flicker.
 FlameLight meanLight(const FlameDef& def) noexcept;
 
 struct Flame {
@@ -42,12 +40,12 @@ struct Flame {
     float power = 0.0f;      // kW, follows def.power in 0.3 s
     float tracked = 0.0f;    // [0, 1] weight of track or host over live
     double trackTime = 0.0;  // s
-    // By the host, or of the track as it was last; m in the world.
+    // Points of the host, or of the track at its last time; m, world.
     std::array<ControlPoint, kMaxControlPoints> given{};
     uint32_t givenCount = 0;
     FlameMotion motion;
     FlameScroll scroll;
-    // What it gives, made by advanceFlame.
+    // Output of advanceFlame.
     gpu::FlameRecord record{};
     FlameNodes nodes{};
     FlameSize size;
@@ -57,36 +55,33 @@ struct Flame {
 
 struct FlameAir {              // around a flame, this frame
     vec3 wind{0.0f};           // m/s
-    Neighbourhood neighbours;  // height 0: it is alone
+    Neighbourhood neighbours;  // height 0: none
     std::span<const Collider> colliders;
     const Track* track = nullptr;
 };
 
 void startFlame(Flame& flame, const FlameDef& def,
-                const FlameAir& air) noexcept;  // as if it had burnt for long
-// Moves all of it, its history included, by m in the world.
+                const FlameAir& air) noexcept;  // at full height
+// Moves the flame and its history, m, world.
 void carryFlame(Flame& flame, vec3 by) noexcept;
-// A base that is farther off than kTeleport allows in these seconds takes the whole flame along:
-// gas that stayed behind would lie flat towards where the base was.
+// A base that moves faster than kTeleport takes the whole flame along: gas that stayed behind would
+// lie flat between the two places.
 void followTeleport(Flame& flame, double seconds) noexcept;
 void advanceFlame(Flame& flame, const FlameAir& air, double seconds) noexcept;
 
-// Whether anything of it is on the good side of all planes (xyz normal inward, w distance).
-bool isSeen(const Bounds& bounds, std::span<const vec4> planes) noexcept;
-
 struct FlameAnswer {
-    bool inside = false;         // in the luminous flame, on the mean
-    float s = 0.0f, rho = 0.0f;  // m along, radii off the axis; 0, -1 where it is in no tube
+    bool inside = false;         // in the mean luminous flame
+    float s = 0.0f, rho = 0.0f;  // m along the axis, radii off it; 0, -1 outside the tube
     float kelvin = kAmbientKelvin;
-    float heatFlux = 0.0f;  // W/m^2 on a small cold body there, from gas and by radiation
-    vec3 gas{0.0f};         // m/s of the gas there
+    float heatFlux = 0.0f;  // W/m^2 on a small cold body, from gas and by radiation
+    vec3 gas{0.0f};         // m/s of the gas
 };
-// `walls` shade radiation; gas is where the flame is.
+// `walls` stop radiation, not gas.
 FlameAnswer askFlame(const Flame& flame, const Profile& profile, vec3 point,
                      std::span<const Collider> walls = {}) noexcept;
 
 struct FlamePush {
-    vec3 force{0.0f};       // N on a sphere that stands still
+    vec3 force{0.0f};       // N on a sphere at rest
     float ignition = 0.0f;  // W into it
 };
 FlamePush pushOf(const Flame& flame, const Profile& profile, vec3 centre, float radius,

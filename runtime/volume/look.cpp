@@ -1,6 +1,7 @@
 // Presets, painters of profiles, and the published laws of a flame's height and rhythm.
 #include "volume/look.h"
 
+#include "core/assert.h"
 #include "core/hash.h"
 
 #include <algorithm>
@@ -12,8 +13,8 @@ namespace {
 using glm::mix;
 using glm::smoothstep;
 
-// Of an eddy's wavelength, how far it throws fire at most. Further folds tongues over themselves,
-// and a sample's step is more than a shred of flame: tips were strings of beads.
+// Most displacement by an eddy, of its wavelength. More would fold flame tongues over themselves,
+// into shreds smaller than a sample's step.
 constexpr float kMostWarp = 1.0f;
 
 struct Paint {
@@ -206,10 +207,11 @@ uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamele
         out[0] = {0.0f, 0.0f, q, d, std::max(whole, 1e-3f)};
         return 1;
     }
-    // As many as would lie side by side, were each as wide as the fire's one flame could be.
+    // The number that lie side by side if each is as wide as a single flame of the fire could be.
     const auto width = [&](float parts) { return 0.235f * std::pow(q / parts, 0.4f) / 2.02f; };
     const float ratio = d / std::max(width(1.0f), 1e-4f);
     const uint32_t n = uint32_t(std::clamp(0.6f * ratio * ratio, 2.0f, float(kMaxFlamelets)));
+    FW_ASSERT(n >= 2 && n <= kMaxFlamelets, "%u flames", n);
     const float each = std::min(width(float(n)), d);
     for (uint32_t k = 0; k < n; ++k) {  // a sunflower's pattern
         const float r = 0.5f * std::max(d - each, 0.0f) * std::sqrt((float(k) + 0.5f) / float(n));
@@ -224,7 +226,8 @@ void advanceScroll(FlameScroll& s, const FlameLook& look, const gpu::FlameRecord
                    double seconds) noexcept {
     const double metres = double(r.speed) * double(look.burn) * seconds;
     const double cells = metres / double(r.stretch * r.lambda);
-    for (uint32_t o = 0; o < gpu::kFlameOctaves; ++o)  // each octave has a speed of its own besides
+    FW_ASSERT(r.stretch > 0 && r.lambda > 0 && r.lambdaWarp > 0 && r.lambdaColumn > 0);
+    for (uint32_t o = 0; o < gpu::kFlameOctaves; ++o)  // octaves differ in speed
         s.octaves[o] = wrapped(s.octaves[o] + cells * (double(1u << o) + 0.13 * double(o)));
     s.warp = wrapped(s.warp + metres / double(r.stretch * r.lambdaWarp));
     s.column = wrapped(s.column + 0.35 * metres / double(r.stretch * r.lambdaColumn));

@@ -1,5 +1,5 @@
-// How a flame looks: the numbers of its noise, its light and its smoke, relative to its own size,
-// with presets; and how a heat release becomes a height. Not where it is: curve.h, motion.h.
+// Appearance of a flame: parameters of its noise, light and smoke, relative to its size, with
+// presets; and the laws from heat release to height. Places are curve.h's and motion.h's.
 #pragma once
 #include "volume/profile.h"
 
@@ -22,7 +22,7 @@ struct FlameLook {
     float converge = 1.05f;    // [0, 1.3] tongues lean inward
     float puff = 0.15f;        // [0, 0.5] amplitude of puffing at 1.5 / sqrt(D)
     float burn = 1.0f;         // speed of everything that moves
-    float dispersion = 0.35f;  // [0, 1] how far hot gas strays, of its speed
+    float dispersion = 0.35f;  // [0, 1] random sideways speed of hot gas, of its speed
     float thickness = 5.4f;    // optical depth of soot across the scale length
     float blue = 0.15f, blueHeight = 0.10f;
     float erode = 0.28f;
@@ -33,17 +33,17 @@ struct FlameLook {
     float smokeAlbedo = 0.6f;          // wood's; oil's and plastics' is less
     float tint[4] = {1, 1, 1, 0};      // linear rgb, weight
     float tintWhite = 0.18f;           // whiteness of the hottest under a tint
-    float coreTint[4] = {1, 1, 1, 0};  // linear rgb of the hottest, weight: instead of that
+    float coreTint[4] = {1, 1, 1, 0};  // linear rgb of the hottest, weight over tintWhite
     float flicker = 0.15f;             // of the light proxy
-    float radiant = 0.35f;             // share of the heat release that is radiated
-    // The profile that goes with it, if none is given.
+    float radiant = 0.35f;             // radiated share of the heat release
+    // Its default profile.
     Painter painter = Painter::Fire;
     float core = 1780.0f, tip = 1370.0f;  // K
     float coolCore = 0.06f;
     float fill = 0.35f, sheet = 0.6f, sheetWidth = 0.25f;
     float baseSoft = 0.12f, baseRound = 0.06f;
-    // Visible over profile height, see heightFactor(): of a flame up to two diameters high; and
-    // what it is more by for each of the next two doublings.
+    // Visible over profile height, see heightFactor(): up to two diameters of height, and the
+    // increase for each of the next two doublings.
     float heightFactor = 1.52f, heightSlope = 0.065f;
 };
 
@@ -71,14 +71,14 @@ FlamePresetDef presetDef(FlamePreset preset) noexcept;
 // The default profile of a look.
 void paintLook(const FlameLook& look, Profile& profile);
 
-// Heskestad: mean height of what is seen, m; negative for wide, weak fires. Q kW, D m.
+// Heskestad: mean visible height, m; negative for wide, weak fires. Q kW, D m.
 float flameHeight(float power, float diameter) noexcept;
 // Cetegen and Ahmed: Hz.
 float puffFrequency(float diameter) noexcept;
 // McCaffrey's centreline at z m above the base: m/s, K above ambient.
 float plumeSpeed(float power, float z) noexcept;
 float plumeExcess(float power, float z) noexcept;
-// Visible height over the profile's, for this look (measured, see the tests of T4.2).
+// Visible height over the profile's, for this look. Measured; the unit tests of heights check it.
 float heightFactor(const FlameLook& look, float height, float diameter) noexcept;
 
 // A fire too weak for its width burns as many small flames, each as high as it is wide.
@@ -89,10 +89,10 @@ struct Flamelet {
     float diameter = 0.0f;     // m
     float height = 0.0f;       // m, visible; > 0
 };
-// One, the whole fire, where its height is at least half its diameter.
+// One flame, the whole fire, if its height is at least half its diameter. Returns the count.
 uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamelets>& out) noexcept;
 
-// How far the noise has risen, in cells. Kept with a flame: speeds change while it burns.
+// Rise of the noise, in cells. Kept with a flame, because speeds change while it burns.
 struct FlameScroll {
     std::array<double, gpu::kFlameOctaves> octaves{};
     double warp = 0.0, column = 0.0, smoke = 0.0, puff = 0.0;
@@ -104,9 +104,9 @@ struct FlameSize {
     float power = 0.0f;     // kW
     float diameter = 0.0f;  // m
     float height = 0.0f;    // m, visible, mean
-    float pulse = 1.0f;     // what puffing does to the height now
+    float pulse = 1.0f;     // factor of puffing on the height
 };
-// All of a record but its curve, bounds and light. `seed` shifts it in the noise.
+// A record without its curve, bounds and light. `seed` shifts it in the noise.
 gpu::FlameRecord describeFlame(const FlameLook& look, const FlameSize& size,
                                const FlameScroll& scroll, uint32_t seed) noexcept;
 

@@ -1,6 +1,7 @@
 // Gas particles of a curve. Speeds are McCaffrey's; leaning, straying and touching are on top.
 #include "volume/motion.h"
 
+#include "core/assert.h"
 #include "core/hash.h"
 
 #include <algorithm>
@@ -11,8 +12,8 @@ namespace {
 
 constexpr float kStrayTime = 0.12f;  // s
 constexpr float kTwoPi = 6.2831853f;
-constexpr float kMargin = 0.05f;  // of the diameter, that gas keeps from a surface
-constexpr float kJet = 0.75f;     // of its speed that gas keeps along a wall it meets
+constexpr float kMargin = 0.05f;  // distance of gas from a surface, of the diameter
+constexpr float kJet = 0.75f;     // share of its speed that gas keeps along a wall
 
 float unitHash(uint32_t x) noexcept { return float(core::hash32(x) >> 8) / 16777216.0f; }
 
@@ -25,12 +26,12 @@ float lifeOf(const MotionRules& r) noexcept {
     return std::max(1.15f * gpu::flameTau(r.top, r.tauStart, r.tauFree), 16.0f * kMotionStep);
 }
 
-// How soon gas moves as the wind does: it mixes with it across the fire's width.
+// Time constant of gas following the wind: they mix across the fire's width.
 float dragTime(const MotionRules& r) noexcept {
     return std::max(0.15f * std::sqrt(r.size.diameter), 0.02f);
 }
 
-// Wind cools and slows what rises.
+// Wind cools and slows rising gas.
 float windLift(const MotionRules& r, float wind) noexcept {
     const float fuel = r.size.power / (15000.0f * 0.785f * r.size.diameter);  // kg/(m s), m'' D
     const float scale = std::cbrt(9.81f * std::max(fuel, 1e-6f) / 1.2f);
@@ -57,8 +58,7 @@ void collide(CurveParticle& p, const MotionRules& r, std::span<const Collider> c
     const float speed = glm::length(p.velocity);
     vec3 slide = p.velocity - s.normal * into;
     float l = glm::length(slide);
-    if (l < 0.05f * speed) {  // straight at it: each bit of gas goes a way of its own, its
-                              // neighbours nearly so
+    if (l < 0.05f * speed) {  // head on: particles turn aside, neighbours in similar directions
         const float a = kTwoPi * (unitHash(r.seed) + 0.06f * float(p.number));
         const vec3 side = glm::abs(s.normal.x) < 0.8f ? vec3(1, 0, 0) : vec3(0, 0, 1);
         const vec3 u = glm::normalize(side - s.normal * glm::dot(side, s.normal));
@@ -82,11 +82,11 @@ void step(FlameMotion& m, const MotionRules& r, std::span<const Collider> collid
         CurveParticle& p = m.particles[k];
         const float rise = glm::dot(p.velocity, r.up);
         vec3 across = p.velocity - r.up * rise;
-        // Half the square of 6.84: what gives 6.84 sqrt(z).
+        // Half the square of 6.84: the acceleration of 6.84 sqrt(z).
         const float faster = std::min(rise + 23.4f * lift * dt, std::max(most, rise));
         if (!p.touches) across += (acrossWind - across) * lean;
         p.velocity = r.up * faster + across;
-        // Hot, fast gas strays most; what follows close behind strays nearly alike.
+        // Hot, fast gas strays most; particles close behind stray similarly.
         const float heat = std::exp(-0.5f * p.age / std::max(cooling, 1e-3f));
         const float place = 0.35f * float(p.number & 0xFFFFu), when = p.age / (2.0f * kStrayTime);
         const float seed = 97.0f * unitHash(r.seed);
@@ -105,9 +105,10 @@ void step(FlameMotion& m, const MotionRules& r, std::span<const Collider> collid
     }
 }
 
-// Gas comes to a wall in puffs: what it gives is told as the mean of one, and is 0 a pulse after
-// the last touch. `passed`: pulses since the last time.
+// Gas reaches a wall in puffs: reports the mean over one puff, 0 from one puff after the last touch
+// on. `passed`: puffs since the last call.
 void meanContact(FlameMotion& m, float power, float passed) noexcept {
+    FW_ASSERT(m.phase >= 0 && m.phase < 1, "phase %g", m.phase);
     const int end = int(m.phase * double(kPulseParts));
     const int parts = std::min(int(passed * float(kPulseParts)) + 1, int(kPulseParts));
     for (int k = 0; k < parts; ++k)
@@ -119,6 +120,7 @@ void meanContact(FlameMotion& m, float power, float passed) noexcept {
 
 void spawn(FlameMotion& m, const MotionRules& r, float age) noexcept {
     const uint32_t room = kMotionParticles - 1;
+    FW_ASSERT(m.count <= kMotionParticles, "%u particles", m.count);
     m.count = std::min(m.count, room);
     std::copy_backward(m.particles.begin(), m.particles.begin() + m.count,
                        m.particles.begin() + m.count + 1);
@@ -148,6 +150,8 @@ void carryMotion(FlameMotion& m, vec3 by) noexcept {
 void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
                    std::span<const Collider> colliders, double seconds) noexcept {
     const double dt = double(kMotionStep);
+    FW_ASSERT(r.burn > 0 && r.size.diameter > 0, "burn %g, %g m", double(r.burn),
+              double(r.size.diameter));
     m.leftover = std::min(m.leftover + std::max(seconds, 0.0) * double(r.burn),
                           dt * (kMostMotionSteps + 0.5));
     const uint32_t steps = uint32_t(m.leftover / dt);
@@ -203,7 +207,7 @@ uint32_t motionPoints(const FlameMotion& m, const MotionRules& r,
     points[0] = {m.base, m.radius};
     uint32_t older = 0;
     for (uint32_t k = 1; k <= kMotionPieces; ++k) {
-        // Where gas of that age is: between two that are younger and older, straight.
+        // The place at that age, between a younger and an older particle.
         const float age = interval * float(k);
         while (older < m.count && m.particles[older].age < age) ++older;
         CurveParticle young;

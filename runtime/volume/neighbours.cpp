@@ -1,6 +1,7 @@
 // Leaning together and merging.
 #include "volume/neighbours.h"
 
+#include "core/assert.h"
 #include "volume/look.h"
 
 #include <algorithm>
@@ -16,7 +17,7 @@ float inflow(float power, float diameter, float distance) noexcept {
 void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
                     std::span<Neighbourhood> out) noexcept {
     const size_t n = std::min(flames.size(), out.size());
-    // 1 where two flames reach over their gap by far, 0 where they do not reach.
+    // 1 for flames much taller than their gap, 0 for flames that do not span it.
     const auto overlap = [](const NeighbourFlame& a, const NeighbourFlame& b, float distance) {
         const float gap = std::max(distance - 0.5f * (a.diameter + b.diameter), 0.0f);
         const float tall = std::min(a.height, b.height);
@@ -25,7 +26,7 @@ void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
     for (size_t k = 0; k < n; ++k) out[k] = {vec3(0.0f), flames[k].height, 0.0f, uint32_t(k)};
     for (size_t a = 0; a < n; ++a) {
         const NeighbourFlame& fa = flames[a];
-        // Of itself and what it is one with: heat, and the area that burns.
+        // Heat and burning area of the flame and the flames that it merges with.
         float power = fa.power, area = fa.diameter * fa.diameter, most = 0.0f;
         for (size_t b = 0; b < n; ++b) {
             if (b == a) continue;
@@ -41,7 +42,7 @@ void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
             const float o = overlap(fa, fb, distance);
             power += o * fb.power, area += o * fb.diameter * fb.diameter;
             most = std::max(most, o);
-            if (o > 0.0f) {  // the group's first flame, carried over below
+            if (o > 0.0f) {  // the group's first flame; chains are resolved below
                 const uint32_t first = std::min(out[a].group, out[b].group);
                 out[a].group = out[b].group = first;
             }
@@ -56,6 +57,7 @@ void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
     for (size_t pass = 0; pass < n; ++pass) {  // chains of flames; ends as soon as nothing changes
         bool changed = false;
         for (size_t k = 0; k < n; ++k) {
+            FW_ASSERT(out[k].group < n, "group %u of %zu", out[k].group, n);
             const uint32_t root = out[out[k].group].group;
             changed = changed || root != out[k].group;
             out[k].group = root;

@@ -1,5 +1,5 @@
-// Flames side by side: they draw in each other's air and lean together, and where they are taller
-// than the gap between them they become one. Smooth in every distance: nothing pops.
+// Flames side by side: they draw in each other's air, lean together, and merge where they are
+// taller than the gap between them. Smooth in every distance: nothing pops.
 #pragma once
 #include "volume/curve.h"
 
@@ -16,14 +16,14 @@ struct NeighbourFlame {
 };
 
 struct Neighbourhood {
-    vec3 pull{0.0f};      // m/s, at the height that is seen, across `up`
+    vec3 pull{0.0f};      // m/s, at the visible height, across `up`
     float height = 0.0f;  // m, with the others
-    float merged = 0.0f;  // [0, 1] how much of one flame it is with others
+    float merged = 0.0f;  // [0, 1], 1: one flame with others
     uint32_t group = 0;   // index of the group's first flame; flames of a group touch
 };
 
-// The speed of air towards a fire at a distance, m/s. Entrainment: 0.12 of the plume's, falling as
-// 1/d.
+// Speed of air towards a fire at a distance, m/s. Entrainment: 0.12 of the plume's speed, falling
+// as 1/d.
 float inflow(float power, float diameter, float distance) noexcept;
 // O(n^2) over at most a few hundred. `out` is as long as `flames`.
 void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,

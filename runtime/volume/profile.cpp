@@ -1,8 +1,8 @@
-// Fire-profiles: resampling, and the cooked file. The reader trusts nothing.
+// Fire profiles: resampling, and the cooked file, whose reader trusts nothing.
 #include "volume/profile.h"
 
-#include "core/error.h"
 #include "core/hash.h"
+#include "core/stream.h"
 
 #include <algorithm>
 #include <cmath>
@@ -71,6 +71,7 @@ gpu::vec2 Profile::sample(float rho, float y) const noexcept {
     const float v = std::clamp(y * float(kH) - 0.5f, 0.0f, float(kH - 1));
     const uint32_t x0 = uint32_t(u), y0 = uint32_t(v);
     const uint32_t x1 = std::min(x0 + 1, kW - 1), y1 = std::min(y0 + 1, kH - 1);
+    FW_ASSERT(x0 < kW && y0 < kH, "texel (%u, %u)", x0, y0);
     const auto at = [&](uint32_t x, uint32_t row) {
         return glm::unpackHalf2x16(texels[row * kW + x]);
     };
@@ -103,13 +104,9 @@ void paintProfile(std::span<const float> kelvin, std::span<const float> soot, ui
 
 namespace {
 
-uint32_t wordAt(std::span<const std::byte> bytes, size_t at) {
-    uint32_t word = 0;
-    for (size_t k = 0; k < 4; ++k) word |= uint32_t(bytes[at + k]) << (8 * k);
-    return word;
-}
+using core::wordAt;
 
-// Of everything but the checksum itself.
+// Covers everything except the checksum itself.
 uint64_t checksum(std::span<const std::byte> bytes) {
     return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(16)));
 }

@@ -1,5 +1,6 @@
-// The fire-profile: what burns where in a flame, painted by an artist as temperature and soot over
-// radius and height. With its cooked form (.fwprofile). Images are read by tools, not here.
+// Fire profile: an artist's temperature and soot over radius and height of a flame, and its cooked
+// form
+// (.fwprofile). Tools read images.
 #pragma once
 #include "shared/volume.h"
 
@@ -19,8 +20,8 @@ constexpr uint32_t kMinProfileSide = 8, kMaxProfileSide = 512;
 struct Profile {
     static constexpr uint32_t kTexels = gpu::kProfileWidth * gpu::kProfileHeight;
 
-    // Halfs: low 1000 K, high soot. R16G16_SFLOAT as it goes to a device. Below 1000 K soot does
-    // not glow: there the first says how much clean gas burns (blue), in the same unit.
+    // Halfs: low 1000 K, high soot; R16G16_SFLOAT on a device. Below 1000 K soot does not glow:
+    // there the first is the amount of clean burning gas (blue), in the same unit.
     std::array<uint32_t, kTexels> texels{};
 
     // Bilinear, clamped in rho, none above y = 1. x: 1000 K, y: soot.

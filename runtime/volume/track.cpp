@@ -1,4 +1,5 @@
-// Recorded curves, and mixtures of two.
+// Recorded curves, and blends of two curves.
+#include "core/assert.h"
 #include "core/error.h"
 #include "volume/motion.h"
 
@@ -67,7 +68,9 @@ uint32_t sampleTrack(const Track& track, double time,
             : std::min(size_t(std::max<ptrdiff_t>(after - track.times.begin() - 1, 0)), keys - 2);
     const float span = keys < 2 ? 1.0f : track.times[k + 1] - track.times[k];
     const float w = keys < 2 ? 0.0f : std::clamp((float(t) - track.times[k]) / span, 0.0f, 1.0f);
-    const auto key = [&](ptrdiff_t i) {  // a loop's last key is its first
+    FW_ASSERT(k < keys && track.points.size() == keys * track.pointsPerKey, "key %zu of %zu", k,
+              keys);
+    const auto key = [&](ptrdiff_t i) {  // a loop's last key equals its first
         const ptrdiff_t n = ptrdiff_t(keys);
         if (track.loops && n > 2) i = i < 0 ? n - 2 : i >= n ? 1 : i;
         return size_t(std::clamp<ptrdiff_t>(i, 0, n - 1));

@@ -1,18 +1,18 @@
-/* The smallest host, in C11: no Vulkan, no window. The library makes its own device, a plank is
- * built in place, lit at one end, left to burn under wind, and photographed into PNG files. */
+/* The smallest host, in C11: no Vulkan, no window. The library creates its own device. A plank
+ * is built, lit at one end, burns in wind, and is rendered into PNG files. */
 #include <flamewright/flamewright.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
-/* A PNG by hand: chunks with their checksums, rows stored and not packed. */
+/* A minimal PNG writer: chunks with checksums, rows stored without compression. */
 static unsigned char* put32(unsigned char* at, uint32_t value) {
     for (int i = 0; i < 4; ++i) at[i] = (unsigned char)(value >> (24 - 8 * i));
     return at + 4;
 }
 static void writeChunk(FILE* file, const char* type, unsigned char* body, uint32_t size) {
-    uint32_t crc = 0xffffffffu; /* body has room for 8 bytes before it and 4 after it */
+    uint32_t crc = 0xffffffffu; /* body has 8 spare bytes before it and 4 after it */
     memcpy(put32(body - 8, size), type, 4);
     for (uint32_t i = 0; i < size + 4; ++i) {
         crc ^= body[(int64_t)i - 4];
@@ -22,7 +22,7 @@ static void writeChunk(FILE* file, const char* type, unsigned char* body, uint32
 }
 static int writePng(const char* path, const unsigned char* rgba, uint32_t width, uint32_t height) {
     uint32_t a = 1, b = 0,
-             row = width * 4 + 1; /* with its filter byte; one stored block holds it */
+             row = width * 4 + 1; /* with its filter byte; one stored deflate block holds the row */
     unsigned char* memory = malloc((size_t)height * (row + 5) + 32);
     FILE* file = memory ? fopen(path, "wb") : NULL;
     if (!file) return free(memory), 0;
@@ -69,7 +69,7 @@ int main(int argc, char** argv) {
     worldDef.paceFactor = 30.0f, worldDef.wind[0] = 1.5f;
     if (fwCreateWorld(context, &worldDef, &world)) return fwDestroyContext(context), 1;
 
-    /* A plank: six faces of four corners, 1.2 x 0.3 x 0.05 m, standing on edge. */
+    /* A plank of 1.2 x 0.3 x 0.05 m on its long edge: six faces of four corners. */
     const float half[3] = {0.6f, 0.15f, 0.025f};
     float positions[72];
     uint32_t indices[36];
@@ -93,7 +93,7 @@ int main(int argc, char** argv) {
     FwIgnitionDef match = fwDefaultIgnitionDef();
     match.position[0] = -0.5f, match.position[1] = -0.12f, match.radius = 0.05f;
     require(fwWorld_Ignite(world, &match, NULL), world);
-    FwOffscreenDef shot = fwDefaultOffscreenDef(); /* a camera 1.6 m off, looking along -z */
+    FwOffscreenDef shot = fwDefaultOffscreenDef(); /* a camera 1.6 m away that looks along -z */
     const float zoom = 4.6f, near = 0.1f, far = 20.0f;
     shot.width = width, shot.height = height, shot.pixels = malloc((size_t)width * height * 4);
     for (int i = 0; i < 4; ++i) shot.view.view[i * 5] = 1.0f;
@@ -115,6 +115,6 @@ int main(int argc, char** argv) {
         if (!written) return 1;
     }
     free(shot.pixels);
-    fwDestroyContext(context); /* takes the world with it */
+    fwDestroyContext(context); /* destroys the world too */
     return 0;
 }

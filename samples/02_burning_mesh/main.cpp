@@ -1,6 +1,6 @@
-// Any glTF mesh burns in a studio: imported, given a burn map, set alight in front, filmed.
-// In a window: drag to turn, wheel to zoom, click to light; V makes the click pour water, F fire.
-// With --neutral: one picture of it as the file has it, on a stage that changes nothing.
+// Burns any glTF mesh in a studio: imports it, bakes a burn map, ignites the front, films it.
+// Window: drag to turn, wheel to zoom, click to ignite; V makes the click pour water, F fire.
+// --neutral: renders one picture of the unburnt mesh on a neutral stage.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -17,18 +17,18 @@ namespace {
 
 struct Settings {
     std::string material = "pine";
-    float ignite[3] = {0, 0, 0};  // m, in the studio; used if `igniteGiven`
+    float ignite[3] = {0, 0, 0};  // m, in the studio; valid if `igniteGiven`
     bool igniteGiven = false, noCache = false, reversed = false, msaa = false, neutral = false;
-    float pace = 0;      // 0: so that the run shows the whole burn
-    float seconds = 10;  // of a headless run
-    float turn = 0;      // degrees a second, turntable
+    float pace = 0;      // 0: the run shows the whole burn
+    float seconds = 10;  // length of a headless run
+    float turn = 0;      // degrees per second, turntable
     float wind[3] = {0, 0, 0};
-    float size = 0;              // m; 0: the file's own
+    float size = 0;              // m; 0: the file's size
     float mapSize = 1024;        // texels
     float yaw = 30, pitch = 14;  // degrees
 };
 
-uint32_t presetNamed(const std::string& name) {
+uint32_t findPreset(const std::string& name) {
     std::string known;
     for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
         std::string preset = fwMaterialPresetName(i);
@@ -36,13 +36,13 @@ uint32_t presetNamed(const std::string& name) {
         if (preset == name) return i;
         known += (i ? ", " : "") + preset;
     }
-    throw sample::Failure("--material is \"" + name + "\"; there are " + known);
+    throw sample::Failure("--material is \"" + name + "\"; the materials are " + known);
 }
 
-// The named file, else a bunny of the assets folder if there is one, else the toy.
-std::filesystem::path fileToBurn(const sample::Options& options) {
+// The named file, else a bunny of the assets folder, else the toy.
+std::filesystem::path chooseFile(const sample::Options& options) {
     if (options.positional.size() > 1) {
-        throw sample::Failure("one file at a time; " + options.positional[1] + " is one too many");
+        throw sample::Failure("one file at a time; " + options.positional[1] + " is extra");
     }
     if (!options.positional.empty()) return options.positional[0];
     if (const char* assets = std::getenv("FLAMEWRIGHT_ASSETS")) {
@@ -91,7 +91,7 @@ BurnMapRequest mapRequestOf(const sample::Options& options, const Settings& sett
 }
 
 Subject loadAndReport(const sample::Options& options, const Settings& settings) {
-    Subject subject = loadSubject(fileToBurn(options), settings.size, settings.neutral);
+    Subject subject = loadSubject(chooseFile(options), settings.size, settings.neutral);
     for (const auto* notes : {&subject.model.notes, &subject.surfaces.notes})
         for (const std::string& line : *notes)
             std::printf("%s: %s\n", subject.name.c_str(), line.c_str());
@@ -99,7 +99,7 @@ Subject loadAndReport(const sample::Options& options, const Settings& settings) 
 }
 
 int showNeutral(sample::Options options, const Settings& settings) {
-    const uint32_t preset = presetNamed(settings.material);
+    const uint32_t preset = findPreset(settings.material);
     const Subject subject = loadAndReport(options, settings);
     options.headless = true;
     sample::ValidationLog validation;
@@ -138,7 +138,7 @@ int showNeutral(sample::Options options, const Settings& settings) {
 }
 
 int run(const sample::Options& options, const Settings& settings) {
-    const uint32_t preset = presetNamed(settings.material);
+    const uint32_t preset = findPreset(settings.material);
     const Subject subject = loadAndReport(options, settings);
     sample::ValidationLog validation;
     {
@@ -156,7 +156,7 @@ int run(const sample::Options& options, const Settings& settings) {
                                 settings.turn);
         const FwView& view = table.view;
 
-        // Faster than wood burns: so that the fire is through the subject before the run is over.
+        // Burns faster than wood, so that the fire consumes the subject within the run.
         FwMaterialDef material = fwDefaultMaterialDef();
         fwInitMaterialPreset(&material, preset);
         float pace = settings.pace;
@@ -168,7 +168,7 @@ int run(const sample::Options& options, const Settings& settings) {
                 std::clamp(subject.size() / (2.2f * rate * std::max(4.0f, seconds)), 1.0f, 400.0f);
         }
         FwWorldDef worldDef = fwDefaultWorldDef();
-        worldDef.flags = FW_WORLD_CONTACT;  // whatever it consists of burns down as one
+        worldDef.flags = FW_WORLD_CONTACT;  // connected parts burn as one
         worldDef.paceFactor = pace;
         worldDef.seed = options.seed;
         worldDef.maxStepsPerFrame = 64;
@@ -186,15 +186,16 @@ int run(const sample::Options& options, const Settings& settings) {
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
         const float matchRadius = 0.03f * subject.size();
         glm::vec3 match(settings.ignite[0], settings.ignite[1], settings.ignite[2]);
-        if (!settings.igniteGiven) match = matchPlace(subject, table.orbit.camera().eye).position;
+        if (!settings.igniteGiven)
+            match = findIgnitionPoint(subject, table.orbit.camera().eye).position;
 
         sample::Filming filming(stage, options, {.name = "burning_mesh"});
 
         FwIgnitionKind hand = FW_IGNITE;
-        float dropped = 0;  // s that the simulation could not follow
+        float dropped = 0;  // s that the simulation skipped
         sample::StageFrame frame;
         while (table.next(frame)) {
-            // One frame of the untouched thing first.
+            // The first frame shows the unburnt subject.
             if (frame.number == 1) touch(fire, match, matchRadius, FW_IGNITE);
             for (int key : frame.input.keys) {
                 if (key == 'F') hand = FW_IGNITE;
@@ -205,8 +206,8 @@ int run(const sample::Options& options, const Settings& settings) {
                     glm::inverse(glm::make_mat4(view.projection) * glm::make_mat4(view.view)) *
                     glm::vec4(2 * frame.input.clickX - 1, 2 * frame.input.clickY - 1, 0.5f, 1);
                 const glm::vec3 eye = table.orbit.camera().eye;
-                const glm::vec3 way = glm::normalize(glm::vec3(far) / far.w - eye);
-                const SurfacePoint point = castRay(subject, eye, way);
+                const glm::vec3 direction = glm::normalize(glm::vec3(far) / far.w - eye);
+                const SurfacePoint point = castRay(subject, eye, direction);
                 if (point.hit) touch(fire, point.position, matchRadius, hand);
             }
             FwEvent events[32];
@@ -235,7 +236,7 @@ int run(const sample::Options& options, const Settings& settings) {
                           info.texelsPerMetre);
             summary.rows.emplace_back("burn map", line);
             summary.rows.emplace_back("", bakeNote);
-            std::snprintf(line, sizeof line, "%s, %.0f times as fast as real; %.0f %% caught fire",
+            std::snprintf(line, sizeof line, "%s, %.0f times real speed; %.0f %% ignited",
                           settings.material.c_str(), pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
             if (dropped > 0) {
@@ -262,11 +263,10 @@ int main(int argc, char** argv) {
         options.height = 432;
         Settings settings;
         sample::OptionParser parser("02_burning_mesh", "any glTF mesh burns", "[FILE.glb]");
-        parser.addText("--material", "NAME", "what it is made of; --list names them",
-                       settings.material);
-        parser.addVector("--ignite", "where to light it, m, floor is 0", settings.ignite,
+        parser.addText("--material", "NAME", "its material; --list names them", settings.material);
+        parser.addVector("--ignite", "ignition point, m, floor is 0", settings.ignite,
                          &settings.igniteGiven);
-        parser.addNumber("--pace", "how much faster than real", settings.pace, 0.1f, 1000.0f);
+        parser.addNumber("--pace", "time scale of the burn", settings.pace, 0.1f, 1000.0f);
         parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
         parser.addNumber("--turn", "turntable, degrees a second", settings.turn, -360.0f, 360.0f);
         parser.addNumber("--yaw", "camera around it, degrees", settings.yaw, -360.0f, 360.0f);
@@ -278,7 +278,7 @@ int main(int argc, char** argv) {
         parser.addFlag("--msaa", "four samples", settings.msaa);
         parser.addFlag("--reversed", "reversed depth", settings.reversed);
         parser.addFlag("--neutral",
-                       "one picture of it as the file has it, in even light before grey, into "
+                       "one picture of the unburnt mesh in even light before grey, into "
                        "neutral.png",
                        settings.neutral);
         if (!parser.parse(argc, argv, options)) return 0;

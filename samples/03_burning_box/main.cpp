@@ -1,7 +1,7 @@
-// A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens;
-// what has burnt out is coarse again. --plain draws the twelve triangles as they are, --published
-// puts a second box beside it, refined by the published scheme. What flames are 2,000 particles and
-// 500 of smoke, born on its burning tiles, which show flipbooks; --tongues draws the tiles' own.
+// A box of twelve triangles burns: refined just ahead of the fire, it recedes, chars and opens.
+// Burnt-out parts become coarse again. --plain draws the twelve triangles; --published adds a
+// second box, refined by the published scheme. 2,000 flame and 500 smoke flipbook particles rise
+// from burning tiles; --tongues draws tile flames instead.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,10 +15,10 @@ namespace {
 
 struct Settings {
     bool plain = false, published = false, tongues = false;
-    float seconds = 12;      // of a headless run
-    float pace = 60;         // so that boards of 20 mm are gone in the run
-    float depth = 5;         // halvings of an edge
-    float turn = 0;          // degrees a second
+    float seconds = 12;      // length of a headless run
+    float pace = 60;         // burns boards of 20 mm within the run
+    float depth = 5;         // bisections of an edge
+    float turn = 0;          // degrees per second
     float wall = 0.02f;      // m
     float distance = 2.35f;  // m
 };
@@ -28,7 +28,7 @@ struct Box {
     std::vector<uint32_t> indices;
 };
 
-// Corners are shared: eight vertices, twelve triangles, counter-clockwise from outside.
+// Eight shared vertices, twelve triangles, counter-clockwise from outside.
 Box makeBox(glm::vec3 low, glm::vec3 high) {
     Box box;
     for (int i = 0; i < 8; ++i)
@@ -38,7 +38,7 @@ Box makeBox(glm::vec3 low, glm::vec3 high) {
     return box;
 }
 
-constexpr float kApart = 0.6f;  // m, of two boxes from the middle
+constexpr float kApart = 0.6f;  // m, of two boxes from the centre
 
 FwBurnableMeshDef describeBox(sample::FireHost& fire, const Box& box, const Settings& settings) {
     FwMeshDef mesh = fwDefaultMeshDef();
@@ -75,13 +75,13 @@ FwFlipbookId openBook(sample::FireHost& fire, uint32_t preset) {
     return id;
 }
 
-// Its fire, and the smoke above: the tiles that flame feed both, the device finds them.
+// Adds flames and smoke. The burning tiles feed both, and the device finds them.
 void addParticles(sample::FireHost& fire, FwBurnableMeshId object) {
     FwFireEmitterDef flames = fwDefaultFireEmitterDef();
     flames.shape = FW_EMITTER_MESH;
     flames.object = object;
     flames.flags = FW_EMITTER_GROUND;
-    flames.power = 220;  // as much as all of it gives off at its best, about
+    flames.power = 220;  // about the peak power of the whole box
     flames.maxParticles = 2000;
     flames.life = 0.62f;
     flames.lifeVariance = 0.4f;
@@ -130,7 +130,7 @@ int run(const sample::Options& options, const Settings& settings) {
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: a burning box";
         stageRequest.samples = options.noMsaa ? VK_SAMPLE_COUNT_1_BIT : VK_SAMPLE_COUNT_4_BIT;
-        stageRequest.lendAs(options);
+        stageRequest.applyOptions(options);
         const uint32_t frames = sample::framesOf(options, settings.seconds);
         sample::Stage stage(host, options, stageRequest, frames);
         sample::Studio studio(host, stage, {0, 0, 0}, 0.8f);
@@ -154,7 +154,7 @@ int run(const sample::Options& options, const Settings& settings) {
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage, true);
         const FwBurnableMeshDef def = describeBox(fire, box, settings);
-        // To the right, as the camera first stands.
+        // To the right of the initial camera.
         const glm::vec3 right(std::cos(table.orbit.yaw), 0, -std::sin(table.orbit.yaw));
         const glm::vec3 aside = right * (settings.published ? kApart : 0.0f);
         const FwBurnableMeshId object =
@@ -175,10 +175,10 @@ int run(const sample::Options& options, const Settings& settings) {
                           {view.sunDirection[0], view.sunDirection[1], view.sunDirection[2]});
 
         sample::Filming filming(stage, options, {.name = "burning_box"});
-        uint32_t most[2] = {}, last[2] = {};  // triangles: ours, as published
+        uint32_t most[2] = {}, last[2] = {};  // triangles: this refinement, the published one
         sample::StageFrame frame;
         while (table.next(frame)) {
-            if (frame.number == 1) {  // one frame of the untouched thing first
+            if (frame.number == 1) {  // the first frame shows the unburnt box
                 light(fire, object, -aside);
                 if (settings.published) light(fire, other, aside);
             }
@@ -194,11 +194,11 @@ int run(const sample::Options& options, const Settings& settings) {
             sample::Summary summary;
             summary.title = "A box of twelve triangles";
             summary.rows.emplace_back("device", host.properties.deviceName);
-            std::snprintf(line, sizeof line, "%.0f times as fast as real; %.0f %% caught fire",
+            std::snprintf(line, sizeof line, "%.0f times real speed; %.0f %% ignited",
                           settings.pace, 100.0f * state.burntFraction);
             summary.rows.emplace_back("fire", line);
             for (int i = 0; i < (settings.published ? 2 : 1); ++i) {
-                std::snprintf(line, sizeof line, "%u triangles at most, %u at the end", most[i],
+                std::snprintf(line, sizeof line, "at most %u triangles, %u at the end", most[i],
                               last[i]);
                 summary.rows.emplace_back(i ? "as published" : "refined", line);
             }
@@ -219,23 +219,23 @@ int main(int argc, char** argv) {
         Settings settings;
         sample::OptionParser parser("03_burning_box", "twelve triangles burn");
         parser.addFlag("--plain", "without refinement", settings.plain);
-        parser.addFlag("--published", "beside it one refined by the published scheme",
+        parser.addFlag("--published", "adds a box refined by the published scheme",
                        settings.published);
-        parser.addFlag("--tongues", "flames of its tiles instead of particles", settings.tongues);
-        parser.addNumber("--depth", "halvings of an edge", settings.depth, 0.0f, 5.0f);
-        parser.addNumber("--pace", "how much faster than real", settings.pace, 0.1f, 1000.0f);
+        parser.addFlag("--tongues", "tile flames instead of particles", settings.tongues);
+        parser.addNumber("--depth", "bisections of an edge", settings.depth, 0.0f, 5.0f);
+        parser.addNumber("--pace", "time scale of the burn", settings.pace, 0.1f, 1000.0f);
         parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
         parser.addNumber("--turn", "turntable, degrees a second", settings.turn, -360.0f, 360.0f);
         parser.addNumber("--wall", "thickness of the boards, m", settings.wall, 0.001f, 0.1f);
         parser.addNumber("--distance", "of the camera, m", settings.distance, 0.3f, 50.0f);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
-        parser.addLending(options);
+        parser.addCompositeFlags(options);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("one box\n");
             return 0;
         }
-        settings.tongues |= settings.published;  // what is compared is the surface
+        settings.tongues |= settings.published;  // compare surfaces only
         return run(options, settings);
     });
 }

@@ -1,5 +1,5 @@
-// The figure that papers on burning meshes show: a bunny of wood burns, from the chest, through
-// holes, to what is left standing. Without the assets folder it is a toy that burns.
+// The figure of papers on burning meshes: a wooden bunny burns from the chest, through holes, to
+// its remains. Without the assets folder, a toy burns.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -12,7 +12,7 @@
 
 namespace {
 
-constexpr float kFillingSeconds = 12;  // the run that the pace below is made for
+constexpr float kFillingSeconds = 12;  // length of the run that the time scale below fits
 
 std::filesystem::path bunnyFile() {
     if (const char* assets = std::getenv("FLAMEWRIGHT_ASSETS")) {
@@ -22,8 +22,8 @@ std::filesystem::path bunnyFile() {
     return {};
 }
 
-// One of the same mesh beside it, as the papers had it: their 16-tap kernel carries the fire, and
-// what burns is a thin skin without heat of its own.
+// Places a second copy as the papers model it: their 16-tap kernel spreads the fire, and a thin
+// skin without heat of its own burns.
 FwBurnableMeshId placePublished(sample::FireHost& fire, FwBurnableMeshDef def, float aside) {
     FwMaterialDef material = fwDefaultMaterialDef();
     fire.check(fwInitMaterialPreset(&material, FW_MATERIAL_PINE), "fwInitMaterialPreset");
@@ -51,8 +51,8 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
         sample::Studio studio(host, stage, {0, 0, 0}, subject.size());
 
         sample::OrbitCamera orbit = orbitAround(subject, -24.0f, 9.0f, stage.extent());
-        const SurfacePoint match = matchPlace(subject, orbit.camera().eye);
-        // Ours to the right, where the camera looks straight at the two.
+        const SurfacePoint match = findIgnitionPoint(subject, orbit.camera().eye);
+        // This solver's copy stands on the right.
         const float aside = compare ? 0.62f * subject.size() : 0.0f;
         if (compare) orbit.yaw = 0;
         if (compare) orbit.distance *= 1.15f;
@@ -123,7 +123,7 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
             summary.title = "Burning " + subject.name;
             summary.rows.emplace_back("device", host.properties.deviceName);
             std::snprintf(line, sizeof line,
-                          "pine, %.0f times as fast as real; %.0f %% caught fire",
+                          "pine, %.0f times real speed; %.0f %% ignited",
                           static_cast<double>(worldDef.paceFactor),
                           static_cast<double>(100.0f * state.burntFraction));
             summary.rows.emplace_back("fire", line);
@@ -147,7 +147,7 @@ int main(int argc, char** argv) {
         sample::OptionParser parser("04_bunny", "a wooden bunny burns");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--turn", "turntable, degrees a second", turn, -360.0f, 360.0f);
-        parser.addFlag("--compare", "beside it, to the left, one as the papers had it", compare);
+        parser.addFlag("--compare", "adds the papers' model on the left", compare);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

@@ -1,6 +1,5 @@
-// A sheet of paper and a cloth that hang from rods, in a breath of wind; both are lit below.
-// --compare: two cloths, to the left one that the published springs deform. In a window: drag to
-// turn, wheel to zoom.
+// A sheet of paper and a cloth hang from rods in a light wind; both are lit below. --compare: two
+// cloths, the left one deformed by the published springs. Window: drag to turn, wheel to zoom.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -19,7 +18,7 @@ struct Sheet {
     std::vector<uint32_t> indices;
 };
 
-// `width` x `height` m, its lower left corner at the origin, in the plane z = 0 but for soft waves.
+// `width` x `height` m, lower left corner at the origin, in the plane z = 0 plus soft waves.
 Sheet makeSheet(float width, float height, float cell, float waves) {
     Sheet sheet;
     const auto columns = static_cast<uint32_t>(std::lround(width / cell));
@@ -47,10 +46,10 @@ struct Exhibit {
     const char* name;
     uint32_t preset;
     float width, height, cell, waves;  // m
-    glm::vec3 place;                   // of its lower left corner, m
-    float turn;                        // degrees about up
-    float haste;                       // how much faster than real, in a run of ten seconds
-    glm::vec3 match;                   // m, from its lower left corner
+    glm::vec3 place;                   // m, lower left corner
+    float turn;                        // degrees about the vertical
+    float timeScale;                   // time scale in a run of ten seconds
+    glm::vec3 match;                   // m, from the lower left corner; ignition point
     uint32_t tier = FW_BURNABLE_SHELL;
 };
 constexpr Exhibit kExhibits[] = {
@@ -76,7 +75,7 @@ constexpr Exhibit kExhibits[] = {
      {0.30f, 0.0f, 0}},
 };
 
-constexpr float kApart = 0.58f;  // m, of two cloths
+constexpr float kApart = 0.58f;  // m, between two cloths
 
 glm::mat4 poseOf(const Exhibit& exhibit) {
     return glm::rotate(glm::translate(glm::mat4(1.0f), exhibit.place), glm::radians(exhibit.turn),
@@ -98,12 +97,12 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, const Exhibit& exhibit, fl
     fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef material = fwDefaultMaterialDef();
     fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
-    const float haste = exhibit.haste * 10.0f / seconds;
-    material.spreadRate *= haste;
-    material.burnTime /= haste;
+    const float timeScale = exhibit.timeScale * 10.0f / seconds;
+    material.spreadRate *= timeScale;
+    material.burnTime /= timeScale;
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &def.materials[0]),
                "fwWorld_CreateMaterial");
-    // Along its top.
+    // Pin the top edge.
     FwPin pin{};
     pin.from[1] = pin.to[1] = exhibit.height;
     pin.to[0] = exhibit.width;
@@ -129,12 +128,12 @@ void light(sample::FireHost& fire, FwBurnableMeshId object, const Exhibit& exhib
     fire.check(fwWorld_Ignite(fire.world, &def, nullptr), "fwWorld_Ignite");
 }
 
-// What is shown: paper and cloth, or the published springs' cloth and ours.
+// Returns paper and cloth, or the published springs' cloth and this solver's.
 std::array<Exhibit, 2> exhibitsOf(bool compare) {
     std::array<Exhibit, 2> shown = {kExhibits[0], kExhibits[1]};
     if (compare) {
         shown[0] = kExhibits[1];
-        shown[0].name = "cotton, as published";
+        shown[0].name = "cotton, published springs";
         shown[0].tier = FW_BURNABLE_SPRINGS;
         shown[0].place.x -= kApart;
     }
@@ -185,7 +184,7 @@ int run(const sample::Options& options, float seconds, bool compare) {
 
         sample::StageFrame frame;
         while (table.next(frame)) {
-            // Once both hang still.
+            // Ignite once both hang still.
             if (frame.number == static_cast<uint32_t>(1 + frames / 12))
                 for (size_t i = 0; i < 2; ++i) light(fire, objects[i], exhibits[i]);
             sample::showStudio(frame, stage, studio, fire, table.view);
@@ -198,7 +197,7 @@ int run(const sample::Options& options, float seconds, bool compare) {
             for (size_t i = 0; i < 2; ++i) {
                 const FwObjectState state = fire.objectState(objects[i]);
                 char line[96];
-                std::snprintf(line, sizeof line, "%.0f %% caught fire",
+                std::snprintf(line, sizeof line, "%.0f %% ignited",
                               static_cast<double>(100.0f * state.burntFraction));
                 summary.rows.emplace_back(exhibits[i].name, line);
             }
@@ -220,7 +219,7 @@ int main(int argc, char** argv) {
         bool compare = false;
         sample::OptionParser parser("05_paper_and_cloth", "sheets that curl, shrink and fall");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
-        parser.addFlag("--compare", "two cloths, to the left one of published springs", compare);
+        parser.addFlag("--compare", "two cloths, the left one with published springs", compare);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

@@ -1,6 +1,5 @@
-// Eight materials burn side by side, boards and sheets that hang from rods, each at a haste that
-// lets all end together, each with a wet patch that stays. In a window: drag to turn, wheel to
-// zoom.
+// Eight materials burn side by side, boards and hanging sheets. Each has a time scale that makes
+// all end together, and a wet patch that remains. Window: drag to turn, wheel to zoom.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -17,11 +16,11 @@ namespace {
 struct Exhibit {
     uint32_t preset;
     float thickness, bend;  // m, see makePanel
-    float haste;            // how much faster than real, in a run of ten seconds
+    float timeScale;        // time scale in a run of ten seconds
     float density;          // texels per metre
 };
 
-// From the left, the back row on its shelf first.
+// From the left; the back row on its shelf first.
 constexpr Exhibit kExhibits[] = {
     {FW_MATERIAL_PINE, 0.030f, 0, 135, 192},      {FW_MATERIAL_PAINTED_WOOD, 0.024f, 0, 115, 192},
     {FW_MATERIAL_PAPER, 0, 0.020f, 4.0f, 384},    {FW_MATERIAL_COTTON, 0, 0.016f, 4.2f, 320},
@@ -30,8 +29,8 @@ constexpr Exhibit kExhibits[] = {
 };
 constexpr uint32_t kExhibitCount = sizeof kExhibits / sizeof kExhibits[0];
 constexpr float kSide = 0.50f, kPitch = 0.60f, kShelf = 0.66f;  // m
-constexpr float kLift = 0.04f, kRod = 0.006f;                   // m, of what hangs
-constexpr uint32_t kBoardCells = 22, kSheetCells = 34;          // of a front, along a side
+constexpr float kLift = 0.04f, kRod = 0.006f;                   // m, of hanging sheets
+constexpr uint32_t kBoardCells = 22, kSheetCells = 34;          // cells along a side of the front
 
 bool hangs(const Exhibit& exhibit) { return !(exhibit.thickness > 0); }
 
@@ -63,7 +62,7 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, uint32_t number, float sec
     mesh.texelsPerMetre = exhibit.density;
     mesh.noiseSeed = number;
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    FwPin pin{};  // all along its top
+    FwPin pin{};  // along the whole top edge
     if (hangs(exhibit)) {
         def.flags = uint32_t{FW_BURNABLE_TWO_SIDED} | uint32_t{FW_BURNABLE_SHELL};
         pin.from[0] = -0.5f * kSide;
@@ -77,10 +76,10 @@ FwBurnableMeshId placeExhibit(sample::FireHost& fire, uint32_t number, float sec
     fire.check(fwWorld_CreateMesh(fire.world, &mesh, &def.mesh), "fwWorld_CreateMesh");
     FwMaterialDef material = fwDefaultMaterialDef();
     fire.check(fwInitMaterialPreset(&material, exhibit.preset), "fwInitMaterialPreset");
-    const float haste = exhibit.haste * 10.0f / seconds;
-    material.spreadRate *= haste;
-    if (material.burnTime > 0) material.burnTime /= haste;
-    // Thick fuel flames while it lasts.
+    const float timeScale = exhibit.timeScale * 10.0f / seconds;
+    material.spreadRate *= timeScale;
+    if (material.burnTime > 0) material.burnTime /= timeScale;
+    // Thick fuel burns until it is consumed.
     if (!(material.burnTime > 0)) material.burnTime = 0.25f * seconds;
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &def.materials[0]),
                "fwWorld_CreateMaterial");
@@ -173,7 +172,7 @@ int run(const sample::Options& options, float seconds, int only) {
                 if (objects[i].index1 == 0) continue;
                 const FwObjectState state = fire.objectState(objects[i]);
                 char line[160];
-                std::snprintf(line, sizeof line, "%s; %.0f %% caught fire",
+                std::snprintf(line, sizeof line, "%s; %.0f %% ignited",
                               fwMaterialPresetName(kExhibits[i].preset),
                               static_cast<double>(100.0f * state.burntFraction));
                 static const char* const kPlaces[] = {
@@ -192,13 +191,13 @@ int run(const sample::Options& options, float seconds, int only) {
 int main(int argc, char** argv) {
     return sample::guardedMain("06_materials", [&] {
         sample::Options options;
-        options.fps = 12.0;  // sheets need it to fall no slower than they do
+        options.fps = 12.0;  // sheets fall correctly only at this rate or above
         options.width = 960;
         options.height = 540;
         float seconds = 8, only = 0;
         sample::OptionParser parser("06_materials", "eight materials side by side");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
-        parser.addNumber("--only", "1 to 8: that one alone, from near", only, 0.0f, 8.0f);
+        parser.addNumber("--only", "1 to 8: shows only that material, close up", only, 0.0f, 8.0f);
         parser.addFlag("--no-msaa", "one sample a pixel instead of four", options.noMsaa);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

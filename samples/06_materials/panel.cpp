@@ -14,7 +14,7 @@ void addFace(Panel& panel, glm::vec3 corner, glm::vec3 x, glm::vec3 y, glm::uvec
         for (uint32_t i = 0; i <= cells.x; ++i) {
             const float u = static_cast<float>(i) / static_cast<float>(cells.x);
             const float v = static_cast<float>(j) / static_cast<float>(cells.y);
-            // One and a half waves across, a little more of it at the top.
+            // One and a half waves across, slightly deeper at the top.
             const float angle = 3.0f * 3.14159265f * (u - 0.5f), depth = bend * (0.7f + 0.3f * v);
             const float slope = -3.0f * 3.14159265f * depth * std::sin(angle) / glm::length(x);
             const glm::vec3 p = corner + x * u + y * v + flat * (depth * std::cos(angle));

@@ -1,14 +1,14 @@
-// Panels to burn: slabs with all six sides, and thin sheets, bent, of one layer.
+// Panels to burn: closed slabs, and thin bent sheets of one layer.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
 struct Panel {
-    std::vector<float> positions, normals, details;  // m; details run on around corners
+    std::vector<float> positions, normals, details;  // m; details continue around corners
     std::vector<uint32_t> indices;
 };
 
-// Stands on y = 0, faces +z. `thickness` m; 0: a sheet of one layer, bent by `bend` m. `cells`
-// along each side of the front.
+// Creates a panel that stands on y = 0 and faces +z. `thickness` m; 0: a single-layer sheet, bent
+// by `bend` m. `cells`: along each side of the front.
 Panel makePanel(float width, float height, float thickness, float bend, uint32_t cells);

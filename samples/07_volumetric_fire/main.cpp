@@ -1,6 +1,5 @@
-// The nine presets of volumetric fires in a row, each as large as the row allows: by night, by
-// day, against the sky, from above, from inside; or with a profile that an artist painted. In a
-// window: drag to turn, wheel to zoom.
+// The nine presets of volumetric fires in a row, by night, by day, against the sky, from above,
+// from inside, or with a painted profile. Window: drag to turn, wheel to zoom.
 #include <cmath>
 #include <cstdio>
 #include <fstream>
@@ -19,7 +18,7 @@ struct Exhibit {
     uint32_t preset;
     float diameter, height;  // m
 };
-// Looks scale with the flame: these keep each preset's shape, not its size.
+// The appearance scales with the flame. These sizes keep each preset's shape.
 constexpr Exhibit kExhibits[] = {
     {FW_FIRE_CANDLE, 0.065f, 0.40f},     {FW_FIRE_TORCH, 0.15f, 0.36f},
     {FW_FIRE_GAS_BURNER, 0.12f, 0.34f},  {FW_FIRE_DYING_EMBERS, 0.36f, 0.0f},
@@ -28,18 +27,18 @@ constexpr Exhibit kExhibits[] = {
     {FW_FIRE_MAGIC_GREEN, 0.36f, 0.42f},
 };
 constexpr float kSpacing = 0.58f;  // m
-constexpr float kStone = 0.12f;    // m, height of the stones that they burn on
+constexpr float kStone = 0.12f;    // m, height of the stones below the fires
 
 float placeOf(size_t i) {
     return kSpacing * (static_cast<float>(i) - 0.5f * static_cast<float>(std::size(kExhibits) - 1));
 }
 
-// Heskestad's height, turned around.
+// Inverts Heskestad's flame height.
 float powerFor(float height, float diameter) {
     return std::pow((height + 1.02f * diameter) / 0.235f, 2.5f);
 }
 
-// Of a .fwprofile; none where no file is named.
+// Loads a .fwprofile. Returns null if no file is named.
 FwFireProfileId loadProfile(sample::FireHost& fire, const std::string& path) {
     if (path.empty()) return {};
     std::ifstream file(path, std::ios::binary);
@@ -60,8 +59,8 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: volumetric fires";
-        stageRequest.lendAs(options);
-        stageRequest.lendScene = true;  // heat bends what is behind it
+        stageRequest.applyOptions(options);
+        stageRequest.capturesScene = true;  // heat haze needs the scene
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
         for (size_t i = 0; i < std::size(kExhibits); ++i) {
@@ -80,7 +79,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
             FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
             fire.check(fwInitFirePreset(&def, kExhibits[i].preset), "fwInitFirePreset");
             def.profile = profile;
-            def.tier = FW_FIRE_TIER_MARCH_HIGH;  // they are what is looked at
+            def.tier = FW_FIRE_TIER_MARCH_HIGH;  // the camera is close to them
             def.position[0] = placeOf(i);
             def.position[1] = kStone;
             def.diameter = kExhibits[i].diameter;
@@ -93,7 +92,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
 
         FwView view = fwDefaultView();
         view.haze = haze;
-        look.lightUp(view, 0.012f, 2.0f);
+        look.applyLight(view, 0.012f, 2.0f);
         sample::OrbitCamera orbit;
         orbit.target = {0, 0.47f, 0};
         orbit.distance = 6.4f;
@@ -152,8 +151,8 @@ int main(int argc, char** argv) {
         sample::OptionParser parser("07_volumetric_fire", "volumetric fires of nine kinds");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--wind", "m/s, to the right", wind, -20.0f, 20.0f);
-        parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
-        parser.addText("--profile", "FILE", "what burns where, a .fwprofile for all nine", profile);
+        parser.addNumber("--haze", "strength of the heat haze", haze, 0.0f, 8.0f);
+        parser.addText("--profile", "FILE", "a .fwprofile for all nine", profile);
         look.addTo(parser);
         parser.addFlag("--half", "flames and smoke at half resolution", options.halfEffects);
         if (!parser.parse(argc, argv, options)) return 0;

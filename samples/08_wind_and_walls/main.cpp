@@ -1,5 +1,5 @@
-// What is around a fire bends it: a gust passes over a camp fire in the open, one under a ceiling,
-// one at a wall, and a torch that is carried to and fro. In a window: drag to turn, wheel to zoom.
+// Surroundings bend fire: a gust passes over a camp fire in the open, one under a ceiling, one at a
+// wall, and a moving torch. Window: drag to turn, wheel to zoom.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -16,7 +16,7 @@ namespace {
 struct Box {
     glm::vec3 center, half;  // m
 };
-// The fires stand on stones; a slab on two posts is the ceiling, a slab on edge the wall.
+// The fires stand on stones. A slab on two posts is the ceiling, a slab on edge the wall.
 constexpr float kStone = 0.10f;  // m, height of the stones
 const Box kStones[] = {
     {{-2.1f, 0.5f * kStone, 0}, {0.32f, 0.5f * kStone, 0.32f}},
@@ -30,7 +30,7 @@ const Box kWalls[] = {
     {{1.38f, 0.55f, 0}, {0.05f, 0.55f, 0.45f}},  // wall
 };
 
-// m/s, to the right: calm, a gust of a second and a half, calm.
+// m/s, to the right: calm, a gust of 1.5 s, calm.
 float gustAt(double seconds, float most) {
     const double rise = std::clamp((seconds - 1.0) / 0.3, 0.0, 1.0);
     const double fall = std::clamp((3.0 - seconds) / 0.6, 0.0, 1.0);
@@ -39,15 +39,15 @@ float gustAt(double seconds, float most) {
     return most * static_cast<float>(std::min(rise, fall) * waver);
 }
 
-// The hand that carries the torch: a slow swing.
+// Returns the position of the torch on a slow swing.
 glm::vec3 torchAt(double seconds) {
     const double a = 6.2832 * seconds / 2.4;
     return {2.45f + 0.42f * static_cast<float>(std::sin(a)), 0.55f,
             0.10f + 0.16f * static_cast<float>(std::cos(a))};
 }
 
-// What an engine has on the processor of its scene's depth, from culling or read back; here each
-// ray meets every box and the floor.
+// Stands in for an engine's CPU copy of the scene's depth. Here each ray tests every box and the
+// floor.
 class SeenDepth {
  public:
     static constexpr uint32_t kColumns = 160, kRows = 50;
@@ -59,11 +59,12 @@ class SeenDepth {
             const float x = 2.0f * (static_cast<float>(i % kColumns) + 0.5f) / kColumns - 1.0f;
             const float y = 2.0f * (static_cast<float>(i / kColumns) + 0.5f) / kRows - 1.0f;
             const glm::vec4 near = back * glm::vec4(x, y, 0, 1), far = back * glm::vec4(x, y, 1, 1);
-            const glm::vec3 from = glm::vec3(near) / near.w, way = glm::vec3(far) / far.w - from;
-            float part = way.y < 0.0f ? std::min(-from.y / way.y, 1.0f) : 1.0f;
-            for (const Box& box : kStones) part = std::min(part, enters(box, from, way));
-            for (const Box& box : kWalls) part = std::min(part, enters(box, from, way));
-            const glm::vec4 seen = clip * glm::vec4(from + part * way, 1);
+            const glm::vec3 from = glm::vec3(near) / near.w,
+                            direction = glm::vec3(far) / far.w - from;
+            float part = direction.y < 0.0f ? std::min(-from.y / direction.y, 1.0f) : 1.0f;
+            for (const Box& box : kStones) part = std::min(part, enters(box, from, direction));
+            for (const Box& box : kWalls) part = std::min(part, enters(box, from, direction));
+            const glm::vec4 seen = clip * glm::vec4(from + part * direction, 1);
             depths_[i] = std::clamp(seen.z / seen.w, 0.0f, 1.0f);
         }
     }
@@ -79,10 +80,10 @@ class SeenDepth {
     }
 
  private:
-    // Parts of the way to where a ray comes into a box; 1: it does not.
-    static float enters(const Box& box, const glm::vec3& from, const glm::vec3& way) {
-        const glm::vec3 a = (box.center - box.half - from) / way;
-        const glm::vec3 b = (box.center + box.half - from) / way;
+    // Returns the share of the segment at which a ray enters the box; 1: a miss.
+    static float enters(const Box& box, const glm::vec3& from, const glm::vec3& direction) {
+        const glm::vec3 a = (box.center - box.half - from) / direction;
+        const glm::vec3 b = (box.center + box.half - from) / direction;
         const glm::vec3 in = glm::min(a, b), out = glm::max(a, b);
         const float first = std::max({in.x, in.y, in.z});
         const bool meets = first > 0.0f && first < std::min({out.x, out.y, out.z});
@@ -98,7 +99,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: wind and walls";
-        stageRequest.lendScene = true;  // heat bends what is behind it
+        stageRequest.capturesScene = true;  // heat haze needs the scene
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
         for (const Box& box : kStones) studio.addBlock(box.center, box.half);
@@ -108,7 +109,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         worldDef.seed = options.seed;
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
-        // Blockers are what radiation and flames do not pass; flames flow around them, too.
+        // Occluders block radiation and flames; flames also flow around them.
         for (const Box& box : kWalls) {
             if (seenAlone) break;
             FwBlockerDef def = fwDefaultBlockerDef();
@@ -150,7 +151,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
 
         FwView view = fwDefaultView();
         view.haze = haze;
-        look.lightUp(view, 0.02f, 1.6f);
+        look.applyLight(view, 0.02f, 1.6f);
         sample::OrbitCamera orbit;
         orbit.target = {0.35f, 0.55f, 0};
         orbit.distance = 6.6f;
@@ -190,7 +191,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
             fire.check(fwWorld_MoveVolumetricFire(fire.world, fires[3], place),
                        "fwWorld_MoveVolumetricFire");
             sample::showStudio(frame, stage, studio, fire, view);
-            // A game asks what its characters feel: here a hand a little beside the wall.
+            // A game queries what its characters feel: here a hand beside the wall.
             FwFireAnswer answer{};
             answer.structSize = sizeof answer;
             const float hand[3] = {1.6f, 0.9f, 0};
@@ -237,9 +238,8 @@ int main(int argc, char** argv) {
             "08_wind_and_walls", "fires in a gust, under a ceiling, at a wall, and carried along");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--gust", "m/s, to the right", gust, -20.0f, 20.0f);
-        parser.addNumber("--haze", "how far heat bends what is behind it", haze, 0.0f, 8.0f);
-        parser.addFlag("--seen", "flames know walls by a picture of the scene's depth alone",
-                       seenAlone);
+        parser.addNumber("--haze", "strength of the heat haze", haze, 0.0f, 8.0f);
+        parser.addFlag("--seen", "flames find walls only in the scene's depth", seenAlone);
         look.addTo(parser);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

@@ -1,5 +1,5 @@
-// A flamethrower against nine walls, one screen each: what it strikes burns, and nothing behind it
-// does. Behind each wall stands a thing that would burn. In a window: drag to turn, wheel to zoom.
+// A flamethrower against nine walls, one screen each. The target burns, and the object behind it
+// must not. Window: drag to turn, wheel to zoom.
 #include <cmath>
 #include <cstdio>
 #include <cstring>
@@ -16,18 +16,19 @@ namespace {
 struct Box {
     glm::vec3 center, half;  // m
     float turn = 0;          // rad about y
-    bool wall = true;        // else it is what must, or must not, catch
+    bool wall = true;        // false: the object that must, or must not, ignite
 };
 
 constexpr float kPower = 700;   // kW
-constexpr float kFlows = 0.8f;  // of a case's time; then what stuck burns on
+constexpr float kFlows = 0.8f;  // share of a case's time with the jet on; afterwards stuck fuel
+                                // burns
 
 struct Case {
     const char* name;
     glm::vec3 nozzle, direction;
-    glm::vec3 swing;  // m: it moves so far to either side, in the case's time
+    glm::vec3 swing;  // m, amplitude of its motion to either side over the case's time
     std::vector<Box> boxes;
-    bool through;  // the thing behind is to burn
+    bool through;  // the object behind must burn
 };
 
 const std::vector<Case>& cases() {
@@ -60,7 +61,7 @@ const std::vector<Case>& cases() {
           {{1.8f, 0.75f, 1.3f}, {0.6f, 0.75f, 0.06f}, 0, false}},
          false},
         {"nozzle in the wall", {1.62f, 1.0f, 0}, ahead, still, {wall, behind}, false},
-        {"door beside the way",
+        {"door beside the jet",
          nozzle,
          ahead,
          still,
@@ -69,7 +70,7 @@ const std::vector<Case>& cases() {
         {"thin wall",
          nozzle,
          ahead,
-         {0, 0, 0.5f},  // no part of the stream goes beside it
+         {0, 0, 0.5f},  // the whole stream hits the wall
          {{{1.6f, 0.9f, 0}, {0.07f, 0.9f, 1.1f}}, behind},
          false},
         {"the blocker burns",
@@ -88,11 +89,11 @@ const std::vector<Case>& cases() {
     return all;
 }
 
-struct Range {  // the case that is on now
+struct Range {  // the current case
     std::vector<FwBurnableMeshId> boxes;
     FwFireEmitterId jet{};
     size_t shown = ~size_t(0);
-    std::vector<float> burnt;  // m^2 of the thing behind each wall that ever burnt
+    std::vector<float> burnt;  // m^2 that ever burnt, of the object behind each wall
 };
 
 void setUp(sample::FireHost& fire, FwMeshId cube, const FwMaterialId materials[2], size_t number,
@@ -155,7 +156,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
         stageRequest.title = "Flamewright: flamethrower";
-        stageRequest.lendAs(options);
+        stageRequest.applyOptions(options);
         const auto count = static_cast<float>(cases().size());
         sample::Stage stage(host, options, stageRequest,
                             sample::framesOf(options, seconds * count));
@@ -176,7 +177,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         }
 
         FwView view = fwDefaultView();
-        look.lightUp(view, 0.06f, 2.0f);
+        look.applyLight(view, 0.06f, 2.0f);
         sample::OrbitCamera orbit;
         orbit.target = {0.9f, 0.95f, 0};
         orbit.distance = 9.0f;
@@ -221,8 +222,8 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
                 const bool burnt = range.burnt[i] > 0;
                 summary.rows.emplace_back(
                     cases()[i].name,
-                    std::string(burnt ? "what is behind burns" : "what is behind does not burn") +
-                        (burnt == cases()[i].through ? ", as it should" : ": WRONG"));
+                    std::string(burnt ? "object behind burns" : "object behind does not burn") +
+                        (burnt == cases()[i].through ? ", as expected" : ": WRONG"));
             }
             filming.finish(summary, fire);
         }
@@ -241,9 +242,9 @@ int main(int argc, char** argv) {
         float seconds = 3;
         sample::FireLook look;
         sample::OptionParser parser("09_flamethrower", "a flamethrower against nine walls");
-        parser.addNumber("--seconds", "of each wall", seconds, 0.2f, 60.0f);
+        parser.addNumber("--seconds", "time per wall", seconds, 0.2f, 60.0f);
         look.addTo(parser);
-        parser.addLending(options);
+        parser.addCompositeFlags(options);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             for (const Case& what : cases()) std::printf("%s\n", what.name);

@@ -1,6 +1,6 @@
-// Particle fields: fire, smoke and water, each at 64 x 64 and at 32 x 32 cells, on cards (behind,
-// on blocks) and on spheroids (in front). On the right two boards are lit alike: water runs down
-// one of them and puts it out. In a window: drag to turn, wheel to zoom.
+// Particle fields: fire, smoke and water at 64 x 64 and at 32 x 32 cells, as billboards (behind, on
+// blocks) and as spheroids (in front). On the right, two boards ignite alike; water extinguishes
+// one. Window: drag to turn, wheel to zoom.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -15,7 +15,7 @@
 namespace {
 
 struct Exhibit {
-    uint32_t preset, shape, cells;  // cells: of a side
+    uint32_t preset, shape, cells;  // cells: per side
     float x, z, width, height;      // m
 };
 constexpr float kStone = 0.62f;  // m, height of the blocks
@@ -39,7 +39,7 @@ FwParticleFieldDef defOf(const Exhibit& exhibit, const sample::FireHost& fire) {
     fire.check(fwInitFieldPreset(&def, exhibit.preset), "fwInitFieldPreset");
     def.shape = exhibit.shape;
     def.width = def.height = exhibit.cells;
-    // Speeds are in cells: with half as many the same takes half as long.
+    // Speeds are in cells per second, so half the cells take half the time.
     def.life *=
         static_cast<float>(exhibit.cells) / (exhibit.shape == FW_FIELD_CARD ? 32.0f : 22.0f);
     def.position[0] = exhibit.x;
@@ -51,14 +51,14 @@ FwParticleFieldDef defOf(const Exhibit& exhibit, const sample::FireHost& fire) {
     return def;
 }
 
-// Two boards of straw that face the eye, as the water's card does, and when both are lit: before
-// the water has come down to the first one's fire.
+// Two straw boards that face the camera, as the water's billboard does. They ignite before the
+// water reaches the first one.
 constexpr float kBoardX[] = {3.75f, 4.75f}, kBoardZ = -0.5f, kBoardSide = 0.8f,
                 kBoardThick = 0.09f;  // m
 constexpr float kBoardTurn = -0.26f;  // rad about y
 constexpr double kLitAfter = 0.4;     // s
 
-// `out` m before the middle of a board's foot.
+// Returns a point `out` m before the centre of a board's base.
 glm::vec3 beforeBoard(float x, float out) {
     return {x + out * std::sin(kBoardTurn), 0, kBoardZ + out * std::cos(kBoardTurn)};
 }
@@ -132,7 +132,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.seed = options.seed;
         worldDef.wind[0] = wind;
-        worldDef.paceFactor = 8;  // boards burn in seconds
+        worldDef.paceFactor = 8;  // boards burn within seconds
         sample::FireHost fire(host, worldDef);
         fire.registerTarget(stage);
         FwParticleFieldId fields[std::size(kExhibits)]{};
@@ -180,7 +180,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
                 fire.check(fwWorld_GetParticleFieldState(fire.world, fields[i], &state),
                            "fwWorld_GetParticleFieldState");
                 char name[64], line[128];
-                constexpr const char* kShapes[] = {"card", "spheroid", "displaced"};
+                constexpr const char* kShapes[] = {"billboard", "spheroid", "displaced"};
                 std::snprintf(name, sizeof name, "%s, %s %u",
                               fwFieldPresetName(kExhibits[i].preset), kShapes[kExhibits[i].shape],
                               kExhibits[i].cells);
@@ -194,9 +194,9 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
                 const FwObjectState state = fire.objectState(boards.boards[i]);
                 const bool dry = i == 1, caught = state.ignited > 0, burns = state.burning > 0;
                 summary.rows.emplace_back(dry ? "dry board" : "board under water",
-                                          std::string(!caught ? "did not catch"
+                                          std::string(!caught ? "did not ignite"
                                                       : burns ? "burns"
-                                                              : "caught and went out") +
+                                                              : "ignited and went out") +
                                               (caught && burns == dry ? "" : ": WRONG"));
             }
             filming.finish(summary, fire);
@@ -216,7 +216,7 @@ int main(int argc, char** argv) {
         float seconds = 6, dusk = 1.2f, wind = 0;
         sample::OptionParser parser("10_fields", "particle fields: fire, smoke and water");
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
-        parser.addNumber("--daylight", "of the scene, 1: dusk", dusk, 0.0f, 10.0f);
+        parser.addNumber("--daylight", "light of the scene, 1: dusk", dusk, 0.0f, 10.0f);
         parser.addNumber("--wind", "m/s, to the right", wind, -20.0f, 20.0f);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

@@ -1,5 +1,5 @@
-// A camp fire on cobbles, between charred logs: the left half by bump mapping, the right half by
-// parallax occlusion, whose depth the flames respect. In a window: drag to turn, wheel to zoom.
+// A camp fire on cobbles between charred logs. The left half uses bump mapping, the right half
+// parallax occlusion, whose depth occludes the flames. Window: drag to turn, wheel to zoom.
 #include <cstdio>
 
 #include "common/camera.h"
@@ -112,13 +112,13 @@ int main(int argc, char** argv) {
         options.fps = 30.0;
         float seconds = 2, light = 0.06f, yaw = 20, pitch = 14, distance = 3.2f;
         std::string mode = "both";
-        sample::OptionParser parser("11_parallax", "a relief by bumps and by parallax, afire");
+        sample::OptionParser parser("11_parallax", "a fire on a relief, by bumps and by parallax");
         parser.addText("--ground", "NAME", "bump, parallax, or both: left and right", mode);
         parser.addNumber("--seconds", "length of a headless run", seconds, 0.1f, 600.0f);
         parser.addNumber("--daylight", "share of evening light", light, 0.0f, 4.0f);
         parser.addNumber("--yaw", "camera around it, degrees", yaw, -360.0f, 360.0f);
         parser.addNumber("--pitch", "camera above it, degrees", pitch, 1.0f, 85.0f);
-        parser.addNumber("--distance", "camera from it, m", distance, 0.6f, 20.0f);
+        parser.addNumber("--distance", "camera distance, m", distance, 0.6f, 20.0f);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {
             std::printf("bump\nparallax\nboth\n");

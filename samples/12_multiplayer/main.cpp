@@ -1,7 +1,7 @@
-// One fire on two machines: a server's process, in which a yard of crates burns, and a client's,
-// which starts itself, comes late, and hears of it over a wire that loses a fifth of all packets.
-// What its host does to the fire (matches, water, a puff, wind) goes there as events; the burn is
-// computed on both sides. At the end both say the hash of every texel, and it is one.
+// One fire on two machines. The server burns a yard of crates. The client starts itself, joins
+// late, and receives packets over a connection that loses a fifth of them. The host's actions
+// (matches, water, a puff, wind) travel as events; both sides compute the burn. At the end both
+// hashes of all texels must agree.
 #include "common/yard.h"
 #include "wire.h"
 
@@ -24,11 +24,11 @@ namespace {
 
 constexpr uint32_t kStepsPerSecond = 32;
 constexpr float kStep = 1.0f / kStepsPerSecond;
-constexpr double kPatience = 30;  // s without the other one
+constexpr double kPatience = 30;  // s without the peer
 
 struct Settings {
     uint32_t crates = 36, steps = 12 * kStepsPerSecond, seed = 1;
-    uint16_t port = 0;  // of the server, for a client; 0: this is the server
+    uint16_t port = 0;  // of the server, for a client; 0: this process is the server
     WireWeather weather;
     std::string out;
 };
@@ -47,7 +47,7 @@ Settings readArguments(int count, char** arguments) {
     Settings settings;
     for (int i = 1; i < count; ++i) {
         const std::string name = arguments[i];
-        if (name == "--headless") continue;  // it never has a window
+        if (name == "--headless") continue;  // it never opens a window
         if (i + 1 == count) throw std::runtime_error(name + " has no value, or is not known");
         const char* value = arguments[++i];
         if (name == "--crates") {
@@ -74,7 +74,7 @@ Settings readArguments(int count, char** arguments) {
     return settings;
 }
 
-// A world of a yard on the cpu backend; the same on both sides.
+// A world with a yard on the cpu backend, equal on both sides.
 class Side {
  public:
     explicit Side(const Settings& settings)
@@ -120,7 +120,7 @@ class Side {
         check(fwNet_GetState(world_, {}, &state));
         return state;
     }
-    // Packets that came in: take(port, bytes, size).
+    // Receives packets: take(port, bytes, size).
     template <class Take>
     void exchange(double now, const Take& take) {
         unsigned char room[1400];
@@ -141,7 +141,7 @@ class Side {
         }
         wire_.flush(now);
     }
-    // Every texel of every crate.
+    // Hashes every texel of every crate.
     [[nodiscard]] std::string hash() const {
         char text[64];
         std::snprintf(text, sizeof text, "%016llx",
@@ -180,7 +180,7 @@ class Server : public Side {
     using Side::Side;
     [[nodiscard]] uint16_t port() const { return wire_.port(); }
 
-    // True: the client got there.
+    // Returns true if the client reached the end.
     bool run() {
         uint32_t step = 0;
         std::string message;
@@ -206,7 +206,7 @@ class Server : public Side {
                 if (from != client_) return;
                 if (fwNet_Read(world_, peer_, packet, size) == FW_OK) {
                     greeted_ = true;
-                } else if (!greeted_) {  // a stranger's packet: the place stays free
+                } else if (!greeted_) {  // a packet of a stranger: the slot stays free
                     check(fwNet_RemovePeer(world_, peer_));
                     client_ = 0;
                 }
@@ -227,7 +227,8 @@ class Server : public Side {
         check(fwNet_GetState(world_, peer_, &state));
         return state.phase == FW_NET_FOLLOWING;
     }
-    // A crate is lit every quarter of a second; some are wetted, one is put out half; wind turns.
+    // Ignites a crate every quarter of a second, wets some, extinguishes one half way, turns the
+    // wind.
     void act(uint32_t step) {
         if (step % 8 == 0 && step / 8 < yard_.crates.size()) lightCrate(world_, yard_, step / 8);
         if (step % 40 == 39) douse(step / 40, step % 80 == 39 ? FW_WET : FW_EXTINGUISH);
@@ -251,14 +252,14 @@ class Server : public Side {
 
     FwPeerId peer_{};
     uint16_t client_ = 0;
-    bool greeted_ = false;  // it has sent a packet that is a client's
+    bool greeted_ = false;  // has received a valid client packet
 };
 
 class Client : public Side {
  public:
     using Side::Side;
 
-    // True: the server's last word is the hash that this world has there.
+    // Returns true if the server's last message equals this world's hash.
     bool run() {
         double progress = 0;
         uint64_t step = 0;
@@ -266,7 +267,7 @@ class Client : public Side {
         double doneAt = 0;
         for (;;) {
             const double now = seconds();
-            // A damaged packet is refused, and comes again.
+            // The library rejects a damaged packet; the server sends it again.
             exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
                 if (from == settings_.port) (void)fwNet_Read(world_, {}, packet, size);
             });
@@ -294,7 +295,7 @@ class Client : public Side {
             }
             if (at.step != step || !followed) step = at.step, progress = now;
             send({}, settings_.port, now);
-            // A little longer, so that the server hears that all has come.
+            // Continue briefly, so that the server receives the acknowledgement.
             if (done && now - doneAt > 2) return equal;
             if (!done && (now - progress > kPatience || double(at.silent) > kPatience))
                 throw std::runtime_error("the server is silent");
@@ -303,7 +304,7 @@ class Client : public Side {
     }
 };
 
-// This program again, as the client of a port.
+// Starts this program again, as the client of a port.
 pid_t startClient(int count, char** arguments, uint16_t port) {
     const pid_t child = fork();
     if (child != 0) return child;

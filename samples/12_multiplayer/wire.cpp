@@ -58,7 +58,7 @@ void Wire::flush(double now) {
     std::erase_if(packets_, [&](const Packet& packet) {
         if (packet.at > now) return false;
         const sockaddr_in address = loopback(packet.to);
-        // What the system does not take is lost, as on any way.
+        // A packet that the system rejects counts as lost.
         (void)sendto(socket_, packet.bytes.data(), packet.bytes.size(), 0,
                      reinterpret_cast<const sockaddr*>(&address), sizeof address);
         return true;
@@ -66,7 +66,7 @@ void Wire::flush(double now) {
 }
 
 size_t Wire::receive(void* room, size_t size, uint16_t& from) {
-    for (;;) {  // an empty packet is not the end of them
+    for (;;) {  // an empty packet does not end the queue
         sockaddr_in address{};
         socklen_t length = sizeof address;
         const ssize_t came =

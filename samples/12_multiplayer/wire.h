@@ -1,5 +1,5 @@
-// UDP over the loopback, which loses, holds up, doubles and so mixes what is sent: a bad day on the
-// internet. POSIX sockets; nothing blocks.
+// UDP over the loopback interface that loses, delays, duplicates and reorders packets, like a bad
+// internet connection. POSIX sockets; nothing blocks.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,23 +7,23 @@
 #include <vector>
 
 struct WireWeather {
-    double loss = 0.2, repeat = 0.05;      // chances of a packet
-    double soonest = 0.02, latest = 0.12;  // s
+    double loss = 0.2, repeat = 0.05;      // probabilities per packet
+    double soonest = 0.02, latest = 0.12;  // s, range of the delay
 };
 
 class Wire {
  public:
-    // port 0: any that is free. Throws std::runtime_error.
+    // Port 0: any free port. Throws std::runtime_error.
     Wire(uint16_t port, const WireWeather& weather, uint32_t seed);
     ~Wire();
     Wire(const Wire&) = delete;
     Wire& operator=(const Wire&) = delete;
 
     [[nodiscard]] uint16_t port() const { return port_; }
-    // To a port of this machine, once its time has come; now: s.
+    // Sends to a local port after the delay. now: s.
     void send(uint16_t to, const void* bytes, size_t size, double now);
     void flush(double now);
-    // Size of a packet that came, and from which port; 0: none.
+    // Returns the size of a received packet and its port; 0: none.
     size_t receive(void* room, size_t size, uint16_t& from);
 
  private:

@@ -1,7 +1,7 @@
-// A dedicated server: crates burn at 32 Hz on one core, by the same integers as on any GPU. One
-// line a second: how many burn, what it costs, and the hash of all of it, which a client compares
-// with its own. It links the library and nothing else. --baked burns one crate beforehand, and all
-// others play that until their neighbours' heat makes them live.
+// A dedicated server: crates burn at 32 Hz on one core, with the same integers as on any GPU.
+// Prints a line per second: burning crates, cost, and the hash, which a client compares with its
+// own. Links only the library. --baked burns one crate in advance; the others play it until heat of
+// their neighbours makes them live.
 #include "common/yard.h"
 
 #include <algorithm>
@@ -23,7 +23,7 @@ constexpr float kStep = 1.0f / kStepsPerSecond;
 
 struct Settings {
     uint32_t crates = 100, steps = 20 * kStepsPerSecond, seed = 1;
-    bool fast = false;  // do not wait for the clock
+    bool fast = false;  // ignores the clock
     bool baked = false;
     std::string out;
 };
@@ -49,7 +49,7 @@ Settings readArguments(int count, char** arguments) {
             settings.baked = true;
             continue;
         }
-        if (name == "--headless") continue;  // as all samples: it never has a window
+        if (name == "--headless") continue;  // as in all samples: it never opens a window
         if (i + 1 == count) throw std::runtime_error(name + " has no value, or is not known");
         const char* value = arguments[++i];
         if (name == "--crates") {
@@ -69,13 +69,13 @@ Settings readArguments(int count, char** arguments) {
     return settings;
 }
 
-// The processor's time, of all threads of the process.
+// Processor time of all threads of the process.
 double cpuSeconds() { return double(std::clock()) / CLOCKS_PER_SEC; }
 
 void save(FwWorld* world, const std::string& folder) {
     uint64_t size = 0;
     check(fwWorld_RequestSave(world), world);
-    check(fwWorld_Step(world, 0), world);  // a save is of the next frame, be it of no time
+    check(fwWorld_Step(world, 0), world);  // a save takes the next frame (deltaTime may be 0)
     check(fwWorld_FetchSave(world, nullptr, &size), world);
     std::string bytes(size, '\0');
     check(fwWorld_FetchSave(world, bytes.data(), &size), world);
@@ -87,7 +87,7 @@ void save(FwWorld* world, const std::string& folder) {
     std::printf("%s: %zu bytes, with which a client joins late\n", path.c_str(), bytes.size());
 }
 
-// A crate by itself burns in a world like the server's for a minute; then as bytes.
+// Burns a single crate for a minute in a world like the server's. Returns the burn as bytes.
 std::string bakeCrate(FwWorld* world) {
     const Yard yard = makeYard(world, 1);
     lightCrate(world, yard, 0);
@@ -101,14 +101,14 @@ std::string bakeCrate(FwWorld* world) {
     return bytes;
 }
 
-// `burn`: what crates play; null: they are lit.
+// `burn`: a baked burn for the crates; null: ignite them.
 void serve(FwWorld* world, const Yard& yard, FwBurnId burn, const Settings& settings) {
     using Clock = std::chrono::steady_clock;
     const Clock::time_point start = Clock::now();
-    double spent = 0, worst = 0, all = 0;  // s: of the second, its longest step, of the run
+    double spent = 0, worst = 0, all = 0;  // s: in this second, longest step, whole run
     uint32_t lit = 0;
     for (uint32_t step = 0; step < settings.steps; ++step) {
-        // All of them are alight within two seconds.
+        // Ignite all of them within two seconds.
         for (; lit < yard.crates.size() && lit * 2 * kStepsPerSecond <= step * yard.crates.size();
              ++lit)
             if (burn.index1 != 0)
@@ -170,7 +170,7 @@ void run(const Settings& settings) {
     };
     std::string baked;
     if (settings.baked) {
-        FwWorld* alone = createWorld();  // the context's, if it throws
+        FwWorld* alone = createWorld();  // the context destroys it if this throws
         baked = bakeCrate(alone);
         fwDestroyWorld(alone);
         std::printf("a crate's burn: %zu bytes\n", baked.size());

@@ -1,7 +1,7 @@
-// A scene of the editor in a game's window. With --link it listens on a port of this machine, and
-// an editor pushes its changes into the fire that burns: wind, light, flames, heat and water at
-// once, meshes, paint and materials by a burn of their own that catches up behind the picture. In a
-// window: drag to turn, wheel to zoom, R to burn from the start.
+// Shows an editor scene in a game's window. With --link it listens on a local port, and an editor
+// pushes changes into the running fire. Wind, light, flames, heat and water apply at once. Meshes,
+// paint and materials need a second burn that catches up in the background. Window: drag to turn,
+// wheel to zoom, R to restart the burn.
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
@@ -18,25 +18,25 @@
 namespace {
 
 struct Settings {
-    float seconds = 10;  // of a headless run; with --link, when time stands still
+    float seconds = 10;  // length of a headless run; with --link, the time at which playback stops
     std::string port;    // empty: no link
 };
 
-constexpr float kHurry = 0.5f;       // s of the fire in a frame, of a burn that catches up
-constexpr uint32_t kLastFrames = 8;  // until what was asked of the last burn is there
+constexpr float kCatchUpStep = 0.5f;  // s per frame, for a burn that catches up
+constexpr uint32_t kLastFrames = 8;   // frames until the last burn's readback arrives
 
 std::filesystem::path cacheFolder(const sample::Options& options) {
     return options.out.parent_path() / "cache";
 }
 
-// The scene that is shown, and the one that shall be.
+// Shows one scene while the next one catches up.
 class Player {
  public:
     Player(const sample::VulkanHost& host, sample::Stage& stage, const std::filesystem::path& cache)
         : host_(host), stage_(stage), context_(sample::createContext(host, false)) {
         assets_.cache = cache;
-        // Surfaces in the stage's pass; flames in one of ours over it, where they fade as they meet
-        // what is solid.
+        // Draws surfaces in the stage's pass. Flames composite over it in a separate pass, so that
+        // they fade at surfaces.
         FwVulkanTargetDef solids = fwDefaultVulkanTargetDef();
         solids.colorFormat = stage.made.colorFormat;
         solids.depthFormat = stage.depthFormat;
@@ -55,7 +55,7 @@ class Player {
             char text[512] = "";
             fwContext_GetLastMessage(context_, text, sizeof text);
             fwDestroyContext(context_);
-            throw sample::Failure(std::string("The scene cannot be drawn: ") + text);
+            throw sample::Failure(std::string("The scene cannot be rendered: ") + text);
         }
     }
     ~Player() {
@@ -68,7 +68,7 @@ class Player {
     Player(const Player&) = delete;
     Player& operator=(const Player&) = delete;
 
-    // From here on that scene. Empty, or why the one before goes on.
+    // Switches to this scene. Returns an empty string, or the reason why the previous scene stays.
     std::string show(const fwlink::LinkedScene& wanted) {
         const bool samePaint = !shown_.folder.empty() && shown_.images == wanted.images &&
                                shown_.folder == wanted.folder;
@@ -89,18 +89,18 @@ class Player {
     [[nodiscard]] bool catchesUp() const { return next_ != nullptr; }
     [[nodiscard]] const fwedit::Burn& burn() const { return *burn_; }
 
-    // A frame that is `step` s later.
+    // Renders a frame that advances by `step` s.
     void draw(const sample::StageFrame& frame, float step) {
         turn(frame.input);
-        fwedit::Scene seen;  // viewOf reads these alone
+        fwedit::Scene seen;  // viewOf reads only these fields
         seen.settings = shown_.scene.settings;
         seen.camera = camera_;
         const FwView view =
             fwedit::viewOf(seen, frame.extent.width, frame.extent.height, burn_->time);
         if (next_) {
             const double left = burn_->time + double{step} - next_->time;
-            advance(*next_, frame, view, std::clamp(float(left), 0.0f, kHurry));
-            if (left <= double{kHurry}) {
+            advance(*next_, frame, view, std::clamp(float(left), 0.0f, kCatchUpStep));
+            if (left <= double{kCatchUpStep}) {
                 adopt();
             } else {
                 advance(*burn_, frame, view, step);
@@ -116,7 +116,8 @@ class Player {
         check(*burn_,
               fwWorld_RecordInside(burn_->world, &described, solids_, &view, &frame.viewport));
         stage_.endScene(frame);
-        const FwVulkanComposite over = sample::compositeOf(stage_.lendScene(frame), frame.extent);
+        const FwVulkanComposite over =
+            sample::describeComposite(stage_.captureScene(frame), frame.extent);
         check(*burn_, fwWorld_RecordComposite(burn_->world, &described, flames_, &view, &over));
         stage_.finish(frame);
     }
@@ -143,7 +144,7 @@ class Player {
         const FwVulkanFrame described = describe(frame, step);
         check(burn, fwWorld_RecordOutside(burn.world, &described, &view));
     }
-    // Its burn from the start, behind the picture. Empty, or why there is none.
+    // Starts a burn in the background. Returns an empty string, or the reason of failure.
     std::string begin(const fwlink::LinkedScene& wanted) {
         std::string error;
         auto made = fwedit::createBurn(context_, wanted.scene, wanted.images, wanted.folder,
@@ -185,7 +186,7 @@ class Player {
     FwContext* context_;
     FwTargetId solids_{}, flames_{};
     fwedit::Assets assets_;
-    std::unique_ptr<fwedit::Burn> burn_, next_;  // next_: behind the picture
+    std::unique_ptr<fwedit::Burn> burn_, next_;  // next_: catches up in the background
     fwlink::LinkedScene shown_;
     fwedit::Camera camera_;
     std::unique_ptr<sample::Studio> studio_;
@@ -202,7 +203,7 @@ fwlink::LinkedScene sceneOf(const std::filesystem::path& file) {
     return {0, document.scene, document.images, std::filesystem::absolute(file).parent_path()};
 }
 
-// The sample's side of a link, and how soon what comes is seen.
+// The sample's side of a link. Measures how soon a received change is visible.
 class Link {
  public:
     explicit Link(const std::string& port) {
@@ -210,19 +211,19 @@ class Link {
         std::string error;
         if (!receiver_.listen(uint16_t(sample::parseWhole("--link", port, 0, 65535)), error))
             throw sample::Failure(error);
-        std::printf("an editor is awaited on port %u of this machine\n", receiver_.port());
+        std::printf("waiting for an editor on local port %u\n", receiver_.port());
         std::fflush(stdout);
         listens_ = true;
     }
     [[nodiscard]] bool listens() const { return listens_; }
     [[nodiscard]] bool connected() const { return receiver_.connected(); }
-    // True: there is a scene to be shown.
+    // Returns true if there is a new scene to show.
     bool poll(fwlink::LinkedScene& scene) {
         if (!listens_) return false;
         std::string report;
-        const bool news = receiver_.poll(scene, report);
+        const bool isNew = receiver_.poll(scene, report);
         if (!report.empty()) say(report);
-        return news;
+        return isNew;
     }
     void takes(const fwlink::LinkedScene& scene, std::string problem) {
         taken_ = scene.number;
@@ -230,7 +231,7 @@ class Link {
         problem_ = std::move(problem);
         if (!problem_.empty()) say(problem_);
     }
-    // After each frame. `settled`: the scene that was taken is in it.
+    // Call it after each frame. `settled`: the received scene is visible in it.
     void afterFrame(bool settled) {
         ++frames_;
         if (taken_ == 0 || !settled) return;
@@ -247,13 +248,13 @@ class Link {
     }
     fwlink::SceneReceiver receiver_;
     bool listens_ = false;
-    uint64_t taken_ = 0;  // that has not been answered; 0: none
+    uint64_t taken_ = 0;  // serial of the scene without a reply yet; 0: none
     uint32_t frames_ = 0;
     std::string problem_;
 };
 
-// Without a window: to the time that was wished, where it stands still while scenes come; over once
-// the editor has gone. Leaves the last picture, and prints the hash of what burnt.
+// Headless: advances to --seconds and stops there while scenes arrive. Ends when the editor
+// disconnects. Saves the last picture and prints the hash of the burn.
 void playForEditor(Player& player, sample::Stage& stage, Link& link, const Settings& settings,
                    const sample::Options& options) {
     sample::Picture last;
@@ -262,10 +263,10 @@ void playForEditor(Player& player, sample::Stage& stage, Link& link, const Setti
     fwlink::LinkedScene scene;
     const double end = double{settings.seconds};
     const auto show = [&](bool waits) {
-        const bool news = link.poll(scene);
-        if (news) link.takes(scene, player.show(scene));
-        if (!news && waits) std::this_thread::sleep_for(std::chrono::milliseconds(2));
-        return news;
+        const bool isNew = link.poll(scene);
+        if (isNew) link.takes(scene, player.show(scene));
+        if (!isNew && waits) std::this_thread::sleep_for(std::chrono::milliseconds(2));
+        return isNew;
     };
     const auto draw = [&] {
         if (!stage.next(frame)) throw sample::Failure("there are no more frames");
@@ -321,14 +322,14 @@ void play(Player& player, sample::Stage& stage, Link& link, const sample::Option
 
 int run(const sample::Options& options, const Settings& settings) {
     if (options.positional.size() > 1)
-        throw sample::Failure("one scene at a time; " + options.positional[1] + " is one too many");
+        throw sample::Failure("one scene at a time; " + options.positional[1] + " is extra");
     sample::ValidationLog validation;
     {
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest request;
         request.title = "Flamewright: a scene";
-        request.vignette = 0.1f;  // as the editor's picture has it
-        request.lendScene = true;
+        request.vignette = 0.1f;  // as in the editor's picture
+        request.capturesScene = true;
         Link link(settings.port);
         const bool forEditor = options.headless && link.listens();
         sample::Stage stage(host, options, request,
@@ -359,11 +360,10 @@ int main(int argc, char** argv) {
     return sample::guardedMain("14_scene", [&] {
         sample::Options options;
         Settings settings;
-        sample::OptionParser parser("14_scene", "a scene of the editor, as a game shows it",
+        sample::OptionParser parser("14_scene", "shows an editor scene in a game",
                                     "[FILE.fwscene]");
         parser.addNumber("--seconds", "length of a headless run", settings.seconds, 0.1f, 600.0f);
-        parser.addText("--link", "PORT",
-                       "takes changes from an editor of this machine; 0: on any free port",
+        parser.addText("--link", "PORT", "local port for changes from an editor; 0: any free port",
                        settings.port);
         if (!parser.parse(argc, argv, options)) return 0;
         return run(options, settings);

@@ -1,5 +1,5 @@
 // Cameras for the samples: right-handed world, y up, Vulkan clip space (y down, depth 0 to 1).
-// Matrices are column-major and not jittered, as the plugin wants them.
+// Matrices are column-major and without jitter, as the plugin requires.
 #pragma once
 
 #include <algorithm>
@@ -22,7 +22,7 @@ inline glm::mat4 viewMatrix(const Camera& camera) {
     return glm::lookAtRH(camera.eye, camera.target, camera.up);
 }
 
-// `reversed`: near is 1 and far is 0, which spends float depth where it is needed.
+// `reversed`: near is 1 and far is 0, which gives distant depths more precision.
 inline glm::mat4 projectionMatrix(const Camera& camera, float aspect, bool reversed = false) {
     const float scale = 1.0f / std::tan(0.5f * camera.fieldOfView);
     const float near = reversed ? camera.farPlane : camera.nearPlane;
@@ -36,11 +36,11 @@ inline glm::mat4 projectionMatrix(const Camera& camera, float aspect, bool rever
     return result;
 }
 
-// Around a point: drag turns, wheel zooms.
+// Orbits a point: drag turns, wheel zooms.
 struct OrbitCamera {
     glm::vec3 target{0.0f};    // m
     float distance = 3.0f;     // m
-    float yaw = 0.5f;          // rad, 0 looks along -z
+    float yaw = 0.5f;          // rad; 0: looks along -z
     float pitch = 0.25f;       // rad above the horizon
     float fieldOfView = 0.6f;  // rad
 

@@ -2,7 +2,7 @@
 
 namespace sample {
 
-// Corners face by face.
+// Lists the corners face by face.
 FwMeshId makeCube(FireHost& fire) {
     std::vector<float> positions;
     std::vector<uint32_t> indices;

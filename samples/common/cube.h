@@ -1,4 +1,4 @@
-// A cube of 1 m: what boards, walls and posts that burn are made of, by their transforms.
+// A cube of 1 m. Scaled by transforms, it serves as burning boards, walls and posts.
 #pragma once
 
 #include "common/fire_host.h"

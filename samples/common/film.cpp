@@ -25,7 +25,7 @@ void Film::add(uint32_t number, const Picture& picture) {
     if (number % std::max(1u, made_.animationEvery) == 0) {
         animation_.add(scaled(made_.animationWidth));
     }
-    // Moments lie evenly over the run, the first and the last frame among them.
+    // The stills are evenly spaced and include the first and the last frame.
     const uint32_t last = std::max(1u, made_.frames) - 1, moments = std::max(1u, made_.moments);
     const auto next = static_cast<uint32_t>(moments_.size());
     const uint32_t due = moments > 1 ? (last * next + (moments - 1) / 2) / (moments - 1) : last;

@@ -1,4 +1,4 @@
-// What a headless run leaves behind: every frame as PNG, an animated picture, a strip of moments.
+// Output of a headless run: each frame as PNG, an animated picture, and a strip of stills.
 #pragma once
 
 #include <filesystem>
@@ -11,21 +11,21 @@ namespace sample {
 
 struct FilmRequest {
     std::filesystem::path folder{};
-    std::string name{};  // of the sample: begins the names of the joined pictures
+    std::string name{};  // name of the sample; prefix of the combined pictures
     double framesPerSecond = 30.0;
-    uint32_t frames = 1;            // how many will come
-    uint32_t animationWidth = 480;  // pixels; the frames are scaled down to it
-    uint32_t animationEvery = 1;    // takes each such frame into the animation
+    uint32_t frames = 1;            // total number of frames
+    uint32_t animationWidth = 480;  // pixels; frames are scaled down to it
+    uint32_t animationEvery = 1;    // one frame in so many enters the animation
     uint32_t moments = 6;           // pictures in the strip
     uint32_t columns = 3;           // of the strip
-    uint32_t stripWidth = 640;      // pixels of one picture in the strip
+    uint32_t stripWidth = 640;      // pixels of one still in the strip
 };
 
 class Film {
  public:
     explicit Film(const FilmRequest& request);
-    void add(uint32_t number, const Picture& picture);  // from 0, in order
-    // Writes what is joined; returns lines for the summary.
+    void add(uint32_t number, const Picture& picture);  // `number`: from 0, in order
+    // Writes the combined pictures. Returns lines for the summary.
     std::vector<std::string> close();
 
  private:

@@ -1,5 +1,5 @@
-// A sample's run as it is shown: pictures and a progress bar while it lasts, one screen at its end.
-// With a window it does nothing.
+// Films a headless run: pictures and a progress bar while it runs, a summary at its end. Does
+// nothing with a window.
 #pragma once
 
 #include "common/film.h"
@@ -11,14 +11,15 @@ namespace sample {
 
 class Filming {
  public:
-    // Takes the stage's pictures. `film` names the run and may say how it is joined; the folder and
-    // the counts come from the options and the stage.
+    // Receives the stage's pictures. `film`: name and layout of the combined pictures; folder and
+    // counts come from the options and the stage.
     Filming(Stage& stage, const Options& options, FilmRequest film);
     Filming(const Filming&) = delete;
     Filming& operator=(const Filming&) = delete;
 
-    double seconds() const { return progress_.seconds(); }  // since it began
-    // After the last frame: joins the pictures, and prints the summary with what the passes cost.
+    double seconds() const { return progress_.seconds(); }  // since the start
+    // After the last frame: writes the combined pictures and prints the summary with the cost per
+    // pass.
     void finish(Summary summary, const FireHost& fire);
 
  private:

@@ -28,30 +28,31 @@ void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool
 }
 
 FwContext* createContext(const VulkanHost& host, bool prepares) {
-    // The device goes over as it was made. What is not said here counts as not enabled.
-    FwVulkanHost lent = fwDefaultVulkanHost();
-    lent.apiVersion = host.made.apiVersion;
-    lent.getInstanceProcAddr = vkGetInstanceProcAddr;
-    lent.instance = host.instance;
-    lent.physicalDevice = host.physicalDevice;
-    lent.device = host.device;
-    lent.queueFamilyIndex = host.queueFamily;
-    lent.enabledExtensions = host.made.deviceExtensions.data();
-    lent.enabledExtensionCount = static_cast<uint32_t>(host.made.deviceExtensions.size());
-    lent.enabledInstanceExtensions = host.made.instanceExtensions.data();
-    lent.enabledInstanceExtensionCount = static_cast<uint32_t>(host.made.instanceExtensions.size());
-    lent.enabledFeatures = &host.made.features;
-    lent.enabledFeatureChain = host.made.featureChain;
+    // Report every enabled feature and extension: the plugin treats unlisted ones as disabled.
+    FwVulkanHost vulkanHost = fwDefaultVulkanHost();
+    vulkanHost.apiVersion = host.made.apiVersion;
+    vulkanHost.getInstanceProcAddr = vkGetInstanceProcAddr;
+    vulkanHost.instance = host.instance;
+    vulkanHost.physicalDevice = host.physicalDevice;
+    vulkanHost.device = host.device;
+    vulkanHost.queueFamilyIndex = host.queueFamily;
+    vulkanHost.enabledExtensions = host.made.deviceExtensions.data();
+    vulkanHost.enabledExtensionCount = static_cast<uint32_t>(host.made.deviceExtensions.size());
+    vulkanHost.enabledInstanceExtensions = host.made.instanceExtensions.data();
+    vulkanHost.enabledInstanceExtensionCount =
+        static_cast<uint32_t>(host.made.instanceExtensions.size());
+    vulkanHost.enabledFeatures = &host.made.features;
+    vulkanHost.enabledFeatureChain = host.made.featureChain;
 
     FwContextDef def = fwDefaultContextDef();
     def.callbacks.log = printLog;
-    def.vulkan = &lent;
+    def.vulkan = &vulkanHost;
     FwContext* context = nullptr;
     FwErrorInfo error{};
     if (fwCreateContext(&def, &context, &error) != FW_OK) {
         throw Failure(std::string("fwCreateContext: ") + error.message);
     }
-    if (prepares && fwContext_Prepare(context) != FW_OK) {  // a loading screen's work
+    if (prepares && fwContext_Prepare(context) != FW_OK) {  // a loading screen would run this
         char text[512] = "";
         fwContext_GetLastMessage(context, text, sizeof text);
         fwDestroyContext(context);
@@ -60,7 +61,7 @@ FwContext* createContext(const VulkanHost& host, bool prepares) {
     return context;
 }
 
-FwVulkanComposite compositeOf(const LentScene& scene, VkExtent2D extent) {
+FwVulkanComposite describeComposite(const CapturedScene& scene, VkExtent2D extent) {
     FwVulkanComposite images = fwDefaultVulkanComposite();
     images.width = extent.width;
     images.height = extent.height;
@@ -113,10 +114,10 @@ void FireHost::registerTarget(const Stage& stage, bool surfaces) {
     if (stage.made.colorFormat == VK_FORMAT_R8G8B8A8_SRGB) def.encoding = FW_OUTPUT_SRGB_VIEW;
     if (stage.made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT) def.encoding = FW_OUTPUT_LINEAR;
     def.flags = FW_TARGET_AS_NEEDED;
-    if (stage.made.lendScene) def.flags |= FW_TARGET_NO_FLAMES;
-    if (!stage.made.lendScene || surfaces)
+    if (stage.made.capturesScene) def.flags |= FW_TARGET_NO_FLAMES;
+    if (!stage.made.capturesScene || surfaces)
         check(fwContext_RegisterTarget(context, &def, &target), "fwContext_RegisterTarget");
-    if (stage.made.lendScene) {
+    if (stage.made.capturesScene) {
         def.renderPass = VK_NULL_HANDLE;
         def.flags = FW_TARGET_AS_NEEDED | FW_TARGET_COMPOSITE | FW_TARGET_HAZE;
         if (stage.made.halfEffects) def.flags |= FW_TARGET_HALF_EFFECTS;
@@ -164,18 +165,18 @@ void FireHost::recordInside(const StageFrame& frame, const FwView& view,
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordInside");
 }
 
-void FireHost::recordOver(const StageFrame& frame, const FwView& view, const LentScene& scene) {
+void FireHost::recordOver(const StageFrame& frame, const FwView& view, const CapturedScene& scene) {
     FwVulkanFrame described = describe(frame, VK_NULL_HANDLE);
     described.sampledColor = scene.copy;
     described.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    const FwVulkanComposite images = compositeOf(scene, frame.extent);
+    const FwVulkanComposite images = describeComposite(scene, frame.extent);
     const FwResult result = fwWorld_RecordComposite(world, &described, overScene, &view, &images);
     if (result != FW_NOT_READY) check(result, "fwWorld_RecordComposite");
 }
 
 void FireHost::check(FwResult result, const char* what) const {
     if (result == FW_OK || result == FW_NOTHING_THERE) return;
-    // The world knows best what went wrong in it; creation has only the context to ask.
+    // The world has the most specific message. During creation only the context exists.
     char text[1024] = "";
     if (world) fwWorld_GetLastMessage(world, text, sizeof text);
     if (!text[0]) fwContext_GetLastMessage(context, text, sizeof text);

@@ -1,5 +1,5 @@
-// All that an engine with its own Vulkan device writes to have fire: lend the device, prepare,
-// register the pass, then two calls a frame. Read this and fire_host.cpp as documentation.
+// All code that an engine with its own Vulkan device needs for fire: pass the device, prepare,
+// register the scene pass, then two calls per frame. Read it with fire_host.cpp as documentation.
 #pragma once
 
 #include <span>
@@ -14,54 +14,54 @@
 
 namespace sample {
 
-// Where the frame is seen from, and when.
+// Fills the view's camera and time.
 void setCamera(FwView& view, const Camera& camera, const StageFrame& frame, bool reversed = false);
 
-// Lends the host's device and builds the pipelines, or leaves them to the caller, who prepares the
-// context then. Throws Failure with the reason. The caller destroys the context, after a wait for
-// the device.
+// Creates a context on the host's device and builds the pipelines. With `prepares` false, the
+// caller prepares the context. The caller waits for the device, then destroys the context. Throws
+// Failure with the reason.
 FwContext* createContext(const VulkanHost& host, bool prepares = true);
 
-// The images of a scene that is lent, for a pass of ours over it.
-FwVulkanComposite compositeOf(const LentScene& scene, VkExtent2D extent);
+// Describes the scene's images to a composite pass of the plugin.
+FwVulkanComposite describeComposite(const CapturedScene& scene, VkExtent2D extent);
 
 class FireHost {
  public:
-    // Lends the device, builds the pipelines, makes the world. Throws Failure with the reason.
+    // Creates the context, builds the pipelines, creates the world. Throws Failure with the reason.
     FireHost(const VulkanHost& host, const FwWorldDef& worldDef);
-    ~FireHost();  // waits for the device first: nothing of ours may be in use when it goes
+    ~FireHost();  // waits for the device, because destruction requires idle resources
     FireHost(const FireHost&) = delete;
     FireHost& operator=(const FireHost&) = delete;
 
-    // Tells the plugin about the stage's scene pass, or where the stage lends its scene about the
-    // pass that we make over it. Once, and again if the pass changes. `surfaces`: where the
-    // scene is lent, burning meshes are drawn in its pass before.
+    // Registers the stage's scene pass, or the composite pass over the captured scene. Call it
+    // once, and again whenever the pass changes. `surfaces`: also draw burning meshes in the scene
+    // pass when the scene is captured.
     void registerTarget(const Stage& stage, bool surfaces = false);
-    // Outside any pass, before it, once per frame: simulates. `secondary` may be null.
+    // Simulates. Call it once per frame, before and outside any pass. `secondary` may be null.
     void recordOutside(const StageFrame& frame, const FwView& view,
                        VkCommandBuffer secondary = VK_NULL_HANDLE);
-    // The same for several views, each with a viewId of its own.
+    // The same for several views, each with its own viewId.
     void recordOutside(const StageFrame& frame, std::span<const FwView> views,
                        VkCommandBuffer secondary = VK_NULL_HANDLE);
-    // Inside the scene pass: draws; where the stage lends its scene the surfaces alone.
+    // Draws inside the scene pass. If the stage captures its scene, draws the surfaces only.
     void recordInside(const StageFrame& frame, const FwView& view,
                       VkCommandBuffer secondary = VK_NULL_HANDLE);
-    // After the scene pass instead of recordInside, where the stage lends its scene: flames and
-    // heat haze over it.
-    void recordOver(const StageFrame& frame, const FwView& view, const LentScene& scene);
+    // Composites flames and heat haze over a captured scene. Call it after the scene pass instead
+    // of recordInside.
+    void recordOver(const StageFrame& frame, const FwView& view, const CapturedScene& scene);
     // Throws Failure("<what>: <why>") unless result is FW_OK.
     void check(FwResult result, const char* what) const;
 
-    // As of the last readback.
+    // State as of the last readback.
     FwObjectState objectState(FwBurnableMeshId object) const;
-    // Mean milliseconds per pass over the frames so far, for the summary.
+    // Mean milliseconds per pass so far, for the summary.
     std::vector<PassCost> passCosts() const { return costs_; }
 
     FwContext* context = nullptr;
     FwWorld* world = nullptr;
-    FwTargetId target{};      // of what is drawn in the scene pass; null: nothing is
-    FwTargetId overScene{};   // of what goes over a lent scene
-    bool slotPacing = false;  // give slot and ring size instead of the completed frame's number
+    FwTargetId target{};      // target in the scene pass; null: none
+    FwTargetId overScene{};   // target of the composite pass over a captured scene
+    bool slotPacing = false;  // pass slot and ring size instead of the completed frame's number
 
  private:
     FwVulkanFrame describe(const StageFrame& frame, VkCommandBuffer secondary) const;

@@ -82,9 +82,9 @@ void OptionParser::addVector(const std::string& name, const std::string& help, f
                         }});
 }
 
-void OptionParser::addLending(Options& options) {
-    addFlag("--lend", "lend the scene's depth: flames fade where they meet things",
-            options.lendScene);
+void OptionParser::addCompositeFlags(Options& options) {
+    addFlag("--composite", "composite over the scene: flames fade where they meet surfaces",
+            options.compositeEffects);
     addFlag("--half", "the same, with flames and smoke at half resolution", options.halfEffects);
 }
 
@@ -95,15 +95,15 @@ void OptionParser::printHelp() const {
         std::printf("  %-22s %s\n", left.c_str(), help.c_str());
     };
     for (const Entry& entry : entries_) line(entry.name + " " + entry.what, entry.help);
-    line("--headless", "no window; write pictures (also when there is no display)");
+    line("--headless", "no window; write pictures (also without a display)");
     line("--frames N", "how many frames to run");
     line("--size WxH", "picture size in pixels");
-    line("--fps N", "frames per second, simulated or at most");
-    line("--seed N", "seed of everything random");
+    line("--fps N", "frame rate: simulated headless, upper limit in a window");
+    line("--seed N", "seed of all random numbers");
     line("--out DIR", "folder for the pictures, default out/" + name_);
-    line("--validate", "Vulkan validation layers; any message is a failure");
-    line("--list", "say what there is to show, and end");
-    line("--help", "this text");
+    line("--validate", "Vulkan validation layers; any message fails the sample");
+    line("--list", "list the scenes and exit");
+    line("--help", "print this text");
 }
 
 bool OptionParser::parse(int argc, char** argv, Options& options) const {

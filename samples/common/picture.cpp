@@ -35,7 +35,8 @@ void putChunk(std::vector<uint8_t>& out, const char* type, const std::vector<uin
                       crc32(0, out.data() + start, static_cast<uInt>(out.size() - start))));
 }
 
-// One row under one PNG filter; returns the sum of differences, small for what packs well.
+// Applies one PNG filter to a row. Returns the sum of differences, which is small for rows that
+// compress well.
 template <int kFilter>
 uint64_t applyFilter(const uint8_t* row, const uint8_t* above, size_t bytes, uint8_t* out) {
     constexpr size_t kPixel = 4;
@@ -90,7 +91,7 @@ void prepareFolder(const std::filesystem::path& path) {
         std::filesystem::create_directories(path.parent_path(), error);
         if (error) {
             throw Failure("the folder " + path.parent_path().string() +
-                          " cannot be made: " + error.message());
+                          " cannot be created: " + error.message());
         }
     }
 }
@@ -105,8 +106,8 @@ std::vector<uint8_t> frameControl(uint32_t sequence, uint32_t x, uint32_t y, uin
     putBig32(body, y);
     putBig16(body, std::min(delayMilliseconds, 65535u));
     putBig16(body, 1000);
-    body.push_back(0);             // leave the frame on screen
-    body.push_back(over ? 1 : 0);  // blend over it, or replace it
+    body.push_back(0);             // dispose: keep the frame on screen
+    body.push_back(over ? 1 : 0);  // blend: over, or replace
     return body;
 }
 
@@ -163,7 +164,7 @@ Picture contactSheet(std::span<const Picture> pictures, uint32_t columns, uint32
     sheet.rgba.assign(size_t{sheet.width} * sheet.height * 4, 12);
     for (size_t i = 0; i < pictures.size(); ++i) {
         if (pictures[i].width != width || pictures[i].height != height) {
-            throw Failure("a contact sheet's pictures must be of one size");
+            throw Failure("the pictures of a contact sheet must have one size");
         }
         const size_t left = (i % columns) * (width + gap), top = (i / columns) * (height + gap);
         for (uint32_t y = 0; y < height; ++y) {
@@ -191,10 +192,10 @@ void AnimationWriter::add(const Picture& picture) {
         return;
     }
     if (picture.width != width_ || picture.height != height_) {
-        throw Failure("an animation's pictures must be of one size");
+        throw Failure("the pictures of an animation must have one size");
     }
-    // Only pixels that differ visibly from what is on screen are stored, the rest is transparent.
-    // Comparing with the screen, not with the last frame, keeps slow changes from being lost.
+    // Stores only pixels that differ visibly from the screen; the rest is transparent. Comparing
+    // with the screen instead of the last frame keeps slow changes.
     constexpr int kVisible = 2;
     uint32_t left = width_, right = 0, top = height_, bottom = 0;
     std::vector<uint8_t> changed(shown_.size(), 0);
@@ -216,7 +217,7 @@ void AnimationWriter::add(const Picture& picture) {
             bottom = std::max(bottom, y + 1);
         }
     }
-    if (right == 0) left = top = 0, right = bottom = 1;  // a frame must hold a pixel
+    if (right == 0) left = top = 0, right = bottom = 1;  // a frame must contain a pixel
     const uint32_t width = right - left, height = bottom - top;
     std::vector<uint8_t> part(size_t{width} * height * 4);
     for (uint32_t y = 0; y < height; ++y) {
@@ -236,7 +237,7 @@ void AnimationWriter::add(const Picture& picture) {
 
 void AnimationWriter::close(double holdSeconds) {
     if (frameCount_ == 0) return;
-    // The last frame's delay becomes the pause before the loop: rewrite it and its checksum.
+    // The last frame's delay becomes the pause before the loop, so rewrite it and its checksum.
     constexpr size_t kBody = 8, kDelay = 20, kControlSize = 26;
     const auto hold = static_cast<uint32_t>(std::clamp(holdSeconds * 1000.0, 1.0, 65000.0));
     uint8_t* control = chunks_.data() + lastControl_;
@@ -257,7 +258,7 @@ void AnimationWriter::close(double holdSeconds) {
     putChunk(head, "sRGB", {0});
     body.clear();
     putBig32(body, frameCount_);
-    putBig32(body, 0);  // for ever
+    putBig32(body, 0);  // loop for ever
     putChunk(head, "acTL", body);
     std::vector<uint8_t> tail;
     putChunk(tail, "IEND", {});

@@ -1,5 +1,5 @@
-// What a sample makes of Vulkan's longest structures: one kind of pipeline, and the descriptor sets
-// it reads. Not a wrapper: the handles are the caller's, to destroy too.
+// Shortcuts for Vulkan's longest structures: one kind of graphics pipeline and its descriptor sets.
+// The caller owns and destroys the handles.
 #pragma once
 
 #include <initializer_list>
@@ -9,13 +9,12 @@
 
 namespace sample {
 
-// The usual pipeline of a sample: triangles, dynamic viewport and scissor, at most one colour
-// attachment.
+// A triangle pipeline with dynamic viewport and scissor and at most one colour attachment.
 struct PipelineRequest {
     VkRenderPass pass = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkShaderModule vertex = VK_NULL_HANDLE;
-    VkShaderModule fragment = VK_NULL_HANDLE;  // none: depth only, and the pass has no colour
+    VkShaderModule fragment = VK_NULL_HANDLE;  // null: depth only; the pass then has no colour
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
     std::vector<VkVertexInputBindingDescription> bindings;
     std::vector<VkVertexInputAttributeDescription> attributes;
@@ -26,17 +25,17 @@ struct PipelineRequest {
     float depthBias = 0, depthBiasSlope = 0;
     bool blend = false;  // premultiplied alpha
     bool additive = false;
-    const VkSpecializationInfo* specialization = nullptr;  // of both stages
+    const VkSpecializationInfo* specialization = nullptr;  // for both stages
 };
 VkPipeline makePipeline(const VulkanHost& host, const PipelineRequest& request);
 
-// Bindings 0, 1, ... of one descriptor each, for both stages.
+// Bindings 0, 1, ... with one descriptor each, visible to both stages.
 VkDescriptorSetLayout makeSetLayout(const VulkanHost& host,
                                     std::initializer_list<VkDescriptorType> types);
 VkPipelineLayout makeLayout(const VulkanHost& host,
                             std::initializer_list<VkDescriptorSetLayout> sets,
                             const VkPushConstantRange& push);
-// Room for so many sets, uniform buffers and sampled images in all.
+// Capacity: sets, uniform buffers and sampled images in total.
 VkDescriptorPool makeSetPool(const VulkanHost& host, uint32_t sets, uint32_t buffers,
                              uint32_t images);
 VkDescriptorSet makeSet(const VulkanHost& host, VkDescriptorPool pool,

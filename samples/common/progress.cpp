@@ -56,7 +56,7 @@ void Progress::update(uint32_t done) {
         draw(done);
         return;
     }
-    // In a log: one line for every fifth of the way.
+    // In a log file: one line per fifth of the run.
     const uint32_t fifths = static_cast<uint32_t>(uint64_t{done} * 5 / total_);
     if (fifths == fifths_) return;
     fifths_ = fifths;
@@ -78,7 +78,7 @@ void printSummary(const Summary& summary) {
         std::printf("  %-14s %s\n", name.c_str(), value.c_str());
     }
     if (!summary.passes.empty()) {
-        std::printf("  %-14s ms, mean of the frames it ran in\n", "GPU passes");
+        std::printf("  %-14s ms, mean over the frames it ran in\n", "GPU passes");
         double sum = 0;
         for (const PassCost& pass : summary.passes) {
             std::printf("    %-24s %8.3f  (%u frames)\n", pass.name.c_str(), pass.milliseconds,

@@ -1,4 +1,4 @@
-// What a sample says while it works and when it is done: a bar on stderr, one screen on stdout.
+// Progress bar on stderr while a sample runs, summary on stdout at its end.
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,9 @@ class Progress {
  public:
     Progress(std::string what, uint32_t total);
     ~Progress();
-    void update(uint32_t done);  // draws at most ten times a second
+    void update(uint32_t done);  // redraws at most ten times a second
     void finish();
-    double seconds() const;  // since it began
+    double seconds() const;  // since the start
 
  private:
     void draw(uint32_t done);
@@ -28,7 +28,7 @@ class Progress {
 
 struct PassCost {
     std::string name;
-    double milliseconds = 0;  // mean over the frames it was seen in
+    double milliseconds = 0;  // mean over the frames in which the pass ran
     uint32_t frames = 0;
 };
 

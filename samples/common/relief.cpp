@@ -18,7 +18,7 @@ namespace {
 #include "relief.vert.h"
 
 constexpr uint32_t kMostFires = 4;
-constexpr uint32_t kPictures = 3;  // of a model
+constexpr uint32_t kPictures = 3;  // per model
 
 struct Block {  // relief_block.glsl
     glm::mat4 viewProjection;
@@ -26,13 +26,13 @@ struct Block {  // relief_block.glsl
     glm::vec4 firePlace[kMostFires], fireColor[kMostFires];
 };
 
-ReliefHeights heightsOf(const ReliefModel& model) {
+ReliefHeights viewHeights(const ReliefModel& model) {
     const ReliefPicture& p = model.picture;
     return {p.width, p.height, p.metres, p.depth, model.repeats, p.heights};
 }
 
-// Slopes along u and v, cone (the root of its share of the widest), height. `steepest`: the slope
-// that 1 stands for.
+// Packs slopes along u and v, cone (square root of its share of kWidestCone), and height.
+// `steepest`: slope that the value 1 represents.
 std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
     const ReliefPicture& p = model.picture;
     const auto w = static_cast<int>(p.width), h = static_cast<int>(p.height);
@@ -54,7 +54,7 @@ std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
             steepest = std::max({steepest, s.x, s.y});
         }
     steepest = std::min(steepest, 4.0f);
-    const std::vector<float> cones = reliefCones(heightsOf(model));
+    const std::vector<float> cones = reliefCones(viewHeights(model));
     std::vector<uint8_t> shape(p.heights.size() * 4);
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) {
@@ -73,7 +73,7 @@ std::vector<uint8_t> shapeOf(const ReliefModel& model, float& steepest) {
 void addReliefBlock(ReliefModel& model, glm::vec3 center, glm::vec2 size) {
     const float deep = model.picture.depth;
     const glm::vec3 low = center - 0.5f * glm::vec3(size.x, 0, size.y);
-    // The picture's u is x and its v is z: the product of across and normal.
+    // The picture's u is x and its v is z, which equals cross(across, normal).
     auto corner = [&](float x, float z, float depth) {
         model.vertices.push_back({low + glm::vec3(x * size.x, -depth, z * size.y),
                                   {0, 1, 0},
@@ -161,7 +161,7 @@ Relief::Relief(const VulkanHost& host, const Stage& stage, std::span<const Relie
         const std::vector<uint8_t> shape = shapeOf(model, steepest);
         drawn.color = host.createTexture(p.width, p.height, p.color.data(), false);
         drawn.shape = host.createTexture(p.width, p.height, shape.data(), false);
-        const ReliefHorizon horizon = reliefHorizon(heightsOf(model));
+        const ReliefHorizon horizon = reliefHorizon(viewHeights(model));
         drawn.horizon =
             host.createTexture(horizon.width, horizon.height, horizon.texels.data(), false);
         drawn.set = makeSet(host, pool_, modelLayout_);

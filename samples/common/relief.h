@@ -1,5 +1,5 @@
-// Surfaces with a relief, drawn by the host: by bump mapping, or by parallax occlusion mapping with
-// its own depth, shadows and silhouettes. What lies in a relief may hide what the plugin draws.
+// Surfaces with a relief that the host draws by bump mapping or by parallax occlusion mapping.
+// Parallax adds depth, shadows and silhouettes, and its depth occludes the plugin's flames.
 #pragma once
 
 #include <algorithm>
@@ -13,41 +13,42 @@
 
 namespace sample {
 
-// A share in [0, 1] as a byte.
+// Converts [0, 1] to a byte.
 inline uint8_t toByte(float x) {
     return static_cast<uint8_t>(std::clamp(x, 0.0f, 1.0f) * 255.0f + 0.5f);
 }
 
 struct ReliefPicture {
     uint32_t width = 0, height = 0;  // texels
-    glm::vec2 metres{1};             // the picture's size
-    float depth = 0.05f;             // m, from the highest to the lowest
-    std::vector<uint8_t> color;      // RGBA8: square roots of linear colours, roughness
-    std::vector<float> heights;      // [0, 1], 1 on the surface that is drawn
+    glm::vec2 metres{1};             // m, size of the picture
+    float depth = 0.05f;             // m, from the highest to the lowest point
+    std::vector<uint8_t> color;      // RGBA8: square roots of linear colours; alpha: roughness
+    std::vector<float> heights;      // [0, 1]; 1: on the drawn surface
 };
 
-// A corner of what is drawn. The relief lies below the surface whose normal this is, also where
-// the triangle itself is a side of the block that the relief is cut from.
+// A vertex of the drawn surface. The relief lies below the surface that `normal` belongs to. This
+// also holds for the side triangles of a relief block.
 struct ReliefVertex {
     glm::vec3 position;  // m, world
-    glm::vec3 normal;    // unit, of the surface
-    glm::vec3 across;    // unit, along the picture's u
-    glm::vec2 at;        // m on the picture
+    glm::vec3 normal;    // unit; normal of the relief's surface
+    glm::vec3 across;    // unit; direction of the picture's u
+    glm::vec2 at;        // m, position on the picture
     float depth = 0;     // m below the surface
-    float curve = 0;     // 1/m, how the surface bends along u; outwards positive
+    float curve = 0;     // 1/m, curvature of the surface along u; positive: convex
 };
 
 struct ReliefModel {
     ReliefPicture picture;
     std::vector<ReliefVertex> vertices;
     std::vector<uint32_t> indices;
-    bool repeats = false;  // the picture goes on and on; otherwise the relief ends at its border
-    float length = 0;      // m along v that a picture goes on for that repeats; 0: for ever
+    bool repeats = false;  // true: the picture tiles; false: the relief ends at its border
+    float length = 0;      // m along v at which a tiled picture ends; 0: endless
 };
 
-// A block that a relief is cut from: its top is `size` around `center`, as large as the picture.
+// Adds a block with a relief on top. The top has `size` around `center` and equals the picture's
+// size.
 void addReliefBlock(ReliefModel& model, glm::vec3 center, glm::vec2 size);
-// A log from a to b, model.length apart. Around it goes a whole number of pictures.
+// Adds a log from a to b, model.length apart. A whole number of pictures wraps around it.
 void addReliefLog(ReliefModel& model, glm::vec3 a, glm::vec3 b, float radius);
 
 enum class ReliefMode { kBump, kParallax };
@@ -59,12 +60,12 @@ class Relief {
     Relief(const Relief&) = delete;
     Relief& operator=(const Relief&) = delete;
 
-    // What the frame is seen by, once a frame before the draws.
+    // Sets the camera and the lights of the frame. Call it once per frame, before the draws.
     void prepare(const StageFrame& frame, const FwView& view, std::span<const FwLight> fires);
-    // In the scene pass, within `area`: two modes can share a picture.
+    // Draws in the scene pass, within `area`, so that two modes can share a picture.
     void draw(const StageFrame& frame, ReliefMode mode, VkRect2D area);
 
-    float fireGain = 0.02f;  // as Studio's
+    float fireGain = 0.02f;  // as Studio::fireGain
 
  private:
     struct Drawn {
@@ -77,13 +78,13 @@ class Relief {
     const VulkanHost& host_;
     std::vector<Drawn> models_;
     Buffer vertices_, indices_;
-    std::vector<Buffer> blocks_;  // one for each frame in flight
+    std::vector<Buffer> blocks_;  // one per frame in flight
     std::vector<VkDescriptorSet> sets_;
     VkSampler repeat_ = VK_NULL_HANDLE, clamp_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout frameLayout_ = VK_NULL_HANDLE, modelLayout_ = VK_NULL_HANDLE;
     VkDescriptorPool pool_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
-    VkPipeline pipelines_[2][2] = {};  // of a mode; of flat models, of those with round surfaces
+    VkPipeline pipelines_[2][2] = {};  // by mode; flat models, curved models
 };
 
 }  // namespace sample

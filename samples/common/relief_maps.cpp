@@ -16,16 +16,19 @@ float heightAt(const ReliefHeights& relief, int x, int y) {
     return relief.heights[static_cast<size_t>(y) * relief.width + static_cast<size_t>(x)];
 }
 
-// The highest of each square of texels: most of them are too low, or too far, to be looked through.
+// The highest texel of each square block. Most blocks are too low or too far to matter, so the
+// search skips them.
 struct Blocks {
     int side = 8;  // texels
     int across = 0, down = 0;
     std::vector<float> highest;
 };
-Blocks blocksOf(const ReliefHeights& relief) {
+Blocks groupIntoBlocks(const ReliefHeights& relief) {
     const auto w = static_cast<int>(relief.width), h = static_cast<int>(relief.height);
     Blocks all;
-    if (relief.repeats && (w % all.side != 0 || h % all.side != 0)) all.side = 1;  // or none fits
+    if (relief.repeats && (w % all.side != 0 || h % all.side != 0))
+        all.side = 1;  // fall back to single texels if
+                       // blocks do not tile
     all.across = (w + all.side - 1) / all.side;
     all.down = (h + all.side - 1) / all.side;
     all.highest.assign(static_cast<size_t>(all.across) * static_cast<size_t>(all.down), 0.0f);
@@ -38,9 +41,8 @@ Blocks blocksOf(const ReliefHeights& relief) {
     return all;
 }
 
-// Rings of blocks about the place: farther ones than the cone found so far is wide at the relief's
-// top cannot make it narrower. Beyond a picture that does not repeat nothing stands higher than at
-// its border.
+// Searches rings of blocks around the texel until farther ones cannot narrow the cone any more.
+// Outside a picture that does not tile, nothing is higher than its border.
 float coneAt(const ReliefHeights& relief, const Blocks& blocks, glm::vec2 texel, int x, int y) {
     const float own = heightAt(relief, x, y), room = (1 - own) * relief.depth;
     const int side = blocks.side;
@@ -73,17 +75,17 @@ float coneAt(const ReliefHeights& relief, const Blocks& blocks, glm::vec2 texel,
     return cone;
 }
 
-// The tangent of the highest that stands along a way, texels of the relief from one look to the
-// next.
-float horizonAt(const ReliefHeights& relief, glm::vec2 place, glm::vec2 way, float step,
+// Returns the tangent of the highest obstacle in a direction. `step`: texels between two samples.
+float horizonAt(const ReliefHeights& relief, glm::vec2 place, glm::vec2 direction, float step,
                 float own) {
     float tangent = 0;
     const float room = (1 - own) * relief.depth;
     for (int k = 1; room > tangent * static_cast<float>(k) * step; ++k) {
-        const glm::vec2 there = glm::floor(place + way * static_cast<float>(k));
+        const glm::vec2 there = glm::floor(place + direction * static_cast<float>(k));
         const float height = heightAt(relief, static_cast<int>(there.x), static_cast<int>(there.y));
         tangent = std::max(tangent, (height - own) * relief.depth / (static_cast<float>(k) * step));
-        if (static_cast<float>(k) * step > kWidestCone * room) break;  // lower than that is level
+        if (static_cast<float>(k) * step > kWidestCone * room)
+            break;  // lower obstacles count as level
     }
     return tangent;
 }
@@ -92,7 +94,7 @@ float horizonAt(const ReliefHeights& relief, glm::vec2 place, glm::vec2 way, flo
 
 std::vector<float> reliefCones(const ReliefHeights& relief) {
     const glm::vec2 texel = relief.metres / glm::vec2(relief.width, relief.height);
-    const Blocks blocks = blocksOf(relief);
+    const Blocks blocks = groupIntoBlocks(relief);
     std::vector<float> cones(relief.heights.size());
     for (size_t i = 0; i < cones.size(); ++i)
         cones[i] = coneAt(relief, blocks, texel, static_cast<int>(i % relief.width),
@@ -101,7 +103,7 @@ std::vector<float> reliefCones(const ReliefHeights& relief) {
 }
 
 ReliefHorizon reliefHorizon(const ReliefHeights& relief) {
-    constexpr glm::vec2 kWays[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
+    constexpr glm::vec2 kDirections[4] = {{1, 0}, {0, 1}, {-1, 0}, {0, -1}};
     const glm::vec2 texel = relief.metres / glm::vec2(relief.width, relief.height);
     ReliefHorizon all;
     all.width = std::max(relief.width / 2, 1u);
@@ -110,9 +112,9 @@ ReliefHorizon reliefHorizon(const ReliefHeights& relief) {
         const int x = 2 * static_cast<int>(i % all.width), y = 2 * static_cast<int>(i / all.width);
         const float own = 0.25f * (heightAt(relief, x, y) + heightAt(relief, x + 1, y) +
                                    heightAt(relief, x, y + 1) + heightAt(relief, x + 1, y + 1));
-        for (const glm::vec2 way : kWays) {
-            const float step = glm::length(way * texel);
-            const float t = horizonAt(relief, glm::vec2(x + 1, y + 1), way, step, own);
+        for (const glm::vec2 direction : kDirections) {
+            const float step = glm::length(direction * texel);
+            const float t = horizonAt(relief, glm::vec2(x + 1, y + 1), direction, step, own);
             all.texels.push_back(static_cast<uint8_t>(t / (1 + t) * 255.0f + 0.5f));
         }
     }

@@ -33,7 +33,7 @@ float random(int x, int y, uint32_t seed) {
     return static_cast<float>((h ^ (h >> 15)) >> 8) / 16777216.0f;
 }
 
-// Repeats after `cells`.
+// Tiles every `cells` cells.
 float noise(glm::vec2 p, int cells, uint32_t seed) {
     p *= static_cast<float>(cells);
     const glm::vec2 low = glm::floor(p), f = p - low, s = f * f * (3.0f - 2.0f * f);
@@ -48,7 +48,7 @@ float noise(glm::vec2 p, int cells, uint32_t seed) {
 }  // namespace
 
 ReliefPicture cobbles(uint32_t side, float metres) {
-    constexpr float kDeepest = 0.05f;  // m, a little more than the stones are high
+    constexpr float kDeepest = 0.05f;  // m, slightly more than the stones' height
     ReliefPicture p = blank(side, metres, kDeepest);
     const float texel = metres / static_cast<float>(side);
     for (uint32_t y = 0; y < side; ++y)
@@ -66,7 +66,7 @@ ReliefPicture cobbles(uint32_t side, float metres) {
 
 ReliefPicture charredWood(uint32_t side, float metres, uint32_t seed) {
     ReliefPicture p = blank(side, metres, 0.014f);
-    constexpr int kAcross = 7, kAlong = 5;  // blocks in a picture
+    constexpr int kAcross = 7, kAlong = 5;  // blocks per picture
     for (uint32_t y = 0; y < side; ++y)
         for (uint32_t x = 0; x < side; ++x) {
             const glm::vec2 uv = (glm::vec2(x, y) + 0.5f) / static_cast<float>(side);
@@ -74,7 +74,8 @@ ReliefPicture charredWood(uint32_t side, float metres, uint32_t seed) {
                 uv + 0.035f * (glm::vec2(noise(uv, 9, seed), noise(uv, 9, seed + 1)) - 0.5f);
             const glm::vec2 q = bent * glm::vec2(kAcross, kAlong);
             const glm::vec2 cell = glm::floor(q);
-            // The two nearest of a jittered grid's points: between them a crack runs.
+            // The distances to the nearest two points of a jittered grid; a crack runs where they
+            // are equal.
             float nearest = 9, second = 9, which = 0;
             for (int j = -1; j <= 1; ++j)
                 for (int i = -1; i <= 1; ++i) {

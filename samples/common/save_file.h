@@ -1,6 +1,5 @@
-// A file that is replaced as a whole or not at all: bytes go to a new file beside it, which takes
-// its name once they are on the disk. Whatever ends the process in between leaves the old one as it
-// was.
+// Replaces a file atomically: writes a new file beside it, flushes it to disk, then renames it. If
+// the process ends in between, the old file stays intact.
 #pragma once
 #include <cstddef>
 #include <filesystem>
@@ -9,9 +8,9 @@
 
 namespace sample {
 
-// False, and the old file is as it was: a folder that is not there, a full disk.
+// Returns false and keeps the old file on failure, for example a missing folder or a full disk.
 [[nodiscard]] bool replaceFile(const std::filesystem::path& path, std::span<const std::byte> bytes);
-// Empty where there is none.
+// Returns an empty vector if there is no such file.
 [[nodiscard]] std::vector<std::byte> readWholeFile(const std::filesystem::path& path);
 
 }  // namespace sample

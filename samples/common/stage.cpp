@@ -62,14 +62,14 @@ Stage::Stage(const VulkanHost& host, const Options& options, const StageRequest&
     sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                   VK_SAMPLER_MIPMAP_MODE_NEAREST);
     makePasses();
-    makePost();
+    createPostPass();
     makeTargets();
     lastClock_ = clockSeconds();
 }
 
 Stage::~Stage() {
     vkDeviceWaitIdle(host_.device);
-    dropTargets();
+    destroyTargets();
     for (Slot& slot : slots_) {
         vkDestroyCommandPool(host_.device, slot.pool, nullptr);
         vkDestroyFence(host_.device, slot.fence, nullptr);
@@ -91,7 +91,7 @@ void Stage::makePasses() {
     const bool scenic = made.colorFormat == VK_FORMAT_R16G16B16A16_SFLOAT;
     const VkImageLayout afterScene =
         scenic ? VK_IMAGE_LAYOUT_TRANSFER_SRC_OPTIMAL : VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    // Attachments: 0 what is drawn to, 1 depth, 2 the resolved colour when multisampled.
+    // Attachments: 0 the render target, 1 depth, 2 the resolved colour when multisampled.
     std::array<VkAttachmentDescription, 3> attachments{};
     attachments[0].format = made.colorFormat;
     attachments[0].samples = made.samples;
@@ -105,7 +105,7 @@ void Stage::makePasses() {
     attachments[1] = attachments[0];
     attachments[1].format = depthFormat;
     attachments[1].storeOp =
-        made.lendScene ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
+        made.capturesScene ? VK_ATTACHMENT_STORE_OP_STORE : VK_ATTACHMENT_STORE_OP_DONT_CARE;
     attachments[1].finalLayout = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
     attachments[2] = attachments[0];
     attachments[2].samples = VK_SAMPLE_COUNT_1_BIT;
@@ -182,7 +182,7 @@ void Stage::makePasses() {
                 "vkCreateRenderPass");
 }
 
-void Stage::makePost() {
+void Stage::createPostPass() {
     constexpr VkDescriptorType kImage = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
     postSetLayout_ = makeSetLayout(host_, {kImage, kImage});  // the scene and its bloom
     descriptorPool_ = makeSetPool(host_, 1, 0, 2);
@@ -204,10 +204,10 @@ void Stage::makePost() {
     vkDestroyShaderModule(host_.device, request.fragment, nullptr);
 }
 
-void StageRequest::lendAs(const Options& options) {
-    lendScene = options.lendScene || options.halfEffects;
+void StageRequest::applyOptions(const Options& options) {
+    capturesScene = options.compositeEffects || options.halfEffects;
     halfEffects = options.halfEffects;
-    if (lendScene) samples = VK_SAMPLE_COUNT_1_BIT;
+    if (capturesScene) samples = VK_SAMPLE_COUNT_1_BIT;
 }
 
 void Stage::makeTargets() {
@@ -233,15 +233,15 @@ void Stage::makeTargets() {
         request.usage = VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT;
         multisampled_ = host_.createImage(request);
     }
-    if (made.lendScene) {
+    if (made.capturesScene) {
         request.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
         copy_ = host_.createImage(request);
     }
     request.format = depthFormat;
     request.usage = VK_IMAGE_USAGE_DEPTH_STENCIL_ATTACHMENT_BIT;
-    if (made.lendScene) request.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
+    if (made.capturesScene) request.usage |= VK_IMAGE_USAGE_SAMPLED_BIT;
     request.aspect = VK_IMAGE_ASPECT_DEPTH_BIT;
-    if (depthFormat == VK_FORMAT_D24_UNORM_S8_UINT && !made.lendScene)
+    if (depthFormat == VK_FORMAT_D24_UNORM_S8_UINT && !made.capturesScene)
         request.aspect |= VK_IMAGE_ASPECT_STENCIL_BIT;
     depth_ = host_.createImage(request);
 
@@ -272,7 +272,7 @@ void Stage::makeTargets() {
     info.height = small.height;
     checkVulkan(vkCreateFramebuffer(host_.device, &info, nullptr, &bloomFramebuffer_),
                 "vkCreateFramebuffer");
-    // Bound even where it is not drawn to, so it gets its layout now.
+    // The post pass always binds it, so it needs its layout even when nothing draws to it.
     host_.runNow([&](VkCommandBuffer commands) {
         imageBarrier(commands, bloom_.image, VK_IMAGE_LAYOUT_UNDEFINED,
                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT, 0,
@@ -310,7 +310,7 @@ void Stage::makeTargets() {
     writeImage(host_, postSet_, 1, sampler_, bloom_.view);
 }
 
-void Stage::dropTargets() {
+void Stage::destroyTargets() {
     for (VkFramebuffer framebuffer : outputFramebuffers_) {
         vkDestroyFramebuffer(host_.device, framebuffer, nullptr);
     }
@@ -338,7 +338,7 @@ bool Stage::next(StageFrame& frame) {
     bool over = frameLimit_ != 0 && number_ >= frameLimit_;
     if (!over && window_) over = !window_->poll(frame.input);
     if (over) {
-        // Deliver what is still on its way, oldest first.
+        // Deliver the outstanding pictures, oldest first.
         for (size_t i = 0; i < slots_.size(); ++i) {
             Slot& slot = slots_[(frameIndex_ + i) % slots_.size()];
             checkVulkan(vkWaitForFences(host_.device, 1, &slot.fence, VK_TRUE, ~0ull),
@@ -363,7 +363,7 @@ bool Stage::next(StageFrame& frame) {
         if (window_->generation != windowGeneration_) {
             windowGeneration_ = window_->generation;
             checkVulkan(vkDeviceWaitIdle(host_.device), "vkDeviceWaitIdle");
-            dropTargets();
+            destroyTargets();
             extent_ = window_->extent;
             makeTargets();
         }
@@ -418,7 +418,7 @@ void Stage::beginScene(const StageFrame& frame, bool secondaries) {
 
 void Stage::endScene(const StageFrame& frame) { vkCmdEndRenderPass(frame.commands); }
 
-LentScene Stage::lendScene(const StageFrame& frame) {
+CapturedScene Stage::captureScene(const StageFrame& frame) {
     imageBarrier(frame.commands, copy_.image, VK_IMAGE_LAYOUT_UNDEFINED,
                  VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
                  VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_WRITE_BIT);
@@ -434,8 +434,8 @@ LentScene Stage::lendScene(const StageFrame& frame) {
     return {color_.image, color_.firstMip, depth_.image, depth_.view, copy_.view};
 }
 
-// Halves the scene again and again; the last pass adds the small ones back as bloom.
-void Stage::spreadLight(const StageFrame& frame) {
+// Halves the scene repeatedly. The last pass adds the small mips back as bloom.
+void Stage::downsampleBloom(const StageFrame& frame) {
     for (uint32_t mip = 1; mip < sceneMips_; ++mip) {
         imageBarrier(frame.commands, color_.image, VK_IMAGE_LAYOUT_UNDEFINED,
                      VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0,
@@ -497,7 +497,7 @@ void Stage::finish(const StageFrame& frame) {
                         static_cast<float>(extent_.width) / static_cast<float>(extent_.height)};
     vkCmdPushConstants(frame.commands, postLayout_, VK_SHADER_STAGE_FRAGMENT_BIT, 0, sizeof push,
                        &push);
-    if (scenic) spreadLight(frame);
+    if (scenic) downsampleBloom(frame);
     drawPost(frame, postPipeline_, postPass_, outputFramebuffers_[window_ ? imageIndex_ : 0],
              extent_, overlay);
     if (!window_) {

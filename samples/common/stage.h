@@ -1,5 +1,5 @@
-// The pretend engine's frame: a ring of frames in flight, the scene pass, tone mapping, and either
-// a window or pictures. A sample draws into it; the plugin draws into the same pass.
+// The host's frame: a ring of frames in flight, the scene pass, tone mapping, and a window or
+// picture files. The sample and the plugin both draw into its scene pass.
 #pragma once
 
 #include <functional>
@@ -14,32 +14,32 @@ namespace sample {
 
 struct StageRequest {
     std::string title = "Flamewright";
-    // Of the scene. RGBA16F is tone mapped by the stage, with bloom; RGBA8 SRGB and UNORM hold
-    // display values already and pass through.
+    // Format of the scene. The stage tone maps RGBA16F and adds bloom. RGBA8 SRGB and UNORM already
+    // hold display values and pass through.
     VkFormat colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
     VkSampleCountFlagBits samples = VK_SAMPLE_COUNT_1_BIT;
-    bool reversedDepth = false;                          // clear to 0, GREATER wins
+    bool reversedDepth = false;                          // clears to 0 and tests with GREATER
     float clearColor[4] = {0.02f, 0.02f, 0.025f, 1.0f};  // linear
     uint32_t framesInFlight = 2;                         // [1, 4]
-    float bloom = 0.06f;       // [0, 1] share of light spread around; RGBA16F only
-    float exposure = 1.0f;     // multiplies RGBA16F before the film curve
-    float vignette = 0.15f;    // [0, 1]
-    bool lendScene = false;    // lendScene() may be called; RGBA16F and one sample only
-    bool halfEffects = false;  // with it: flames and smoke go over it at half resolution
-    // Of the sample's command line; then the scene has one sample a pixel.
-    void lendAs(const Options& options);
+    float bloom = 0.06f;         // share of light that spreads, [0, 1]; RGBA16F only
+    float exposure = 1.0f;       // multiplies RGBA16F before the filmic curve
+    float vignette = 0.15f;      // [0, 1]
+    bool capturesScene = false;  // allows captureScene(); needs RGBA16F and one sample
+    bool halfEffects = false;    // with capturesScene: flames and smoke at half resolution
+    // Applies --composite and --half. Both reduce the scene to one sample per pixel.
+    void applyOptions(const Options& options);
 };
 
-// The scene after its pass, for who draws over it in a pass of its own.
-struct LentScene {
-    VkImage color = VK_NULL_HANDLE;  // TRANSFER_SRC_OPTIMAL, before and after
+// The images of the finished scene, for effects that composite over it in their own pass.
+struct CapturedScene {
+    VkImage color = VK_NULL_HANDLE;  // TRANSFER_SRC_OPTIMAL on entry and exit
     VkImageView colorView = VK_NULL_HANDLE;
-    VkImage depth = VK_NULL_HANDLE;  // DEPTH_STENCIL_ATTACHMENT_OPTIMAL, before and after
+    VkImage depth = VK_NULL_HANDLE;  // DEPTH_STENCIL_ATTACHMENT_OPTIMAL on entry and exit
     VkImageView depthView = VK_NULL_HANDLE;
-    VkImageView copy = VK_NULL_HANDLE;  // of the colour, SHADER_READ_ONLY_OPTIMAL
+    VkImageView copy = VK_NULL_HANDLE;  // a copy of the colour, SHADER_READ_ONLY_OPTIMAL
 };
 
-// A scene pass, for what draws in it.
+// Describes a scene pass to the code that draws in it.
 struct ScenePass {
     VkRenderPass pass = VK_NULL_HANDLE;
     VkFormat colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;
@@ -50,52 +50,54 @@ struct ScenePass {
 
 struct StageFrame {
     VkCommandBuffer commands = VK_NULL_HANDLE;  // primary, recording
-    uint64_t frameIndex = 0;                    // from 1, grows by one
-    uint64_t completedFrameIndex = 0;           // the GPU is done with this and all before
+    uint64_t frameIndex = 0;                    // starts at 1
+    uint64_t completedFrameIndex = 0;  // the GPU has finished this frame and all earlier ones
     uint32_t slot = 0, framesInFlight = 0;
-    uint32_t number = 0;  // from 0: which frame of the run this is
-    double time = 0;      // s since the run began
-    float deltaTime = 0;  // s since the frame before
+    uint32_t number = 0;  // index of the frame in this run, from 0
+    double time = 0;      // s since the start of the run
+    float deltaTime = 0;  // s since the previous frame
     VkExtent2D extent{};  // pixels
     VkViewport viewport{};
-    Input input;  // windowed only
+    Input input;  // windowed runs only
 };
 
 class Stage {
  public:
-    // `frames`: how many to run headless; with a window 0 runs until it is closed.
+    // `frames`: length of a headless run. A windowed run with 0 ends when the window closes.
     Stage(const VulkanHost& host, const Options& options, const StageRequest& request,
           uint32_t frames);
     ~Stage();
     Stage(const Stage&) = delete;
     Stage& operator=(const Stage&) = delete;
 
-    // Waits for the frame's slot and begins its command buffer. False: the run is over (all
-    // pictures have been delivered).
+    // Waits for the frame's slot and begins its command buffer. Returns false when the run is over
+    // and all pictures are delivered.
     bool next(StageFrame& frame);
-    // The scene pass: colour and depth cleared, viewport and scissor set (unless `secondaries`).
+    // Begins the scene pass with cleared colour and depth. Sets viewport and scissor unless
+    // `secondaries`.
     void beginScene(const StageFrame& frame, bool secondaries = false);
     void endScene(const StageFrame& frame);
-    // After endScene. Copies its colour.
-    LentScene lendScene(const StageFrame& frame);
+    // Copies the colour of the scene. Call it after endScene.
+    CapturedScene captureScene(const StageFrame& frame);
     // Tone maps, submits, and presents or reads back.
     void finish(const StageFrame& frame);
 
-    // Secondary buffers for engines that record in parallel: begin, record, then execute.
+    // Secondary command buffers, for engines that record in parallel: begin, record, execute.
     VkCommandBuffer beginSecondary(const StageFrame& frame, bool insideScene);
     void executeSecondary(const StageFrame& frame, VkCommandBuffer commands);
 
-    // Headless: every frame's picture, in order, some frames after it was recorded.
+    // Headless: receives each frame's picture in order, some frames after its recording.
     std::function<void(uint32_t number, Picture&& picture)> onPicture;
 
-    // Inside the last pass, over the finished picture: display values, one attachment, no depth.
+    // Records into the last pass, over the finished picture: display values, one attachment, no
+    // depth.
     std::function<void(VkCommandBuffer commands)> overlay;
 
     StageRequest made;
     VkRenderPass outputPass() const { return postPass_; }
     VkRenderPass scenePass = VK_NULL_HANDLE;
     VkFormat depthFormat = VK_FORMAT_UNDEFINED;
-    // What a pipeline in the scene pass needs to agree with the stage.
+    // A pipeline in the scene pass must use this compare operation.
     VkCompareOp depthCompare() const {
         return made.reversedDepth ? VK_COMPARE_OP_GREATER_OR_EQUAL : VK_COMPARE_OP_LESS_OR_EQUAL;
     }
@@ -115,16 +117,16 @@ class Stage {
         VkFence fence = VK_NULL_HANDLE;
         VkSemaphore available = VK_NULL_HANDLE;
         Buffer readback;
-        uint64_t frameIndex = 0;  // of its last use
+        uint64_t frameIndex = 0;  // of the slot's last use
         uint32_t number = 0;
-        bool pending = false;  // its picture has not been delivered
+        bool pending = false;  // its picture is not delivered yet
     };
     void makePasses();
     void makeTargets();
-    void dropTargets();
-    void makePost();
+    void destroyTargets();
+    void createPostPass();
     void collect(Slot& slot);
-    void spreadLight(const StageFrame& frame);
+    void downsampleBloom(const StageFrame& frame);
     void drawPost(const StageFrame& frame, VkPipeline pipeline, VkRenderPass pass,
                   VkFramebuffer framebuffer, VkExtent2D extent,
                   const std::function<void(VkCommandBuffer)>& over = {});

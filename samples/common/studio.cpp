@@ -35,7 +35,7 @@ uint32_t mixBits(uint32_t x) {
     return x ^ (x >> 16);
 }
 
-// Tiling value noise with smooth steps: `cells` cells across the unit square.
+// Tiling value noise with smooth interpolation and `cells` cells across the unit square.
 float valueNoise(float u, float v, int cells, uint32_t seed) {
     const float x = u * static_cast<float>(cells), y = v * static_cast<float>(cells);
     const int ix = static_cast<int>(std::floor(x)), iy = static_cast<int>(std::floor(y));
@@ -143,7 +143,8 @@ Camera FireLook::camera(const OrbitCamera& orbit, glm::vec3 within) const {
         turned.fieldOfView *= 1.35f;
     } else if (view == "below") {
         turned.target.y += 0.1f;
-        turned.pitch = -std::asin((turned.target.y - 0.08f) / turned.distance);  // the eye is low
+        turned.pitch = -std::asin((turned.target.y - 0.08f) /
+                                  turned.distance);  // the camera is near the floor
     } else if (view == "inside") {
         Camera camera;
         camera.eye = within;
@@ -157,11 +158,11 @@ Camera FireLook::camera(const OrbitCamera& orbit, glm::vec3 within) const {
     return turned.camera();
 }
 
-void FireLook::lightUp(FwView& lit, float night, float day) const {
+void FireLook::applyLight(FwView& lit, float night, float day) const {
     if (light != "night" && light != "day" && light != "sky")
         throw Failure("--light is \"" + light + "\"; it is night, day or sky.");
     duskLight(lit, light == "night" ? night : light == "day" ? day : 4.0f * day);
-    if (light == "sky") lit.exposure *= 0.5f;  // as a camera would be set
+    if (light == "sky") lit.exposure *= 0.5f;  // as a photographer would expose
 }
 
 Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size)
@@ -169,7 +170,7 @@ Studio::Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, flo
 
 Studio::Studio(const VulkanHost& host, const ScenePass& scene, glm::vec3 center, float size)
     : host_(host), center_(center), size_(size) {
-    // A profile turned around the vertical: flat floor, a quarter circle, wall.
+    // A profile that rotates around the vertical axis: flat floor, quarter circle, wall.
     constexpr int kAround = 64;
     const float radius = 7.0f * size, bend = 2.2f * size;
     std::vector<glm::vec4> profile = {{0, 0, 0, 1}, {2 * size, 0, 0, 1}};  // r, y, normal r, y
@@ -380,7 +381,7 @@ void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost&
     studio.drawBlocks(frame, frame.commands);
     fire.recordInside(frame, view);
     stage.endScene(frame);
-    if (stage.made.lendScene) fire.recordOver(frame, view, stage.lendScene(frame));
+    if (stage.made.capturesScene) fire.recordOver(frame, view, stage.captureScene(frame));
     stage.finish(frame);
 }
 

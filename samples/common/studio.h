@@ -1,5 +1,5 @@
-// A photographer's backdrop drawn by the host, in the host's pass, before the plugin draws: floor,
-// wall, one soft shadow, and the light of the fires as the plugin reports it.
+// A photographer's backdrop with floor, wall, one soft shadow, and the light of the reported fires.
+// The host draws it in its own pass before the plugin.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -17,23 +17,24 @@ namespace sample {
 
 class Studio {
  public:
-    // `center` is on the floor; `size` is about the object's largest side, m.
+    // `center`: on the floor; `size`: m, about the object's largest side.
     Studio(const VulkanHost& host, const Stage& stage, glm::vec3 center, float size);
-    // For a host whose scene pass is not a stage's.
+    // For a host whose scene pass does not come from a Stage.
     Studio(const VulkanHost& host, const ScenePass& pass, glm::vec3 center, float size);
     ~Studio();
     Studio(const Studio&) = delete;
     Studio& operator=(const Studio&) = delete;
 
-    // Casts the shadows of the mesh and of the blocks onto the floor, softly, once.
+    // Renders the soft shadow of the mesh and the blocks onto the floor, once.
     void castShadow(std::span<const float> positions, std::span<const uint32_t> indices,
                     const glm::mat4& transform, glm::vec3 sunDirection);
-    // A block of stone, axis-aligned, for drawBlocks. Before the first frame.
+    // Adds an axis-aligned stone block for drawBlocks. Call it before the first frame.
     void addBlock(glm::vec3 center, glm::vec3 half);
-    // `view` carries the camera and the light. `commands`: in the scene pass.
+    // Draws the backdrop. `view`: camera and light; `commands`: inside the scene pass.
     void draw(const StageFrame& frame, VkCommandBuffer commands, const FwView& view,
               std::span<const FwLight> fires);
-    // The blocks, after draw() of the same frame; a host draws behind and in front of the fire.
+    // Draws the blocks. Call it after draw() of the same frame, so that the host draws behind and
+    // in front of the fire.
     void drawBlocks(const StageFrame& frame, VkCommandBuffer commands);
 
     float fireGain = 0.02f;  // irradiance at 1 m per unit of FwLight::intensity, cd per W/sr
@@ -48,7 +49,7 @@ class Studio {
     uint32_t indexCount_ = 0;
     Buffer vertices_, indices_, blockVertices_;
     std::vector<glm::vec3> blockCorners_;  // position, normal, position, normal, ...
-    std::vector<Buffer> blocks_;           // one for each frame in flight
+    std::vector<Buffer> blocks_;           // one per frame in flight
     Image plaster_, shadow_;
     VkSampler repeat_ = VK_NULL_HANDLE, clamp_ = VK_NULL_HANDLE;
     VkDescriptorSetLayout setLayout_ = VK_NULL_HANDLE;
@@ -58,23 +59,23 @@ class Studio {
     VkPipeline pipeline_ = VK_NULL_HANDLE;
 };
 
-// The whole of a frame in a studio: the fire's step, the backdrop in the light of the fires, the
-// blocks, and the fire. Lights are those before this frame's step.
+// Records a whole studio frame: the fire's step, the backdrop lit by the fires, the blocks, and the
+// fire. The lights come from before this frame's step.
 void showStudio(const StageFrame& frame, Stage& stage, Studio& studio, FireHost& fire,
                 const FwView& view);
 
-// Evening light in a studio, the light in which fire reads best; fills all but the matrices.
-void duskLight(FwView& view, float share = 1.0f);  // share: of that light, for night and noon
+// Sets evening light, which shows fire best. Fills all fields of the view but the matrices.
+void duskLight(FwView& view, float share = 1.0f);  // share of that light, for night and noon
 
-// From where and in what light fires are looked at, as options name it: view is "side", "above",
-// "below" or "inside", light is "night", "day" or "sky", a bright one behind the fires.
+// Camera side and light of a fire sample, by option names. `view`: "side", "above", "below" or
+// "inside". `light`: "night", "day" or "sky" (a bright sky behind the fires).
 struct FireLook {
     std::string view = "side", light = "night";
     void addTo(OptionParser& parser);
-    // Turns a camera that looks from the side. `within`: a place in one of the fires. Throws
+    // Turns a side camera to the chosen view. `within`: a point inside one of the fires. Throws
     // Failure.
     Camera camera(const OrbitCamera& orbit, glm::vec3 within) const;
-    void lightUp(FwView& lit, float night, float day) const;  // shares, as duskLight takes them
+    void applyLight(FwView& lit, float night, float day) const;  // shares as in duskLight
 };
 
 }  // namespace sample

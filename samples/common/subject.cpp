@@ -16,10 +16,10 @@ glm::vec3 vertexOf(const fwimport::ImportedModel& model, uint32_t index) {
             model.positions[index * 3 + 2]};
 }
 
-// On the floor, in the middle, and of a size that burns in a minute or two.
-void bringIntoStudio(Subject& subject, float size, float wantedSize) {
+// Centres the subject on the floor and scales it to a size that burns in a minute or two.
+void placeInStudio(Subject& subject, float size, float wantedSize) {
     fwimport::ImportedModel& model = subject.model;
-    // Burning is a matter of metres: what is far from the size of things is brought to one metre.
+    // Burning depends on absolute size, so subjects of unusual size are scaled to 1 m.
     if (wantedSize > 0) {
         subject.scale = wantedSize / size;
     } else if (size < 0.05f || size > 10.0f) {
@@ -62,7 +62,7 @@ Subject loadSubject(const std::filesystem::path& file, float wantedSize, bool as
     }
     const float size = subject.size();
     if (!(size > 0)) throw sample::Failure(subject.name + " has no extent");
-    if (!asItStands) bringIntoStudio(subject, size, wantedSize);
+    if (!asItStands) placeInStudio(subject, size, wantedSize);
     subject.surfaces = fwmodel::surfacesOf(subject.model);
     return subject;
 }
@@ -94,9 +94,8 @@ SurfacePoint castRay(const Subject& subject, glm::vec3 origin, glm::vec3 directi
     return result;
 }
 
-SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye) {
-    // Triangles that face the viewer, low but not at the very floor, near the middle; of those that
-    // nothing hides, the best.
+SurfacePoint findIgnitionPoint(const Subject& subject, glm::vec3 eye) {
+    // Prefers unoccluded triangles that face the viewer, low but above the floor, near the middle.
     const fwimport::ImportedModel& model = subject.model;
     struct Candidate {
         float score;
@@ -122,14 +121,14 @@ SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye) {
     std::sort(candidates.begin(), candidates.end(),
               [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
     for (size_t i = 0; i < std::min<size_t>(candidates.size(), 64); ++i) {
-        const glm::vec3 way = candidates[i].position - eye;
-        const SurfacePoint seen = castRay(subject, eye, glm::normalize(way));
+        const glm::vec3 offset = candidates[i].position - eye;
+        const SurfacePoint seen = castRay(subject, eye, glm::normalize(offset));
         if (seen.hit &&
             glm::distance(seen.position, candidates[i].position) < 0.02f * subject.size()) {
             return {candidates[i].position, candidates[i].normal, true};
         }
     }
-    // A flat or odd mesh: its lowest corner will do.
+    // Flat or unusual mesh: fall back to its lowest corner.
     SurfacePoint lowest;
     for (uint32_t i = 0; i < model.vertexCount(); ++i) {
         const glm::vec3 p = vertexOf(model, i);
@@ -140,7 +139,7 @@ SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye) {
 
 sample::OrbitCamera orbitAround(const Subject& subject, float yaw, float pitch,
                                 VkExtent2D picture) {
-    constexpr float kFilled = 0.80f;  // of the picture's height, or of its width
+    constexpr float kFilled = 0.80f;  // share of the picture's height, or of its width
     sample::OrbitCamera orbit;
     orbit.target = {0, 0.5f * subject.height(), 0};
     orbit.yaw = glm::radians(yaw);
@@ -177,7 +176,7 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
             note = "read from " + (request.cache / (key + ".fwburn")).string();
             return id;
         }
-        // A cache that cannot be read is made again.
+        // An unreadable cache is rebuilt.
     }
     std::string error;
     if (!fwmodel::cookMesh(fire.context, def, bytes, error))
@@ -187,7 +186,7 @@ FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMa
     note = "baked";
     if (!request.cache.empty())
         note += fwmodel::keepBake(request.cache, key, bytes)
-                    ? ", kept in " + (request.cache / (key + ".fwburn")).string()
+                    ? ", cached in " + (request.cache / (key + ".fwburn")).string()
                     : " (the cache cannot be written)";
     return id;
 }

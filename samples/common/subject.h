@@ -1,5 +1,5 @@
-// What is going to burn: a mesh of any size brought onto the studio's floor, with its colours,
-// the answers about its surface that the sample needs, and its burn map from the cache.
+// The mesh that a sample burns: any mesh, placed on the studio's floor, with its colours, ray
+// queries and a cached burn map.
 #pragma once
 
 #include <filesystem>
@@ -13,36 +13,37 @@
 
 struct Subject {
     std::string name;
-    fwimport::ImportedModel model;  // m, standing on y = 0, centred on the vertical axis unless it
-                                    // was left as it stands
+    fwimport::ImportedModel model;  // m, on y = 0 and centred on the vertical axis unless loaded
+                                    // with `asItStands`
     fwmodel::ModelSurfaces surfaces;
-    float scale = 1.0f;    // that was applied to the file's units
+    float scale = 1.0f;    // applied to the file's units
     float size() const;    // m, largest side
     float height() const;  // m
-    float radius() const;  // m, of the ball around its middle
+    float radius() const;  // m, bounding sphere
 };
 
-// `file` empty: the wooden toy. `asItStands`: neither moved nor scaled. Throws sample::Failure with
-// the importer's message.
+// Loads `file`, or the wooden toy if it is empty. `asItStands`: keeps position and scale. Throws
+// sample::Failure with the importer's message.
 Subject loadSubject(const std::filesystem::path& file, float wantedSize, bool asItStands = false);
 
 struct SurfacePoint {
     glm::vec3 position{0}, normal{0};
     bool hit = false;
 };
-// Where a ray meets it first.
+// Returns the first hit of a ray.
 SurfacePoint castRay(const Subject& subject, glm::vec3 origin, glm::vec3 direction);
-// A low place that faces the viewer: where one would hold the match.
-SurfacePoint matchPlace(const Subject& subject, glm::vec3 eye);
+// Returns a low point that faces the viewer, as the place to ignite.
+SurfacePoint findIgnitionPoint(const Subject& subject, glm::vec3 eye);
 
-// Around its middle, as far off as shows all of it with a margin. Yaw and pitch in degrees.
+// Returns a camera around the subject's centre that shows all of it with a margin. Angles in
+// degrees.
 sample::OrbitCamera orbitAround(const Subject& subject, float yaw, float pitch, VkExtent2D picture);
 
 struct BurnMapRequest {
     uint32_t mapSize = 1024;  // texels
     float texelsPerMetre = 256.0f;
-    std::filesystem::path cache;  // folder; empty: do not keep
+    std::filesystem::path cache;  // folder; empty: no cache
 };
-// Bakes, or reads what an earlier run baked for the same arrays. `note` says which.
+// Bakes the burn map, or reads it from the cache. `note` reports which.
 FwMeshId createMesh(sample::FireHost& fire, const Subject& subject, const BurnMapRequest& request,
                     std::string& note);

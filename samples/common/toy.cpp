@@ -8,8 +8,8 @@
 
 namespace {
 
-constexpr float kScale = 1.4f;    // from the sketch below to metres
-constexpr float kCell = 0.0088f;  // of the sketch
+constexpr float kScale = 1.4f;    // from the units of the model below to metres
+constexpr float kCell = 0.0088f;  // in units of the model
 
 float ball(glm::vec3 p, glm::vec3 center, glm::vec3 radii) {
     const glm::vec3 q = (p - center) / radii;
@@ -17,7 +17,7 @@ float ball(glm::vec3 p, glm::vec3 center, glm::vec3 radii) {
     return g > 0 ? k * (k - 1.0f) / g : -std::min({radii.x, radii.y, radii.z});
 }
 
-// A rod that gets thinner or thicker along its way.
+// A rod with a linearly varying radius.
 float rod(glm::vec3 p, glm::vec3 a, glm::vec3 b, float radiusA, float radiusB) {
     const glm::vec3 ab = b - a;
     const float t = std::clamp(glm::dot(p - a, ab) / glm::dot(ab, ab), 0.0f, 1.0f);
@@ -29,9 +29,9 @@ float blend(float a, float b, float width) {
     return std::min(a, b) - 0.25f * width * h * h;
 }
 
-// Distance to the elephant, about; negative inside. It looks along +x.
+// Approximate signed distance to the elephant, negative inside. It looks along +x.
 float elephant(glm::vec3 p) {
-    const glm::vec3 m(p.x, p.y, std::abs(p.z));  // it has a left and a right
+    const glm::vec3 m(p.x, p.y, std::abs(p.z));  // symmetric in z
     float d = ball(p, {0.0f, 0.235f, 0.0f}, {0.175f, 0.125f, 0.115f});
     d = blend(d, ball(p, {-0.07f, 0.24f, 0.0f}, {0.12f, 0.12f, 0.11f}), 0.05f);
     d = blend(d, ball(p, {0.19f, 0.305f, 0.0f}, {0.088f, 0.092f, 0.078f}), 0.05f);
@@ -47,7 +47,7 @@ float elephant(glm::vec3 p) {
     d = blend(d, rod(m, {-0.105f, 0.17f, 0.062f}, {-0.11f, 0.0f, 0.064f}, 0.05f, 0.044f), 0.03f);
     d = blend(d, rod(p, {-0.17f, 0.275f, 0.0f}, {-0.225f, 0.16f, 0.0f}, 0.016f, 0.010f), 0.02f);
     d = blend(d, ball(p, {-0.228f, 0.15f, 0.0f}, {0.016f, 0.028f, 0.016f}), 0.01f);
-    return std::max(d, 0.004f - p.y);  // it stands flat
+    return std::max(d, 0.004f - p.y);  // flat below
 }
 
 }  // namespace
@@ -65,14 +65,14 @@ fwimport::ImportedModel makeToy() {
         for (int y = 0; y < points.y; ++y) {
             for (int x = 0; x < points.x; ++x) {
                 const float d = elephant(placeOf({x, y, z}));
-                // A corner exactly on the surface would make triangles without area.
+                // A corner exactly on the surface would create triangles without area.
                 field[indexOf({x, y, z})] = std::abs(d) < 1e-5f ? 1e-5f : d;
             }
         }
     }
 
     fwimport::ImportedModel model;
-    std::unordered_map<uint64_t, uint32_t> vertices;  // by the grid edge that they cut
+    std::unordered_map<uint64_t, uint32_t> vertices;  // by the grid edge that they lie on
     auto vertexOn = [&](glm::ivec3 a, glm::ivec3 b) {
         uint64_t i = indexOf(a), j = indexOf(b);
         if (i > j) std::swap(i, j), std::swap(a, b);
@@ -80,7 +80,7 @@ fwimport::ImportedModel makeToy() {
             vertices.emplace(i << 32 | j, static_cast<uint32_t>(model.vertexCount()));
         if (!fresh) return found->second;
         const float da = field[i], db = field[j];
-        // Kept off the ends, so that slivers stay rare.
+        // Keep the cut off the ends, so that slivers stay rare.
         const float t = std::clamp(da / (da - db), 0.05f, 0.95f);
         const glm::vec3 p = glm::mix(placeOf(a), placeOf(b), t);
         constexpr float kStep = 0.002f;
@@ -99,7 +99,7 @@ fwimport::ImportedModel makeToy() {
         model.indices.insert(model.indices.end(), {a, b, c});
         model.triangleMaterials.push_back(0);
     };
-    // Six tetrahedra around the diagonal of a cell, all turning the same way.
+    // Six tetrahedra around the diagonal of a cell, all with the same orientation.
     constexpr int kOrders[6][3] = {{0, 1, 2}, {1, 2, 0}, {2, 0, 1},
                                    {0, 2, 1}, {2, 1, 0}, {1, 0, 2}};
     for (int z = 0; z < cells.z; ++z) {
@@ -122,7 +122,7 @@ fwimport::ImportedModel makeToy() {
                         }
                     }
                     if (ins == 0 || outs == 0) continue;
-                    // Whether the corners' order is an even one decides the winding.
+                    // An even permutation of the corners keeps the winding.
                     int order[4];
                     std::copy(in, in + ins, order);
                     std::copy(out, out + outs, order + ins);
@@ -131,7 +131,7 @@ fwimport::ImportedModel makeToy() {
                         for (int j = i + 1; j < 4; ++j) odd ^= order[i] > order[j];
                     }
                     auto cut = [&](int i, int j) { return vertexOn(corner[i], corner[j]); };
-                    // The cut is a triangle around a lone corner, or a quad between two pairs.
+                    // The cut is a triangle around a single corner, or a quad between two pairs.
                     std::vector<uint32_t> ring;
                     if (ins == 1) {
                         ring = {cut(in[0], out[0]), cut(in[0], out[1]), cut(in[0], out[2])};

@@ -1,5 +1,5 @@
-// A camera that a hand turns around a thing, and the frames of a run seen through it: drag turns,
-// wheel zooms. Not for samples that walk through a scene.
+// A camera that orbits an object, and the frames of a run seen through it: drag turns, wheel zooms.
+// Not for samples that move through a scene.
 #pragma once
 
 #include "common/camera.h"
@@ -10,9 +10,10 @@ namespace sample {
 
 class Turntable {
  public:
-    // In dusk light. `turn`: degrees a second, by itself.
+    // Sets dusk light. `turn`: degrees per second without input.
     Turntable(Stage& stage, const OrbitCamera& from, float turn = 0);
-    // The stage's next frame, steered by the hand, its camera in `view`. False: the run is over.
+    // Begins the next frame, applies the input, and sets the camera in `view`. Returns false when
+    // the run is over.
     bool next(StageFrame& frame);
 
     OrbitCamera orbit;

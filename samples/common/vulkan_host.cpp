@@ -18,7 +18,7 @@ VKAPI_ATTR VkBool32 VKAPI_CALL onMessage(VkDebugUtilsMessageSeverityFlagBitsEXT 
                                          VkDebugUtilsMessageTypeFlagsEXT type,
                                          const VkDebugUtilsMessengerCallbackDataEXT* data,
                                          void* userData) {
-    // The loader's own remarks (GENERAL) about other drivers are not ours to answer for.
+    // GENERAL messages come from the loader about other drivers, so they are ignored.
     const bool general = type == VK_DEBUG_UTILS_MESSAGE_TYPE_GENERAL_BIT_EXT;
     if (general && severity < VK_DEBUG_UTILS_MESSAGE_SEVERITY_ERROR_BIT_EXT) return VK_FALSE;
     auto* log = static_cast<ValidationLog*>(userData);
@@ -89,7 +89,7 @@ const char* vulkanResultName(VkResult result) {
         case VK_ERROR_OUT_OF_DATE_KHR:
             return "VK_ERROR_OUT_OF_DATE_KHR";
         default:
-            return "an unnamed code";
+            return "an unknown code";
     }
 }
 
@@ -102,7 +102,7 @@ void checkVulkan(VkResult result, const char* what) {
 int ValidationLog::exitCode() {
     std::lock_guard lock(mutex);
     if (count == 0) return 0;
-    std::fprintf(stderr, "\n%u validation messages; a clean run has none\n", count);
+    std::fprintf(stderr, "\n%u validation messages; expected none\n", count);
     return 1;
 }
 
@@ -162,7 +162,7 @@ void VulkanHost::createInstance() {
             return std::strcmp(layer.layerName, kValidationLayer) == 0;
         });
         if (!found) {
-            throw Failure(std::string("validation is asked for, but the layer ") +
+            throw Failure(std::string("validation is requested, but the layer ") +
                           kValidationLayer + " is not installed");
         }
         layers.push_back(kValidationLayer);
@@ -188,7 +188,8 @@ void VulkanHost::createInstance() {
     VkDebugUtilsMessengerCreateInfoEXT messenger = messengerInfo(made.validation);
     std::vector<const char*> extensions = made.instanceExtensions;
     if (made.validation) {
-        // The layer brings this extension; the plugin has no use for it, so it is not declared.
+        // The layer provides this extension for itself; the plugin does not use it, so it is not
+        // reported.
         addOnce(extensions, VK_EXT_VALIDATION_FEATURES_EXTENSION_NAME);
         messenger.pNext = &features;
         info.pNext = &messenger;
@@ -212,7 +213,7 @@ void VulkanHost::chooseDevice() {
                 "vkEnumeratePhysicalDevices");
     std::vector<VkPhysicalDevice> devices(count);
     vkEnumeratePhysicalDevices(instance, &count, devices.data());
-    // FLAMEWRIGHT_DEVICE picks by a part of the name; else the fastest kind wins.
+    // FLAMEWRIGHT_DEVICE selects by part of the name. Otherwise the fastest type wins.
     const char* wanted = std::getenv("FLAMEWRIGHT_DEVICE");
     int best = -1;
     for (VkPhysicalDevice candidate : devices) {

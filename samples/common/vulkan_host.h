@@ -1,5 +1,5 @@
-// The engine's side of Vulkan: instance, device, queue, and the plainest buffers and images.
-// Every allocation is its own and every upload waits: right for a sample, wrong for an engine.
+// The host side of Vulkan: instance, device, queue, and minimal buffers and images. Each resource
+// has its own allocation and each upload waits. That suits a sample, not an engine.
 #pragma once
 
 #include <vulkan/vulkan.h>
@@ -17,33 +17,36 @@ namespace sample {
 void checkVulkan(VkResult result, const char* what);
 const char* vulkanResultName(VkResult result);
 
-// What the validation layers said. Outlives the host, since destroying can be wrong, too.
+// Collects the messages of the validation layers. It outlives the host, because destruction can
+// raise messages too.
 struct ValidationLog {
     std::mutex mutex;
-    uint32_t count = 0;                 // of warnings and errors
-    std::vector<std::string> messages;  // the first 32 of them
-    // 0 if there was none; else prints how many and returns 1.
+    uint32_t count = 0;                 // warnings and errors
+    std::vector<std::string> messages;  // the first 32 messages
+    // Returns 0 if there were no messages. Otherwise prints their number and returns 1.
     int exitCode();
 };
 
 struct HostRequest {
-    uint32_t apiVersion = VK_API_VERSION_1_0;  // of the instance; the samples' floor
-    bool windowed = false;                     // add what a window and a swapchain need
-    ValidationLog* validation = nullptr;       // not null: layers on, messages go there
-    VkPhysicalDeviceFeatures features{};       // to enable; refused if absent
+    uint32_t apiVersion = VK_API_VERSION_1_0;  // version of the instance; the samples' minimum
+    bool windowed = false;                     // adds the extensions for a window and a swapchain
+    ValidationLog* validation = nullptr;       // if set, enables the validation layers and receives
+                                               // their messages
+    VkPhysicalDeviceFeatures features{};  // features to enable; creation fails if one is missing
     std::vector<const char*> instanceExtensions;
     std::vector<const char*> deviceExtensions;
-    const void* featureChain = nullptr;  // VkPhysicalDeviceFeatures2 chain instead of `features`
+    const void* featureChain = nullptr;  // a VkPhysicalDeviceFeatures2 chain that replaces
+                                         // `features`
 };
 
-// As the options want it; messages go to `log` if they ask for validation.
+// Translates the options into a request. If they ask for validation, messages go to `log`.
 HostRequest hostRequest(const Options& options, ValidationLog& log);
 
 struct Buffer {
     VkBuffer buffer = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkDeviceSize size = 0;   // bytes
-    void* mapped = nullptr;  // host-visible ones stay mapped
+    void* mapped = nullptr;  // host-visible buffers stay mapped
 };
 
 struct ImageRequest {
@@ -58,7 +61,7 @@ struct Image {
     VkImage image = VK_NULL_HANDLE;
     VkDeviceMemory memory = VK_NULL_HANDLE;
     VkImageView view = VK_NULL_HANDLE;      // all mips
-    VkImageView firstMip = VK_NULL_HANDLE;  // mip 0 alone, to render into
+    VkImageView firstMip = VK_NULL_HANDLE;  // mip 0 only, as a render target
     ImageRequest made;
 };
 
@@ -69,7 +72,7 @@ class VulkanHost {
     VulkanHost(const VulkanHost&) = delete;
     VulkanHost& operator=(const VulkanHost&) = delete;
 
-    // What was made, and with what: a host has to tell the plugin all of it.
+    // The request that this host was created with. The plugin must receive all of it.
     HostRequest made;
     VkInstance instance = VK_NULL_HANDLE;
     VkPhysicalDevice physicalDevice = VK_NULL_HANDLE;
@@ -79,14 +82,16 @@ class VulkanHost {
     VkQueue queue = VK_NULL_HANDLE;
 
     Buffer createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, bool hostVisible) const;
-    // Device-local, filled from `data` before it returns.
+    // Creates a device-local buffer and waits until `data` is uploaded.
     Buffer createFilledBuffer(const void* data, VkDeviceSize size, VkBufferUsageFlags usage) const;
     void destroy(Buffer& buffer) const;
 
     Image createImage(const ImageRequest& request) const;
-    // A sampled image with a full mip chain, filled before it returns. RGBA8, rows top first.
+    // Creates a sampled RGBA8 image with a full mip chain and waits for the upload. Rows start at
+    // the top.
     Image createTexture(uint32_t width, uint32_t height, const uint8_t* rgba, bool srgb) const;
-    // Of any format of 4 bytes a texel, with as many mips as are asked for; the usage is its own.
+    // Creates a texture of any format with 4 bytes per texel and `request.mips` mips. Sets the
+    // usage itself.
     Image createTexture(ImageRequest request, const uint8_t* texels) const;
     void destroy(Image& image) const;
 
@@ -94,7 +99,7 @@ class VulkanHost {
                             VkSamplerMipmapMode mips = VK_SAMPLER_MIPMAP_MODE_LINEAR) const;
     VkShaderModule createShader(const uint32_t* words, size_t bytes) const;
 
-    // Records, submits and waits: for set-up only.
+    // Records, submits and waits. Use it for set-up only.
     template <typename Body>
     void runNow(Body&& body) const {
         VkCommandBuffer commands = beginNow();
@@ -103,7 +108,7 @@ class VulkanHost {
     }
 
     uint32_t memoryType(uint32_t allowedTypes, VkMemoryPropertyFlags wanted) const;
-    // D32 float if it can be rendered to, else a packed one that can.
+    // Returns D32_SFLOAT if the device can render to it, otherwise a packed depth format.
     VkFormat depthFormat() const;
 
  private:
@@ -118,7 +123,7 @@ class VulkanHost {
     VkCommandPool setupPool_ = VK_NULL_HANDLE;
 };
 
-// One image barrier over all mips of a colour image, or `mips` of them from `firstMip`.
+// Records one barrier over `mips` mips of a colour image, starting at `firstMip`.
 void imageBarrier(VkCommandBuffer commands, VkImage image, VkImageLayout before,
                   VkImageLayout after, VkPipelineStageFlags stageBefore, VkAccessFlags accessBefore,
                   VkPipelineStageFlags stageAfter, VkAccessFlags accessAfter, uint32_t firstMip = 0,

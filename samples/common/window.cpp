@@ -16,12 +16,12 @@ Window::Window(const VulkanHost& host, const std::string& title, uint32_t width,
     glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
     window_ = glfwCreateWindow(static_cast<int>(width), static_cast<int>(height), title.c_str(),
                                nullptr, nullptr);
-    if (!window_) throw Failure("the window cannot be made; use --headless");
+    if (!window_) throw Failure("the window cannot be created; use --headless");
     if (glfwCreateWindowSurface(host.instance, window_, nullptr, &surface_) != VK_SUCCESS) {
         glfwDestroyWindow(window_);
         throw Failure("the window has no Vulkan surface; use --headless");
     }
-    // A press counts even when it is over before a slow frame asks.
+    // Registers a press that ends before a slow frame polls.
     glfwSetInputMode(window_, GLFW_STICKY_KEYS, GLFW_TRUE);
     glfwSetInputMode(window_, GLFW_STICKY_MOUSE_BUTTONS, GLFW_TRUE);
     glfwSetWindowUserPointer(window_, this);
@@ -186,7 +186,7 @@ bool Window::acquire(VkSemaphore available, uint32_t& index) {
             stale_ = true;
             continue;
         }
-        // A SUBOPTIMAL image is drawn, its semaphore being on its way; the next one will be new.
+        // Draw the SUBOPTIMAL image, because its semaphore is already pending. Rebuild afterwards.
         if (result == VK_SUBOPTIMAL_KHR) {
             stale_ = true;
             return true;

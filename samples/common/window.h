@@ -1,5 +1,5 @@
-// A GLFW window and its swapchain. Made anew on resize, on SUBOPTIMAL and on OUT_OF_DATE.
-// Not a frame loop: that is stage.h.
+// A GLFW window and its swapchain. Rebuilds it on resize, on SUBOPTIMAL and on OUT_OF_DATE. The
+// frame loop is in stage.h.
 #pragma once
 
 #include <string>
@@ -11,18 +11,19 @@ struct GLFWwindow;
 
 namespace sample {
 
-// What the user did since the last poll.
+// User input since the last poll.
 struct Input {
     float dragX = 0, dragY = 0;            // pixels, left button held
     float panX = 0, panY = 0;              // pixels, right or middle button held
     float wheel = 0;                       // notches, up is positive
     float moveRight = 0, moveForward = 0;  // keys held, -1..1 (arrows or WASD)
     float turn = 0;                        // keys held, -1..1 (Q and E)
-    bool click = false;                    // left button pressed and released without dragging
-    float clickX = 0, clickY = 0;          // 0..1 of the window, from its top left
-    float x = 0, y = 0;                    // where the mouse is, as clickX and clickY
+    bool click = false;                    // left button pressed and released without a drag
+    float clickX = 0, clickY = 0;          // [0, 1] of the window from its top left
+    float x = 0, y = 0;                    // mouse position, in units of clickX and clickY
     bool held = false;                     // left button is down
-    std::vector<int> keys;  // pressed since, as GLFW key codes (letters are ASCII capitals)
+    std::vector<int> keys;  // keys pressed since the last poll, as GLFW key codes (letters are
+                            // ASCII capitals)
 };
 
 class Window {
@@ -32,17 +33,18 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    bool poll(Input& input);  // false: the user closed it
-    // False: nothing to draw into just now (minimised); poll and try again. A changed `generation`
-    // says that `extent` and `views` are new.
+    bool poll(Input& input);  // false: the user closed the window
+    // Returns false if there is nothing to draw into (minimised): poll and try again. A changed
+    // `generation` means that `extent` and `views` are new.
     bool acquire(VkSemaphore available, uint32_t& index);
     void present(uint32_t index);
     VkSemaphore rendered(uint32_t index) const { return rendered_[index]; }
-    // Sleeps so that calls come at most `framesPerSecond` apart: FIFO does not pace every driver.
+    // Sleeps so that frames come at most `framesPerSecond` times a second. FIFO does not pace every
+    // driver.
     void limitRate(double framesPerSecond);
 
-    // For a host that takes GLFW's callbacks itself instead of poll(). GLFW's user pointer of the
-    // window stays ours; `guest` is for them.
+    // For a host that installs its own GLFW callbacks instead of poll(). The window's user pointer
+    // stays reserved; callbacks use `guest`.
     GLFWwindow* handle() const { return window_; }
     void* guest = nullptr;
 
@@ -50,7 +52,7 @@ class Window {
     VkExtent2D extent{};
     std::vector<VkImage> images;
     std::vector<VkImageView> views;
-    bool takesCopies = false;  // the images may be copied to
+    bool takesCopies = false;  // swapchain images accept copies
     uint32_t generation = 0;
 
  private:

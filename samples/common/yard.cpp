@@ -10,7 +10,7 @@ namespace {
 
 constexpr float kHalf = 0.25f, kApart = 0.9f;  // m
 
-// Six faces of four corners each, seen from outside.
+// Six faces of four corners each, counter-clockwise from outside.
 FwMeshId makeCrate(FwWorld* world) {
     float positions[72];
     uint32_t indices[36];

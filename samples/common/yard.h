@@ -1,4 +1,4 @@
-// A yard of wooden crates in rows, on any backend: what a server has to keep burning.
+// A yard of wooden crates in rows, for any backend. The server samples burn it.
 #pragma once
 #include <flamewright/flamewright.h>
 #include <cstdint>
@@ -8,8 +8,8 @@
 // Throws std::runtime_error with the library's message if the result is an error.
 void check(FwResult result, FwWorld* world);
 
-// An argument that is a whole number in [low, high]; throws std::runtime_error with its name
-// otherwise.
+// Parses a whole number in [low, high]. Otherwise throws std::runtime_error with the argument's
+// name.
 uint32_t wholeOf(const std::string& name, const char* text, uint32_t low, uint32_t high);
 
 struct Yard {
@@ -17,12 +17,12 @@ struct Yard {
     uint32_t columns = 0;
 };
 
-// Crates of half a metre, 0.9 m from middle to middle, on y = 0. Throws std::runtime_error with the
-// library's message.
+// Creates 0.5 m crates on y = 0, 0.9 m apart from centre to centre. Throws std::runtime_error with
+// the library's message.
 Yard makeYard(FwWorld* world, uint32_t crates);
-// Where a crate stands: the middle of its foot, m.
+// Returns the centre of a crate's base, m.
 void placeOf(const Yard& yard, uint32_t crate, float (&place)[3]);
-// A match at a crate's foot.
+// Ignites a crate at its base.
 void lightCrate(FwWorld* world, const Yard& yard, uint32_t crate);
 
 struct YardState {
@@ -30,5 +30,5 @@ struct YardState {
     float power = 0;                             // W
 };
 YardState stateOf(FwWorld* world, const Yard& yard);
-// Of every texel of every crate, as each machine of a game must have it. On the cpu backend.
+// Hashes every texel of every crate. All machines of a game must agree on it. Cpu backend only.
 uint64_t hashOf(FwWorld* world, const Yard& yard);

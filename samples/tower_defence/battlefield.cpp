@@ -11,7 +11,7 @@ using village::Vec2;
 
 namespace {
 
-// Beside the road, with room for a plinth, where nothing else stands.
+// Plots lie beside the road, with space for a plinth and no other object.
 constexpr std::array<Vec2, game::kPlots> kPlotPlaces{
     {village::kFlamethrowerPlace,  // inside the first bend
      {-8.3f, -6.4f},               // inside the second
@@ -30,7 +30,7 @@ constexpr std::array<Kit, 5> kHouseKits{Kit::kCottage, Kit::kLonghouse, Kit::kRo
                                         Kit::kWindmill};
 
 template <size_t kCount>
-bool isOneOf(const std::array<Kit, kCount>& kits, int model) {
+bool isAnyOf(const std::array<Kit, kCount>& kits, int model) {
     return std::find(kits.begin(), kits.end(), Kit(model)) != kits.end();
 }
 
@@ -49,27 +49,27 @@ size_t put(village::Scene& scene, Kit model, const village::Frame& frame) {
 
 }  // namespace
 
-bool isHouse(int model) { return isOneOf(kHouseKits, model); }
+bool isHouse(int model) { return isAnyOf(kHouseKits, model); }
 
 village::Vec2 metres(game::Point point) {
     return {0.001f * float(point.x), 0.001f * float(point.z)};
 }
 
 village::Frame towerFrame(game::Point plot, game::Point aim) {
-    const Vec2 place = metres(plot), way = metres({aim.x - plot.x, aim.z - plot.z});
+    const Vec2 place = metres(plot), direction = metres({aim.x - plot.x, aim.z - plot.z});
     return village::translate(place.x, village::groundHeight(place), place.y) *
-           village::rotateY(std::atan2(way.x, way.y));
+           village::rotateY(std::atan2(direction.x, direction.y));
 }
 
 village::Frame enemyFrame(const game::Ground& ground, const game::Enemy& enemy, float size) {
-    constexpr float kFallTicks = 22, kStride = 4.2f;  // rad of its step for each metre
+    constexpr float kFallTicks = 22, kStride = 4.2f;  // rad of its step per metre
     const float down = std::min(1.0f, float(enemy.lies) / kFallTicks), going = 1 - down;
     const float step = kStride * 0.001f * float(enemy.along) / size + float(enemy.born);
-    game::Point way;
-    const Vec2 middle = metres(game::roadPoint(ground, enemy.along, &way));
-    // Panic: it no longer keeps to its file.
+    game::Point direction;
+    const Vec2 middle = metres(game::roadPoint(ground, enemy.along, &direction));
+    // A panicking enemy leaves its file.
     const float stagger = enemy.alight > 0 ? 0.35f * std::sin(0.09f * float(enemy.alight)) : 0;
-    const Vec2 d = metres(way);
+    const Vec2 d = metres(direction);
     const Vec2 place = middle + Vec2{-d.y, d.x} * (0.001f * float(enemy.side) + stagger);
     const float high =
         village::groundHeight(place) + 0.1f + 0.09f * std::fabs(std::sin(step)) * going;
@@ -83,7 +83,7 @@ Battlefield makeBattlefield(uint32_t seed) {
     field.scene = village::makeVillage(seed);
     std::vector<village::Instance>& instances = field.scene.instances;
     std::erase_if(instances, [](const village::Instance& instance) {
-        return instance.roadMetres >= 0 || isOneOf(kTowerKits, instance.model);
+        return instance.roadMetres >= 0 || isAnyOf(kTowerKits, instance.model);
     });
     size_t house = 0;
     for (size_t i = 0; i < instances.size(); ++i) {
@@ -93,9 +93,9 @@ Battlefield makeBattlefield(uint32_t seed) {
         field.houses[house++] = i;
     }
     const float length = village::roadLength();
-    Vec2 way;
+    Vec2 direction;
     for (float along = 0; along < length - 1; along += 0.001f * float(game::Ground::kRoadStep))
-        field.ground.road.push_back(millimetres(village::roadPoint(along, &way)));
+        field.ground.road.push_back(millimetres(village::roadPoint(along, &direction)));
     for (size_t plot = 0; plot < game::kPlots; ++plot) {
         const game::Point place = field.ground.plots[plot] = millimetres(kPlotPlaces[plot]);
         const village::Frame frame = towerFrame(place, game::nearestOfRoad(field.ground, place));

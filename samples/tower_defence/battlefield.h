@@ -1,5 +1,5 @@
-// The village as a battlefield: where towers may stand, what marches, and the same as the rules
-// see it. Knows neither fire nor a renderer.
+// The village as a battlefield: plots for towers, enemies, and the same as the rules see it.
+// Independent of fire and renderer.
 #pragma once
 
 #include <array>
@@ -9,25 +9,26 @@
 
 namespace tower {
 
-// All that may ever show is an instance from the beginning: what shows and where is the game's.
+// Every instance that may ever appear exists from the start. The game decides which ones show and
+// where.
 struct Battlefield {
     village::Scene scene;
     game::Ground ground;
-    std::array<std::array<size_t, game::kTowerKinds>, game::kPlots> towers{};  // by plot and kind:
-    // instances; of kNone the empty plinth, on which the flamethrower stands
+    // Instances by plot and kind; for kNone the empty plinth, on which the flamethrower stands.
+    std::array<std::array<size_t, game::kTowerKinds>, game::kPlots> towers{};
     std::array<size_t, game::kEnemySlots> enemies{};  // instances
     std::array<size_t, game::kHouses> houses{};
 };
 
 Battlefield makeBattlefield(uint32_t seed);
-// One of those whose burning counts: with a room inside.
+// Returns true for models with a compartment inside. Their burning counts in the score.
 bool isHouse(int model);
 
-// Where a plot is, m.
+// Returns the position of a plot, m.
 village::Vec2 metres(game::Point point);
-// A marcher as it walks, bobbing; fallen: 0 upright .. 1 on the ground.
+// Returns the frame of an enemy that walks with a bobbing step, or of one that lies on the ground.
 village::Frame enemyFrame(const game::Ground& ground, const game::Enemy& enemy, float size);
-// Turned towards where it aims.
+// Returns the frame of a tower that faces its aim.
 village::Frame towerFrame(game::Point plot, game::Point aim);
 
 }  // namespace tower

@@ -20,7 +20,7 @@ using village::Vec3;
 
 namespace {
 
-constexpr float kRoofIsGone = 0.2f;  // of a house's surface
+constexpr float kRoofIsGone = 0.2f;  // share of a house's surface
 constexpr float kPartFalls = 1.5f;   // m^2
 
 void toMatrix(const village::Frame& f, float* m) {
@@ -33,13 +33,13 @@ void toMatrix(const village::Frame& f, float* m) {
     }
 }
 
-// The burn materials are the library's triangle materials; what stands beyond the eighth cannot
-// burn and joins the stone.
+// Materials of the village are the library's triangle materials. A mesh has eight; later ones count
+// as stone.
 uint8_t triangleMaterial(Material m) {
     return uint8_t(m) < 8 ? uint8_t(m) : uint8_t(Material::kStone);
 }
 
-// One mesh def's arrays; they must live while the def is used.
+// Arrays of a mesh def. They must outlive the def's use.
 struct MeshArrays {
     std::vector<float> positions, normals, uvs, details;
     std::vector<uint32_t> colors;
@@ -55,7 +55,7 @@ void fillMesh(MeshArrays& arrays, const village::Model& model, const PaintedMode
         arrays.uvs.insert(arrays.uvs.end(), {v.uv.x, v.uv.y});
         arrays.details.insert(arrays.details.end(),
                               {v.uv.x * model.atlasSide, v.uv.y * model.atlasSide});
-        // What the sky does not reach is darker, as in the host's own drawing.
+        // Vertices that see less sky are darker, as in the host's own shading.
         const uint32_t open =
             uint32_t(255 * std::min(1.0f, 0.35f + 0.65f * (painted ? painted->openSky[i] : 1.0f)));
         arrays.colors.push_back(0xff000000u | open << 16 | open << 8 | open);
@@ -80,7 +80,7 @@ void fillMesh(MeshArrays& arrays, const village::Model& model, const PaintedMode
     def.noiseFeature = 0.12f;
 }
 
-// Corners of what is of wood, far apart from each other, the highest first.
+// Returns wooden corners that are far apart, the highest first.
 std::vector<glm::vec3> beamsOf(const village::Model& model) {
     std::vector<glm::vec3> corners, chosen;
     for (size_t i = 0; i < model.indices.size(); ++i) {
@@ -88,7 +88,7 @@ std::vector<glm::vec3> beamsOf(const village::Model& model) {
         if (material == Material::kWood || material == Material::kPaint)
             corners.push_back(toGlm(model.vertices[model.indices[i]].position));
     }
-    std::vector<float> away(corners.size(), 1e9f);  // m^2, from the nearest chosen one
+    std::vector<float> away(corners.size(), 1e9f);  // m^2, to the nearest chosen corner
     for (int k = 0; k < game::kBeams && !corners.empty(); ++k) {
         const auto far = std::max_element(away.begin(), away.end()) - away.begin();
         chosen.push_back(corners[size_t(far)]);
@@ -104,7 +104,7 @@ std::vector<glm::vec3> beamsOf(const village::Model& model) {
 
 }  // namespace
 
-// Blades, cloth and roofs that burn through show their backs; closed lumps never do.
+// Blades, cloth and burnt roofs show their back faces; closed shapes never do.
 static bool hasOpenSheets(int model) {
     switch (Kit(model)) {
         case Kit::kRailFence:
@@ -161,7 +161,7 @@ FireVillage::FireVillage(FwContext* context, FwWorld* world, const village::Scen
       images_(scene.models.size()),
       beams_(scene.models.size()),
       instances_(scene.instances) {
-    // The bake is the slow part and may run on any thread: cook first, create from the cooked.
+    // Baking is slow and may run on any thread, so cook all meshes in parallel, then create them.
     std::vector<std::vector<uint8_t>> cooked(scene.models.size());
     std::vector<std::string> troubles(scene.models.size());
     inParallel(int(scene.models.size()), [&](int i) {
@@ -200,7 +200,7 @@ void FireVillage::makeMaterials() {
     make(Material::kWood, FW_MATERIAL_PINE, 1.0f, 1.0f, 0, FW_MATERIAL_PINE);
     make(Material::kPaint, FW_MATERIAL_PAINTED_WOOD, 1.0f, 1.0f, 0, FW_MATERIAL_PAINTED_WOOD);
     make(Material::kThatch, FW_MATERIAL_THATCH, 1.0f, 1.7f, 0, FW_MATERIAL_THATCH);
-    // Loose where thatch is bound. Leather's look has next to no ash: a burnt enemy must be black.
+    // Looser than bound thatch. Leather leaves almost no ash, so burnt enemies look black.
     make(Material::kStraw, FW_MATERIAL_THATCH, 3.0f, 1.0f, 0, FW_MATERIAL_LEATHER);
     make(Material::kLeaf, FW_MATERIAL_DRY_LEAF, 0.6f, 2.0f, 0.02f, FW_MATERIAL_DRY_LEAF);
     make(Material::kCloth, FW_MATERIAL_COTTON, 1.0f, 1.0f, 0, FW_MATERIAL_COTTON);
@@ -216,7 +216,7 @@ void FireVillage::makeModel(size_t model, const village::Model& source, const Pa
           ("fwWorld_CreateMesh of \"" + source.name + "\"").c_str());
     beams_[model] = beamsOf(source);
     if (!painted) return;
-    // The painting holds square roots; the library wants sRGB.
+    // The painting stores square roots; the library expects sRGB.
     uint8_t sRgb[256];
     for (int i = 0; i < 256; ++i) {
         const float c = float(i * i) / (255.0f * 255.0f);
@@ -235,9 +235,9 @@ void FireVillage::makeModel(size_t model, const village::Model& source, const Pa
 void FireVillage::createObject(Thing& thing) {
     const village::Instance& instance = instances_[thing.instance];
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    // Until it catches, the host draws it: with its shadows, and for less.
-    // LITE: what burns behind the front costs nothing, and a village full of fire runs in real
-    // time. Houses alone have heat: what their rooms flash over by.
+    // The host draws an object until it ignites, with shadows and at lower cost. LITE: burnt areas
+    // cost nothing, so a burning village runs in real time. Only houses store heat, which their
+    // rooms need for flashover.
     def.flags = FW_BURNABLE_HIDDEN;
     if (isHouse(instance.model)) {
         def.breakShare = kRoofIsGone;
@@ -246,7 +246,7 @@ void FireVillage::createObject(Thing& thing) {
         def.flags |= FW_BURNABLE_LITE;
     }
     if (hasOpenSheets(instance.model)) def.flags |= FW_BURNABLE_TWO_SIDED;
-    // Enemies end as black figures, not as nothing: the player must see what was felled.
+    // Enemies end as black figures instead of vanishing, so that the player sees the kills.
     if (instance.roadMetres >= 0) def.flags |= FW_BURNABLE_NO_HOLES;
     def.mesh = meshes_[size_t(instance.model)];
     std::memcpy(def.materials, materials_, sizeof def.materials);
@@ -305,7 +305,7 @@ void FireVillage::move(size_t index, const village::Frame& frame) {
     check(fwWorld_SetTransform(world_, thing.id, transform), "fwWorld_SetTransform");
 }
 
-void FireVillage::renew(size_t index) {
+void FireVillage::replace(size_t index) {
     Thing& thing = things[index];
     check(fwWorld_DestroyBurnableMesh(world_, thing.id), "fwWorld_DestroyBurnableMesh");
     thing.lit = thing.over = thing.broken = false;
@@ -320,7 +320,8 @@ void FireVillage::observe() {
         for (const FwEvent& event : std::span(events, count)) {
             if (event.userData >= things.size()) continue;
             Thing& thing = things[size_t(event.userData)];
-            if (std::memcmp(&thing.id, &event.object, sizeof thing.id) != 0) continue;  // renewed
+            if (std::memcmp(&thing.id, &event.object, sizeof thing.id) != 0)
+                continue;  // an event of a replaced object
             if (event.type == FW_EVENT_IGNITED && !thing.lit) {
                 thing.lit = true;
                 ++caught_;
@@ -366,7 +367,7 @@ void FireVillage::restore(std::span<const uint8_t> flags) {
     }
     caught_ = uint32_t(
         std::count_if(things.begin(), things.end(), [](const Thing& thing) { return thing.lit; }));
-    look();  // what happened at that frame waits in the world, for the next step of the game
+    look();  // events of that frame stay in the world until the game's next step
 }
 
 std::span<const PointLight> FireVillage::lights(float scale) {
@@ -376,7 +377,7 @@ std::span<const PointLight> FireVillage::lights(float scale) {
     for (uint32_t i = 0; i < std::min(count, 16u); ++i) {
         const FwLight& from = reported[i];
         PointLight light;
-        // A little above the fuel: that is where the flame is, and roofs must not shade it.
+        // A little above the fuel, at the flame's centre, so that roofs do not shade it.
         light.place = {from.position[0], from.position[1] + 0.6f + 0.5f * from.radius,
                        from.position[2]};
         light.color =

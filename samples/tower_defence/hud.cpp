@@ -20,7 +20,7 @@ using game::TowerKind;
 
 namespace {
 
-// Dark timber, thin brass, parchment ink; one accent for each tower.
+// Dark timber, thin brass, parchment ink; one accent per tower.
 constexpr ImU32 kTimber = hex(0x1B130E, 222), kTimberLit = hex(0x33241A, 235),
                 kBrass = hex(0x9E7847);
 constexpr ImU32 kInk = hex(0xF5E6C7), kDim = hex(0xB39E85), kGold = hex(0xFFC74D),
@@ -33,7 +33,7 @@ constexpr const char* kIcons[game::kTowerKinds] = {"", fwui::icons::flame, fwui:
                                                    fwui::icons::water, fwui::icons::wind};
 constexpr const char* kNames[game::kTowerKinds] = {"", "FLAME", "MORTAR", "WATER", "WIND"};
 
-// Its panels stand beside each other from these on, of dp(1).
+// Minimum size, in dp(1), at which the panels fit side by side.
 constexpr float kLayoutWidth = 920, kLayoutHeight = 290;
 
 std::string text(const char* format, ...) __attribute__((format(printf, 1, 2)));
@@ -51,7 +51,7 @@ glm::vec3 onGround(village::Vec2 p, float above) {
     return {p.x, village::groundHeight(p) + above, p.y};
 }
 
-// One frame's drawing and answering.
+// Draws one frame and collects its requests.
 struct Board {
     ImDrawList* list;
     const Lens& lens;
@@ -60,10 +60,10 @@ struct Board {
     const FireNumbers& fires;
     Player& player;
     const game::State& state = siege.state();
-    Wishes wishes{};
-    bool overPanel = false;  // the mouse is on one of them
+    HudRequests requests{};
+    bool overPanel = false;  // the mouse is over a panel
 
-    void panel(const Rect& r, ImU32 fill = kTimber, ImU32 rim = kBrass) {
+    void drawPanel(const Rect& r, ImU32 fill = kTimber, ImU32 rim = kBrass) {
         fwui::drawBox(list, r.low(), r.high(), fill, 7, rim);
         overPanel |= r.holds(ImGui::GetIO().MousePos);
     }
@@ -71,10 +71,10 @@ struct Board {
         ImGui::SetCursorScreenPos(r.low());
         return ImGui::InvisibleButton(name, {r.width(), r.height()});
     }
-    void put(ImFont* font, float x, float y, ImU32 color, const std::string& words) {
+    void drawText(ImFont* font, float x, float y, ImU32 color, const std::string& words) {
         fwui::drawText(list, font, x, y, color, words.c_str());
     }
-    void bar(float x0, float x1, float y, float thick, float share, ImU32 color) {
+    void drawBar(float x0, float x1, float y, float thick, float share, ImU32 color) {
         list->AddRectFilled({x0 - dp(1), y - thick - dp(1)}, {x1 + dp(1), y + thick + dp(1)},
                             kTrack, thick);
         if (share > 0)
@@ -82,27 +82,27 @@ struct Board {
                                 {x0 + (x1 - x0) * std::min(share, 1.0f), y + thick}, color, thick);
     }
     void order(game::Order::Type type) {
-        wishes.orders.push_back({type, player.plot, player.chosen});
+        requests.orders.push_back({type, player.plot, player.chosen});
     }
 
-    void ring(village::Vec2 centre, float radius, ImU32 color, float thick, bool dashed);
-    void plots();
-    void ranges();
-    void healthBars();
-    void wave();
-    void villageBar();
-    void pip(float x, float y, size_t house);
-    void purse();
-    void cards();
-    void speeds();
-    void numbers();
-    void energy();
-    void plotMenu();
-    void message(double time);
-    void over();
+    void drawRing(village::Vec2 centre, float radius, ImU32 color, float thick, bool dashed);
+    void showPlots();
+    void drawRanges();
+    void drawHealthBars();
+    void drawWave();
+    void drawVillageBar();
+    void drawHouse(float x, float y, size_t house);
+    void drawPurse();
+    void showTowerCards();
+    void showSpeeds();
+    void drawFireNumbers();
+    void drawLedger();
+    void showPlotMenu();
+    void drawMessage(double time);
+    void drawOutcome();
 };
 
-void Board::ring(village::Vec2 centre, float radius, ImU32 color, float thick, bool dashed) {
+void Board::drawRing(village::Vec2 centre, float radius, ImU32 color, float thick, bool dashed) {
     constexpr int kPieces = 72;
     auto at = [&](int i) {
         const float a = 2 * village::kPi * float(i) / kPieces;
@@ -113,16 +113,15 @@ void Board::ring(village::Vec2 centre, float radius, ImU32 color, float thick, b
         if (!dashed || i % 3 != 2) list->AddLine(at(i), at(i + 1), color, thick);
 }
 
-// The plots that are free glow while a tower is chosen; the one under the mouse is taken by a
-// click.
-void Board::plots() {
+// Free plots glow while a tower is chosen. A click takes the one under the mouse.
+void Board::showPlots() {
     const ImVec2 mouse = ImGui::GetIO().MousePos;
     int32_t under = -1;
     if (!overPanel) {
         const glm::vec3 at = lens.ground({mouse.x, mouse.y}, 0.6f);
         for (size_t i = 0; i < game::kPlots; ++i) {
             const village::Vec2 p = metres(field.ground.plots[i]);
-            constexpr float kTaken = 2.0f;  // m about its middle
+            constexpr float kTaken = 2.0f;  // m from its centre
             if (village::length(village::Vec2{at.x - p.x, at.z - p.y}) < kTaken) under = int32_t(i);
         }
     }
@@ -130,17 +129,17 @@ void Board::plots() {
         const bool free = state.towers[i].kind == TowerKind::kNone;
         const bool lit = int32_t(i) == under || int32_t(i) == player.plot;
         if (free && (player.chosen != TowerKind::kNone || lit))
-            ring(metres(field.ground.plots[i]), 1.9f, lit ? kGold : fwui::faded(kGold, 0.55f),
-                 dp(lit ? 2.5f : 1.5f), false);
+            drawRing(metres(field.ground.plots[i]), 1.9f, lit ? kGold : fwui::faded(kGold, 0.55f),
+                     dp(lit ? 2.5f : 1.5f), false);
         else if (lit)
-            ring(metres(field.ground.plots[i]), 2.0f, kAccents[size_t(state.towers[i].kind)], dp(2),
-                 false);
+            drawRing(metres(field.ground.plots[i]), 2.0f, kAccents[size_t(state.towers[i].kind)],
+                     dp(2), false);
     }
     if (under >= 0 && player.chosen != TowerKind::kNone &&
         state.towers[size_t(under)].kind == TowerKind::kNone)
-        ring(metres(field.ground.plots[size_t(under)]),
-             0.001f * float(game::kTowers[size_t(player.chosen)].range[0]),
-             kAccents[size_t(player.chosen)], dp(1.6f), true);
+        drawRing(metres(field.ground.plots[size_t(under)]),
+                 0.001f * float(game::kTowers[size_t(player.chosen)].range[0]),
+                 kAccents[size_t(player.chosen)], dp(1.6f), true);
     if (!ImGui::IsMouseReleased(0) || overPanel || ImGui::IsAnyItemHovered() ||
         ImGui::GetIO().MouseDragMaxDistanceSqr[0] > 16)
         return;
@@ -152,18 +151,18 @@ void Board::plots() {
     }
 }
 
-void Board::ranges() {
+void Board::drawRanges() {
     if (player.plot < 0) return;
     const game::Tower& tower = state.towers[size_t(player.plot)];
     if (tower.kind == TowerKind::kNone) return;
     const game::TowerRule& rule = game::kTowers[size_t(tower.kind)];
-    ring(metres(field.ground.plots[size_t(player.plot)]),
-         0.001f * float(rule.range[size_t(tower.level)]), kAccents[size_t(tower.kind)], dp(1.8f),
-         true);
+    drawRing(metres(field.ground.plots[size_t(player.plot)]),
+             0.001f * float(rule.range[size_t(tower.level)]), kAccents[size_t(tower.kind)],
+             dp(1.8f), true);
 }
 
-// What of an enemy has not burnt, of what it may lose.
-void Board::healthBars() {
+// Shows the unburnt share of an enemy, relative to the share at which it falls.
+void Board::drawHealthBars() {
     constexpr float kHeads[game::kEnemyKinds] = {3.2f, 2.8f, 3.5f, 6.4f};
     for (size_t i = 0; i < game::kEnemySlots; ++i) {
         const game::Enemy& enemy = state.enemies[i];
@@ -173,19 +172,19 @@ void Board::healthBars() {
             lens.project(onGround(metres(game::placeOf(field.ground, enemy)), kHeads[kind]));
         const float share = 1 - float(enemy.burnt) / float(game::kEnemies[kind].falls);
         const float half = dp(game::kindOf(i) == game::EnemyKind::kWickerGiant ? 22.0f : 10.0f);
-        bar(p.x - half, p.x + half, p.y, dp(1.6f), share,
-            share > 0.6f   ? kGreen
-            : share > 0.3f ? kGold
-                           : kRed);
+        drawBar(p.x - half, p.x + half, p.y, dp(1.6f), share,
+                share > 0.6f   ? kGreen
+                : share > 0.3f ? kGold
+                               : kRed);
     }
 }
 
-void Board::wave() {
+void Board::drawWave() {
     const Rect r{dp(12), dp(10), dp(232), dp(60)};
-    panel(r);
+    drawPanel(r);
     const auto waves = int32_t(game::kWaves.size());
-    put(fonts().heading, r.x0 + dp(14), r.y0 + dp(17), kInk,
-        text("WAVE %d/%d", std::min(state.wave + 1, waves), waves));
+    drawText(fonts().heading, r.x0 + dp(14), r.y0 + dp(17), kInk,
+             text("WAVE %d/%d", std::min(state.wave + 1, waves), waves));
     const std::string next = state.marched > 0
                                  ? std::string("they come")
                                  : text("next in 0:%02d", state.untilWave / game::kTicksPerSecond);
@@ -202,25 +201,25 @@ void Board::wave() {
     }
 }
 
-void Board::villageBar() {
+void Board::drawVillageBar() {
     const float middle = lens.size.x / 2;
     const Rect r{middle - dp(140), dp(10), middle + dp(140), dp(61)};
-    panel(r);
-    put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(13), kDim, "VILLAGE");
+    drawPanel(r);
+    drawText(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(13), kDim, "VILLAGE");
     const int32_t stands = game::standing(state);
     fwui::drawTextRight(list, fonts().smallSemi, r.x1 - dp(14), r.y0 + dp(13), kInk,
                         text("%d %%   mill %d", (stands + 5) / 10, state.lives).c_str());
-    bar(r.x0 + dp(14), r.x1 - dp(14), r.y0 + dp(27), dp(3.5f), float(stands) / 1000,
-        stands > 700   ? kGreen
-        : stands > 400 ? kOrange
-                       : kRed);
-    // Each house: what is left of it; lit from within once it flashed over, and without its roof.
+    drawBar(r.x0 + dp(14), r.x1 - dp(14), r.y0 + dp(27), dp(3.5f), float(stands) / 1000,
+            stands > 700   ? kGreen
+            : stands > 400 ? kOrange
+                           : kRed);
+    // Each house: its unburnt share; lit from inside after flashover; without a roof once broken.
     const float apart = (r.width() - dp(28)) / float(game::kHouses);
     for (size_t house = 0; house < game::kHouses; ++house)
-        pip(r.x0 + dp(14) + apart * (float(house) + 0.5f), r.y0 + dp(41), house);
+        drawHouse(r.x0 + dp(14) + apart * (float(house) + 0.5f), r.y0 + dp(41), house);
 }
 
-void Board::pip(float x, float y, size_t house) {
+void Board::drawHouse(float x, float y, size_t house) {
     const int32_t burnt = state.houseBurnt[house];
     const ImU32 walls = burnt >= game::kHouseIsLost ? kUnlit : burnt > 0 ? kOrange : kGreen;
     const float half = dp(5), low = y + dp(6), eaves = y - dp(0.5f);
@@ -231,13 +230,14 @@ void Board::pip(float x, float y, size_t house) {
     if (state.flashed[house]) list->AddCircleFilled({x, y + dp(3)}, dp(2.5f), kRed);
 }
 
-void Board::purse() {
+void Board::drawPurse() {
     const Rect r{lens.size.x - dp(232), dp(10), lens.size.x - dp(12), dp(60)};
-    panel(r);
+    drawPanel(r);
     list->AddCircleFilled({r.x0 + dp(22), r.y0 + dp(17)}, dp(8), kGold);
     list->AddCircle({r.x0 + dp(22), r.y0 + dp(17)}, dp(5), hex(0xB57E20), 0, dp(1.5f));
-    put(fonts().heading, r.x0 + dp(38), r.y0 + dp(17), kInk, text("%d", state.coins));
-    put(fonts().small, r.x0 + dp(14), r.y0 + dp(37), kDim, text("score %d", game::score(state)));
+    drawText(fonts().heading, r.x0 + dp(38), r.y0 + dp(17), kInk, text("%d", state.coins));
+    drawText(fonts().small, r.x0 + dp(14), r.y0 + dp(37), kDim,
+             text("score %d", game::score(state)));
     const village::Vec2 wind = metres(state.wind);
     const float speed = village::length(wind);
     const ImVec2 c{r.x1 - dp(86), r.midY()};
@@ -249,11 +249,11 @@ void Board::purse() {
         list->AddTriangleFilled({c.x + d.x, c.y + d.y}, {c.x + n.x, c.y + n.y},
                                 {c.x - n.x, c.y - n.y}, kAccents[4]);
     }
-    put(fonts().small, r.x1 - dp(58), r.y0 + dp(16), kDim, "WIND");
-    put(fonts().semi, r.x1 - dp(58), r.y0 + dp(34), kInk, text("%.1f m/s", double(speed)));
+    drawText(fonts().small, r.x1 - dp(58), r.y0 + dp(16), kDim, "WIND");
+    drawText(fonts().semi, r.x1 - dp(58), r.y0 + dp(34), kInk, text("%.1f m/s", double(speed)));
 }
 
-void Board::cards() {
+void Board::showTowerCards() {
     constexpr float kWide = 82, kHigh = 74, kApart = 88;
     for (size_t kind = 1; kind < game::kTowerKinds; ++kind) {
         const bool chosen = player.chosen == TowerKind(kind);
@@ -261,8 +261,8 @@ void Board::cards() {
         const float x = lens.size.x / 2 + dp(kApart * (float(kind) - 3)),
                     y = lens.size.y - dp(kHigh + 10 + (chosen ? 6 : 0));
         const Rect r{x, y, x + dp(kWide), y + dp(kHigh)};
-        panel(r, chosen ? kTimberLit : kTimber, chosen ? kAccents[kind] : kBrass);
-        put(fonts().small, r.x0 + dp(7), r.y0 + dp(11), kDim, text("%d", int(kind)));
+        drawPanel(r, chosen ? kTimberLit : kTimber, chosen ? kAccents[kind] : kBrass);
+        drawText(fonts().small, r.x0 + dp(7), r.y0 + dp(11), kDim, text("%d", int(kind)));
         const bool dear = price > state.coins;
         fwui::drawIcon(list, fonts().icon34, {r.midX(), r.y0 + dp(24)},
                        dear ? fwui::faded(kAccents[kind], 0.4f) : kAccents[kind], kIcons[kind]);
@@ -273,21 +273,21 @@ void Board::cards() {
     }
 }
 
-void Board::speeds() {
+void Board::showSpeeds() {
     const float y = lens.size.y - dp(62), right = lens.size.x - dp(12);
     const Rect r{right - dp(270), y, right, y + dp(52)};
-    panel(r);
+    drawPanel(r);
     auto icon = [&](float x, const char* glyph, const char* name, bool lit) {
         const Rect b{r.x0 + dp(x), r.y0 + dp(8), r.x0 + dp(x + 36), r.y1 - dp(8)};
         fwui::drawIcon(list, fonts().icon20, {b.midX(), b.midY()}, lit ? kGold : kDim, glyph);
         return pressed(b, name);
     };
-    wishes.rewind |= icon(6, fwui::icons::history, "rewind", false);
-    wishes.pause |=
+    requests.rewind |= icon(6, fwui::icons::history, "rewind", false);
+    requests.pause |=
         icon(42, player.paused ? fwui::icons::play : fwui::icons::pause, "pause", player.paused);
-    wishes.faster |= icon(78, fwui::icons::toEnd, "faster", player.speed > 1);
-    put(fonts().semi, r.x0 + dp(114), r.midY(), player.speed > 1 ? kGold : kDim,
-        text("%dx", player.speed));
+    requests.faster |= icon(78, fwui::icons::toEnd, "faster", player.speed > 1);
+    drawText(fonts().semi, r.x0 + dp(114), r.midY(), player.speed > 1 ? kGold : kDim,
+             text("%dx", player.speed));
     const Rect call{r.x1 - dp(122), r.y0 + dp(9), r.x1 - dp(10), r.y1 - dp(9)};
     const bool may = state.marched == 0 && state.outcome == game::Outcome::kPlaying;
     fwui::drawBox(list, call.low(), call.high(), may ? hex(0x6B1A0F) : hex(0x33241A), 6,
@@ -297,33 +297,36 @@ void Board::speeds() {
     if (pressed(call, "call")) order(game::Order::Type::kCallWave);
 }
 
-void Board::numbers() {
+void Board::drawFireNumbers() {
     const float y = lens.size.y - dp(86);
     const Rect r{dp(12), y, dp(202), y + dp(76)};
-    panel(r);
+    drawPanel(r);
     fwui::drawIcon(list, fonts().icon17, {r.x0 + dp(18), r.y0 + dp(16)}, kOrange,
                    fwui::icons::flame);
-    put(fonts().smallSemi, r.x0 + dp(32), r.y0 + dp(16), kInk,
-        text("%u burn, %u caught", fires.burning, fires.caught));
-    put(fonts().small, r.x0 + dp(14), r.y0 + dp(37), kDim,
+    drawText(fonts().smallSemi, r.x0 + dp(32), r.y0 + dp(16), kInk,
+             text("%u burn, %u caught", fires.burning, fires.caught));
+    drawText(
+        fonts().small, r.x0 + dp(14), r.y0 + dp(37), kDim,
         text("%.1f MW over %.0f m\xc2\xb2", double(fires.megawatts), double(fires.squareMetres)));
-    put(fonts().small, r.x0 + dp(14), r.y0 + dp(57), kDim,
-        text("%d felled, %d s", state.felled, state.tick / game::kTicksPerSecond));
+    drawText(fonts().small, r.x0 + dp(14), r.y0 + dp(57), kDim,
+             text("%d felled, %d s", state.felled, state.tick / game::kTicksPerSecond));
 }
 
-// Where every joule of the fuel is. The sum is taken here, of what is shown.
-void Board::energy() {
-    if (!player.books) return;
-    const FwEnergyBook& book = fires.book;
-    const bool any = book.objects > 0;
+// Shows where the fuel's energy went. The sum is computed from the displayed values.
+void Board::drawLedger() {
+    if (!player.showsLedger) return;
+    const FwEnergyBook& ledger = fires.ledger;
+    const bool any = ledger.objects > 0;
     const Rect r{dp(12), dp(70), dp(262), any ? dp(204) : dp(128)};
-    panel(r);
-    put(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
+    drawPanel(r);
+    drawText(fonts().smallSemi, r.x0 + dp(14), r.y0 + dp(15), kInk, "ENERGY");
     if (!any) {
-        put(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim, "no thing here keeps a book");
+        drawText(fonts().small, r.x0 + dp(14), r.y0 + dp(38), kDim,
+                 "no object has an energy ledger");
         return;
     }
-    const auto apart = int64_t(book.fuel) - int64_t(book.unburnt + book.radiated + book.convected);
+    const auto apart =
+        int64_t(ledger.fuel) - int64_t(ledger.unburnt + ledger.radiated + ledger.convected);
     fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), r.y0 + dp(15),
                         apart == 0 ? kGreen : kRed,
                         text("closes to %.6g J", std::ldexp(double(apart), -20)).c_str());
@@ -331,23 +334,24 @@ void Board::energy() {
         const char* name;
         uint64_t units;
         ImU32 color;
-    } rows[] = {{"in fuel", book.unburnt, kGreen},
-                {"radiated", book.radiated, kOrange},
-                {"in hot gas", book.convected, kRed}};
+    } rows[] = {{"in fuel", ledger.unburnt, kGreen},
+                {"radiated", ledger.radiated, kOrange},
+                {"in hot gas", ledger.convected, kRed}};
     float y = r.y0 + dp(38);
     for (const auto& row : rows) {
-        put(fonts().small, r.x0 + dp(14), y, kDim, row.name);
+        drawText(fonts().small, r.x0 + dp(14), y, kDim, row.name);
         fwui::drawTextRight(list, fonts().small, r.x1 - dp(14), y, kInk,
                             text("%.3f MJ", 1e-6 * std::ldexp(double(row.units), -20)).c_str());
-        const double share = book.fuel ? double(row.units) / double(book.fuel) : 0;
-        bar(r.x0 + dp(14), r.x1 - dp(14), y + dp(12), dp(2), float(share), row.color);
+        const double share = ledger.fuel ? double(row.units) / double(ledger.fuel) : 0;
+        drawBar(r.x0 + dp(14), r.x1 - dp(14), y + dp(12), dp(2), float(share), row.color);
         y += dp(26);
     }
-    put(fonts().small, r.x0 + dp(14), y, kDim, text("%u things keep a book", book.objects));
+    drawText(fonts().small, r.x0 + dp(14), y, kDim,
+             text("%u objects have an energy ledger", ledger.objects));
 }
 
-// Beside the selected tower: what it is, and what to do with it.
-void Board::plotMenu() {
+// Describes the selected tower and offers its actions.
+void Board::showPlotMenu() {
     if (player.plot < 0) return;
     const game::Tower& tower = state.towers[size_t(player.plot)];
     if (tower.kind == TowerKind::kNone) return;
@@ -356,9 +360,9 @@ void Board::plotMenu() {
     const float x = std::clamp(p.x - dp(86), dp(12), lens.size.x - dp(184));
     const float y = std::clamp(p.y - dp(90), dp(70), lens.size.y - dp(190));
     const Rect r{x, y, x + dp(172), y + dp(78)};
-    panel(r, kTimber, kAccents[size_t(tower.kind)]);
-    put(fonts().smallSemi, r.x0 + dp(12), r.y0 + dp(15), kInk,
-        text("%s  %d", kNames[size_t(tower.kind)], tower.level + 1));
+    drawPanel(r, kTimber, kAccents[size_t(tower.kind)]);
+    drawText(fonts().smallSemi, r.x0 + dp(12), r.y0 + dp(15), kInk,
+             text("%s  %d", kNames[size_t(tower.kind)], tower.level + 1));
     for (int32_t i = 0; i < game::kLevels; ++i)
         list->AddCircleFilled(
             {r.x1 - dp(16) - dp(13) * float(game::kLevels - 1 - i), r.y0 + dp(15)}, dp(4),
@@ -380,22 +384,22 @@ void Board::plotMenu() {
         order(game::Order::Type::kSell);
 }
 
-void Board::message(double time) {
+void Board::drawMessage(double time) {
     constexpr double kFor = 3;  // s
     if (!player.paused && time - player.saidAt >= kFor) return;
     ImFont* font = player.paused ? fonts().title : fonts().heading;
     const char* words = player.paused ? "paused" : player.said.c_str();
     const ImVec2 half{fwui::textSize(font, words).x / 2 + dp(18), dp(player.paused ? 26 : 18)};
     const ImVec2 at{lens.size.x / 2, dp(player.paused ? 96 : 80)};
-    panel({at.x - half.x, at.y - half.y, at.x + half.x, at.y + half.y});
+    drawPanel({at.x - half.x, at.y - half.y, at.x + half.x, at.y + half.y});
     fwui::drawTextCentred(list, font, at.x, at.y, kInk, words);
 }
 
-void Board::over() {
+void Board::drawOutcome() {
     if (state.outcome == game::Outcome::kPlaying) return;
     const ImVec2 c{lens.size.x / 2, lens.size.y / 2};
     const Rect r{c.x - dp(190), c.y - dp(70), c.x + dp(190), c.y + dp(70)};
-    panel(r);
+    drawPanel(r);
     const bool won = state.outcome == game::Outcome::kWon;
     fwui::drawTextCentred(list, fonts().title, c.x, c.y - dp(32), won ? kGold : kRed,
                           won ? "The village stands" : "The mill is lost");
@@ -407,19 +411,19 @@ void Board::over() {
                               .c_str());
 }
 
-void keys(const std::vector<int>& pressed, Board& board) {
+void handleKeys(const std::vector<int>& pressed, Board& board) {
     Player& player = board.player;
     for (const int key : pressed) {
         if (key >= '1' && key < '1' + int(game::kTowerKinds) - 1) {
             const auto kind = TowerKind(key - '0');
             player.chosen = player.chosen == kind ? TowerKind::kNone : kind;
         }
-        board.wishes.pause ^= key == ' ';
-        board.wishes.faster ^= key == 'F';
-        board.wishes.rewind |= key == 'R';
-        board.wishes.light ^= key == 'N';
-        player.books ^= key == 'E';
-        constexpr int kEnter = 257;  // as GLFW numbers it
+        board.requests.pause ^= key == ' ';
+        board.requests.faster ^= key == 'F';
+        board.requests.rewind |= key == 'R';
+        board.requests.light ^= key == 'N';
+        player.showsLedger ^= key == 'E';
+        constexpr int kEnter = 257;  // GLFW's code
         if (key == kEnter) board.order(game::Order::Type::kCallWave);
         if (key == 'U' && player.plot >= 0) board.order(game::Order::Type::kUpgrade);
         if (key == 'X' && player.plot >= 0) board.order(game::Order::Type::kSell);
@@ -433,7 +437,7 @@ Hud::Hud(const sample::VulkanHost& host, sample::Stage& stage) : stage_(stage) {
     ImGui::GetIO().IniFilename = nullptr;
     renderer_ =
         std::make_unique<fwui::UiRenderer>(host, stage.outputPass(), stage.made.framesInFlight);
-    fwui::theme().scale = 0;  // of no window yet
+    fwui::theme().scale = 0;  // no scale yet
     stage.overlay = [this](VkCommandBuffer commands) {
         if (shown_) renderer_->drawOver(commands, slot_, *ImGui::GetDrawData());
     };
@@ -445,8 +449,8 @@ Hud::~Hud() {
     ImGui::DestroyContext();
 }
 
-// As wide as the window allows: laid out for 1280 pixels, legible down to some 700. In smaller ones
-// it shrinks as it must for its panels to stand beside each other.
+// Scales with the window: designed for 1280 pixels, legible down to about 700. Smaller windows
+// shrink it until the panels fit side by side.
 void Hud::fit(VkExtent2D extent) {
     const float wide = float(extent.width), high = float(extent.height);
     const float scale =
@@ -467,14 +471,14 @@ void Hud::takeInput(const sample::StageFrame& frame) {
     io.MouseDown[0] = frame.input.held;
 }
 
-Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
-                 const Siege& siege, const FireNumbers& fires, Player& player) {
+HudRequests Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
+                      const Siege& siege, const FireNumbers& fires, Player& player) {
     slot_ = frame.slot;
     shown_ = frame.extent.width >= kLeastWidth && frame.extent.height >= kLeastHeight;
     if (!shown_) {
         Board blind{nullptr, lens, field, siege, fires, player};
-        keys(frame.input.keys, blind);
-        return std::move(blind.wishes);
+        handleKeys(frame.input.keys, blind);
+        return std::move(blind.requests);
     }
     fit(frame.extent);
     takeInput(frame);
@@ -486,23 +490,23 @@ Wishes Hud::show(const sample::StageFrame& frame, const Lens& lens, const Battle
                      ImGuiWindowFlags_NoMove | ImGuiWindowFlags_NoSavedSettings |
                      ImGuiWindowFlags_NoNav);
     Board board{ImGui::GetWindowDrawList(), lens, field, siege, fires, player};
-    keys(frame.input.keys, board);
-    board.ranges();
-    board.healthBars();
-    board.wave();
-    board.villageBar();
-    board.purse();
-    board.numbers();
-    board.energy();
-    board.cards();
-    board.speeds();
-    board.plotMenu();
-    board.plots();
-    board.message(frame.time);
-    board.over();
+    handleKeys(frame.input.keys, board);
+    board.drawRanges();
+    board.drawHealthBars();
+    board.drawWave();
+    board.drawVillageBar();
+    board.drawPurse();
+    board.drawFireNumbers();
+    board.drawLedger();
+    board.showTowerCards();
+    board.showSpeeds();
+    board.showPlotMenu();
+    board.showPlots();
+    board.drawMessage(frame.time);
+    board.drawOutcome();
     ImGui::End();
     ImGui::Render();
-    return std::move(board.wishes);
+    return std::move(board.requests);
 }
 
 }  // namespace tower

@@ -1,5 +1,5 @@
-// What the player sees over the picture and clicks on: by Dear ImGui, with the editor's fonts.
-// Draws and answers; changes nothing of the game itself.
+// The head-up display: Dear ImGui with the editor's fonts. Returns the player's requests and never
+// changes the game.
 #pragma once
 
 #include <memory>
@@ -13,26 +13,26 @@
 
 namespace tower {
 
-// How the player stands to the game.
+// The player's view state.
 struct Player {
-    game::TowerKind chosen = game::TowerKind::kNone;  // to be placed with the next click
+    game::TowerKind chosen = game::TowerKind::kNone;  // tower for the next click
     int32_t plot = -1;                                // selected
     int32_t speed = 1;                                // 1, 2, 4
     bool paused = false;
-    bool books = false;    // the book of energy is open
-    std::string said;      // the last thing the game told him
-    double saidAt = -100;  // s of the stage's clock
+    bool showsLedger = false;  // the energy ledger is open
+    std::string said;          // the last message
+    double saidAt = -100;      // s of the stage's clock
 };
 
-// The fires in numbers.
+// Summary of all fires.
 struct FireNumbers {
-    uint32_t burning = 0, caught = 0;  // things
+    uint32_t burning = 0, caught = 0;  // objects
     float megawatts = 0, squareMetres = 0;
-    FwEnergyBook book{};  // of the whole world
+    FwEnergyBook ledger{};  // of the whole world
 };
 
-// What was pressed or clicked in this frame.
-struct Wishes {
+// Requests of the player in this frame.
+struct HudRequests {
     std::vector<game::Order> orders;
     bool pause = false, faster = false, rewind = false, light = false;
 };
@@ -44,12 +44,12 @@ class Hud {
     Hud(const Hud&) = delete;
     Hud& operator=(const Hud&) = delete;
 
-    // Pixels. A smaller window shows the game alone, which keys still play.
+    // Pixels. A smaller window hides the HUD; keys still work.
     static constexpr uint32_t kLeastWidth = 400, kLeastHeight = 150;
 
-    // Lays out the frame, which the stage's overlay then draws.
-    Wishes show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
-                const Siege& siege, const FireNumbers& fires, Player& player);
+    // Lays out the frame. The stage's overlay draws it.
+    HudRequests show(const sample::StageFrame& frame, const Lens& lens, const Battlefield& field,
+                     const Siege& siege, const FireNumbers& fires, Player& player);
 
  private:
     void fit(VkExtent2D extent);

@@ -1,5 +1,5 @@
-// The time of day as the host lights it. Linear Rec.709; a sun's value is radiance x pi/2 into a
-// Lambert/pi surface, ambient is a hemisphere about up.
+// The host's lighting by time of day. Linear Rec.709. A sun's value is radiance x pi/2 into a
+// Lambert/pi surface; ambient is a hemisphere around up.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -9,7 +9,7 @@ namespace tower {
 
 struct PointLight {
     glm::vec3 place;     // m
-    float reach = 8;     // m, dark beyond
+    float reach = 8;     // m, zero light beyond
     glm::vec3 color;     // linear, per unit distance
     float size = 0.75f;  // m, radius of the source
 };
@@ -18,8 +18,8 @@ struct Daylight {
     glm::vec3 toSun;  // unit
     glm::vec3 sun, sky, ground, haze;
     float exposure;
-    float windows;   // how brightly they are lit
-    float emission;  // of fire against the scene's light
+    float windows;   // brightness of lit windows
+    float emission;  // fire relative to the scene's light
 };
 
 inline Daylight mix(const Daylight& a, const Daylight& b, float t) {

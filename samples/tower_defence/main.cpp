@@ -1,5 +1,5 @@
-// The tower-defence game: straw and wood march on the mill, and fire is the weapon and the danger.
-// The main program: options, and the order of a frame. The rules are game/game.h.
+// The tower-defence game: straw and wood march on the mill, and fire is both weapon and danger. The
+// main program: options and the order of a frame. The rules are in game/game.h.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,7 +47,7 @@ tower::Ground groundOf(const std::string& name) {
     throw sample::Failure("--ground is \"" + name + "\"; it takes bump or parallax");
 }
 
-// The day goes on from wave to wave, by and by, unless the player or an option holds it.
+// The time of day advances from wave to wave, unless the player or an option fixes it.
 class Day {
  public:
     explicit Day(const std::string& name) : held_(name != "waves") {
@@ -95,7 +95,7 @@ FwView fireView(const sample::Camera& camera, const tower::Daylight& light,
     return view;
 }
 
-// Lamps and braziers light their surroundings once it is dark.
+// Lamps and braziers light their surroundings after dark.
 std::vector<tower::PointLight> lampLights(const village::Scene& scene) {
     std::vector<tower::PointLight> lamps;
     for (const village::Instance& instance : scene.instances) {
@@ -115,7 +115,7 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
                                             const std::vector<tower::PointLight>& lamps,
                                             const tower::Daylight& light) {
     constexpr size_t kMost = 10;
-    // By eye, as a photographer would: at night the eye has opened.
+    // Exposure by eye: at night the camera is more sensitive.
     const bool dark = light.windows > 1;
     constexpr float kJetIntensity = 7.0f;
     const float firePerWatt = dark ? 4.5e-5f : 2e-5f;
@@ -131,12 +131,12 @@ std::vector<tower::PointLight> gatherLights(tower::FireVillage& fires, const tow
     return all;
 }
 
-// `book`: with the book of energy, which looks at every object.
-tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world, bool book) {
+// `ledger`: also query the energy ledger, which visits every object.
+tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world, bool ledger) {
     tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0, {}};
-    numbers.book.structSize = sizeof numbers.book;
-    if (book)
-        tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.book),
+    numbers.ledger.structSize = sizeof numbers.ledger;
+    if (ledger)
+        tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.ledger),
                          "fwWorld_GetEnergyBook");
     for (const tower::Thing& thing : fires.things) {
         numbers.megawatts += 1e-6f * thing.state.power;
@@ -145,18 +145,18 @@ tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world, b
     return numbers;
 }
 
-// What the player hears of it, in words.
-const char* wordsFor(const game::Happening& happening) {
-    switch (happening.type) {
-        case game::Happening::Type::kGotThrough:
+// Returns the message of an event for the player.
+const char* messageFor(const game::Event& event) {
+    switch (event.type) {
+        case game::Event::Type::kGotThrough:
             return "One has come to the mill!";
-        case game::Happening::Type::kFlashesOver:
+        case game::Event::Type::kFlashesOver:
             return "A house flashes over!";
-        case game::Happening::Type::kHouseLost:
+        case game::Event::Type::kHouseLost:
             return "A house is lost";
-        case game::Happening::Type::kWaveBegins:
+        case game::Event::Type::kWaveBegins:
             return "They come";
-        case game::Happening::Type::kWaveOver:
+        case game::Event::Type::kWaveOver:
             return "The wave is over";
         default:
             return nullptr;
@@ -168,7 +168,7 @@ const char* nameOf(game::Order::Type type) {
     return kNames[size_t(type)];
 }
 
-// Where the plots are in the window, for a hand from outside.
+// Prints the pixel positions of the plots, for a script that drives the window.
 void reportPlots(const tower::Lens& lens, const tower::Battlefield& field,
                  const std::function<void(const std::string&)>& report) {
     for (size_t plot = 0; plot < game::kPlots; ++plot) {
@@ -181,12 +181,12 @@ void reportPlots(const tower::Lens& lens, const tower::Battlefield& field,
            std::to_string(std::lround(lens.size.y)));
 }
 
-// Turns seconds into whole ticks.
+// Converts seconds into whole ticks.
 class Clock {
  public:
     int32_t ticksIn(float deltaTime, const tower::Player& player) {
         if (player.paused) return 0;
-        constexpr int32_t kMost = 8;  // in a frame: the world drops what is beyond
+        constexpr int32_t kMost = 8;  // per frame; the world drops the excess
         due_ += deltaTime * float(player.speed) / tower::kTickSeconds;
         const int32_t ticks = std::min(int32_t(due_), kMost);
         due_ = std::min(due_ - float(ticks), 1.0f);
@@ -199,18 +199,18 @@ class Clock {
 
 int play(const sample::Options& options, const Choices& choices) {
     Day day(choices.light);
-    constexpr double kStory = 10;  // s
+    constexpr double kFilmSeconds = 10;  // s
     std::optional<tower::Recorder> recorder;
     std::optional<tower::Recording> played;
     if (!choices.record.empty()) recorder.emplace(choices.record, options.seed);
     if (!choices.play.empty()) played.emplace(choices.play, options.seed);
     if (choices.soak > 0 && std::fmod(double(game::kTicksPerSecond), options.fps) != 0)
-        throw sample::Failure("--soak wants frames of whole ticks: --fps 4, 8, 16 or 32");
+        throw sample::Failure("--soak needs frames of whole ticks: --fps 4, 8, 16 or 32");
     const auto soakFrames =
         uint32_t(double(choices.soak) * 60 * options.fps / tower::Soak::kRounds);
     const uint32_t frames = played           ? played->frames()
                             : soakFrames > 0 ? tower::Soak::framesOf(soakFrames)
-                                             : sample::framesOf(options, kStory);
+                                             : sample::framesOf(options, kFilmSeconds);
     const bool byHand = !options.headless || played;
     sample::Progress startUp("painting the village", 2);
     const tower::Battlefield field = tower::makeBattlefield(options.seed);
@@ -238,7 +238,7 @@ int play(const sample::Options& options, const Choices& choices) {
         tower::Rewind rewind(fire.world, siege);
         tower::Hud hud(host, stage);
         tower::Player player;
-        player.books = choices.energy;
+        player.showsLedger = choices.energy;
         const std::vector<tower::PointLight> lamps = lampLights(field.scene);
         startUp.update(2);
         startUp.finish();
@@ -249,7 +249,7 @@ int play(const sample::Options& options, const Choices& choices) {
                 "Space: pause; F: fast-forward; R: ten seconds back; Enter: call the wave\n"
                 "drag or arrow keys: pan; wheel: zoom; N: the time of day; E: energy; Escape: "
                 "leave\n");
-        // For who drives the window from outside: what was done, a line each.
+        // Prints each action, for a script that drives the window.
         auto report = [&](const std::string& what) {
             if (!choices.report) return;
             std::printf("did: %s\n", what.c_str());
@@ -265,9 +265,9 @@ int play(const sample::Options& options, const Choices& choices) {
             soak.emplace(fire.context, fire.world, siege, soakFrames);
             stage.onPicture = {};
         }
-        if (played)  // of a film the moments alone
+        if (played)  // a replay films only marked frames
             stage.onPicture = [&](uint32_t number, sample::Picture&& picture) {
-                if (played->isMoment(number))
+                if (played->isMarked(number))
                     sample::writePng(options.out / (std::to_string(number) + ".png"), picture);
             };
 
@@ -276,9 +276,10 @@ int play(const sample::Options& options, const Choices& choices) {
         VkExtent2D extent{};
         const clock_t began = std::clock();
         sample::StageFrame frame;
-        double time = 0;                 // s, that nothing moves in while it is paused
-        constexpr uint32_t kStands = 5;  // frames until a window shows what it will
-        uint32_t paused = 0;             // frames
+        double time = 0;  // s, stops during a pause
+        constexpr uint32_t kFramesUntilStill =
+            5;                // frames until the window shows the paused picture
+        uint32_t paused = 0;  // frames
         while (stage.next(frame)) {
             if (soak) soak->beginFrame();
             if (played) played->put(frame);
@@ -299,43 +300,44 @@ int play(const sample::Options& options, const Choices& choices) {
                 reportPlots(lens, field, report);
             }
 
-            // The player, by hand or by plan.
-            tower::Wishes wishes = hud.show(frame, lens, field, siege,
-                                            countFires(fires, fire.world, player.books), player);
+            // Requests come from the HUD and the bot.
+            tower::HudRequests requests =
+                hud.show(frame, lens, field, siege,
+                         countFires(fires, fire.world, player.showsLedger), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
                 player.saidAt = frame.time;
             };
-            if (bot) wishes.orders.push_back(game::botsOrder(siege.state()));
-            for (const game::Order& order : wishes.orders) {
+            if (bot) requests.orders.push_back(game::botsOrder(siege.state()));
+            for (const game::Order& order : requests.orders) {
                 if (order.type == game::Order::Type::kNone) continue;
                 const char* refused = siege.give(order);
                 if (refused) say(refused);
                 report(std::string(nameOf(order.type)) + " " + std::to_string(order.plot) +
                        (refused ? std::string(": ") + refused : ""));
             }
-            if (wishes.pause) {
-                if (player.paused && recorder) recorder->moment();
+            if (requests.pause) {
+                if (player.paused && recorder) recorder->markPicture();
                 player.paused = !player.paused;
                 report(player.paused ? "pause" : "go on");
             }
             paused = player.paused ? paused + 1 : 0;
-            if (paused == kStands) report("stands still");
-            if (wishes.faster) {
+            if (paused == kFramesUntilStill) report("stands still");
+            if (requests.faster) {
                 player.speed = player.speed == 4 ? 1 : player.speed * 2;
                 report("speed " + std::to_string(player.speed));
             }
-            if (wishes.light) day.next();
-            if (wishes.rewind) {
+            if (requests.light) day.next();
+            if (requests.rewind) {
                 const int32_t from = siege.state().tick;
                 if (rewind.goBack()) {
                     say("Time went back");
                     char line[160];
                     std::snprintf(
                         line, sizeof line,
-                        "rewind %d ticks in %.0f ms, %zu moments of %zu KB, saved in %.1f ms",
-                        from - siege.state().tick, 1e3 * rewind.loadSeconds, rewind.moments(),
-                        rewind.bytes() / 1024 / rewind.moments(), 1e3 * rewind.fetchSeconds);
+                        "rewind %d ticks in %.0f ms, %zu snapshots of %zu KB, saved in %.1f ms",
+                        from - siege.state().tick, 1e3 * rewind.loadSeconds, rewind.snapshotCount(),
+                        rewind.bytes() / 1024 / rewind.snapshotCount(), 1e3 * rewind.fetchSeconds);
                     report(line);
                 } else {
                     say("There is nothing to go back to yet");
@@ -343,15 +345,15 @@ int play(const sample::Options& options, const Choices& choices) {
                 }
             }
 
-            // The game, then the world's step of as long, then the picture.
+            // Advance the game, then the world by the same time, then draw.
             const int32_t ticks = clock.ticksIn(frame.deltaTime, player);
             const int32_t second = siege.state().tick / game::kTicksPerSecond;
             siege.advance(ticks);
             if (siege.state().tick / game::kTicksPerSecond != second)
                 report("second " + std::to_string(second + 1));
-            for (const game::Happening& happening : siege.happened())
-                if (const char* words = wordsFor(happening)) say(words);
-            if (siege.housesBroke() > 0) say("A roof comes down");
+            for (const game::Event& event : siege.events())
+                if (const char* words = messageFor(event)) say(words);
+            if (siege.brokenHouses() > 0) say("A roof comes down");
             if (byHand && ticks > 0) rewind.remember();
             if (soak) soak->afterAdvance();
             day.follow(siege.state().wave, frame.deltaTime);
@@ -379,13 +381,13 @@ int play(const sample::Options& options, const Choices& choices) {
             sample::Summary summary;
             summary.title = "The village under attack (" + choices.light + ")";
             char perFrame[64];
-            std::snprintf(perFrame, sizeof perFrame, "%.0f ms a frame, pictures included",
+            std::snprintf(perFrame, sizeof perFrame, "%.0f ms per frame, pictures included",
                           1000 * filming.seconds() / frames);
             summary.rows = {
                 {"device", host.properties.deviceName},
                 {"size", std::to_string(options.width) + " x " + std::to_string(options.height) +
                              ", " + std::to_string(frames) + " frames"},
-                {"fire", std::to_string(fires.caught()) + " things caught, " +
+                {"fire", std::to_string(fires.caught()) + " objects ignited, " +
                              std::to_string(fires.burning()) + " still burn"},
                 {"game", "wave " + std::to_string(state.wave + 1) + ", " +
                              std::to_string(state.felled) + " enemies felled, score " +
@@ -394,7 +396,7 @@ int play(const sample::Options& options, const Choices& choices) {
                 {"time", perFrame},
                 {"processor",
                  std::to_string(int(1e3 * double(std::clock() - began) / CLOCKS_PER_SEC / frames)) +
-                     " ms a frame, of all threads"}};
+                     " ms per frame, all threads"}};
             filming.finish(summary, fire);
         }
     }
@@ -418,36 +420,35 @@ int main(int argc, char** argv) {
         sample::Options options;
         options.width = 1280;
         options.height = 720;
-        options.fps = 0;  // not said
+        options.fps = 0;  // unset
         Choices choices;
-        sample::OptionParser parser("tower_defence", "a village under attack, and on fire: a game");
-        parser.addText("--light", "NAME", "golden, noon, night, or waves: as they go by",
+        sample::OptionParser parser("tower_defence", "a game: a village under attack, on fire");
+        parser.addText("--light", "NAME", "golden, noon or night; waves: changes with the waves",
                        choices.light);
-        parser.addText("--ground", "NAME", "bump or parallax: how stones and grass stand out",
+        parser.addText("--ground", "NAME", "bump or parallax: relief of stones and grass",
                        choices.ground);
-        parser.addNumber("--pace", "how much faster than real thatch it burns",
+        parser.addNumber("--pace", "how many times faster than real thatch it burns",
                          choices.scripted.pace, 0.1f, 1000.0f);
         parser.addFlag("--bot",
                        "a scripted player plays; with --headless: the game alone, no "
                        "pictures, one line of result",
                        choices.bot);
         parser.addText("--backend", "NAME", "vulkan or cpu, of --bot --headless", choices.backend);
-        parser.addNumber("--waves", "of --bot --headless: ends after so many; 0: all",
-                         choices.waves, 0.0f, float(game::kWaves.size()));
-        parser.addFlag("--rewind", "of --bot --headless: goes ten seconds back once, and plays on",
+        parser.addNumber("--waves", "of --bot --headless: number of waves; 0: all", choices.waves,
+                         0.0f, float(game::kWaves.size()));
+        parser.addFlag("--rewind", "of --bot --headless: rewinds ten seconds once",
                        choices.scripted.rewind);
-        parser.addFlag("--report", "says what was done, a line each", choices.report);
-        parser.addFlag("--energy", "shows where every joule of the fuel is", choices.energy);
-        parser.addText("--record", "FILE", "keeps what is done in the window", choices.record);
+        parser.addFlag("--report", "prints each action", choices.report);
+        parser.addFlag("--energy", "shows the energy ledger", choices.energy);
+        parser.addText("--record", "FILE", "records the input of the window", choices.record);
         parser.addText("--play", "FILE",
-                       "with --headless: what was done in a window, again; a picture of the end of "
+                       "with --headless: replays recorded input; a picture at the end of "
                        "each pause, by its frame's number",
                        choices.play);
-        parser.addNumber(
-            "--soak",
-            "with --headless: minutes of a game in ten rounds of the same, and whether "
-            "the last costs what the first did",
-            choices.soak, 0.0f, 600.0f);
+        parser.addNumber("--soak",
+                         "with --headless: ten equal rounds of a game; compares the cost of the "
+                         "last with the first",
+                         choices.soak, 0.0f, 600.0f);
         parser.addFlag("--msaa", "four samples a pixel", choices.antialias);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.fps == 0)

@@ -1,4 +1,4 @@
-// Rasterises every chart, paints each texel, then derives slopes from the painted heights.
+// Rasterises each chart, paints each texel, then derives slopes from the painted heights.
 #include "paint.h"
 
 #include <algorithm>
@@ -21,11 +21,11 @@ float cross(Vec2 a, Vec2 b) { return a.x * b.y - a.y * b.x; }
 
 uint8_t toByte(float x) { return uint8_t(village::clamp01(x) * 255 + 0.5f); }
 
-// A square root spends the eight bits nearly as sRGB does and is decoded by one multiplication.
+// A square root distributes the eight bits nearly as sRGB does, and one multiplication decodes it.
 uint8_t toRoot(float x) { return toByte(std::sqrt(village::clamp01(x))); }
 
-// Which triangle owns a texel; texels beside a chart belong to it, too, so that filtering finds
-// its colours there.
+// Maps a texel to its triangle. Texels beside a chart belong to it too, so that filtering finds its
+// colours there.
 class Owners {
  public:
     Owners(uint32_t width, uint32_t height) : width_(int(width)), height_(int(height)) {
@@ -69,7 +69,7 @@ class Owners {
     std::vector<int> owner_;
 };
 
-// Slopes from the heights of owned neighbours; a texel without one on both sides is level.
+// Computes slopes from the heights of owned neighbours. A texel without one on each side is level.
 void addRelief(Painting& p, const std::vector<float>& heights, const Owners& owners,
                Vec2 texelMetres) {
     const int w = int(p.width), h = int(p.height);
@@ -111,7 +111,7 @@ void setTexel(Painting& p, size_t texel, const Surface& s, float colorAlpha, flo
     relief[3] = toByte(reliefAlpha);
 }
 
-// Gives the space between charts the picture's mean colour, for the smaller mips reach into it.
+// Fills the space between charts with the mean colour, because small mips read it.
 void fillGaps(Painting& p, const Owners& owners) {
     uint64_t sum[3] = {0, 0, 0}, count = 0;
     auto each = [&](bool owned, auto&& body) {
@@ -130,19 +130,20 @@ void fillGaps(Painting& p, const Owners& owners) {
 }
 
 uint32_t paintingSide(const Model& model) {
-    constexpr float kTexelsPerMetre = 34;  // a little above a pixel at the game's distance
+    constexpr float kTexelsPerMetre = 34;  // slightly more than one texel per pixel at the game's
+                                           // distance
     const float side = model.atlasSide * kTexelsPerMetre;
     return uint32_t(std::clamp(int(std::ceil(side / 32)) * 32, 64, 640));
 }
 
-// Leaves are darker inside the crown and below.
+// Leaves inside and below the crown are darker.
 float crownShade(const village::Vertex& v) {
     return v.material == Material::kLeaf && v.texture == Texture::kLeaf
                ? 0.80f + 0.35f * village::clamp01(v.normal.y + 0.2f)
                : 1.0f;
 }
 
-// A piece of ground that is a model of its own: painted by its place in the world.
+// A piece of ground that is a separate model, painted by its world position.
 Surface bankSurface(const Model& model, int triangle, Vec2 uv) {
     const uint32_t* i = &model.indices[size_t(triangle) * 3];
     const Vec2 a = model.vertices[i[0]].uv;
@@ -193,7 +194,7 @@ Painting paintModel(const Model& model) {
 RayTree modelTree(const Model& model) {
     std::vector<Vec3> corners;
     for (uint32_t i : model.indices) corners.push_back(model.vertices[i].position);
-    // The ground it stands on.
+    // The ground below the model.
     const float r = 40;
     for (Vec3 p : {Vec3{-r, 0, -r}, Vec3{-r, 0, r}, Vec3{r, 0, r}, Vec3{-r, 0, -r}, Vec3{r, 0, r},
                    Vec3{r, 0, -r}})
@@ -224,9 +225,9 @@ std::vector<float> vertexSky(const Model& model) {
     return open;
 }
 
-// ---- ground and road: one chart each, painted by place ---------------------------------------
+// ---- ground and road: one chart each, painted by world position ------------------------------
 
-// What stands still, as triangles in the world.
+// Returns the static instances as triangles in world space.
 RayTree sceneTree(const village::Scene& scene) {
     std::vector<Vec3> corners;
     for (const village::Instance& instance : scene.instances) {
@@ -239,7 +240,7 @@ RayTree sceneTree(const village::Scene& scene) {
     return RayTree(std::move(corners));
 }
 
-// Open sky over the play area on a coarse grid.
+// Open sky over the play area, on a coarse grid.
 class SkyGrid {
  public:
     explicit SkyGrid(const village::Scene& scene) : open_(size_t(kWide) * kDeep) {
@@ -281,7 +282,7 @@ void chartBounds(const Model& model, Vec2* low, Vec2* high) {
 struct PlacedChart {
     Painting painting;
     Owners owners;
-    std::vector<Vec3> corners;  // per triangle: place in picture texels (x, y), three of them
+    std::vector<Vec3> corners;  // three corners per triangle, in image texels (x, y)
     Vec2 low, high;
 };
 
@@ -301,7 +302,7 @@ PlacedChart placeChart(const Model& model, uint32_t width, uint32_t height) {
     return chart;
 }
 
-// The world place of a texel of triangle t.
+// Returns the world position of a texel of triangle t.
 Vec2 texelPlace(const Model& model, const PlacedChart& chart, int t, int x, int y) {
     const Vec3* c = &chart.corners[size_t(t) * 3];
     const Vec2 a{c[0].x, c[0].y}, ab = Vec2{c[1].x, c[1].y} - a, ac = Vec2{c[2].x, c[2].y} - a;
@@ -327,7 +328,7 @@ Painting paintGroundChart(const Model& terrain, const SkyGrid& sky, Vec2* low, V
             const int t = chart.owners.at(x, y);
             if (t < 0) continue;
             const Vec2 place = texelPlace(terrain, chart, t, x, y);
-            // The masks are smooth: every fourth texel will do.
+            // The masks are smooth, so every fourth texel suffices.
             if (x % 4 == 0) {
                 road = village::nearestRoad(place);
                 splat = village::groundSplat(place, road);
@@ -359,7 +360,7 @@ Painting paintRoadChart(const Model& model, const SkyGrid& sky, Vec2* low, Vec2*
             const float edge = village::roadEdge(place, road);
             const Vec2 metres{(float(x) + 0.5f) * texel.x, (float(y) + 0.5f) * texel.y};
             Surface s = village::paintSurface(Texture::kCobble, metres, texel.x, {1, 1, 1}, 0);
-            // Grooves see less of the sky, and the verge is worn and dusty.
+            // Grooves see less sky, and the verge is worn and dusty.
             const float groove = village::mix(0.62f, 1, s.height / 0.045f);
             const float dust = village::smoothStep(0.78f, 1.0f, edge);
             s.albedo = village::mix(s.albedo, Vec3{0.150f, 0.115f, 0.075f}, 0.55f * dust);

@@ -89,7 +89,8 @@ float RayTree::reach(Vec3 o, Vec3 d, float limit) const {
 }
 
 float openSky(const RayTree& tree, Vec3 point, Vec3 normal, int rays, float metres) {
-    constexpr float kStart = 0.14f;  // m off the face: nearer, thin trim blackens what it sits on
+    constexpr float kStart = 0.14f;  // m off the surface; a shorter offset lets thin trim blacken
+                                     // its base
     constexpr float kFloor = 0.22f;
     const village::Frame f = village::along({}, normal);
     float open = 0;

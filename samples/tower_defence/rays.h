@@ -1,5 +1,5 @@
-// A bounding volume tree over triangles and rays against it, for baking ambient occlusion.
-// Not used while the game runs.
+// A bounding volume hierarchy over triangles, and rays against it, for baking ambient occlusion.
+// Not used during the game.
 #pragma once
 
 #include <cstdint>
@@ -12,15 +12,16 @@ namespace tower {
 
 class RayTree {
  public:
-    // Three corners per triangle, world or model space.
+    // Three corners per triangle, in world or model space.
     explicit RayTree(std::vector<village::Vec3> corners);
-    // The nearest hit's distance within reach, or reach itself.
+    // Returns the distance of the nearest hit, or `reach` if there is none.
     float reach(village::Vec3 origin, village::Vec3 direction, float reach) const;
 
  private:
     struct Node {
         village::Vec3 low, high;
-        uint32_t first, count;  // count 0: first is the left child, the right one follows it
+        uint32_t first, count;  // count 0: an inner node, first is the left child and first + 1 the
+                                // right one
     };
     void split(uint32_t node, std::vector<uint32_t>& order, uint32_t first, uint32_t count);
 
@@ -28,7 +29,7 @@ class RayTree {
     std::vector<Node> nodes_;
 };
 
-// The share of the sky seen from a point, [floor, 1]; near hits count for more than far ones.
+// Returns the visible share of the sky, [floor, 1]. Near occluders weigh more than far ones.
 float openSky(const RayTree& tree, village::Vec3 point, village::Vec3 normal, int rays,
               float metres);
 

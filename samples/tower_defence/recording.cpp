@@ -11,7 +11,7 @@ namespace {
 
 constexpr const char* kTitle = "tower_defence inputs 1";
 
-// The floats of an input, in the file's order.
+// Visits the floats of an input in file order.
 template <class Input, class Do>
 void eachFloat(Input& input, Do&& act) {
     for (auto* value :
@@ -35,7 +35,7 @@ void Recorder::frame(const sample::StageFrame& frame) {
     file_ << '\n';
 }
 
-void Recorder::moment() { file_ << "moment" << std::endl; }
+void Recorder::markPicture() { file_ << "moment" << std::endl; }
 
 Recording::Recording(const std::filesystem::path& path, uint32_t seed) {
     std::ifstream file(path);
@@ -43,19 +43,19 @@ Recording::Recording(const std::filesystem::path& path, uint32_t seed) {
         throw sample::Failure("--play " + path.string() + ": " + why);
     };
     std::string line;
-    if (!std::getline(file, line) || line != kTitle) fail("it is no recording of this game");
+    if (!std::getline(file, line) || line != kTitle) fail("it is not a recording of this game");
     uint32_t recorded = 0;
     if (!std::getline(file, line) || std::sscanf(line.c_str(), "seed %u", &recorded) != 1)
-        fail("its second line says no seed");
+        fail("its second line has no seed");
     if (recorded != seed) fail("it is of --seed " + std::to_string(recorded));
     while (std::getline(file, line)) {
         if (line == "moment") {
-            if (frames_.size() > 1) frames_[frames_.size() - 2].moment = true;
+            if (frames_.size() > 1) frames_[frames_.size() - 2].isMarked = true;
             continue;
         }
         std::istringstream words(line);
         std::string word;
-        const auto number = [&] {  // streams read no hexadecimal floats
+        const auto number = [&] {  // Streams cannot parse hexadecimal floats.
             if (!(words >> word)) fail("line \"" + line + "\" ends too early");
             return std::strtod(word.c_str(), nullptr);
         };
@@ -70,7 +70,7 @@ Recording::Recording(const std::filesystem::path& path, uint32_t seed) {
         for (auto keys = size_t(number()); keys > 0; --keys)
             frame.input.keys.push_back(int(number()));
     }
-    if (frames_.empty()) fail("it has no frames");
+    if (frames_.empty()) fail("it contains no frames");
 }
 
 void Recording::put(sample::StageFrame& frame) const {

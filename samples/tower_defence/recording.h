@@ -1,4 +1,4 @@
-// What a hand did in a window, frame by frame, in a file; and the same again without a window.
+// Records window input per frame into a file, and replays it without a window.
 #pragma once
 
 #include <cstdint>
@@ -11,32 +11,32 @@
 
 namespace tower {
 
-// Writes while it is played.
+// Writes the file while the game runs.
 class Recorder {
  public:
     Recorder(const std::filesystem::path& path, uint32_t seed);
     void frame(const sample::StageFrame& frame);
-    void moment();  // the picture of the frame before the last is one to compare
+    void markPicture();  // marks the picture of the frame before the last for comparison
 
  private:
     std::ofstream file_;
 };
 
-// Reads all of it. Throws Failure where the file is none, or of another seed.
+// Loads a recording. Throws Failure if the file is not one, or has another seed.
 class Recording {
  public:
     Recording(const std::filesystem::path& path, uint32_t seed);
     uint32_t frames() const { return uint32_t(frames_.size()); }
-    // Puts what there was into a frame; throws Failure where that had another size.
+    // Copies the recorded input into a frame. Throws Failure if the frame has another size.
     void put(sample::StageFrame& frame) const;
-    bool isMoment(uint32_t number) const { return frames_[number].moment; }
+    bool isMarked(uint32_t number) const { return frames_[number].isMarked; }
 
  private:
     struct Frame {
         float deltaTime = 0;
         uint32_t width = 0, height = 0;
         sample::Input input;
-        bool moment = false;
+        bool isMarked = false;
     };
     std::vector<Frame> frames_;
 };

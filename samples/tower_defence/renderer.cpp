@@ -21,7 +21,7 @@ using village::Vec3;
 
 constexpr uint32_t kMaxLights = 16;
 
-struct FrameUniform {  // shaders/frame.glsl
+struct FrameUniform {  // mirrors shaders/frame.glsl
     glm::mat4 viewProjection, shadowMatrix;
     glm::vec4 eye, toSun, sun, sky, ground, haze, cameraRight, cameraUp, wind;
     glm::vec4 lightPlaces[kMaxLights], lightColors[kMaxLights];
@@ -67,20 +67,20 @@ const std::vector<VkVertexInputAttributeDescription> kAttributes = {
     {7, 1, VK_FORMAT_R32G32B32A32_SFLOAT, 48}};
 const std::vector<VkVertexInputAttributeDescription> kCasterAttributes = {
     kAttributes[0], kAttributes[4], kAttributes[5], kAttributes[6]};
-constexpr float kFineWithin = 36.0f;        // m; further off the fine parts of a model are left out
-constexpr uint32_t kMostTriangles = 20000;  // of a view
+constexpr float kFineWithin = 36.0f;        // m; beyond it, models skip their fine parts
+constexpr uint32_t kMostTriangles = 20000;  // per view
 
 bool isHerb(village::Kit model) {
     return model == village::Kit::kDryGrass || model == village::Kit::kFlowers ||
            model == village::Kit::kReeds;
 }
 
-// The sun looks at the whole play area; the map follows no camera, so shadows never swim.
+// The shadow map covers the whole play area and ignores the camera, so shadows never shimmer.
 glm::mat4 sunClip(glm::vec3 toSun, float* texel) {
     const glm::vec3 centre(0.0f, 1.0f, -4.0f);
     constexpr float kWide = 29.0f;
     const glm::mat4 view = glm::lookAtRH(centre + toSun * 70.0f, centre, glm::vec3(0, 1, 0));
-    // The play area is wider than deep: fit each axis of the sun's picture on its own.
+    // The play area is wider than deep, so each axis of the sun's view is fitted separately.
     float reachX = 0, reachY = 0;
     for (float x : {-kWide + 1.5f, kWide - 3.0f}) {
         for (float z : {-25.0f, 17.5f}) {
@@ -111,7 +111,7 @@ glm::mat4 clipToPicture() {
 Renderer::Renderer(const sample::VulkanHost& host, const sample::Stage& stage,
                    const village::Scene& scene, const PaintedVillage& painted, Ground ground)
     : host_(host), shadows_(host, kBindings, kCasterAttributes) {
-    // One mip at a time: a software device pays for every texel it reads.
+    // One mip at a time, because a software device pays for every texel it reads.
     sampler_ = host.createSampler(VK_FILTER_LINEAR, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                   VK_SAMPLER_MIPMAP_MODE_NEAREST);
     makeLayouts();
@@ -207,8 +207,8 @@ void Renderer::makeSlots(uint32_t count, size_t instances) {
     for (Slot& slot : slots_) {
         slot.uniform =
             host_.createBuffer(sizeof(FrameUniform), VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, true);
-        // Every instance may be drawn and cast a shadow from a list of its own, and the land has
-        // one instance.
+        // Each instance may be in the visible list and in the shadow list. The land has one
+        // instance.
         slot.instances = host_.createBuffer((instances * 2 + 1) * sizeof(DrawnInstance),
                                             VK_BUFFER_USAGE_VERTEX_BUFFER_BIT, true);
         slot.set = sample::makeSet(host_, pool_, frameLayout_);
@@ -227,7 +227,7 @@ void Renderer::makePipelines(const sample::Stage& stage, Ground ground) {
     request.attributes = kAttributes;
     request.depthCompare = stage.depthCompare();
     request.vertex = host_.createShader(kVillageVert, sizeof kVillageVert);
-    // Whoever writes depth is tested late: models are shaded by a shader that does not.
+    // Shaders that write depth disable early depth tests, so models use one that does not.
     const VkShaderModule plain = host_.createShader(kVillageFrag, sizeof kVillageFrag);
     const VkShaderModule hollow = host_.createShader(kLandFrag, sizeof kLandFrag);
     VkPipeline* const pipelines[] = {&model_, &groundPipeline_, &roadPipeline_, &waterPipeline_};
@@ -243,7 +243,7 @@ void Renderer::makePipelines(const sample::Stage& stage, Ground ground) {
         vkDestroyShaderModule(host_.device, shader, nullptr);
 }
 
-// Whether a ball is seen at all.
+// Returns true if the sphere is in view.
 static bool inView(const glm::mat4& viewProjection, glm::vec3 place, float radius) {
     const glm::mat4 rows = glm::transpose(viewProjection);
     const glm::vec4 planes[] = {rows[3] + rows[0], rows[3] - rows[0], rows[3] + rows[1],
@@ -254,8 +254,7 @@ static bool inView(const glm::mat4& viewProjection, glm::vec3 place, float radiu
     return true;
 }
 
-// Sorts the instances by model into runs: what is seen from near, what from afar, what casts a
-// still shadow, what casts a moving one.
+// Sorts the instances by model into runs: near, far, static shadow casters, moving shadow casters.
 void Renderer::gather(Slot& slot, const SceneFrame& scene) {
     const float aspect = float(slot.extent.width) / float(slot.extent.height);
     const glm::mat4 viewProjection =
@@ -263,7 +262,7 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
     enum Seen : uint8_t { kNot, kNear, kFar };
     std::vector<Seen> seen;
     struct Fine {
-        float away;  // m
+        float away;  // m from the camera
         size_t placed;
     };
     std::vector<Fine> fineWork, herbs;
@@ -279,7 +278,7 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
             seen.push_back(kNot);
             continue;
         }
-        // The library draws the whole of a model from everywhere.
+        // The library draws a whole model at any distance.
         const float away = glm::length(middle - scene.camera.eye) - radius;
         const bool whole = !p.drawn || away < kFineWithin;
         if (p.drawn && whole) fineWork.push_back({away, seen.size()});
@@ -287,7 +286,8 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
         seen.push_back(!p.drawn ? kNot : whole ? kNear : kFar);
         triangles += (whole ? s.indexCount : s.farIndexCount) / 3;
     }
-    // Where a crowd is in view the farthest go without; where much of it burns, herbs go, too.
+    // In a crowd, the farthest models skip their fine parts. If much of it burns, herbs skip theirs
+    // too.
     const auto farthestLast = [](std::vector<Fine>& list) {
         std::sort(list.begin(), list.end(),
                   [](const Fine& a, const Fine& b) { return a.away < b.away; });
@@ -309,7 +309,7 @@ void Renderer::gather(Slot& slot, const SceneFrame& scene) {
 
     auto* out = static_cast<DrawnInstance*>(slot.instances.mapped);
     uint32_t used = 0;
-    out[used++] = drawnInstance(village::Frame{}, {1, 1, 1});  // the land's
+    out[used++] = drawnInstance(village::Frame{}, {1, 1, 1});  // the land's instance
     auto collect = [&](std::vector<Run>& runs, bool fine, auto&& wanted) {
         for (size_t model = 0; model < ground_; ++model) {
             const Surface& s = surfaces_[model];
@@ -399,7 +399,7 @@ void Renderer::drawSolid(const sample::StageFrame& frame) {
     auto drawLand = [&](size_t surface) { draw({surface, surfaces_[surface].indexCount, 0, 1}); };
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, model_);
     for (const Run& run : solid_) draw(run);
-    // The land comes last: most of what lies under the models is then never shaded.
+    // The land comes last, so that models occlude most of it before shading.
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, roadPipeline_);
     drawLand(road_);
     vkCmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, waterPipeline_);

@@ -1,6 +1,5 @@
-// The pretend engine's renderer of this sample: a small forward renderer with a sun shadow map.
-// Draws the land, the pond and every model that is not handed to the fire library; knows nothing
-// of fire but the lights it is given.
+// The host's renderer of this sample: a small forward renderer with a sun shadow map. Draws the
+// land, the pond and all models that the fire library does not draw. Fires reach it only as lights.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -17,15 +16,15 @@
 
 namespace tower {
 
-// How the land's relief is drawn.
+// Technique for the land's relief.
 enum class Ground { kBump, kParallax };
 
 struct SceneFrame {
     sample::Camera camera;
     Daylight daylight;
     std::span<const Placed> placed;
-    std::span<const PointLight> lights;  // the strongest first; at most 16 are used
-    Wind wind;                           // what grass, leaves and cloth yield to
+    std::span<const PointLight> lights;  // strongest first; the renderer uses at most 16
+    Wind wind;                           // moves grass, leaves and cloth
 };
 
 class Renderer {
@@ -36,21 +35,21 @@ class Renderer {
     Renderer(const Renderer&) = delete;
     Renderer& operator=(const Renderer&) = delete;
 
-    // Outside any pass: uploads the frame and draws the shadow map.
+    // Uploads the frame and draws the shadow map. Call it outside any pass.
     void prepare(const sample::StageFrame& frame, const SceneFrame& scene);
-    // Inside the stage's scene pass: everything solid.
+    // Draws all opaque geometry, inside the stage's scene pass.
     void drawSolid(const sample::StageFrame& frame);
 
-    // Of all frames so far: the most triangles in one view, the library's among them.
+    // Returns the most triangles of one view so far, including the library's.
     uint32_t mostTriangles() const { return mostTriangles_; }
 
  private:
     struct Push {
         float uvWindow[4], metres[4];
     };
-    struct Surface {  // what a draw needs of one model
+    struct Surface {  // draw data of one model
         uint32_t firstIndex = 0, indexCount = 0;
-        uint32_t farIndexCount = 0;  // without its fine parts
+        uint32_t farIndexCount = 0;  // without the fine parts
         int32_t firstVertex = 0;
         VkDescriptorSet set = VK_NULL_HANDLE;
         sample::Image color, relief;
@@ -58,7 +57,7 @@ class Renderer {
         village::Vec3 middle;  // m, model space
         float radius = 0;      // m
     };
-    struct Run {  // instances of one model, consecutive in the slot's buffer
+    struct Run {  // instances of one model, contiguous in the slot's buffer
         size_t surface;
         uint32_t indexCount;
         uint32_t first, count;

@@ -16,43 +16,43 @@ double now() {
 }  // namespace
 
 void Rewind::remember() {
-    if (waits_) {
+    if (isPending_) {
         const double began = now();
         uint64_t size = 0;
         FwResult result = fwWorld_FetchSave(world_, nullptr, &size);
         if (result == FW_NOT_READY) return;
         checkFire(world_, result, "fwWorld_FetchSave");
-        wished_.world.resize(size);
-        result = fwWorld_FetchSave(world_, wished_.world.data(), &size);
+        pending_.world.resize(size);
+        result = fwWorld_FetchSave(world_, pending_.world.data(), &size);
         checkFire(world_, result, "fwWorld_FetchSave");
-        moments_.push_back(std::move(wished_));
-        waits_ = false;
+        snapshots_.push_back(std::move(pending_));
+        isPending_ = false;
         fetchSeconds = now() - began;
-        // The youngest that is old enough stays; what is older is never asked for.
+        // Keep the latest snapshot that is old enough. Older ones are unreachable.
         const int32_t latest = siege_.state().tick - kBack;
-        while (moments_.size() > 1 && moments_[1].state.tick <= latest) moments_.pop_front();
+        while (snapshots_.size() > 1 && snapshots_[1].state.tick <= latest) snapshots_.pop_front();
     }
     const int32_t tick = siege_.state().tick;
-    if (!moments_.empty() && tick - moments_.back().state.tick < kEvery) return;
-    wished_ = siege_.moment();
+    if (!snapshots_.empty() && tick - snapshots_.back().state.tick < kEvery) return;
+    pending_ = siege_.snapshot();
     checkFire(world_, fwWorld_RequestSave(world_), "fwWorld_RequestSave");
-    waits_ = true;
+    isPending_ = true;
 }
 
 bool Rewind::goBack() {
-    if (moments_.empty()) return false;
+    if (snapshots_.empty()) return false;
     const int32_t latest = siege_.state().tick - kBack;
-    while (moments_.size() > 1 && moments_.back().state.tick > latest) moments_.pop_back();
+    while (snapshots_.size() > 1 && snapshots_.back().state.tick > latest) snapshots_.pop_back();
     const double began = now();
-    siege_.comeBack(moments_.back());
+    siege_.restore(snapshots_.back());
     loadSeconds = now() - began;
-    waits_ = false;
+    isPending_ = false;
     return true;
 }
 
 size_t Rewind::bytes() const {
     size_t sum = 0;
-    for (const Siege::Moment& moment : moments_) sum += moment.world.size();
+    for (const Siege::Snapshot& snapshot : snapshots_) sum += snapshot.world.size();
     return sum;
 }
 

@@ -1,4 +1,4 @@
-// Rewinding: a ring of moments of game and world, so that ten seconds can be had back.
+// A ring of snapshots of game and world, to go back ten seconds.
 #pragma once
 
 #include <cstdint>
@@ -11,26 +11,27 @@ namespace tower {
 class Rewind {
  public:
     static constexpr int32_t kBack = 10 * game::kTicksPerSecond;  // ticks
-    static constexpr int32_t kEvery = 2 * game::kTicksPerSecond;  // ticks between two moments
+    static constexpr int32_t kEvery = 2 * game::kTicksPerSecond;  // ticks between two snapshots
 
     Rewind(FwWorld* world, Siege& siege) : world_(world), siege_(siege) {}
 
-    // Once a frame, between the siege's advance and the recording of the world's step.
+    // Takes snapshots. Call it once per frame, between the siege's advance and the world's step.
     void remember();
-    // To the youngest moment that is ten seconds old, or else the oldest there is. False: none.
+    // Restores the latest snapshot that is at least ten seconds old, or else the oldest. Returns
+    // false if there is none.
     bool goBack();
 
-    // What it costs, the last time: s of the calling thread, and bytes.
+    // Cost of the last fetch and load: s on the calling thread.
     double fetchSeconds = 0, loadSeconds = 0;
     size_t bytes() const;
-    size_t moments() const { return moments_.size(); }
+    size_t snapshotCount() const { return snapshots_.size(); }
 
  private:
     FwWorld* world_;
     Siege& siege_;
-    std::deque<Siege::Moment> moments_;
-    Siege::Moment wished_;  // its bytes are on their way
-    bool waits_ = false;
+    std::deque<Siege::Snapshot> snapshots_;
+    Siege::Snapshot pending_;  // a snapshot whose save is not ready yet
+    bool isPending_ = false;
 };
 
 }  // namespace tower

@@ -30,10 +30,10 @@ int playScripted(const ScriptedGame& wanted) {
     FireVillage fires(context.get(), world, field.scene, nullptr);
     Siege siege(world, fires, field, game::newGame(wanted.seed));
 
-    // Four ticks a step: an eighth of a second, as often as fire goes from object to object.
+    // Four ticks per step: an eighth of a second, the interval of inter-object heat transfer.
     constexpr int32_t kTicks = 4;
-    // Late enough that things burn, enemies have fallen and others have taken their places.
-    constexpr int32_t kGoesBackAt = 18 * game::kTicksPerSecond;
+    // Late enough that objects burn, enemies have fallen and new ones use their slots.
+    constexpr int32_t kRewindAt = 18 * game::kTicksPerSecond;
     Rewind rewind(world, siege);
     bool goesBack = wanted.rewind;
     const std::clock_t began = std::clock();
@@ -46,13 +46,13 @@ int playScripted(const ScriptedGame& wanted) {
         if (wanted.rewind) rewind.remember();
         checkFire(world, fwWorld_Step(world, kTicks * kTickSeconds), "fwWorld_Step");
         ++steps;
-        if (goesBack && state.tick >= kGoesBackAt) {
+        if (goesBack && state.tick >= kRewindAt) {
             goesBack = false;
             const int32_t from = state.tick;
             rewind.goBack();
-            std::fprintf(stderr, "rewind: %d ticks, %.1f ms, %zu KB a moment, saved in %.1f ms\n",
+            std::fprintf(stderr, "rewind: %d ticks, %.1f ms, %zu KB a snapshot, saved in %.1f ms\n",
                          from - state.tick, 1e3 * rewind.loadSeconds,
-                         rewind.bytes() / rewind.moments() / 1024, 1e3 * rewind.fetchSeconds);
+                         rewind.bytes() / rewind.snapshotCount() / 1024, 1e3 * rewind.fetchSeconds);
         }
     }
     if (wanted.rewind && goesBack)

@@ -15,7 +15,7 @@ using sample::checkVulkan;
 
 constexpr VkFormat kFormat = VK_FORMAT_D32_SFLOAT;
 
-// `still`: clears, and ends as the source of the copy that the moving casters' pass begins with.
+// `still`: clears the map and ends as the copy source of the moving casters' pass.
 VkRenderPass makePass(VkDevice device, bool still) {
     VkAttachmentDescription depth{};
     depth.format = kFormat;
@@ -68,7 +68,7 @@ ShadowMap::ShadowMap(const sample::VulkanHost& host,
                      const std::vector<VkVertexInputBindingDescription>& bindings,
                      const std::vector<VkVertexInputAttributeDescription>& attributes)
     : host_(host) {
-    // Nowhere near every device filters depth, so this one is nearest in every way.
+    // Few devices can filter depth, so the sampler uses nearest.
     sampler_ = host.createSampler(VK_FILTER_NEAREST, VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE,
                                   VK_SAMPLER_MIPMAP_MODE_NEAREST);
     sample::ImageRequest request;
@@ -113,7 +113,7 @@ ShadowMap::Target ShadowMap::makeTarget(const sample::Image& image, bool still) 
     return target;
 }
 
-// A pipeline without colour: the sample helpers' own always writes one.
+// A pipeline without colour, which makePipeline() of samples/common does not offer.
 void ShadowMap::makePipeline(const std::vector<VkVertexInputBindingDescription>& bindings,
                              const std::vector<VkVertexInputAttributeDescription>& attributes) {
     sample::PipelineRequest request;
@@ -156,7 +156,7 @@ void ShadowMap::record(VkCommandBuffer commands, const glm::mat4& clip,
         vkCmdEndRenderPass(commands);
         stillClip_ = clip;
     }
-    // The sample helpers' own barriers are for colour.
+    // The barriers of samples/common cover colour only.
     VkImageMemoryBarrier barrier{};
     barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
     barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;

@@ -1,5 +1,5 @@
-// The sun's shadow map. What stands still is drawn into a map of its own, once; every frame copies
-// that and draws what moves on top.
+// The sun's shadow map. Static casters are drawn once into their own map. Each frame copies it and
+// draws the moving casters on top.
 #pragma once
 
 #include <functional>
@@ -14,7 +14,7 @@ constexpr uint32_t kShadowSide = 1792;  // texels
 
 class ShadowMap {
  public:
-    // The vertex layout: location 0 the position, 4 to 6 the rows of the instance's frame.
+    // The vertex layout: location 0: position; 4 to 6: rows of the instance's frame.
     ShadowMap(const sample::VulkanHost& host,
               const std::vector<VkVertexInputBindingDescription>& bindings,
               const std::vector<VkVertexInputAttributeDescription>& attributes);
@@ -22,11 +22,12 @@ class ShadowMap {
     ShadowMap(const ShadowMap&) = delete;
     ShadowMap& operator=(const ShadowMap&) = delete;
 
-    // Outside any pass. `draw` binds the casters' buffers and draws those that move, or the others.
+    // Records outside any pass. `draw` binds the casters' buffers and draws the static or the
+    // moving ones.
     void record(VkCommandBuffer commands, const glm::mat4& clip,
                 const std::function<void(bool moving)>& draw);
 
-    VkImageView view() const { return map_.view; }  // depth, read only between recordings
+    VkImageView view() const { return map_.view; }  // depth; readable between recordings
     VkSampler sampler() const { return sampler_; }
 
  private:
@@ -45,7 +46,7 @@ class ShadowMap {
     VkSampler sampler_ = VK_NULL_HANDLE;
     VkPipelineLayout layout_ = VK_NULL_HANDLE;
     VkPipeline pipeline_ = VK_NULL_HANDLE;
-    glm::mat4 stillClip_{0.0f};  // of the still map as it is
+    glm::mat4 stillClip_{0.0f};  // of the current static map
 };
 
 }  // namespace tower

@@ -12,28 +12,28 @@ using village::Vec3;
 
 namespace {
 
-constexpr float kChest = 1.1f;          // m above the road: what jets aim at
+constexpr float kChest = 1.1f;          // m above the road: aim of the jets
 constexpr Vec3 kMuzzle{0, 2.6f, 1.1f};  // of the ember mortar, in its model's space
 constexpr Vec3 kSpout{0, 2.42f, 2.4f};  // of the water cannon
 constexpr float kSprayRadius = 1.4f;    // m
 constexpr float kSprayWide = 1.2f;      // m, of its sheet
 constexpr float kSprayLong = 11.0f;     // m
-constexpr float kRoof = 2.6f;           // m above the ground: where water is aimed at
-constexpr float kFanHeight = 2;         // m, of its middle
-constexpr float kFanReach = 2;     // of its range: what it blows on is blown on beyond the road
-constexpr float kFanWidth = 0.6f;  // radius of its wind at its end, of its length
-constexpr float kEmberPower = 40;  // kW
+constexpr float kRoof = 2.6f;           // m above the ground: aim of the water
+constexpr float kFanHeight = 2;         // m, of its centre
+constexpr float kFanReach = 2;          // factor of its range: the wind carries beyond the road
+constexpr float kFanWidth = 0.6f;       // end radius of the wind zone, relative to its length
+constexpr float kEmberPower = 40;       // kW
 constexpr float kEmberSeconds = 44 * kTickSeconds;
 constexpr Vec3 kCoals{0, 1.12f, 0};  // of a brazier, in its model's space
 constexpr float kBrazierPower = 70;  // kW
-constexpr float kAirOfSide = 0.06f;  // m^3/s into a house, through each m^2 of its sides
+constexpr float kAirOfSide = 0.06f;  // m^3/s into a house per m^2 of its walls
 
 glm::vec3 onGround(game::Point point, float above) {
     const Vec2 place = metres(point);
     return {place.x, village::groundHeight(place) + above, place.y};
 }
 
-// Out of the world's way: nothing burns down there.
+// Outside the world's fires: nothing burns down there.
 village::Frame away() { return village::translate(0, -300, 0); }
 
 }  // namespace
@@ -60,7 +60,7 @@ Siege::Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const
     aimTowers();
 }
 
-// A fire on its coals, for as long as the world lasts. What it lights is a lamp's (main.cpp).
+// A permanent fire on its coals. lampLights() in main.cpp provides its light.
 void Siege::lightBrazier(const village::Frame& frame) {
     FwFireEmitterDef fire = fwDefaultFireEmitterDef();
     fire.flags = FW_EMITTER_NO_LIGHT;
@@ -105,7 +105,7 @@ void Siege::makeEmitters() {
         water.seed = uint32_t(plot) + 1;
         water.width = 32;
         water.height = 64;
-        water.rise = 2.2f;  // along the sheet, which points where the water goes
+        water.rise = 2.2f;  // points along the sheet, in the direction of the water
         water.life = 2.0f;
         water.amount = 0;
         water.source = FW_FIELD_SOURCE_BASE;
@@ -123,7 +123,7 @@ void Siege::makeEmitters() {
     }
 }
 
-// The inside of each house: it flashes over when its fire fills it.
+// Creates a compartment per house, which flashes over when its fire fills it.
 void Siege::makeRooms() {
     for (size_t house = 0; house < game::kHouses; ++house) {
         const Thing& thing = houseThing(house);
@@ -137,7 +137,7 @@ void Siege::makeRooms() {
         std::copy_n(half, 3, room.halfSize);
         room.rotation[1] = std::sin(turned / 2);
         room.rotation[3] = std::cos(turned / 2);
-        // Eaves, shutters and thatch let so much in that its fire finds air for long.
+        // Eaves, shutters and thatch admit so much air that the fire burns for long.
         const float sides = 8 * (half[0] * half[1] + half[1] * half[2] + half[2] * half[0]);
         room.vent = kAirOfSide * sides;
         check(fwWorld_CreateRoom(world_, &room, &rooms_[house]), "fwWorld_CreateRoom");
@@ -150,7 +150,7 @@ const char* Siege::give(const game::Order& order) {
     return refused;
 }
 
-game::Burning Siege::askBurning() {
+game::Burning Siege::queryBurning() {
     game::Burning burning;
     for (size_t i = 0; i < game::kEnemySlots; ++i) {
         const Thing& thing = fires_.things[fires_.thingOf(field_.enemies[i])];
@@ -161,7 +161,8 @@ game::Burning Siege::askBurning() {
         const Thing& thing = houseThing(i);
         burning.houseBurnt[i] = thing.burnt();
         burning.houseAlight[i] = thing.state.burning > 0;
-        // Its state, not its event: that is in saves, and none is missed by going back in time.
+        // Reads the state instead of the event: saves contain the state, and a rewind misses no
+        // event.
         FwRoomState room{};
         room.structSize = sizeof room;
         check(fwWorld_GetRoomState(world_, rooms_[i], &room), "fwWorld_GetRoomState");
@@ -170,23 +171,22 @@ game::Burning Siege::askBurning() {
     return burning;
 }
 
-void Siege::carryOut(const game::Happening& happening) {
-    using Type = game::Happening::Type;
-    switch (happening.type) {
+void Siege::apply(const game::Event& event) {
+    using Type = game::Event::Type;
+    switch (event.type) {
         case Type::kBorn:
-            fires_.renew(fires_.thingOf(field_.enemies[size_t(happening.slot)]));
+            fires_.replace(fires_.thingOf(field_.enemies[size_t(event.slot)]));
             break;
         case Type::kEmberLands:
-            fires_.ignite(onGround(happening.place, 0.6f), 0.001f * float(happening.strength));
+            fires_.ignite(onGround(event.place, 0.6f), 0.001f * float(event.strength));
             break;
         case Type::kBeamFalls:
-            fires_.dropBeam(fires_.thingOf(field_.houses[size_t(happening.slot)]),
-                            size_t(happening.strength));
+            fires_.dropBeam(fires_.thingOf(field_.houses[size_t(event.slot)]),
+                            size_t(event.strength));
             break;
         case Type::kSprays:
-            fires_.wet(onGround(happening.place, kRoof), kSprayRadius, float(happening.strength));
-            fires_.wet(onGround(happening.place, kRoof + 1.6f), kSprayRadius,
-                       float(happening.strength));
+            fires_.wet(onGround(event.place, kRoof), kSprayRadius, float(event.strength));
+            fires_.wet(onGround(event.place, kRoof + 1.6f), kSprayRadius, float(event.strength));
             break;
         default:
             break;
@@ -201,7 +201,7 @@ void Siege::moveEnemies() {
         const bool was = placed.there;
         placed.there = enemy.phase != game::Phase::kAway;
         if (placed.there) {
-            // No two alike: a tenth about its size.
+            // Varies the size by a tenth.
             const float size = 0.95f + 0.0125f * float(enemy.born * 5 % 8);
             placed.frame = enemyFrame(field_.ground, enemy, size);
             fires_.move(thing, placed.frame);
@@ -221,10 +221,10 @@ void Siege::aimJet(size_t plot) {
     if (tower.kind != TowerKind::kFlamethrower) return;
     const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
     const glm::vec3 nozzle = toGlm(frame.point(village::kNozzle));
-    // A stream falls on its way: aimed a little above.
-    const glm::vec3 way = onGround(tower.aim, kChest) - nozzle;
-    const float flat = std::sqrt(way.x * way.x + way.z * way.z);
-    const glm::vec3 direction(way.x, way.y + 0.02f * flat * flat, way.z);
+    // Gravity bends the stream, so aim slightly higher.
+    const glm::vec3 delta = onGround(tower.aim, kChest) - nozzle;
+    const float flat = std::sqrt(delta.x * delta.x + delta.z * delta.z);
+    const glm::vec3 direction(delta.x, delta.y + 0.02f * flat * flat, delta.z);
     check(fwWorld_MoveFireEmitter(world_, jets_[plot], &nozzle[0], &direction[0]),
           "fwWorld_MoveFireEmitter");
 }
@@ -244,7 +244,7 @@ void Siege::flyEmber(size_t plot) {
           "fwWorld_MoveFireEmitter");
 }
 
-// A sheet of water from the spout to where it comes down.
+// Aims a sheet of water from the spout to its landing point.
 void Siege::aimSpray(size_t plot) {
     const game::Tower& tower = state_.towers[plot];
     const bool cannon = tower.kind == TowerKind::kWaterCannon;
@@ -257,14 +257,14 @@ void Siege::aimSpray(size_t plot) {
     if (!cannon) return;
     const village::Frame frame = towerFrame(field_.ground.plots[plot], tower.aim);
     const glm::vec3 spout = toGlm(frame.point(kSpout));
-    const glm::vec3 way = glm::normalize(onGround(tower.aim, kRoof) - spout);
-    // The shortest turn from up to there; water never goes straight down.
-    const glm::vec4 turn = glm::normalize(glm::vec4(way.z, 0, -way.x, 1 + way.y));
+    const glm::vec3 delta = glm::normalize(onGround(tower.aim, kRoof) - spout);
+    // The shortest rotation from up to that direction; water never points straight down.
+    const glm::vec4 turn = glm::normalize(glm::vec4(delta.z, 0, -delta.x, 1 + delta.y));
     check(fwWorld_MoveParticleField(world_, sprays_[plot], &spout[0], &turn[0]),
           "fwWorld_MoveParticleField");
 }
 
-// A cone of wind that reaches a little beyond the road.
+// Returns a wind cone that reaches slightly beyond the road.
 FwWindZoneDef Siege::windOfPlot(size_t plot) const {
     const game::Tower& tower = state_.towers[plot];
     const Vec2 blows = metres(game::fanOf(state_, field_.ground, plot));
@@ -310,14 +310,14 @@ void Siege::aimTowers() {
 }
 
 void Siege::advance(int32_t ticks) {
-    happened_.clear();
-    housesBroke_ = 0;
+    events_.clear();
+    brokenHouses_ = 0;
     if (ticks == 0) return;
     fires_.observe();
-    housesBroke_ = fires_.broke();
-    const game::Burning burning = askBurning();
-    for (int32_t i = 0; i < ticks; ++i) game::tick(state_, field_.ground, burning, happened_);
-    for (const game::Happening& happening : happened_) carryOut(happening);
+    brokenHouses_ = fires_.broke();
+    const game::Burning burning = queryBurning();
+    for (int32_t i = 0; i < ticks; ++i) game::tick(state_, field_.ground, burning, events_);
+    for (const game::Event& event : events_) apply(event);
     moveEnemies();
     aimTowers();
     const Vec2 wind = metres(state_.wind);
@@ -328,12 +328,12 @@ void Siege::advance(int32_t ticks) {
     for (const Thing& thing : fires_.things) placed_[thing.instance].drawn = !thing.lit;
 }
 
-void Siege::comeBack(const Moment& moment) {
-    check(fwWorld_Load(world_, moment.world.data(), moment.world.size()), "fwWorld_Load");
-    state_ = moment.state;
-    wind_ = moment.wind;
-    fires_.restore(moment.flags);
-    happened_.clear();
+void Siege::restore(const Snapshot& snapshot) {
+    check(fwWorld_Load(world_, snapshot.world.data(), snapshot.world.size()), "fwWorld_Load");
+    state_ = snapshot.state;
+    wind_ = snapshot.wind;
+    fires_.restore(snapshot.flags);
+    events_.clear();
     moveEnemies();
     aimTowers();
     for (const Thing& thing : fires_.things) placed_[thing.instance].drawn = !thing.lit;

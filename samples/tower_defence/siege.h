@@ -1,5 +1,5 @@
-// The game coupled to a burning world: each tick the rules hear what burns, and the world gets the
-// jets, embers, water, wind and marching enemies that the rules ask for. The same on every backend.
+// Couples the game to a burning world. Each tick the rules read the burn state, and the world
+// receives jets, embers, water, wind and enemies from the rules. Equal on all backends.
 #pragma once
 
 #include <array>
@@ -19,32 +19,32 @@ class Siege {
  public:
     Siege(FwWorld* world, FireVillage& fires, const Battlefield& field, const game::State& state);
 
-    // Null: done. Else why not.
+    // Returns null if the order is applied, otherwise the reason.
     const char* give(const game::Order& order);
-    // Before the world's step of as many ticks.
+    // Advances the rules. Call it before the world's step of equal length.
     void advance(int32_t ticks);
 
     const game::State& state() const { return state_; }
-    // Of the last advance.
-    std::span<const game::Happening> happened() const { return happened_; }
-    // Houses that the last advance heard to have broken; and whether one has, ever.
-    size_t housesBroke() const { return housesBroke_; }
+    // Events of the last advance.
+    std::span<const game::Event> events() const { return events_; }
+    // Number of houses that broke in the last advance.
+    size_t brokenHouses() const { return brokenHouses_; }
     bool broken(size_t house) const { return houseThing(house).broken; }
     std::span<const Placed> placed() const { return placed_; }
     const Wind& wind() const { return wind_; }
-    // The jets and embers, which the library's own lights name too weakly for a night.
+    // Adds lights for jets and embers, which the library's lights show too weakly at night.
     void addLights(float scale, std::vector<PointLight>& lights) const;
 
-    // A point to come back to. `world` is the library's save of the moment after the step that
-    // follows the advance.
-    struct Moment {
+    // A snapshot of game and world. `world` is the library's save after the step that follows the
+    // advance.
+    struct Snapshot {
         game::State state;
         std::vector<uint8_t> flags;  // FireVillage::flags
         std::vector<uint8_t> world;
         Wind wind;
     };
-    Moment moment() const { return {state_, fires_.flags(), {}, wind_}; }
-    void comeBack(const Moment& moment);
+    Snapshot snapshot() const { return {state_, fires_.flags(), {}, wind_}; }
+    void restore(const Snapshot& snapshot);
 
  private:
     void lightBrazier(const village::Frame& frame);
@@ -53,8 +53,8 @@ class Siege {
     const Thing& houseThing(size_t house) const {
         return fires_.things[fires_.thingOf(field_.houses[house])];
     }
-    game::Burning askBurning();
-    void carryOut(const game::Happening& happening);
+    game::Burning queryBurning();
+    void apply(const game::Event& event);
     void moveEnemies();
     void aimTowers();
     void aimJet(size_t plot);
@@ -68,11 +68,11 @@ class Siege {
     FireVillage& fires_;
     const Battlefield& field_;
     game::State state_;
-    std::vector<game::Happening> happened_;
+    std::vector<game::Event> events_;
     std::vector<Placed> placed_;
     Wind wind_;
-    size_t housesBroke_ = 0;
-    // One of each for every plot, whatever stands there: a save wants a world of the same things.
+    size_t brokenHouses_ = 0;
+    // One per plot for any tower kind, because a save loads only into a world with equal objects.
     std::array<FwFireEmitterId, game::kPlots> jets_{}, embers_{};
     std::array<FwParticleFieldId, game::kPlots> sprays_{};
     std::array<FwWindZoneId, game::kPlots> fans_{};

@@ -26,7 +26,7 @@ uint64_t residentBytes() {
 void Soak::beginFrame() {
     if (frame_ <= frames_) return;
     endRound();
-    siege_.comeBack(first_);
+    siege_.restore(first_);
     frame_ = 1;
     began_ = std::clock();
 }
@@ -34,10 +34,10 @@ void Soak::beginFrame() {
 void Soak::afterAdvance() {
     ++frame_;
     if (saved_) return;
-    if (!wished_) {
-        first_ = siege_.moment();
+    if (!pending_) {
+        first_ = siege_.snapshot();
         checkFire(world_, fwWorld_RequestSave(world_), "fwWorld_RequestSave");
-        wished_ = true;
+        pending_ = true;
         return;
     }
     uint64_t size = 0;
@@ -51,7 +51,7 @@ void Soak::afterAdvance() {
 
 void Soak::endRound() {
     if (!saved_)
-        throw sample::Failure("--soak is too short: the first moment was not saved in time");
+        throw sample::Failure("--soak is too short: the first snapshot was not saved in time");
     FwContextInfo info{};
     info.structSize = sizeof info;
     if (fwContext_GetInfo(context_, &info) != FW_OK)
@@ -64,12 +64,12 @@ void Soak::endRound() {
 int Soak::report() {
     endRound();
     if (rounds_.size() != kRounds + 1) throw sample::Failure("--soak was cut short");
-    // The first has warmed up: pipelines are compiled at their first use, and buffers grow.
+    // Round 0 warms up: pipelines compile at their first use, and buffers grow.
     const Round &first = rounds_[1], &last = rounds_.back();
     for (size_t i = 0; i < rounds_.size(); ++i) {
         const Round& round = rounds_[i];
         std::printf(
-            "round %zu: %.2f ms a frame, device %.1f MB, library %.1f MB, process %.1f MB, "
+            "round %zu: %.2f ms per frame, device %.1f MB, library %.1f MB, process %.1f MB, "
             "hash %016" PRIx64 "\n",
             i, round.milliseconds, 1e-6 * double(round.device), 1e-6 * double(round.host),
             1e-6 * double(round.process), round.hash);
@@ -78,14 +78,14 @@ int Soak::report() {
         std::printf("%s: the last is %.3f of the first\n", what, b / a);
         return b <= kMostGrowth * a;
     };
-    // Who else uses the machine changes the time: whoever called judges that.
+    // Other load on the machine changes the time, so the caller judges it.
     (void)compare("processor time", first.milliseconds, last.milliseconds);
     const bool flat[] = {compare("device memory", double(first.device), double(last.device)),
                          compare("library memory", double(first.host), double(last.host)),
                          compare("process memory", double(first.process), double(last.process))};
     for (size_t i = 1; i < rounds_.size(); ++i)
         if (rounds_[i].hash != first.hash) {
-            std::printf("a round came out differently\n");
+            std::printf("a round had another result\n");
             return 1;
         }
     return flat[0] && flat[1] && flat[2] ? 0 : 1;

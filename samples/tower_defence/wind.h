@@ -1,4 +1,4 @@
-// The wind as it is seen: what sways goes by it.
+// The visible wind, which sways plants and cloth.
 #pragma once
 
 #include <glm/glm.hpp>
@@ -7,7 +7,7 @@ namespace tower {
 
 struct Wind {
     glm::vec2 velocity{0};  // m/s along x and z
-    glm::vec2 blown{0};     // m, how far it has carried its gusts
+    glm::vec2 blown{0};     // m, distance that gusts have moved
 };
 
 }  // namespace tower

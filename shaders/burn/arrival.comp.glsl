@@ -1,7 +1,6 @@
-// The front kernel over the gathered rows, one thread each: a ring moves along the row, so that a
-// texel loads one column of it. Arrivals to `pendingTick`, changed texels to masks, the earliest that
-// is to come to the tile; which texels are settled, whatever catches beside them. Reads states, writes
-// none: updates are Jacobi.
+// The front kernel over the gathered rows, one thread per row: a ring moves along the row, so that a texel loads one
+// column. Writes arrivals to `pendingTick`, changed texels to masks, the earliest future arrival to the tile, and which
+// texels are settled. Jacobi: reads states, writes none.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,14 +21,15 @@ layout(local_size_x = 64) in;
 #define FW_USE_SETTLED FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
+#include "lib/stride.glsl"
 
-struct Column {  // three texels, from below the row to above it
+struct Column {  // three texels, from the row below to the row above
     uint tick[3];
     uvec2 place[3];
     uint burn[3];
 };
 
-// `material`: the one that is at hand, and how long it burns.
+// material, burnTicks: a cached material and its burn time.
 Column columnAt(uint texel, uvec4 bases, uint materialBase, uint material, uint burnTicks) {
     Column c;
     FW_UNROLL for (int i = 0; i < 3; ++i) {
@@ -63,7 +63,7 @@ void arriveRow(uint work) {
     uint lit = 0u;
     uint lateBits = 0u;
     uint wake = kNever;
-    bool ahead = false;  // is more than arrivals waited for?
+    bool ahead = false;  // is something other than an arrival pending?
     bool uneven = false;
     uint settled = 0u;
     uint window = windowTicks(push.stepShift, times.y);
@@ -84,23 +84,21 @@ void arriveRow(uint work) {
                                 left.tick[1], left.tick[0], middle.tick[0], right.tick[0]);
             ring.burn = uint[8](right.burn[1], right.burn[2], middle.burn[2], left.burn[2],
                                 left.burn[1], left.burn[0], middle.burn[0], right.burn[0]);
-            ring.link = ivec3[8](
-                mine - decodePosition(right.place[1]), mine - decodePosition(right.place[2]),
+            ring.link = ivec3[8](mine - decodePosition(right.place[1]), mine - decodePosition(right.place[2]),
                 mine - decodePosition(middle.place[2]), mine - decodePosition(left.place[2]),
                 mine - decodePosition(left.place[1]), mine - decodePosition(left.place[0]),
                 mine - decodePosition(middle.place[0]), mine - decodePosition(right.place[0]));
             uint pending = kNever;
             uint late = 0u;
             uint counts = frontSources(ring, 0xFFu, end, pending);
-            uint future = pending;  // a source of the ring begins then: may correct us too
-            FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
-                                    slownessAt(bases.z, texel), m);
-            uint news = kNever;
+            uint future = pending;  // a source of the ring begins then and may correct the result
+            FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+            uint settledFrom = kNever;
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
-                                          pending, news);
-            // Texels that just catch do so within a step of its own tick, at the earliest.
+                                          pending, settledFrom);
+            // Sources that just catch do so within one step before this texel's tick, at the earliest.
             uint own = min(t, candidate);
-            if (news <= own && own - news >= kStepTicks - 1u && candidate >= floorTick &&
+            if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u && candidate >= floorTick &&
                 (isReceptive(t) || t <= end))
                 settled |= 1u << x;
             uint decided = frontDecide(t, candidate, end, floorTick, pending, late);
@@ -136,12 +134,4 @@ void arriveRow(uint work) {
     if (lit != 0u) atomicOr(maskWords[word + 2u], lit << ((row & 3u) * 8u));
 }
 
-void main() {
-    uint count = counters[push.row].workCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        arriveRow(i);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
-}
+void main() { FW_STRIDE(counters[push.row].workCount, arriveRow) }

@@ -1,5 +1,5 @@
-// As `arrival`, for rim texels: their ring is anywhere in the map, so each is looked up by its links.
-// One thread per gathered texel; runs after `arrival`, whose rows' words it adds to.
+// `arrival` for rim texels: their ring is anywhere in the map and found through links. One thread per gathered texel;
+// runs after `arrival` and adds to its rows' words.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,6 +22,8 @@ layout(local_size_x = 64) in;
 #define FW_USE_PENDING writeonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
+#include "lib/rim.glsl"
+#include "lib/stride.glsl"
 
 void arrive(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];
@@ -38,14 +40,7 @@ void arrive(uint rimWork) {
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
     uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
     uint t = state[bases.y + texel];
-    uvec4 rim = tiles[tile.w * 2u + 1u];
-    uint below = lane < 32u ? uint(bitCount(rim.x & ((1u << lane) - 1u)))
-                            : uint(bitCount(rim.x) +
-                                   bitCount(rim.y & ((1u << (lane - 32u)) - 1u)));
-    uint record = (objects[object].linkBase + rim.z + below) * 2u;
-    uvec4 a = linkQuads[record];
-    uvec4 b = linkQuads[record + 1u];
-    uint other[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
+    uint other[8] = rimRing(object, tile.w, lane);
     FrontRing ring;
     uint present = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
@@ -58,7 +53,7 @@ void arrive(uint rimWork) {
     uint pending = kNever;
     uint late = 0u;
     uint counts = frontSources(ring, present, end, pending);
-    uint future = pending;  // a source of the ring begins then: may correct us too
+    uint future = pending;  // a source of the ring begins then and may correct the result
     uvec2 me = texels[bases.x + texel];
     uint material = (me.y >> 16u) & 7u;
     uint materialBase = object * kMaterialsPerObject;
@@ -76,11 +71,9 @@ void arrive(uint rimWork) {
     }
     uint decided = t;
     if (counts != 0u) {
-        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
-                                m);
-        uint news = kNever;
-        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false,
-                                      pending, news);
+        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+        uint settledFrom = kNever;
+        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false, pending, settledFrom);
         decided = frontDecide(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {
@@ -97,12 +90,4 @@ void arrive(uint rimWork) {
     }
 }
 
-void main() {
-    uint count = counters[push.row].rimCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        arrive(i);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
-}
+void main() { FW_STRIDE(counters[push.row].rimCount, arrive) }

@@ -1,6 +1,5 @@
-// Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals on the list
-// and touches whoever reads a changed texel: the tile, its grid neighbours, its readers over seams
-// (one thread per due tile). The two halves do not meet: tiles are read, texels written.
+// Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals listed, and touches the tiles
+// that depend on a changed texel (one thread per due tile). The halves are independent: tiles are read, texels written.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -25,7 +24,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 
-// Is it not to catch, because enough tiles burn? Then it is left as it was, and due again.
+// Is the tile held back by the burn limit? It stays unchanged and is due again.
 bool refused(uint slot) {
     return (masks[slot].z | masks[slot].w) != 0u && !mayBurn(run[slot].x);
 }
@@ -46,10 +45,7 @@ void commitTile(uint slot) {
             return;
         }
     uint object = tile.y;
-    uint worldTileBase = objects[object].worldTileBase;
-    uint local = worldTile - worldTileBase;
-    uint end = iterationEnd(push.now, push.iteration, push.stepShift,
-                            objects[object].substepShift);
+    uint end = iterationEnd(push.now, push.iteration, push.stepShift, objects[object].substepShift);
     tileState[worldTile].lastChange = end;
     uint lit = uint(bitCount(mask.z) + bitCount(mask.w));
     uint touched = (tileState[worldTile].flag & kTileUneven) != 0u ? kTileTouched : kTileNews;
@@ -70,21 +66,7 @@ void commitTile(uint slot) {
     if ((old & (kTilePredict << push.predictParity)) == 0u)
         predictAppend(push.predictParity, worldTile);
 
-    uint beside = neighboursOf(mask.x, mask.y);
-    uint tilesX = objects[object].tilesX;
-    uint tileY = divide(local, tilesX);
-    uint tileX = local - tileY * tilesX;
-    int tilesY = int(objects[object].height >> 3u);
-    for (; beside != 0u; beside &= beside - 1u) {
-        uint k = uint(findLSB(beside));
-        uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), k);
-        if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, touched);
-    }
-    if ((push.switches & kSwitchNoSeamWake) != 0u) return;
-    uvec4 seam = tiles[tile.w * 2u];
-    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
-    for (uint r = 0u; r < seam.w; ++r)
-        touchTile(parity, row, worldTileBase + readerTile(object, seam.z, r), touched);
+    touchBeside(parity, row, object, worldTile - objects[object].worldTileBase, mask.xy, touched);
 }
 
 void commitRow(uint work) {

@@ -1,6 +1,6 @@
-// Applies a step's texel events, 64 a group: each texel's run of events by the thread of its first,
-// in order. FW_ALL_TEXELS: of runs that address all texels of an object, a thread for each of those.
-// Not a solver: the front kernel answers in the same step.
+// Applies a step's texel events, 64 per group: a texel's run of events by the thread of its first, in order.
+// FW_ALL_TEXELS: runs that address all texels of an object, one thread per texel. The front kernel reacts in the same
+// step.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -26,7 +26,7 @@ layout(local_size_x = 64) in;
 #include "lib/lists.glsl"
 #include "lib/change.glsl"
 
-// Of a flame that came through holes: whether they are there.
+// Does a jet pass all gates on its way?
 bool gatesLet(uint kind) {
     uint gate = kind >> kEventKindBits;
     bool lets = true, more = gate != 0u;
@@ -42,12 +42,21 @@ bool gatesLet(uint kind) {
     return lets;
 }
 
-bool goesOn(uint i, uint object, uint texel) {
+bool continuesRun(uint i, uint object, uint texel) {
     return i < push.count && events[i].object == object && events[i].texel == texel &&
            eventKind(events[i].kind) != kEventPlays;
 }
 
-// The run of events that begins there, on one of its texels.
+// True: the texel is a source now.
+bool writeState(uint object, uint at, uint worldTile, uint before, uint now) {
+    state[at] = now;
+    if (isSource(now) != isSource(before))
+        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
+    if (isSource(now)) nowBurns(object, worldTile, push.now + kStepTicks);
+    return isSource(now);
+}
+
+// Applies the run of events that begins at `first` to one of its texels.
 void applyRun(uint first, uint texel) {
     uint object = events[first].object;
     uint addressed = events[first].texel;
@@ -57,13 +66,12 @@ void applyRun(uint first, uint texel) {
     uint last = first;
     bool heats = (objects[object].flags & kObjectHeat) != 0u;
     bool warms = false;
-    bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
+    bool byFlame = false;  // lit by a jet's heat; ignition by the host is not limited
     uvec2 has = uvec2(0u);
     uint plays = objectCounters[object].playsUntil;
     if (heats) {
         uint heatAt = objects[object].heatBase + texel;
-        uint kind = texels[objects[object].texelBase + texel].y >> 16u;
-        HeatMaterial m = heatMaterial(object * kMaterialsPerObject + (kind & 7u));
+        HeatMaterial m = heatMaterial(materialOfTexel(object, texel));
         uvec2 had = heat[heatAt];
         HeatTexel x = unpackHeat(had);
         do {
@@ -71,19 +79,17 @@ void applyRun(uint first, uint texel) {
             bool lets = !hasGates(kind_) || gatesLet(kind_);
             uint was = now;
             if (lets)
-                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick,
-                                push.now);
+                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick, push.now);
             byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
-        } while (goesOn(last, object, addressed));
+        } while (continuesRun(last, object, addressed));
         has = packHeat(x);
         warms = has != had || now != before;
     } else {
         do {
-            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick,
-                             push.now);
+            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick, push.now);
             ++last;
-        } while (goesOn(last, object, addressed));
+        } while (continuesRun(last, object, addressed));
     }
     if (now == before && !warms) return;
 
@@ -98,29 +104,21 @@ void applyRun(uint first, uint texel) {
     if (heats) heat[objects[object].heatBase + texel] = has;
     if (warms) hotTouch(push.hotParity, p.worldTile);
     if (now == before) return;
-    state[at] = now;
-
-    if (isSource(now) != isSource(before))
-        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
-    if (isSource(now)) {
-        nowBurns(object, p.worldTile, push.now + kStepTicks);
-        if (!isSource(before)) litFrom(object, kLitByHand);
-    }
+    if (writeState(object, at, p.worldTile, before, now) && !isSource(before)) litFrom(object, kLitByHand);
     texelChanged(object, texel, p, isSource(now));
 }
 
-// Fuel that burnt on the other mesh counts as its own loss, of which its room has had its share.
-void bookCarried(uint object, uint had, uint has, uint energy) {
+// Fuel that burnt on the source mesh counts as a loss of the target; its room has already accounted for it.
+void recordCarriedEnergy(uint object, uint had, uint has, uint energy) {
     uint high, low;
     umulExtended(had > has ? had - has : has - had, energy, high, low);
-    if (had < has) {  // it has more fuel than it had
+    if (had < has) {  // it has gained fuel
         high = ~high + (low == 0u ? 1u : 0u);
         low = ~low + 1u;
     }
     if ((low | high) == 0u) return;
-    uint before = atomicAdd(objectCounters[object].energyLow, low);
-    atomicAdd(objectCounters[object].energyHigh, high + (before + low < low ? 1u : 0u));
-    before = atomicAdd(objectCounters[object].drawnLow, low);
+    addEnergy(object, low, high);
+    uint before = atomicAdd(objectCounters[object].drawnLow, low);
     atomicAdd(objectCounters[object].drawnHigh, high + (before + low < low ? 1u : 0u));
 }
 
@@ -133,23 +131,18 @@ void carryTexel(uint i) {
     TexelPlace p = placeOfTexel(object, texel);
     if ((objects[object].flags & kObjectHeat) != 0u) {
         uint heatAt = objects[object].heatBase + texel;
-        uint kind = texels[objects[object].texelBase + texel].y >> 16u;
-        HeatMaterial m = heatMaterial(object * kMaterialsPerObject + (kind & 7u));
+        HeatMaterial m = heatMaterial(materialOfTexel(object, texel));
         uvec2 had = heat[heatAt];
         HeatTexel x = heatCarried(unpackHeat(heat[objects[from].heatBase + events[i].tick]), m);
         now = wetState(now, heatClosed(x, m));
         uvec2 has = packHeat(x);
         if (has == had && now == before) return;
-        bookCarried(object, unpackHeat(had).fuel, x.fuel, m.energy);
+        recordCarriedEnergy(object, unpackHeat(had).fuel, x.fuel, m.energy);
         heat[heatAt] = has;
         hotTouch(push.hotParity, p.worldTile);
     }
     if (now == before) return;
-    state[at] = now;
-    if (isSource(now) != isSource(before))
-        atomicAdd(objectCounters[object].ignited, isSource(now) ? 1u : 0xFFFFFFFFu);
-    if (isSource(now)) {
-        nowBurns(object, p.worldTile, push.now + kStepTicks);
+    if (writeState(object, at, p.worldTile, before, now)) {
         atomicMax(objectCounters[object].litBy, objectCounters[from].litBy);
         atomicMax(objectCounters[object].litTick, objectCounters[from].litTick);
         atomicMax(objectCounters[object].stopTick, objectCounters[from].stopTick);
@@ -163,7 +156,7 @@ bool addressesAll(uint i) {
 }
 
 #ifdef FW_ALL_TEXELS
-// Tiles by group, an event a row; push.object: the event of the first row.
+// Tiles by group, one event per row; push.object: the event of the first row.
 void main() {
     uint i = push.object + gl_WorkGroupID.y;
     if (i >= push.count || !addressesAll(i)) return;
@@ -191,12 +184,12 @@ void main() {
         return;
     }
     if (eventKind(events[i].kind) == kEventPlays) {
-        // Never both in a step.
+        // both never occur in one step
         if (events[i].tick == kNever) atomicMax(objectCounters[object].playsUntil, kNever);
         else atomicMin(objectCounters[object].playsUntil, events[i].tick);
         return;
     }
-    if (texel == kNoneTexel) return;  // all of the object's: see above
+    if (texel == kNoneTexel) return;  // all texels: FW_ALL_TEXELS
     if (i > 0u && events[i - 1u].object == object && events[i - 1u].texel == texel) return;
     applyRun(i, texel);
 }

@@ -1,8 +1,7 @@
-// Finds the texels of the due tiles that have something to answer to, and lists their rows densely
-// for `arrival`: few rows of a tile have any, and a software device pays for idle lanes. Rim texels,
-// whose ring is elsewhere, go to `arrival_rim` unseen. In a tile that woke to a known arrival all
-// others are known too, and nothing is left for `arrival`; where texels just caught, settled ones are
-// passed over. One thread per row of a tile.
+// Finds the texels of due tiles that may change and lists their rows densely for `arrival`: few rows of a tile have
+// any, and a software device pays for idle lanes. Rim texels go to `arrival_rim` unseen. A tile that woke for a known
+// arrival needs no kernel: its other arrivals are known too. Where texels just caught, settled texels are skipped. One
+// thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,12 +20,14 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "shared/front.h"
+#include "lib/gather.glsl"
+#include "lib/stride.glsl"
 
 // Ten texels of a row, from the one left of a tile to the one right of it.
 struct Row {
-    uint sources;     // bits: burn by the window's end
+    uint sources;     // bits: burning by the window's end
     uint walls;       // bits: barriers
-    uint future[10];  // ticks of those that will burn later, kNever: no such
+    uint future[10];  // ticks of those that ignite later, kNever: none
     uint tick[10];
 };
 
@@ -68,7 +69,6 @@ void gatherRow(uint slot, uint row) {
     uint lit = 0u;
     uint pending = kNever;
     if (inner != 0u) {
-        // An inner texel has its ring around it in the map.
         bool left = (inner & 1u) != 0u;
         bool right = (inner & 0x80u) != 0u;
         uint down = at - bases.w;
@@ -78,20 +78,18 @@ void gatherRow(uint slot, uint row) {
                       stateQuads[(down >> 2u) + 1u], right ? state[down + 8u] : kInert, end);
         Row u = rowOf(left ? state[up - 1u] : kInert, stateQuads[up >> 2u],
                       stateQuads[(up >> 2u) + 1u], right ? state[up + 8u] : kInert, end);
-        // frontSources of eight texels at once: bit i is the texel in column i + 1.
+        // frontSources for eight texels at once: bit i is the texel in column i + 1.
         uint straight = m.sources | (m.sources >> 2u) | (u.sources >> 1u) | (d.sources >> 1u);
         uint openUp = ~(u.walls >> 1u);
         uint openDown = ~(d.walls >> 1u);
         uint openLeft = ~m.walls;
         uint openRight = ~(m.walls >> 2u);
-        uint diagonal = (u.sources & (openUp | openLeft)) |
-                        ((u.sources >> 2u) & (openUp | openRight)) |
-                        (d.sources & (openDown | openLeft)) |
-                        ((d.sources >> 2u) & (openDown | openRight));
+        uint diagonal = (u.sources & (openUp | openLeft)) | ((u.sources >> 2u) & (openUp | openRight)) |
+                        (d.sources & (openDown | openLeft)) | ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
-        // A source of before this iteration was looked at since a source beside it caught that is
-        // older than all news, and so its bit is true.
-        uint settled = (tile.z & kRunNews) != 0u ? settledRows[at >> 3u] : 0u;
+        // A source from before this iteration was evaluated after an older source beside it caught, so its settled bit
+        // is valid.
+        uint settled = (tile.z & kRunLitBeside) != 0u ? settledRows[at >> 3u] : 0u;
         FW_UNROLL for (int i = 0; i < 8; ++i) {
             uint least = min(min(m.tick[i], m.tick[i + 2]), min(d.tick[i + 1], u.tick[i + 1]));
             if (own[i] > before || least > own[i] || own[i] - least < kStepTicks)
@@ -104,8 +102,7 @@ void gatherRow(uint slot, uint row) {
             column[i] = min(m.future[i], min(d.future[i], u.future[i]));
         FW_UNROLL for (int i = 0; i < 8; ++i)
             if ((quiet & (1u << uint(i))) != 0u)
-                pending = min(pending, min(min(column[i], column[i + 2]),
-                                           min(d.future[i + 1], u.future[i + 1])));
+                pending = min(pending, min(min(column[i], column[i + 2]), min(d.future[i + 1], u.future[i + 1])));
         if (pending != kNever) atomicOr(tileState[tile.x].flag, kTileAhead);
         if (woken) {
             uvec4 pa = pendingQuads[at >> 2u];
@@ -127,28 +124,7 @@ void gatherRow(uint slot, uint row) {
         atomicOr(maskWords[word], lit << ((row & 3u) * 8u));
         atomicOr(maskWords[word + 2u], lit << ((row & 3u) * 8u));
     }
-    uint item = atomicAdd(counters[push.row].workCount, 1u);
-    if ((item & 63u) == 0u)
-        atomicMax(counters[push.row].workX, min(item / 64u + 1u, kMaxGroups));
-    scratchQuads[item] = uvec4(slot * 8u + row, chosen | (lit << 8u), texel, tile.y);
-    if (rim == 0u) return;
-    uint count = uint(bitCount(rim));
-    uint first = atomicAdd(counters[push.row].rimCount, count);
-    atomicMax(counters[push.row].rimX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
-    do {
-        scratch[rimItem(first)] = item * 8u + uint(findLSB(rim));
-        ++first;
-        rim &= rim - 1u;
-    } while (rim != 0u);
+    gatherItem(push.row, uvec4(slot * 8u + row, chosen | (lit << 8u), texel, tile.y), rim);
 }
 
-void main() {
-    uint count = counters[push.row].runCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (slot >= count) return;
-    do {
-        gatherRow(slot, row);
-        slot += gl_NumWorkGroups.x * 8u;
-    } while (slot < count);
-}
+void main() { FW_STRIDE_ROWS(counters[push.row].runCount, gatherRow) }

@@ -1,6 +1,6 @@
-// Which of the tiles that asked to burn may: as many as there is room for in each object and in the
-// world, in an order of chance (`askOrder`). They join the burn list, and only what is on it is lit
-// afterwards. With the asks switch the front's due tiles that would catch ask here. One group.
+// Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and of the world, in
+// hashed order (askOrder). They join the burn list, and only listed tiles are lit afterwards. With kSwitchAsks the
+// front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -30,7 +30,7 @@ uvec4 orderOf(uint worldTile) {
     return uvec4(askOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
 }
 
-// How many of those with this mark come before; `alike`: of the same object.
+// Number of requests with at least this mark that precede `own`; alike: of the same object.
 uint before(uvec4 own, uint count, uint mark, bool alike) {
     uint sum = 0u;
     for (uint i = 0u; i < count; ++i) {
@@ -52,30 +52,30 @@ void main() {
     barrier();
     uint count = counters[asks].workCount;
     uint room = roomFor(counters[kRowBurn + push.burnParity].listCount, push.tilesMost);
-    // What the host lit meanwhile burns without leave.
+    // Tiles lit by the host meanwhile burn without a request.
     for (uint i = lane; i < count; i += 64u)
         if ((tileState[asked(i)].flag & kTileBurning) != 0u) setMark(asked(i), 0u);
     memoryBarrierBuffer();
     barrier();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
-        if (markOf(own.w) != kAsked) continue;
+        if (markOf(own.w) != kRequested) continue;
         RemoteObject limits = remoteObjects[own.y];
         uint most = (limits.flags & kRemoteLive) != 0u ? limits.tilesMost : kNoneTexel;
         uint objectRoom = roomFor(objectCounters[own.y].burningTiles, most);
         uint fits = 1u;
-        if (count > objectRoom) fits = before(own, count, kAsked, true) < objectRoom ? 1u : 0u;
-        // A mark of a lane that is done still counts as one that asked.
-        if (fits != 0u) setMark(own.w, kAsked + kAskedFits);
+        if (count > objectRoom) fits = before(own, count, kRequested, true) < objectRoom ? 1u : 0u;
+        // Marks of finished lanes still count as requests.
+        if (fits != 0u) setMark(own.w, kRequested + kRequestFitsObject);
     }
     memoryBarrierBuffer();
     barrier();
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
-        if (markOf(own.w) != kAsked + kAskedFits) continue;
+        if (markOf(own.w) != kRequested + kRequestFitsObject) continue;
         uint may = 1u;
-        if (count > room) may = before(own, count, kAsked + kAskedFits, false) < room ? 1u : 0u;
-        if (may != 0u) setMark(own.w, kAsked + kAskedMay);
+        if (count > room) may = before(own, count, kRequested + kRequestFitsObject, false) < room ? 1u : 0u;
+        if (may != 0u) setMark(own.w, kRequested + kRequestAllocated);
     }
     memoryBarrierBuffer();
     barrier();
@@ -83,7 +83,7 @@ void main() {
         uint worldTile = asked(i);
         uint mark = markOf(worldTile);
         setMark(worldTile, 0u);
-        if (mark != kAsked + kAskedMay) continue;
+        if (mark != kRequested + kRequestAllocated) continue;
         atomicOr(tileState[worldTile].flag, kTileBurning);
         burnAppend(push.burnParity, worldTile);
         atomicAdd(objectCounters[tileState[worldTile].object].burningTiles, 1u);

@@ -1,9 +1,8 @@
-// A heat step of the tiles on the hot list: temperature, fuel and water of each texel, and what
-// becomes of its state in the front. Tiles at rest leave the list. Most of the others are only warm,
-// or wet, and have their turn now and then: a group looks through the list until it has 64 that do,
-// runs them by eight with eight threads each, and finishes them with a thread each. A thread looks
-// through a row for texels whose turn it is; those of a tile are listed and shared out, as fire
-// rarely fills a tile. Tiles that stay hot are appended together: one counter is all groups' way.
+// A heat step of the hot tiles: temperature, fuel and water of each texel, and its state in the front. Cooled tiles
+// leave the list. Most other tiles are only warm or wet and are due at intervals: a group scans the list until it has
+// 64 due tiles, runs them by eight with eight threads each, and finishes them with one thread each. A thread scans a
+// row for due texels, which are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended
+// together, to reduce contention on the list's counter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -31,7 +30,7 @@ layout(local_size_x = 64) in;
 #include "shared/heat.h"
 #include "lib/lists.glsl"
 
-const uint kBlock = 64u;  // tiles that are finished together
+const uint kBlock = 64u;  // finished together
 
 shared uint running;
 shared uint runs[2u * kBlock];  // world tiles
@@ -40,10 +39,10 @@ shared uint stays[kBlock];
 shared uint staysAt;
 shared uint rowTodo[64];
 shared uint items[512];  // of eight tiles: lane, and kItem bits
-shared uint kinds[8];    // of eight tiles: which materials theirs have, by bits
+shared uint kinds[8];    // of eight tiles: materials of their texels, by bits
 shared uint tileChanged[2u * kBlock];
-// What eight threads of each tile tell: lit | put out << 8 | work << 16, and heat of what burnt.
-shared uint threadNews[8u * kBlock];
+// Results of eight threads per tile: lit | put out << 8 | work << 16, and heat of the burnt fuel.
+shared uint threadChanges[8u * kBlock];
 shared uint threadLow[8u * kBlock];
 shared uint threadHigh[8u * kBlock];
 shared float threadWatts[8u * kBlock];
@@ -52,7 +51,7 @@ const uint kItemDozes = 64u, kItemRests = 128u, kItemReal = 256u;
 const uint kItemKindShift = 9u;
 
 struct Row {
-    uint todo;    // texels whose turn it is, by bits
+    uint todo;    // due texels, by bits
     uint dozes;
     uint rests;
     uint waits;   // work of the others
@@ -82,7 +81,7 @@ Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
     return r;
 }
 
-// Lists a row's texels behind those of the rows before it.
+// Lists a row's texels after those of the rows before it.
 void listRow(TileRef tile, uint thread, Row r) {
     uint row = thread & 7u, at = (thread & ~7u) * 8u;
     FW_UNROLL for (uint other = 0u; other < 7u; ++other)
@@ -103,28 +102,28 @@ void listRow(TileRef tile, uint thread, Row r) {
     } while (todo != 0u);
 }
 
-struct Told {
-    uint news;       // as threadNews
+struct Changes {
+    uint bits;       // as threadChanges
     uint low, high;  // 2^-20 J
     float watts;
 };
 
-// A thread's part of the list of tile `slot` of the block: each eighth item. `held`: the tile may not catch: what would
-// stays as it is, and is looked at again.
-Told heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
-    Told told = Told(0u, 0u, 0u, 0.0);
+// A thread's part of the list of tile `slot` of the block: every eighth item. held: the tile may not catch; texels that
+// would catch stay unchanged and are tried again.
+Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
+    Changes sum = Changes(0u, 0u, 0u, 0.0);
     uint count = 0u, first = (thread & ~7u) * 8u + (thread & 7u);
     FW_UNROLL for (uint row = 0u; row < 8u; ++row)
         count += uint(bitCount(rowTodo[(thread & ~7u) + row]));
-    if (count == 0u) return told;
+    if (count == 0u) return sum;
     uint object = tile.object, width = objects[object].width;
     uint corner = texelOf(object, tile.local, 0u);
     uint stateAt = objects[object].stateBase;
     uint heatAt = objects[object].heatBase;
     uint ambient = heatQuads[object * kMaterialsPerObject * 6u + 1u].w;
     uint step = hash32(push.now), strength = airStrength(objectCounters[object].air);
-    // A material is many words, and one is most often all of a tile: texels of each in turn. Both
-    // loops are as long for all threads of a tile.
+    // A material is many words, and most tiles have one: texels of each material in turn. Both loops have the same
+    // length for all threads of a tile.
     uint left = kinds[thread >> 3u];
     do {
         uint kind = uint(findLSB(left)), material = object * kMaterialsPerObject + kind;
@@ -148,28 +147,28 @@ Told heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
             bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
             bool lights = real && isSource(now) && !isSource(before);
             bool writes = !asksOnly() && !(held && lights);
-            told.news |= lights && !writes ? kWorkAlways << 16u : 0u;
-            told.news += lights && asksOnly() ? 1u : 0u;
+            sum.bits |= lights && !writes ? kWorkAlways << 16u : 0u;
+            sum.bits += lights && asksOnly() ? 1u : 0u;
             if (real && writes) {
                 uint low, high;
                 umulExtended(units, own.energy, high, low);
-                told.high += high + (told.low + low < low ? 1u : 0u);
-                told.low += low;
-                told.watts += float(units) * own.watts;
+                sum.high += high + (sum.low + low < low ? 1u : 0u);
+                sum.low += low;
+                sum.watts += float(units) * own.watts;
                 heat[heatAt + texel] = packHeat(x);
                 if (now != before) {
                     state[stateAt + texel] = now;
                     atomicOr(tileChanged[slot * 2u + (lane >> 5u)], 1u << (lane & 31u));
                 }
-                told.news += lights ? 1u : 0u;
-                told.news += isSource(before) && !isSource(now) ? 0x100u : 0u;
-                told.news |= heatWork(x, now, comes.x, ambient) << 16u;
+                sum.bits += lights ? 1u : 0u;
+                sum.bits += isSource(before) && !isSource(now) ? 0x100u : 0u;
+                sum.bits |= heatWork(x, now, comes.x, ambient) << 16u;
             }
             at += 8u;
         } while (at < count);
         left &= left - 1u;
     } while (left != 0u);
-    return told;
+    return sum;
 }
 
 void finishTile(uint worldTile, TileRef tile, uint slot) {
@@ -178,10 +177,10 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
     uint lit = 0u, gone = 0u, work = fluxWork(tileHeat[worldTile].flux), low = 0u, high = 0u;
     float watts = 0.0;
     for (uint k = slot * 8u; k < slot * 8u + 8u; ++k) {
-        uint news = threadNews[k];
-        lit += news & 0xFFu;
-        gone += news >> 8u & 0xFFu;
-        work |= news >> 16u;
+        uint changes = threadChanges[k];
+        lit += changes & 0xFFu;
+        gone += changes >> 8u & 0xFFu;
+        work |= changes >> 16u;
         low += threadLow[k];
         high += threadHigh[k] + (low < threadLow[k] ? 1u : 0u);
         watts += threadWatts[k];
@@ -191,7 +190,7 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
         return;
     }
     if (work != 0u) {
-        // Only what is in its turn always can show anything.
+        // Only texels that are always due can show anything.
         if ((work & kWorkAlways) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
         else atomicAnd(tileState[worldTile].flag, ~kTileWarm);
         stays[atomicAdd(staying, 1u)] = worldTile;
@@ -199,19 +198,12 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
         atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
     }
     tileFire[worldTile] = watts;
-    if ((low | high) != 0u) {
-        uint had = atomicAdd(objectCounters[object].energyLow, low);
-        atomicAdd(objectCounters[object].energyHigh, high + (had + low < low ? 1u : 0u));
-    }
+    if ((low | high) != 0u) addEnergy(object, low, high);
     if ((changed.x | changed.y) == 0u) return;
     if (lit != gone) atomicAdd(objectCounters[object].ignited, lit - gone);
     if (lit != 0u) {
-        atomicMax(objectCounters[object].lastIgnition, push.now + kStepTicks);
         atomicMin(objectCounters[object].playsUntil, push.now + kStepTicks);
-        if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
-            burnAppend(push.burnParity, worldTile);
-            atomicAdd(objectCounters[object].burningTiles, 1u);
-        }
+        nowBurns(object, worldTile, push.now + kStepTicks);
     }
     tileState[worldTile].lastChange = push.now;
     predictTouch(push.predictParity, worldTile);
@@ -223,20 +215,20 @@ uint turnOf(uint worldTile, TileRef tile) {
     return heatTurn(warm, tile.object, tile.local, tileHeat[worldTile].flux, push.now);
 }
 
-// One more of the list: it runs, stays as it is, or is gone.
+// Takes a tile of the list: it runs, waits, or is gone.
 void takeTile(uint worldTile) {
     TileRef tile = tileRef(worldTile);
     bool alive = tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
     if (!alive) {
         if (!asksOnly()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
     } else if (turnOf(worldTile, tile) == 0u) {
-        if (!asksOnly()) stays[atomicAdd(staying, 1u)] = worldTile;  // sleeps on
+        if (!asksOnly()) stays[atomicAdd(staying, 1u)] = worldTile;  // not due
     } else if (!asksOnly() || !mayBurn(worldTile)) {
         runs[atomicAdd(running, 1u)] = worldTile;
     }
 }
 
-// Appends all that stay.
+// Appends all tiles that stay hot.
 void keepHot(uint thread) {
     barrier();
     uint count = staying;
@@ -247,7 +239,7 @@ void keepHot(uint thread) {
     barrier();
 }
 
-// Eight tiles of a block, from its `first` on.
+// Runs eight tiles of a block, starting at `first`.
 void runEight(uint thread, uint base, uint first, uint all) {
     uint slot = first + (thread >> 3u);
     bool here = base + slot < all;
@@ -261,12 +253,12 @@ void runEight(uint thread, uint base, uint first, uint all) {
     barrier();
     listRow(tile, thread, row);
     barrier();
-    Told told = heatItems(tile, slot, thread, comes, !mayBurn(worldTile));
+    Changes changes = heatItems(tile, slot, thread, comes, !mayBurn(worldTile));
     uint at = slot * 8u + (thread & 7u);
-    threadNews[at] = told.news | row.waits << 16u;
-    threadLow[at] = told.low;
-    threadHigh[at] = told.high;
-    threadWatts[at] = told.watts;
+    threadChanges[at] = changes.bits | row.waits << 16u;
+    threadLow[at] = changes.low;
+    threadHigh[at] = changes.high;
+    threadWatts[at] = changes.watts;
     barrier();
 }
 

@@ -1,6 +1,5 @@
-// Arrival ahead of the front, for looks: one ring further each frame, up to the object's horizon. One
-// thread per gathered row, along which a ring moves, as in `arrival`; predict_commit writes the times.
-// Cosmetic: plain hops, no pairs.
+// Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's horizon. One thread
+// per gathered row, along which a ring moves as in `arrival`; predict_commit writes the times. Single hops, no pairs.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,6 +20,7 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 #include "lib/predict.glsl"
+#include "lib/stride.glsl"
 
 struct Column {  // three texels, from below the row to above it
     uint time[3];
@@ -72,11 +72,9 @@ void predictRow(uint work) {
                     held = material;
                     m = burnMaterial(materialBase + held);
                 }
-                FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]),
-                                        slownessAt(bases.z, texel), m);
+                FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
                 ivec3 mine = decodePosition(middle.place[1]);
-                now = min(hop(middle.time[0], middle.place[0], mine, p),
-                          hop(middle.time[2], middle.place[2], mine, p));
+                now = min(hop(middle.time[0], middle.place[0], mine, p), hop(middle.time[2], middle.place[2], mine, p));
                 FW_UNROLL for (int i = 0; i < 3; ++i)
                     now = min(now, min(hop(left.time[i], left.place[i], mine, p),
                                        hop(right.time[i], right.place[i], mine, p)));
@@ -109,12 +107,4 @@ void predictRow(uint work) {
     }
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].workCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        predictRow(i);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
-}
+void main() { FW_STRIDE(counters[kRowPredict + push.predictParity].workCount, predictRow) }

@@ -1,5 +1,4 @@
-// Tiles of an object that a view shows again, into the predict list: all on which anything shows,
-// or did. One thread per tile.
+// Adds the marked tiles of an object that a view shows again to the predict list. One thread per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -10,13 +9,10 @@ layout(local_size_x = 64) in;
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
+#include "lib/stride.glsl"
 
-void main() {
-    uint stride = gl_NumWorkGroups.x * 64u;
-    for (uint local = gl_GlobalInvocationID.x; local < objects[push.object].tileCount;
-         local += stride) {
-        uint worldTile = objects[push.object].worldTileBase + local;
-        if ((tileState[worldTile].flag & kTileMarked) != 0u)
-            predictTouch(push.predictParity, worldTile);
-    }
+void addTile(uint local) {
+    uint worldTile = objects[push.object].worldTileBase + local;
+    if ((tileState[worldTile].flag & kTileMarked) != 0u) predictTouch(push.predictParity, worldTile);
 }
+void main() { FW_STRIDE(objects[push.object].tileCount, addTile) }

@@ -1,5 +1,5 @@
-// Ends a round of prediction: first the new times of its gathered rows, and how far the fire is from
-// what is wet; then, from times that no thread writes any more, the gradients. One thread per row.
+// Ends a prediction round: first the new times of the gathered rows and the fire's distance to wet texels; then, from
+// times that no thread writes any more, the gradients. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -39,8 +39,7 @@ void main() {
         uint height = objectSizes(item.w).y;
         for (; changed != 0u; changed &= changed - 1u) {
             uint i = uint(findLSB(changed)), time = predict[at + i];
-            gradient[at + i] = hasTime(time)
-                                   ? gradientOf(at + i, x + i, y, bases.w, height, time)
+            gradient[at + i] = hasTime(time) ? gradientOf(at + i, x + i, y, bases.w, height, time)
                                    : gradient[at + i] & 0xFFu;
         }
     }

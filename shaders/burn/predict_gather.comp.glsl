@@ -1,8 +1,6 @@
-// Finds the texels of the predict list's tiles whose shown arrival may change, and lists their rows
-// for `predict`, rim texels for `predict_rim`; of wet ones how near the fire is. What has an arrival
-// already is gone over in about every eighth frame only. Of an object that no view shows nothing is
-// looked for. Reads what neighbours show and writes no more than what the next round reads. One thread
-// per row.
+// Finds the texels of the predict list's tiles whose predicted arrival may change and lists their rows for `predict`,
+// rim texels for `predict_rim`; updates the fire's distance to wet texels. Known arrivals are revisited about every
+// eighth frame. Skips objects that no view shows. Writes only what the next round reads. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,6 +20,8 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 #include "lib/predict.glsl"
+#include "lib/gather.glsl"
+#include "lib/stride.glsl"
 
 // Bit i: column i - 1 of the row has a time.
 uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
@@ -31,7 +31,7 @@ uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
     return times;
 }
 
-// Texels from a wet texel to where the fire is or will be; below 0: far. y: 1 while it comes.
+// Distance in texels from a wet texel to the fire, now or predicted; below 0: far. y: 1 while it approaches.
 const float kWetReach = 24.0;
 vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
     vec2 least = vec2(-1.0, 0.0);
@@ -58,13 +58,8 @@ void gatherRow(uint slot, uint row) {
     uint counterRow = kRowPredict + push.predictParity;
     uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
     uint flag = tileState[worldTile].flag;
-    if ((flag & kTileFalling) != 0u) {  // what it shows is `support`'s
-        if (row == 0u)
-            atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
-        return;
-    }
-    if (row == 0u)
-        atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
+    if (row == 0u) atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
+    if ((flag & kTileFalling) != 0u) return;  // `support` writes what it shows
     uint object = tileState[worldTile].object;
     uvec4 bases = objectBases(object);
     uvec4 places = objectPlaces(object);
@@ -82,9 +77,9 @@ void gatherRow(uint slot, uint row) {
     uint t[8] = uint[8](ta.x, ta.y, ta.z, ta.w, tb.x, tb.y, tb.z, tb.w);
     uint p[8] = uint[8](pa.x, pa.y, pa.z, pa.w, pb.x, pb.y, pb.z, pb.w);
     uint burns = 0u; // or has burnt
-    uint lit = 0u;   // so, and is not shown so
+    uint lit = 0u;   // burns, but is not shown so
     uint open = 0u;  // unburnt: an arrival may be predicted
-    uint known = 0u; // of these: with a time
+    uint known = 0u; // unburnt with a predicted time
     uint wet = 0u;
     FW_UNROLL for (int i = 0; i < 8; ++i) {
         uint bit = 1u << uint(i);
@@ -99,7 +94,7 @@ void gatherRow(uint slot, uint row) {
     bool shownAgain = (places.w & kObjectShownAgain) != 0u;
     bool marks = (lit | known) != 0u;
     if (unseen) return;
-    // About every fourth frame: water does not hurry.
+    // About every fourth frame: distances to water change slowly.
     bool soon = wet != 0u;
     if (((hash32((push.now >> 7u) * 3u + worldTile) & 3u) != 0u)) wet = 0u;
     soon = soon && wet == 0u;
@@ -130,8 +125,7 @@ void gatherRow(uint slot, uint row) {
     if (fresh != 0u) {
         bool left = tileX > 0u;
         bool right = tileX + 1u < sizes.z;
-        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb,
-                             right ? predict[at + 8u] : kNever);
+        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
         if (tileY > 0u || row > 0u) {
             uint down = at - bases.w;
             times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],
@@ -147,34 +141,7 @@ void gatherRow(uint slot, uint row) {
     if ((marks || (chosen & ~rim) != 0u) && (flag & kTileMarked) == 0u)
         atomicOr(tileState[worldTile].flag, kTileMarked);
     if ((chosen | nearer) == 0u) return;
-    uint item = atomicAdd(counters[counterRow].workCount, 1u);
-    if ((item & 63u) == 0u) {
-        atomicMax(counters[counterRow].workX, min(item / 64u + 1u, kMaxGroups));
-        counters[counterRow].workY = 1u;
-        counters[counterRow].workZ = 1u;
-    }
-    scratchQuads[item] = uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, texel, object);
-    rim &= chosen;
-    if (rim == 0u) return;
-    uint count = uint(bitCount(rim));
-    uint first = atomicAdd(counters[counterRow].rimCount, count);
-    atomicMax(counters[counterRow].rimX, min((first + count - 1u) / 64u + 1u, kMaxGroups));
-    counters[counterRow].rimY = 1u;
-    counters[counterRow].rimZ = 1u;
-    do {
-        scratch[rimItem(first)] = item * 8u + uint(findLSB(rim));
-        ++first;
-        rim &= rim - 1u;
-    } while (rim != 0u);
+    gatherItem(counterRow, uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, texel, object), rim & chosen);
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].listCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (slot >= count) return;
-    do {
-        gatherRow(slot, row);
-        slot += gl_NumWorkGroups.x * 8u;
-    } while (slot < count);
-}
+void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, gatherRow) }

@@ -1,4 +1,4 @@
-// As `predict`, for rim texels: their ring is anywhere in the map. One thread per gathered texel.
+// `predict` for rim texels, whose ring is anywhere in the map. One thread per gathered texel.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,6 +19,8 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "lib/lists.glsl"
 #include "lib/predict.glsl"
+#include "lib/rim.glsl"
+#include "lib/stride.glsl"
 
 void predictTexel(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];
@@ -36,16 +38,8 @@ void predictTexel(uint rimWork) {
     bool beyond = false;
     if (now == kNever) {
         uvec2 me = texels[bases.x + texel];
-        uvec4 rim = tiles[(sizes.x + worldTile - objects[object].worldTileBase) * 2u + 1u];
-        uint below = lane < 32u
-                         ? uint(bitCount(rim.x & ((1u << lane) - 1u)))
-                         : uint(bitCount(rim.x) + bitCount(rim.y & ((1u << (lane - 32u)) - 1u)));
-        uint record = (objects[object].linkBase + rim.z + below) * 2u;
-        uvec4 a = linkQuads[record];
-        uvec4 b = linkQuads[record + 1u];
-        uint other[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
-        FrontPrep p = frontPrep(
-            decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+        uint other[8] = rimRing(object, sizes.x + worldTile - objects[object].worldTileBase, lane);
+        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
             burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
         FW_UNROLL for (int k = 0; k < 8; ++k) {
             if (other[k] != kNoneTexel) {
@@ -78,12 +72,4 @@ void predictTexel(uint rimWork) {
     }
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].rimCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        predictTexel(i);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
-}
+void main() { FW_STRIDE(counters[kRowPredict + push.predictParity].rimCount, predictTexel) }

@@ -1,6 +1,6 @@
-// Passes states that are no arrival (wet, put out, ...) on to what is shown of the predict list's
-// tiles. Of an object that no view shows what burns is passed on, too; one that a view shows again
-// forgets what was predicted of it. Touches a row's own texels alone. One thread per row.
+// Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict list's tiles. For an
+// object that no view shows, burning texels are copied, too; an object that a view shows again drops its predictions. A
+// thread writes its own row only.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,10 +13,12 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "lib/gradient.glsl"
 #include "shared/front.h"
+#include "lib/stride.glsl"
 
-void passRow(uint worldTile, uint row) {
+void passRow(uint slot, uint row) {
+    uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
     uint flag = tileState[worldTile].flag;
-    if ((flag & kTileFalling) != 0u) return;  // what it shows is the support pass's
+    if ((flag & kTileFalling) != 0u) return;  // `support` writes what it shows
     uint object = tileState[worldTile].object;
     uvec4 places = objectPlaces(object);
     uvec4 sizes = objectSizes(object);
@@ -34,14 +36,14 @@ void passRow(uint worldTile, uint row) {
         if (code == time) continue;
         bool open = code == kNever, source = isSource(code);
         if (open || source) {
-            // Of what is seen `predict` decides.
+            // `predict` handles visible texels.
             bool forgets = shownAgain ? open && time < kLiveEnd : unseen && source;
             if (forgets) predict[i] = code;
             marks = marks || forgets;
             continue;
         }
-        // An extinguished texel keeps the look of the age it had: its gradient is that age. What was not
-        // seen to burn before had none to speak of; 0 would say nothing is known.
+        // An extinguished texel keeps its age, stored as its gradient. A texel that was not shown burning gets 1; 0
+        // would mean unknown.
         if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
         else if (time < kLiveEnd) gradient[i] = time < push.now ? push.now - time : 1u;
         else if (time == kNever || time == kWet) gradient[i] = 1u;
@@ -51,10 +53,4 @@ void passRow(uint worldTile, uint row) {
     if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
 }
 
-void main() {
-    uint count = counters[kRowPredict + push.predictParity].listCount;
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint slot = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    for (; slot < count; slot += gl_NumWorkGroups.x * 8u)
-        passRow(push.predictParity == 0u ? predictA[slot] : predictB[slot], row);
-}
+void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, passRow) }

@@ -1,4 +1,4 @@
-// Gathers what is known of asked texels for the readback.
+// Collects the state of the probed texels for the readback.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,6 +1,5 @@
-// One step of the published sixteen-tap kernel over a whole object, for comparison. A lane takes a
-// column of eights, row by row with the five rows about it at hand: taps overlap, and loads are
-// what a software device pays for. Neighbouring lanes take neighbouring columns.
+// One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes a column of eights
+// row by row and keeps the five rows around it, as taps overlap and loads dominate on a software device.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,33 +15,29 @@ layout(local_size_x = 64) in;
 #include "shared/front.h"
 #include "shared/published.h"
 #include "lib/lists.glsl"
+#include "lib/stride.glsl"
 
-// Four texels of a row at once: planes begin at whole tiles, rows are multiples of eight.
+// Four texels of a row: buffers begin at whole tiles, rows are multiples of eight.
 layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4 quads[]; };
 
-// False: its tile may not burn.
+// False: the tile may not burn.
 bool light(uint object, int x, int y, uint at) {
     uint end = push.now + kStepTicks;
-    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX +
-                     uint(x >> 3);
+    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX + uint(x >> 3);
     if (asksOnly() && !mayBurn(worldTile)) askToBurn(worldTile);
     if (asksOnly() || !mayBurn(worldTile)) return false;
     state[at] = end;
     atomicAdd(objectCounters[object].ignited, 1u);
-    atomicMax(objectCounters[object].lastIgnition, end);
-    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
-        burnAppend(push.burnParity, worldTile);
-        atomicAdd(objectCounters[object].burningTiles, 1u);
-    }
+    nowBurns(object, worldTile, end);
     predictTouch(push.predictParity, worldTile);
     return true;
 }
 
-// Eight texels of a row as the taps of their neighbours: left and right four.
+// Tap sums of eight texels of a row.
 struct Row {
-    vec4 left, right;                // themselves
-    vec4 oneLeft, oneRight;          // the two beside each
-    vec4 twoLeft, twoRight;          // the two next but one
+    vec4 left, right;                // the texels
+    vec4 oneLeft, oneRight;          // sums of the two adjacent texels
+    vec4 twoLeft, twoRight;          // sums of the two texels at distance 2
 };
 Row loadRow(int plane, int width, int height, int x, int y) {
     Row row;
@@ -63,15 +58,14 @@ Row loadRow(int plane, int width, int height, int x, int y) {
     return row;
 }
 
-// Sign bits: S of a texel passes one half.
+// Sign bits: S of a texel crosses one half.
 uvec4 crossings(vec4 q, vec4 next, vec4 d) {
     precise vec4 before = q + q - d;
     precise vec4 after = next + next - d;
     return floatBitsToUint(before) & ~floatBitsToUint(after);
 }
 
-// Lights what passed in these eight. From the planes again: it is rare, and a row that has it at
-// hand costs all others.
+// Lights the crossed texels of these eight, from the buffers: it is rare, and cached rows would cost all other steps.
 void lightRow(uint object, int x, int y, int from, int to, int spread) {
     uvec4 left = crossings(quads[from], quads[to], quads[spread]) >> 31u;
     uvec4 right = crossings(quads[from + 1], quads[to + 1], quads[spread + 1]) >> 31u;
@@ -81,7 +75,7 @@ void lightRow(uint object, int x, int y, int from, int to, int spread) {
         int column = findLSB(bits);
         int atX = x + column;
         uint stateAt = objects[object].stateBase + uint(y) * objects[object].width + uint(atX);
-        // What may not burn yet passes again in the next step.
+        // A texel that may not burn yet crosses again in the next step.
         if (isReceptive(state[stateAt]) && !light(object, atX, y, stateAt))
             quads[to + column / 4][column % 4] = quads[from + column / 4][column % 4];
     }
@@ -100,20 +94,17 @@ void runBlock(uint object, int x, int y) {
     Row centre = loadRow(from, width, height, x, y);
     Row above1 = loadRow(from, width, height, x, y + 1);
     int end = min(y + int(kPublishedBlockY), height);
-    uint rows = 0u;  // with a texel that passes; bit 31 is the last
+    uint rows = 0u;  // rows with a crossing; bit 31 is the last
     do {
         Row above2 = loadRow(from, width, height, x, y + 2);
         int at = (y * width + x) / 4;
         vec4 dLeft = quads[spread + at];
         vec4 dRight = quads[spread + at + 1];
         vec4 left = publishedNext(centre.left, dLeft, (below1.left + above1.left) + centre.oneLeft,
-                                  below1.oneLeft + above1.oneLeft,
-                                  (below1.twoLeft + above1.twoLeft) +
+                                  below1.oneLeft + above1.oneLeft, (below1.twoLeft + above1.twoLeft) +
                                       (below2.oneLeft + above2.oneLeft));
-        vec4 right = publishedNext(centre.right, dRight,
-                                   (below1.right + above1.right) + centre.oneRight,
-                                   below1.oneRight + above1.oneRight,
-                                   (below1.twoRight + above1.twoRight) +
+        vec4 right = publishedNext(centre.right, dRight, (below1.right + above1.right) + centre.oneRight,
+                                   below1.oneRight + above1.oneRight, (below1.twoRight + above1.twoRight) +
                                        (below2.oneRight + above2.oneRight));
         quads[to + at] = left;
         quads[to + at + 1] = right;
@@ -133,17 +124,14 @@ void runBlock(uint object, int x, int y) {
     }
 }
 
+void runColumn(uint i) {
+    uint columns = objects[push.object].width / kPublishedBlockX;
+    uint blockY = divide(i, columns);
+    runBlock(push.object, int((i - blockY * columns) * kPublishedBlockX), int(blockY * kPublishedBlockY));
+}
+
 void main() {
-    uint object = push.object;
-    uint columns = objects[object].width / kPublishedBlockX;
-    uint blocks =
-        columns * ((objects[object].height + kPublishedBlockY - 1u) / kPublishedBlockY);
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= blocks) return;
-    do {
-        uint blockY = divide(i, columns);
-        runBlock(object, int((i - blockY * columns) * kPublishedBlockX),
-                 int(blockY * kPublishedBlockY));
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < blocks);
+    uint columns = objects[push.object].width / kPublishedBlockX;
+    uint rows = (objects[push.object].height + kPublishedBlockY - 1u) / kPublishedBlockY;
+    FW_STRIDE(columns * rows, runColumn)
 }

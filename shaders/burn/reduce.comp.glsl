@@ -1,6 +1,6 @@
-// What burns, tile by tile: counts per object, a BurnTile for lights and flames, and the burn list
-// without the tiles that burnt out. 64 tiles of the list a group. With kSwitchShows only the
-// BurnTiles: after a load the first frame shows flames, and counts stay those of the save.
+// Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without burnt-out tiles. 64
+// list entries per group. kSwitchShows: BurnTiles only; after a load the first frame shows flames while counts stay
+// those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,10 +20,11 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/heat.h"
 #include "lib/lists.glsl"
+#include "lib/stride.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
-// One thread per tile, without shared memory: a software device runs eight tiles a thread.
+// One thread per tile without shared memory: a software device runs eight tiles at once.
 void reduceTile(uint worldTile, uint parity) {
     TileRef tile = tileRef(worldTile);
     uint object = tile.object;
@@ -50,10 +51,8 @@ void reduceTile(uint worldTile, uint parity) {
         if (heats) {
             uint phase = heat[heatBase + texel].y >> 30u;
             burns = t <= push.now && phase != kPhaseBurnt;
-            // Thick fuel's power is what it lost, once a heat step has met it; thin fuel's looks
-            // want its mean.
-            nominal = phase != kPhaseBurning ||
-                      materials[material].burnTicks == materials[material].flameTicks;
+            // Thick fuel's power is its loss, once a heat step has run; thin fuel shows its mean.
+            nominal = phase != kPhaseBurning || materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
         ++count;
@@ -88,13 +87,12 @@ void reduceTile(uint worldTile, uint parity) {
     }
     float area = objects[object].tint.w;
     vec4 rest = vec4(objects[object].originQuantum.xyz +
-                         objects[object].originQuantum.w * vec3(position) / float(count),
-                     1.0);
+                         objects[object].originQuantum.w * vec3(position) / float(count), 1.0);
     vec4 row0 = objects[object].worldRow0;
     vec4 row1 = objects[object].worldRow1;
     vec4 row2 = objects[object].worldRow2;
     vec3 n = vec3(normal);
-    // A tile moves with one of its texels.
+    // A tile of a skinned object moves with one of its texels.
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
     SkinPlace moved = skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
     if (skinned) {
@@ -104,13 +102,11 @@ void reduceTile(uint worldTile, uint parity) {
     vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
     float size = length(world);
     BurnTile b;
-    b.positionArea =
-        vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
+    b.positionArea = vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
     float fire = heats ? tileFire[worldTile] : 0.0;
     power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
-    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0),
-                         power * area + fire);
+    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0), power * area + fire);
     b.object = object;
     b.tile = tile.local;
     b.texels = count;
@@ -118,13 +114,7 @@ void reduceTile(uint worldTile, uint parity) {
     burnTiles[slot] = b;
 }
 
-void main() {
-    uint parity = push.burnParity;
-    uint count = counters[kRowBurn + parity].listCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        reduceTile(parity == 0u ? burnA[i] : burnB[i], parity);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
+void reduceItem(uint i) {
+    reduceTile(push.burnParity == 0u ? burnA[i] : burnB[i], push.burnParity);
 }
+void main() { FW_STRIDE(counters[kRowBurn + push.burnParity].listCount, reduceItem) }

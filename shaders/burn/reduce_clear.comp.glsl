@@ -1,4 +1,4 @@
-// Zeroes the per-object figures and fire sources that the next passes sum again.
+// Zeroes the per-object counts and fire sources that the next passes sum up.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

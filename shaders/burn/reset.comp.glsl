@@ -1,4 +1,4 @@
-// A new object's planes: what can burn and what cannot, tiles asleep. One group per tile.
+// Initial state of a new object: receptive and inert texels, tiles asleep. One group per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -56,8 +56,7 @@ void resetTile(uint local, uint lane) {
     int rise = dotInt(n, ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
     published[base] = 0.0;
     published[base + plane] = 0.0;
-    published[base + 2u * plane] =
-        burns ? publishedSpread(slow, -rise >> 12) : 0.0;
+    published[base + 2u * plane] = burns ? publishedSpread(slow, -rise >> 12) : 0.0;
 }
 
 void main() {

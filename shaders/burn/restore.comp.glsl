@@ -1,5 +1,4 @@
-// Tiles of an object that was put back as it once was: into the lists that they were in. Which ones
-// stands where `wake` will be. One thread per tile.
+// Tiles of a restored object: into the lists that contained them, which are stored in `wake`. One thread per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,20 +12,18 @@ layout(local_size_x = 64) in;
 #define FW_USE_PREDICT_LISTS FW_READ_WRITE
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
+#include "lib/stride.glsl"
 
-void main() {
-    uint stride = gl_NumWorkGroups.x * 64u;
-    for (uint local = gl_GlobalInvocationID.x; local < objects[push.object].tileCount;
-         local += stride) {
-        uint worldTile = objects[push.object].worldTileBase + local;
-        uint kept = tileState[worldTile].wake;
-        tileState[worldTile].wake = kNever;
-        tileState[worldTile].flag = kTileMarked | (kept & ~kTileListed);
-        if ((kept & kTileListed) != 0u) {
-            touchTile(push.parity, push.row, worldTile, kTileTouched);
-            predictTouch(push.predictParity, worldTile);
-        }
-        if ((kept & kTileBurning) != 0u) burnAppend(push.burnParity, worldTile);
-        if ((kept & kTileHot) != 0u) hotAppend(push.hotParity, worldTile);
+void restoreTile(uint local) {
+    uint worldTile = objects[push.object].worldTileBase + local;
+    uint kept = tileState[worldTile].wake;
+    tileState[worldTile].wake = kNever;
+    tileState[worldTile].flag = kTileMarked | (kept & ~kTileListed);
+    if ((kept & kTileListed) != 0u) {
+        touchTile(push.parity, push.row, worldTile, kTileTouched);
+        predictTouch(push.predictParity, worldTile);
     }
+    if ((kept & kTileBurning) != 0u) burnAppend(push.burnParity, worldTile);
+    if ((kept & kTileHot) != 0u) hotAppend(push.hotParity, worldTile);
 }
+void main() { FW_STRIDE(objects[push.object].tileCount, restoreTile) }

@@ -1,6 +1,5 @@
-// Before a heat step: what fires used of their rooms' oxygen since the last one, what came in from
-// outside, how strongly each object's fire burns in what is left, and which rooms flash over. One
-// group: sums of a room are of its shared memory, in no order.
+// Rooms, before a heat step: oxygen consumption, ventilation, burning strength of each object, and flashover. One
+// group: sums per room use shared memory, in any order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;  // kMaxRooms
@@ -10,7 +9,7 @@ layout(local_size_x = 64) in;  // kMaxRooms
 #define FW_USE_ROOMS
 #include "lib/buffers.glsl"
 
-shared uint ofRoom[kMaxRooms];  // J that it draws, then how strongly fire burns there
+shared uint ofRoom[kMaxRooms];  // J drawn in each room, then its burning strength
 
 uint roomOf(uint slot) {  // plus 1
     uint flags = objects[slot].flags;
@@ -26,7 +25,7 @@ void main() {
         if (room == 0u) continue;
         uint low = objectCounters[slot].energyLow, high = objectCounters[slot].energyHigh;
         uint drawnLow = objectCounters[slot].drawnLow, drawnHigh = objectCounters[slot].drawnHigh;
-        if ((objectCounters[slot].air & kAirKnown) == 0u) {  // it comes in: what it gave off is gone
+        if ((objectCounters[slot].air & kAirKnown) == 0u) {  // it has entered the room: earlier heat does not count
             drawnLow = low;
             drawnHigh = high;
         }

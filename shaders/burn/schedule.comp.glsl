@@ -1,5 +1,5 @@
-// Sorts the front list into tiles that are due (run list) and tiles that wait (the other list); the
-// rest leaves. With the dense switch it runs every tile of the wake groups instead.
+// Sorts the front list into due tiles (run list) and waiting tiles (the other list); the rest leaves. With the dense
+// switch all tiles of the wake groups run instead.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,6 +16,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
+#include "lib/stride.glsl"
 
 void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
@@ -36,8 +37,7 @@ void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag =
-        flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
 }
 
 void schedule(uint worldTile, bool dense) {
@@ -54,9 +54,9 @@ void schedule(uint worldTile, bool dense) {
         if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
         return;
     }
-    // Loops, because devices without branches load under an `if` too.
+    // Loops: devices without branches would also load under an `if`.
     for (bool plays = (push.switches & kSwitchPlays) != 0u; plays; plays = false) {
-        if (playsAt(objectCounters[tile.object].playsUntil, push.now)) {  // due when it goes live
+        if (playsAt(objectCounters[tile.object].playsUntil, push.now)) {  // due once it goes live
             if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
             return;
         }
@@ -76,10 +76,10 @@ void schedule(uint worldTile, bool dense) {
     uint wake = tileState[worldTile].wake;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
     bool touched = dense || (flag & kTileTouched) != 0u;
-    bool news = (flag & kTileNews) != 0u;
-    if (touched || news || wake <= end) {
+    bool litBeside = (flag & kTileNews) != 0u;
+    if (touched || litBeside || wake <= end) {
         bool inTime = wake > end - windowTicks(push.stepShift, shift);
-        uint why = news ? kRunNews : inTime ? kRunWoken : 0u;
+        uint why = litBeside ? kRunLitBeside : inTime ? kRunWoken : 0u;
         if (touched || (flag & kTileAhead) != 0u) why = 0u;
         runTile(worldTile, tile, flag, why);
     } else if (wake != kNever) {
@@ -88,6 +88,8 @@ void schedule(uint worldTile, bool dense) {
         tileState[worldTile].flag = flag & ~kTileListed;
     }
 }
+
+void scheduleItem(uint i) { schedule(push.parity == 0u ? listA[i] : listB[i], false); }
 
 void main() {
     if ((push.switches & kSwitchDense) != 0u) {
@@ -99,11 +101,5 @@ void main() {
         }
         return;
     }
-    uint count = counters[push.row].listCount;
-    uint i = gl_GlobalInvocationID.x;
-    if (i >= count) return;
-    do {
-        schedule(push.parity == 0u ? listA[i] : listB[i], false);
-        i += gl_NumWorkGroups.x * 64u;
-    } while (i < count);
+    FW_STRIDE(counters[push.row].listCount, scheduleItem)
 }

@@ -1,9 +1,7 @@
-// What holds what, for looks: a tile's distance, over tiles that are there, to something that stays:
-// unburnt texels, or the ground. A piece without such a way falls to ash: its shown age runs ahead.
-// One thread per tile, in two phases: 0 finds, from what neighbours had, what 1 writes, or the device's
-// order of threads would decide when a piece falls. The distance heals itself, a tile a frame, and
-// loops count up to the limit.
-// Not the simulation: that knows no gravity.
+// Cosmetic collapse: a tile's distance, over standing tiles, to a support (unburnt texels or the ground). A piece
+// without a path to one falls to ash: its displayed age runs ahead. One thread per tile, in two phases: 0 computes from
+// the neighbours' last values what 1 writes, so the order of threads does not matter. Distances converge by one tile
+// per frame; cycles count up to the limit. Not part of the simulation, which has no gravity.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,20 +19,20 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 
-const uint kFar = 1023u;      // of distances
-const uint kLookEvery = 32u;  // frames, about, between looks at a tile's texels
+const uint kFar = 1023u;      // largest distance
+const uint kLookEvery = 32u;  // frames, about, between scans of a tile's texels
 const float kFallTime = 1.1;  // s from the first flake to the last
 
 uint distanceOf(uint flag) { return flag >> kTileDistanceShift; }
 
-// Sides 0..3: left, right, below, above; texel `i` of our side, or beside it in the next tile.
+// Sides 0..3: left, right, below, above. Texel i of the tile's side, or the one beside it in the next tile.
 uint sideTexel(uint corner, uint width, uint side, uint i, bool beside) {
     uint off = beside ? 1u : 0u;
     if (side < 2u) return corner + i * width + (side == 0u ? 0u - off : 7u + off);
     return corner + i + (side == 2u ? 0u - off * width : (7u + off) * width);
 }
 
-// What the texels say: spent, on the ground, which sides lead on, material.
+// Facts of the texels: spent, on the ground, connected sides, material.
 uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
     uint corner = (tile.y * bases.w + tile.x) * 8u;
     uvec4 up = materials[object * kMaterialsPerObject].upCeiling;
@@ -62,14 +60,14 @@ uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
     return facts;
 }
 
-// The distance that a neighbour offers.
+// Distance that a neighbour offers.
 uint offer(uint worldTile) {
     uint flag = tileState[worldTile].flag;
-    if (tileState[worldTile].lastChange == kFarPast) return kFar;  // soon it burns, or is known
+    if (tileState[worldTile].lastChange == kFarPast) return kFar;  // it burns soon, or is known
     return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
 }
 
-// Whether anything of it may fall.
+// Can the tile fall?
 bool concerns(uint worldTile, TileRef ref) {
     return ref.alive && tileState[worldTile].lastChange != kFarPast &&
            (objectPlaces(ref.object).w & (kObjectNoHoles | kObjectPublished)) == 0u;
@@ -79,7 +77,7 @@ uint materialOf(uint object, uint flag) {
     return object * kMaterialsPerObject + ((flag >> kTileMaterialShift) & 7u);
 }
 
-// Its flags from now on.
+// New flags of the tile.
 uint supported(uint worldTile, TileRef ref) {
     uint last = tileState[worldTile].lastChange;
     uint flag = tileState[worldTile].flag;
@@ -89,7 +87,7 @@ uint supported(uint worldTile, TileRef ref) {
     uvec4 sizes = objectSizes(object);
     uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
     bool falls = (flag & kTileFalling) != 0u;
-    // Eight tiles at once, the width of a software device.
+    // Eight tiles at once: the width of a software device.
     bool looks = !falls && hash32((worldTile >> 3u) + (push.now >> 7u)) % kLookEvery == 0u;
     if (looks) flag = (flag & ~kTileFacts) | lookAt(object, bases, sizes, tile);
     uint holeTicks = materials[materialOf(object, flag)].holeTicks;
@@ -108,37 +106,35 @@ uint supported(uint worldTile, TileRef ref) {
     uvec2 seam = tiles[(sizes.x + ref.local) * 2u].zw;
     for (uint r = 0u; r < seam.y && found != 0u; ++r)
         found = min(found, offer(places.x + readers[places.z + seam.x + r]) + 1u);
-    // Farther than before: count up fast, a way that is there corrects it.
+    // A grown distance counts up fast; an existing path corrects it.
     if (found > before) found = min(max(found, before + 3u), kFar);
     uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);
     if (spent && holeTicks != 0u && found >= limit) falls = true;
     flag &= ~(kTileSolid | kTileFalling | (kFar << kTileDistanceShift));
-    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
-           (min(found, kFar) << kTileDistanceShift);
+    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) | (min(found, kFar) << kTileDistanceShift);
 }
 
-// A piece that falls shows an age that runs ahead.
+// Advances the displayed age of a falling piece.
 void fall(uint worldTile, TileRef ref, uint flag) {
     float fallTicks = materials[materialOf(ref.object, flag)].baseColor.w;
-    if ((flag & kTileFalling) == 0u ||
-        float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
+    if ((flag & kTileFalling) == 0u || float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
         return;
     uvec4 bases = objectBases(ref.object);
     uvec4 sizes = objectSizes(ref.object);
     uvec2 tile = uvec2(ref.local % sizes.z, ref.local / sizes.z);
-    // `count`: ticks since this tile was last seen to.
+    // push.count: ticks since this tile's last update.
     uint step = uint(min(float(push.count) * (fallTicks / (kFallTime * 4096.0)), 1e8));
     uint corner = (tile.y * bases.w + tile.x) * 8u;
     for (uint lane = 0u; lane < 64u; ++lane) {
         uint at = bases.y + corner + (lane >> 3u) * bases.w + (lane & 7u);
         uint time = predict[at];
         if (time >= kLiveEnd || int(push.now - time) > int(1.2 * fallTicks)) continue;
-        predict[at] = min(time - step, kLiveEnd - 1u);  // before the world began, too
+        predict[at] = min(time - step, kLiveEnd - 1u);  // may be before the world began
     }
 }
 
 void main() {
-    // `object`: the first tile; `iteration`: how many; `row`: the phase.
+    // push.object: first tile; push.iteration: number of tiles; push.row: phase.
     for (uint i = gl_GlobalInvocationID.x; i < push.iteration; i += gl_NumWorkGroups.x * 64u) {
         uint worldTile = push.object + i;
         TileRef ref = tileRef(worldTile);

@@ -1,5 +1,5 @@
-// A wind or pose latch: touches the tiles whose texels may answer to it, i.e. those on the list and
-// those that changed within the correction window. One group per 64 tiles of an object.
+// A wind or pose latch: touches the tiles that may change, which are listed or changed within the correction window.
+// One group per 64 tiles of an object.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -23,8 +23,7 @@ void main() {
         uint worldTile = objects[object].worldTileBase + local;
         uint flag = tileState[worldTile].flag;
         bool listed = (flag & kTileListed) != 0u;
-        if (!latchTouches(listed, tileState[worldTile].lastChange, push.now,
-                          objects[object].window))
+        if (!latchTouches(listed, tileState[worldTile].lastChange, push.now, objects[object].window))
             continue;
         touchTile(push.parity, push.row, worldTile, kTileTouched);
         predictTouch(push.predictParity, worldTile);

@@ -1,5 +1,5 @@
-// Drawn vertices follow their nodes: place, and the rest normal turned as its triangles turned.
-// kDeformGroup vertices of one object a group.
+// Skin-to-mesh: drawn vertices follow their particles, and rest normals rotate with their triangles. kDeformGroup
+// vertices of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,7 +19,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.z * kDeformCoatQuads + number;
+        uint at = sizes.z * kDeformEmbeddingQuads + number;
         uvec2 coat = deformCoat(at).xy;
         uvec4 face = deformCoat(at + 3u * sizes.w);
         uint node = shownBase + coat.x;
@@ -41,17 +41,17 @@ void main() {
         vec3 rest = unpackDirection(coat.y);
         vec3 normal = rest;
         if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face.xyz), turned / size);
-        float lead = facts.w;
-        if (tears) lead = max(lead, tornLead(square, uintBitsToFloat(face.w), facts.x));
-        // At rest exactly what the mesh has.
+        float offset = facts.w;
+        if (tears) offset = max(offset, tornLead(square, uintBitsToFloat(face.w), facts.x));
+        // Exact rest normals at rest.
         uint packed = all(equal(normal, rest)) ? coat.y : packDirection(normal);
         uint self = shownBase + number;
         if (self == node) {
             shownWords[self * kShownQuads * 4u + 3u] = packed;
-            shownWords[self * kShownQuads * 4u + 11u] = floatBitsToUint(lead);
+            shownWords[self * kShownQuads * 4u + 11u] = floatBitsToUint(offset);
         } else {
             shownOut[self * kShownQuads] = floatBitsToUint(vec4(place, uintBitsToFloat(packed)));
-            shownOut[self * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
+            shownOut[self * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, offset));
         }
         number += 64u;
     } while (number < last);

@@ -1,6 +1,6 @@
-// The inner skin of what recedes: drawn vertices as they are seen from inside. It stays where it is
-// while the wall before it burns away, and goes back with it where hardly any is left. Holes open in
-// both skins at once. kDeformGroup vertices of one object a group.
+// Inner skin of receding meshes: drawn vertices seen from inside. It stays in place while the outer wall burns away,
+// and recedes when little of the wall is left. Holes open in both skins at once. kDeformGroup vertices of one object
+// per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,17 +21,17 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint node = shownBase + deformCoat(sizes.z * kDeformCoatQuads + number).x;
+        uint node = shownBase + deformCoat(sizes.z * kDeformEmbeddingQuads + number).x;
         uint self = shownBase + number, inner = self + sizes.w;
         vec4 outside = shown(self * kShownQuads);
         float receded = shown(node * kShownQuads + 1u).z;
-        float lead = shown(self * kShownQuads + 2u).w;
+        float offset = shown(self * kShownQuads + 2u).w;
         vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
-        // A record of a vertex is as long as one of what is shown.
+        // A mesh vertex and a shown vertex have the same size.
         vec3 thin = outside.xyz - unpackDirection(floatBitsToUint(outside.w)) * thinnest;
-        vec3 place = mix(thin, inside, unitF((wall - receded) / thinnest - 1.0));
+        vec3 place = mix(thin, inside, saturateF((wall - receded) / thinnest - 1.0));
         shownOut[inner * kShownQuads] = floatBitsToUint(vec4(place, outside.w));
-        shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, lead));
+        shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, offset));
         number += 64u;
     } while (number < last);
 }

@@ -1,5 +1,4 @@
-// How much of each node has burnt, and where that leaves it. kDeformGroup nodes of one
-// object a group.
+// Burnt share of each particle, and its recession. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -21,8 +20,8 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
-        uvec4 facts = deformNode(at), rest = deformNode(at + kNodeRest * sizes.y);
+        uint at = sizes.x * kDeformParticleQuads + number;
+        uvec4 facts = deformNode(at), rest = deformNode(at + kParticleRest * sizes.y);
         uvec2 material = material0, holes = holes0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -32,7 +31,7 @@ void main() {
 
         float sum = 0.0, known = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformTexels / 4u; ++q) {
-            uvec4 texels = deformNode(at + (kNodeTexels + q) * sizes.y);
+            uvec4 texels = deformNode(at + (kParticleTexels + q) * sizes.y);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 bool there = texels[k] != kNoneTexel;
                 uint t = state[bases.y + (there ? texels[k] : 0u)];
@@ -41,45 +40,43 @@ void main() {
             }
         }
         uint vertex = (bases.x + facts.x) * kShownQuads;
-        // What was put out stays as it is: the share never falls.
+        // The share never falls: extinguished material stays burnt.
         float before_ = item.reset ? 0.0 : shown(vertex + 1u).x;
         float burnt = max(before_, sum / max(known, 1.0));
 
         float behind = 0.0;
         if (facts.w != kNoneTexel && !item.crosses)
-            behind = uintBitsToFloat(holes.y) *
-                   burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
+            behind = uintBitsToFloat(holes.y) * burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
 
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
-            vec4 out_ = uintBitsToFloat(deformNode(at + kNodeOut * sizes.y));
+            vec4 out_ = uintBitsToFloat(deformNode(at + kParticleRecession * sizes.y));
             kept = recession(burnt, depth, item.crosses ? 1e9 : out_.w);
             place += out_.xyz * kept;
         }
-        // Places of others are the solver's: here it learns what burnt, and at first where things rest.
+        // The solver owns positions: this pass reports burnt shares to it, and the rest pose at first.
         if (moves) {
-            uint own = softBase * kSoftQuads + number, seenAt = own + kSoftSeen * sizes.y;
+            uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
             uint placeAt = own + item.parity * sizes.y;
             uvec4 seen = soft(seenAt);
-            float way = wayOf(wayBits(soft(placeAt)));
+            float way = unpackPathLength(wayBits(soft(placeAt)));
             if (item.reset) {
                 way = kReachNone;
                 for (uint i = 0u; i < bases.w; ++i) {
                     vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                     vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
-                    // Known from the start, or a sheet would fall until word of its pins came to it.
+                    // Known from the start: otherwise a sheet would fall until its pins' distances have spread.
                     float away = length(place - pinPoint(place, from.xyz, to.xyz)) - from.w;
                     way = min(way, max(away, 0.0));
                 }
                 bool sheet = (bases.z & kDeformShell) != 0u;
                 softOut[placeAt] = uvec4(sheet ? softPlace(place, packWay(way, false)) : rest.xyz, 0u);
             }
-            // Its arms' shares were of the step before it lay still, which minded other arms.
-            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u,
-                                    item.reset || item.woke ? uvec2(0u) : seen.zw);
+        // Bend shares from before it slept belong to another bending set.
+            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u, item.reset || item.woke ? uvec2(0u) : seen.zw);
             if (!item.reset) place = shown(vertex).xyz;
-            // What the springs are told of a frame, in equal parts for its steps.
+            // Recession since the last frame, in equal parts for the steps.
             float steps = float(push.parity >> 1u);
             kept = (item.reset ? 0.0 : shown(vertex + 1u).z) + depth * (burnt - before_);
             if (item.reset) kept = 0.0;

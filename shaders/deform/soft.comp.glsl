@@ -1,7 +1,6 @@
-// One step of sheets: every node moves to where its links, its bending and its pins allow, and on
-// with the speed that this gives it. It gives way to its own bend now, and to those of its neighbours
-// as they were a step ago: what they will ask of it now they only find out while it moves.
-// kDeformGroup nodes of one object a group.
+// One step of sheets: each particle moves by its links, bending constraints and pins, and on with the resulting
+// velocity. It applies its own bend correction now and those of its neighbours from the last step, since theirs are
+// only known after this step. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -30,7 +29,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
+        uint at = sizes.x * kDeformParticleQuads + number;
         uvec4 facts = deformNode(at);
         uvec4 material = material0, more = more0;
         if ((facts.y & 7u) != 0u) {
@@ -42,15 +41,15 @@ void main() {
         float bend = uintBitsToFloat(more.z), drag = uintBitsToFloat(more.w);
 
         uint own = softBase * kSoftQuads + number, places = own - number + item.parity * sizes.y;
-        uint seenAt = own - number + kSoftSeen * sizes.y;
+        uint seenAt = own - number + kSoftFacts * sizes.y;
         uvec4 self = soft(places + number);
         vec3 x = placeOf(self);
-        uvec4 ties = soft(own + kSoftTies * sizes.y);
+        uvec4 ties = soft(own + kSoftLinkCache * sizes.y);
         float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kReachNone;
         bool pinned = pinnedOf(ties.w) != 0u;
-        // Both ends of a link agree on its length.
+        // Both ends of a link use the same length.
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
-        // Charring stiffens what held its shape only loosely.
+        // Charring stiffens loose material.
         float stiff = mix(bend, max(bend, 0.9), charred);
 
         vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), nearSum = vec3(0.0);
@@ -58,14 +57,14 @@ void main() {
         vec2 nearSquares = vec2(0.0);  // of rest lengths, and how many
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {  // the neighbours
-            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y);
+            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = turn * kDeformLinks + i;
                 float rest = unpackHalf2x16(two.z)[i];
-                uvec4 there = soft(places + (two[i] & kDeformNode));
+                uvec4 there = soft(places + (two[i] & kDeformLinkIndex));
                 vec3 y = placeOf(there), arm = y - x;
                 bool holds = (ties.x >> k & 1u) != 0u;
-                // Who has parted from a node has no share in it: it is not whole.
+                // A particle with a parted link is not whole and gives no share.
                 bending -= holds ? shareOf(there.w) : vec3(0.0);
                 nearSum += holds ? arm : vec3(0.0);
                 nearSquares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
@@ -74,29 +73,29 @@ void main() {
                 before = arm;
                 float theirs = float(ties.y >> (4u * k) & 15u);
                 vec3 p = linkPush(x, y, rest * (1.0 - shrunk * (mine + theirs)),
-                                  (ties.x >> (kTiesPinned + k) & 1u) != 0u ? 1.0 : 0.5);
+                                  (ties.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
-                reach = holds ? min(reach, wayOf(wayBits(there)) + rest) : reach;
+                reach = holds ? min(reach, unpackPathLength(wayBits(there)) + rest) : reach;
             }
         } while (++turn < turns);
-        // Not turns of the loop: software runs all of its text in each.
+        // Not iterations of the loop: software devices would run the whole body for them.
         vec3 sum = vec3(0.0);
         vec2 squares = vec2(0.0);
         float rise = 0.0;
         bool reaches = nodeArms(facts.y) != 0u;
         if (reaches) {
-            uvec4 arms = deformNode(at + (kNodeArms + way) * sizes.y);
-            uvec4 echo = deformNode(at + (kNodeArms + echoed) * sizes.y);
+            uvec4 arms = deformNode(at + (kParticleBends + way) * sizes.y);
+            uvec4 echo = deformNode(at + (kParticleBends + echoed) * sizes.y);
             rise = uintBitsToFloat(arms.w);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 float rest = unpackHalf2x16(arms.z)[i];
-                vec3 arm = placeOf(soft(places + (arms[i] & kDeformNode))) - x;
-                bool holds = (ties.x >> (kTiesArms + way * kDeformLinks + i) & 1u) != 0u &&
+                vec3 arm = placeOf(soft(places + (arms[i] & kDeformLinkIndex))) - x;
+                bool holds = (ties.x >> (kLinkCacheBends + way * kDeformLinks + i) & 1u) != 0u &&
                              dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
                 sum += holds ? arm : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
-                // What those of the step before asked for; who has no arms asks for nothing.
-                uvec4 there = soft(seenAt + (echo[i] & kDeformNode));
+                // Corrections requested by the last step's set; particles without constraints request none.
+                uvec4 there = soft(seenAt + (echo[i] & kDeformLinkIndex));
                 uint share = item.parity == 0u ? there.z : there.w;
                 bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);
             }
@@ -107,10 +106,9 @@ void main() {
         vec3 normal = size > 1e-18 ? turned / size : up;
         curl *= curlSide(normal, up) * scale * charred;
         float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
-        vec3 b = bendOf(nearSum * mean, normal,
-                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+        vec3 b = bendOf(nearSum * mean, normal, uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
                         stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
-        uint nearShare = packShare((ties.x & kTiesWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        uint nearShare = packShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
         bending += shareOf(nearShare) * count;
         if (reaches) {
             uint ends = ties.z >> (way * kDeformLinks * 4u);
@@ -123,17 +121,16 @@ void main() {
             else softOut[seenAt + number].z = armShare;
         }
 
-        float was = wayOf(wayBits(self));
+        float was = unpackPathLength(wayBits(self));
         if (was == 0.0 && !pinned) was = kReachNone;
-        bool knew = (wayBits(self) & kWayKnown) != 0u;
+        bool knew = (wayBits(self) & kPathKnown) != 0u;
         bool known = knew || reachKnown(reach, was);
         reach = pinned ? 0.0 : reachNext(reach, was, knew);
 
         uint shownAt = (bases.x + facts.x) * kShownQuads;
         vec3 last_ = shown(shownAt).xyz;
-        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
-                     bending * (relaxAt(1.0, push.step) / kBendUnit);
-        // No farther from the nearest pin than its way there over links that hold.
+        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) + bending * (relaxAt(1.0, push.step) / kBendUnit);
+        // Limits the distance to the nearest pin to the path length over holding links.
         if (reach < 0.5 * kReachNone) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
             float away = length(moved - anchor.xyz), most = reach * kReachSlack + anchor.w;
@@ -151,7 +148,7 @@ void main() {
         velocity -= up * (9.81 / scale * push.step);
 
         vec3 next = moved + velocity * push.step;
-        if (pinned) moved = next = x;  // where it has been from the first
+        if (pinned) moved = next = x;  // fixed from the start
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
         softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packWay(reach, known)), nearShare);

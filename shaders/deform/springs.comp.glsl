@@ -1,6 +1,6 @@
-// One step of the published mass-spring model, eqs. (3) to (8): structure and shear springs to the
-// neighbours, flexion springs across, and the force of what decomposes. Semi-implicit Euler.
-// kDeformGroup nodes of one object a group.
+// One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to the neighbours,
+// flexion springs across, and the force of decomposition. Semi-implicit Euler. kDeformGroup particles of one object per
+// group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,7 +20,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
+        uint at = sizes.x * kDeformParticleQuads + number;
         uvec2 facts = deformNode(at).xy;
         uint vertex = facts.x;
         uint own = softBase * kSoftQuads + number, shownAt = (shownBase + vertex) * kShownQuads;
@@ -31,17 +31,17 @@ void main() {
         vec3 pull = vec3(0.0), turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0);
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {
-            uvec4 two = deformNode(at + (kNodeNear + turn) * sizes.y),
-                  over = deformNode(at + (kNodeFar + turn) * sizes.y);
+            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y),
+                  over = deformNode(at + (kParticleFarLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
-                uint other = two[i] & kDeformNode;
+                uint other = two[i] & kDeformLinkIndex;
                 float rest = unpackHalf2x16(two.z)[i];
                 vec3 y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
                 turned += cross(before, y - x);
                 if (turn + i == 0u) first = y - x;
                 before = y - x;
-                other = over[i] & kDeformNode;
+                other = over[i] & kDeformLinkIndex;
                 rest = unpackHalf2x16(over.z)[i];
                 y = uintBitsToFloat(soft(places + other).xyz);
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
@@ -57,8 +57,7 @@ void main() {
         vec3 velocity = (x - from) * ((1.0 - kSpringDamping) / push.step) + force * push.step;
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(x, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] =
-            uvec4(floatBitsToUint(x + velocity * push.step), self.w);
+        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(floatBitsToUint(x + velocity * push.step), self.w);
         number += 64u;
     } while (number < last);
 }

@@ -1,5 +1,5 @@
-// What holds a sheet's nodes together: which of their links and arms have not parted, which neighbours
-// are pinned, how far they have charred, and which point of a pin is the nearest. Once in kTieSteps steps. kDeformGroup nodes of one object a group.
+// Link cache of sheets: links and bending constraints that hold, pinned neighbours, charred shares, and the nearest pin
+// point. Runs every kLinkCacheSteps steps. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,34 +16,34 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint at = sizes.x * kDeformNodeQuads + number;
+        uint at = sizes.x * kDeformParticleQuads + number;
         uint flags = deformNode(at).y;
-        uint own = softBase * kSoftQuads + number, seenAt = own + kSoftSeen * sizes.y;
+        uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
         uint mine = soft(seenAt).x;
         float burnt = burntOf(mine);
 
         uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
         uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kArmWays;
-        do {  // the neighbours, and arms of all ways at last
+        do {  // neighbours, then all bending sets
             bool arms = turn >= turns;
             uint way = turn - turns;
-            uvec4 two = deformNode(at + (arms ? kNodeArms + way : kNodeNear + turn) * sizes.y);
+            uvec4 two = deformNode(at + (arms ? kParticleBends + way : kParticleLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
                 uint k = (arms ? way : turn) * kDeformLinks + i;
                 float rest = unpackHalf2x16(two.z)[i];
-                uint there = soft(seenAt - number + (two[i] & kDeformNode)).x;
+                uint there = soft(seenAt - number + (two[i] & kDeformLinkIndex)).x;
                 bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there), two[i] >> 24u);
                 uint charred = charredOf(there) << (4u * k);
-                holding |= holds ? 1u << ((arms ? kTiesArms : 0u) + k) : 0u;
+                holding |= holds ? 1u << ((arms ? kLinkCacheBends : 0u) + k) : 0u;
                 ends |= arms ? charred : 0u;
                 if (arms) continue;
                 charreds |= charred;
-                holding |= pinnedOf(there) << (kTiesPinned + k);
+                holding |= pinnedOf(there) << (kLinkCachePinned + k);
                 count += holds ? 1u : 0u;
             }
         } while (++turn < all);
         bool whole = (flags & kNodeClosed) != 0u && count == (flags >> kNodeRingShift & 15u);
-        holding |= whole ? kTiesWhole : 0u;
+        holding |= whole ? kLinkCacheWhole : 0u;
 
         vec3 x = placeOf(soft(own + item.parity * sizes.y));
         vec4 anchor = vec4(0.0);
@@ -58,7 +58,7 @@ void main() {
             nearest = min(nearest, away);
         } while (++i < pins);
         softOut[own + kSoftAnchor * sizes.y] = floatBitsToUint(anchor);
-        softOut[own + kSoftTies * sizes.y] = uvec4(holding, charreds, ends, mine);
+        softOut[own + kSoftLinkCache * sizes.y] = uvec4(holding, charreds, ends, mine);
         number += 64u;
     } while (number < last);
 }

@@ -1,27 +1,26 @@
-// The hash grid of burning cells: two sizes of cell per object, keyed by place. Slots depend on who
-// came first, contents do not.
+// Hash grid of heat-release clusters: two cell sizes per object, keyed by place. Slots depend on thread order, contents
+// do not.
+#include "shared/integer.h"
 layout(std430, set = 0, binding = FW_BIND_LIGHT_CELLS) buffer CellsBuffer { uint cells[]; };
 
 float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
-// Side of the cells that lights are made of, m: fixed per object, so that nothing pops.
+// Side of the clusters that form lights, m: fixed per object, so nothing pops.
 float lightCellSide(uint object) {
     return clamp(exp2(floor(log2(2.5 * tileSide(object)) + 0.5)), 0.125, 2.0);
 }
-// Side of the cells within which flames lean on each other.
+// Side of the clusters within which flames merge, m.
 float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
 
-// Where a tile counts: above the surface, as flames are. The small cells make lights, which stand
-// further off.
+// A tile's cluster position: above the surface, as flames are. Light clusters are smaller, and lights stand further
+// off.
 vec3 lightPlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) +
-           view.up.xyz * (0.15 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
 }
 vec3 flamePlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +
-           view.up.xyz * (0.1 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
 }
-// Wood flames for as long as it lasts, but most of it comes off near the front.
-// `age`: ticks since ignition; `share`: of the time that this takes.
+// Wood flames as long as it lasts, but most heat is released near the front. age: ticks since ignition; share: of the
+// duration.
 float flameFade(BurnMaterial material, float age, float share) {
     float lasting = share * max(6.0 * looks[material.look].charTime, 8.0);
     return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);
@@ -30,24 +29,17 @@ float flameFade(BurnTile tile) {
     return flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 1.0);
 }
 
-uint mixBits(uint x) {
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    return x ^ (x >> 16);
-}
-float unit(uint x) { return float(mixBits(x) >> 8) * (1.0 / 16777216.0); }
+float unit(uint x) { return float(hash32(x) >> 8) * (1.0 / 16777216.0); }
 
 uint cellKey(ivec3 cell, float side) {
-    uint h = mixBits(uint(cell.x) * 73856093u ^ floatBitsToUint(side));
-    h = mixBits(h ^ uint(cell.y) * 19349663u);
-    return max(mixBits(h ^ uint(cell.z) * 83492791u), 1u);
+    uint h = hash32(uint(cell.x) * 73856093u ^ floatBitsToUint(side));
+    h = hash32(h ^ uint(cell.y) * 19349663u);
+    return max(hash32(h ^ uint(cell.z) * 83492791u), 1u);
 }
 uint cellWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
 
 const uint kCellProbes = 24u;
-const float kFlameCover = 3.8;  // quads one over the other, over what burns
+const float kFlameCover = 3.8;  // overlapping quads over a burning area
 const uint kNoCell = 0xFFFFFFFFu;
 uint findCell(uint key) {
     for (uint i = 0u; i < kCellProbes; ++i) {
@@ -59,24 +51,24 @@ uint findCell(uint key) {
     return kNoCell;
 }
 
-// m: Heskestad's height for what burns in a cell; wide weak fires are many small ones.
+// Flame height by Heskestad, m; a wide weak fire counts as many small ones.
 float flameLength(float watts, float area) {
     float tall = 0.235 * pow(max(watts, 1.0) * 1e-3, 0.4), diameter = sqrt(area * 1.273);
     return max(tall - 0.6 * diameter, 0.45 * tall);
 }
-// W and m^2 that flame in the cell of this key.
+// W and m^2 that flame in the cluster of this key.
 vec2 cellFire(uint key) {
     uint slot = findCell(key);
     return slot == kNoCell ? vec2(0.0) : vec2(float(cells[cellWord(slot, 1u)]),
                                               float(cells[cellWord(slot, 5u)]) * 1e-5);
 }
-// Height where this burns nearby and that further around: neighbours draw each other up.
+// Flame height from a fire and its surroundings: neighbours draw each other up.
 float flameLength(vec2 near, vec2 around) {
     float own = flameLength(near.x, near.y);
     return clamp(flameLength(around.x, around.y), own, 1.5 * own);
 }
 float flameHalfWidth(float len, float area) { return max(0.13 * len, 0.12 * sqrt(area)); }
-// Tongues that an area is worth.
+// Number of tongues for an area.
 float flameQuads(float area, float halfWidth) {
     return kFlameCover * area / (4.0 * halfWidth * halfWidth);
 }

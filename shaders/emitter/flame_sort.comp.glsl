@@ -1,30 +1,24 @@
-// Orders the quads of a view that hide what is behind them, farthest first: burning tiles' and
-// particles' together, or one would show through the other. One group: a bitonic sort in shared
-// memory of few of them, of more a radix sort, which is stable, and on a software device a third of
-// the work for 2,500. What emits alone may come in any order: it is not sorted, but laid where those
-// that hide leave it, see layLights.
+// Sorts the quads that hide what is behind them, farthest first, of burning tiles and particles together. One group:
+// few quads use a bitonic sort in shared memory, more a stable radix sort (a third of the work for 2,500 on a software
+// device). Emissive quads may come in any order: placeLights interleaves them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
-#include "shared/burn.h"
-#include "shared/look.h"
-layout(std430, set = 0, binding = FW_BIND_FLAMES) readonly buffer FlamesBuffer {
-    FlameQuad flameQuad[];
-};
-layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+#define FW_EMITTER_FLAMES readonly
+#define FW_EMITTER_DRAW_ARGS
+#include "emitter/buffers.glsl"
 layout(push_constant) uniform Push { SortPush push; };
 
 const uint kThreads = 128u, kDigits = 16u;
-const uint kDepthBits = 16u;  // of a key of many, above the number of its quad
-const uint kMarks = 1024u;    // depths among which what emits alone looks for its own
+const uint kDepthBits = 16u;  // of a radix key, above the number of its quad
+const uint kMarks = 1024u;    // depths among which an emissive quad finds its place
 
 shared uint keys[(kDigits + 1u) * kThreads];
-shared uint nearest, farthest;  // bits of depths: positive floats sort as their bits do
+shared uint nearest, farthest;  // bits of depths: positive floats sort like their bits
 
-// Of the words that the sort works in.
+// Words of one half of the sort's scratch.
 uint half_() { return push.tiles + push.particles + push.lights; }
-// Of the i-th quad that hides.
+// Buffer place of the i-th quad that hides.
 uint placeOf(uint i, uint tiles) { return i < tiles ? i : push.tiles + (i - tiles); }
 float depthOf(uint place) {
     vec3 d = flameQuad[place].baseHeight.xyz +
@@ -32,8 +26,8 @@ float depthOf(uint place) {
     return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
 }
 
-// Whether quad a is drawn before b of the same depth: their places are those of threads that happened to be
-// first, and would change the picture from run to run. Equal quads keep the order of their places.
+// Is quad a drawn before b of the same depth? Buffer places depend on thread order and would change the picture from
+// run to run. Equal quads keep their order.
 bool before(uint a, uint b) {
     uint kindA = flameQuad[a].kind, kindB = flameQuad[b].kind;
     if (kindA != kindB) return kindA < kindB;
@@ -43,7 +37,21 @@ bool before(uint a, uint b) {
     if (at.y != other.y) return at.y < other.y;
     return at.z != other.z ? at.z < other.z : a < b;
 }
-const uint kMostTies = 64u;  // of one depth that are compared with each other; more keep their places
+const uint kMaxTies = 64u;  // quads of one depth that are compared; more keep their places
+
+// Writes the places of sorted quads from `to` on, with ties ordered by before().
+#define FW_ORDER_TIES(depthAt, placeAt, to)                                                              \
+    for (uint i = me; i < count; i += kThreads) {                                                        \
+        uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;                   \
+        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;             \
+        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;                  \
+        if (end - first > kMaxTies) {                                                                   \
+            drawArgs[(to) + i] = place;                                                                  \
+            continue;                                                                                    \
+        }                                                                                                \
+        for (uint k = first; k < end; ++k) at += k != i && before(placeAt(k), place) ? 1u : 0u;          \
+        drawArgs[(to) + first + at] = place;                                                             \
+    }
 
 void sortFew(uint me, uint count, uint tiles) {
     uint size = 2u;
@@ -72,23 +80,15 @@ void sortFew(uint me, uint count, uint tiles) {
             barrier();
         }
     }
-    for (uint i = me; i < count; i += kThreads) {
-        uint depth = keys[i] >> 12u, place = placeOf(keys[i] & 0xFFFu, tiles), at = 0u;
-        uint first = i, end = i + 1u;
-        while (first > 0u && keys[first - 1u] >> 12u == depth && i - first < kMostTies) --first;
-        while (end < count && keys[end] >> 12u == depth && end - first <= kMostTies) ++end;
-        if (end - first > kMostTies) {
-            drawArgs[kFlameOrder + i] = place;
-            continue;
-        }
-        for (uint k = first; k < end; ++k)
-            at += k != i && before(placeOf(keys[k] & 0xFFFu, tiles), place) ? 1u : 0u;
-        drawArgs[kFlameOrder + first + at] = place;
-    }
+#define FW_DEPTH(i) (keys[i] >> 12u)
+#define FW_PLACE(i) placeOf(keys[i] & 0xFFFu, tiles)
+    FW_ORDER_TIES(FW_DEPTH, FW_PLACE, kFlameOrder)
+#undef FW_DEPTH
+#undef FW_PLACE
 }
 
-// Of the depths that there are 16 bits, but no more than 12 of a mantissa, or quads in one place would
-// change places with each other from frame to frame. Four bits a turn; each thread keeps a run in order.
+// 16 bits of the depth range, but at most 12 bits of mantissa, so that close quads do not swap from frame to frame.
+// Four bits per pass; each thread keeps a run in order.
 void sortMany(uint me, uint count, uint tiles) {
     uint other = half_(), each = (count + kThreads - 1u) / kThreads;
     uint begin = me * each, end = min(begin + each, count);
@@ -125,7 +125,7 @@ void sortMany(uint me, uint count, uint tiles) {
             if (i < end) ++keys[digit * kThreads + me];
         }
         barrier();
-        // How many come before each: of smaller digits all, of its own those of threads before.
+        // Exclusive sums: all smaller digits, and the same digit of earlier threads.
         uint sum = 0u;
         for (uint d = 0u; d < kDigits; ++d) {
             uint here = me * kDigits + d;
@@ -157,34 +157,20 @@ void sortMany(uint me, uint count, uint tiles) {
     }
     memoryBarrierBuffer();
     barrier();
-    for (uint i = me; i < count; i += kThreads) {
-        uint key = drawArgs[kFlameOrder + i], depth = key >> kDepthBits;
-        uint place = placeOf(key & 0xFFFFu, tiles), first = i, end = i + 1u, at = 0u;
-        while (first > 0u && drawArgs[kFlameOrder + first - 1u] >> kDepthBits == depth &&
-               i - first < kMostTies)
-            --first;
-        while (end < count && drawArgs[kFlameOrder + end] >> kDepthBits == depth &&
-               end - first <= kMostTies)
-            ++end;
-        if (end - first > kMostTies) {
-            drawArgs[kFlameOrder + other + i] = place;
-            continue;
-        }
-        for (uint k = first; k < end; ++k)
-            at += k != i && before(placeOf(drawArgs[kFlameOrder + k] & 0xFFFFu, tiles), place)
-                      ? 1u : 0u;
-        drawArgs[kFlameOrder + other + first + at] = place;
-    }
+#define FW_DEPTH(i) (drawArgs[kFlameOrder + (i)] >> kDepthBits)
+#define FW_PLACE(i) placeOf(drawArgs[kFlameOrder + (i)] & 0xFFFFu, tiles)
+    FW_ORDER_TIES(FW_DEPTH, FW_PLACE, kFlameOrder + other)
+#undef FW_DEPTH
+#undef FW_PLACE
     memoryBarrierBuffer();
     barrier();
     for (uint i = me; i < count; i += kThreads)
         drawArgs[kFlameOrder + i] = drawArgs[kFlameOrder + other + i];
 }
 
-// What emits alone goes before all that hide from no farther away than itself: after those behind it,
-// so that it shows through what is before it as much as that lets through. With more than kMarks that
-// hide, those of a run count as one. `hiding` lie in their order.
-void layLights(uint me, uint hiding, uint lights) {
+// Places each emissive quad before all hiding quads that are not farther away: after those behind it, so that quads in
+// front attenuate it. With more than kMarks hiding quads, a run of them counts as one depth.
+void placeLights(uint me, uint hiding, uint lights) {
     uint first = push.tiles + push.particles, work = kFlameOrder + half_();
     if (hiding == 0u) {
         for (uint i = me; i < lights; i += kThreads) drawArgs[kFlameOrder + i] = first + i;
@@ -193,7 +179,7 @@ void layLights(uint me, uint hiding, uint lights) {
     uint run = (hiding + kMarks - 1u) / kMarks, marks = (hiding + run - 1u) / run;
     memoryBarrierBuffer();
     barrier();
-    // keys: depths of the marks, farthest first, then how many come before each, and behind all.
+    // keys: depths of the marks, farthest first, then the number of emissive quads before each mark and at the end.
     for (uint g = me; g < marks; g += kThreads)
         keys[g] = floatBitsToUint(depthOf(drawArgs[kFlameOrder + g * run]));
     for (uint g = me; g <= marks; g += kThreads) keys[kMarks + g] = 0u;
@@ -210,7 +196,7 @@ void layLights(uint me, uint hiding, uint lights) {
         drawArgs[work + hiding + i] = low << 17u | atomicAdd(keys[kMarks + low], 1u);
     }
     barrier();
-    // Sums of all up to each.
+    // Inclusive sums.
     for (uint reach = 1u; reach <= marks; reach <<= 1u) {
         uint sums[kMarks / kThreads + 1u];
         uint own = 0u;
@@ -241,7 +227,7 @@ void main() {
         sortFew(me, hiding, tiles);
     else
         sortMany(me, hiding, tiles);
-    if (lights > 0u) layLights(me, hiding, lights);
+    if (lights > 0u) placeLights(me, hiding, lights);
     uint count = hiding + lights;
     memoryBarrierBuffer();
     barrier();

@@ -1,6 +1,6 @@
-// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of the
-// ticks at which texels caught: nothing is kept, and nothing pops. Each of a tile's slots tells one
-// short life after another; what a life looks like is settled by the state at its birth.
+// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of ignition ticks:
+// nothing is stored, and nothing pops. Each of a tile's slots shows one short life after another, fixed by the state at
+// its birth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -15,26 +15,20 @@ layout(local_size_x = 64) in;
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
-#include "shared/book.h"
-#include "shared/look.h"
 #include "shared/wind.h"
-layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
-    MaterialLook looks[];
-};
-layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
-    FlameQuad flameQuad[];
-};
-layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
-layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+#define FW_EMITTER_LOOKS
+#define FW_EMITTER_FLAMES writeonly
+#define FW_EMITTER_DRAW_ARGS
+#define FW_EMITTER_BOOKS
+#include "emitter/buffers.glsl"
 #include "emitter/cells.glsl"
 #include "emitter/nearer.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
 const float kLeastPixels = 20.0;  // of a flame's height
-const float kMostMerged = 1.6;    // times as high
-const float kMostClear = 0.9;     // half widths, see clearance
+const float kMaxMerged = 1.6;    // height factor of merged flames
+const float kMaxClear = 0.9;     // half widths, see clearance
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
@@ -42,15 +36,15 @@ vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
 }
 
-// Towards the eye, in half widths, beyond what every quad is moved (flames.vert): a quad faces the eye
-// and its wall does not, so that side would go into the wall. What faces away stands behind its wall
-// as far as others before theirs, or would come through where that is thin. Sheets have one side.
+// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces the camera and its
+// wall does not, so one side would intersect the wall. Quads on walls facing away are offset behind them, or they would
+// show through thin walls. Sheets need none.
 vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
     vec3 toEye = view.forward.w > 0.5 ? normalize(view.eye.xyz - place) : -view.forward.xyz;
     float facing = dot(normal, toEye);
     if ((object.flags & kObjectTwoSided) != 0u) return vec3(0.0);
     float slant = sqrt(max(1.0 - facing * facing, 0.0)) / max(abs(facing), 0.2);
-    float before = clamp(slant - 0.15, kQuadNearer, kMostClear);
+    float before = clamp(slant - 0.15, kQuadNearer, kMaxClear);
     return toEye * (mix(-before, before, smoothstep(-0.3, 0.0, facing)) - kQuadNearer);
 }
 
@@ -66,8 +60,8 @@ struct Foot {
     bool found;
 };
 
-// A texel of the tile that flamed at a birth `ago` ticks back: of the first few met the youngest,
-// so that fire stands along the front. Later ignitions do not change the choice.
+// A texel of the tile that flamed at a birth `ago` ticks back: the youngest of the first few found, so that fire stands
+// along the front. Later ignitions do not change the choice.
 Foot footOf(BurnTile tile, uint seed, float ago) {
     BurnObject object = objects[tile.object];
     uint corner = (tile.tile / object.tilesX) * 8u * object.width + (tile.tile % object.tilesX) * 8u;
@@ -82,15 +76,12 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (!isSource(t) || t > view.now) continue;
         float age = float(view.now - t) + view.ambientGround.w;
         if (age < ago) continue;  // it caught later
-        uint material = tile.object * kMaterialsPerObject +
-                        (texels[object.texelBase + texel].y >> 16u & 7u);
+        uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
         MaterialLook look = looks[materials[material].look];
-        float lasts = materials[material].flameTicks == kNoneTexel
-                          ? 1e9 : float(materials[material].flameTicks);
-        // Thin things go on burning at their edges while a hole opens where they burnt.
+        float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
+        // Thin materials burn at hole edges while the hole grows.
         if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
-                                   materials[material].timeScale);
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 / materials[material].timeScale);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
         if (age - ago < foot.age) {
@@ -113,8 +104,8 @@ void main() {
         BurnTile tile = burnTiles[i];
         vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
         vec3 drift = wind - up * dot(wind, up);
-        uint seed = mixBits(mixBits(tile.object * 7919u + view.seed) ^ tile.tile);
-        // Cells are met at random distances, or their borders would show in the heights.
+        uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);
+        // Jittered cluster lookups hide cell borders in the heights.
         vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;
         float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
         vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
@@ -124,46 +115,44 @@ void main() {
         vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
         vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
         float likely = flameLength(near, around);
-        // Small ones of which little is seen would be scattered scraps: fewer, and as much larger.
+        // Merges flames below kLeastPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
         float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
-        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMostMerged);
+        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
-        float wish = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
-        // A front thinner than its flames are deep still has a row of them.
-        wish *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
-        // What falls to ash has nothing left that flames.
+        float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
+        // A front thinner than its flames still has a row of them.
+        quads *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
+        // A falling tile has no flames.
         uint worldTile = objects[tile.object].worldTileBase + tile.tile;
-        if ((tileState[worldTile].flag & kTileFalling) != 0u) wish = 0.0;
-        // Lives must not depend on what burns, or a change would shake all of them.
+        if ((tileState[worldTile].flag & kTileFalling) != 0u) quads = 0.0;
+        // Lifetimes are independent of the fire, so that changes do not shake all quads.
         float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
             MaterialLook mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
-            float odds = smoke ? min(0.10 * wish * mainLook.smoke, 0.5) : min(wish / 3.0, 1.0);
-            odds *= view.quads.x;  // of what shows: a tile may wish for more than that
-            uint s = mixBits(seed + (k + 1u) * 0x9e3779b9u);
+            float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
+            odds *= view.quads.x;  // a tile may request more quads than it has slots
+            uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
             float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
             float life = time / period + unit(s + 1u) * 16.0;
             float generation = floor(life), a = life - generation;
-            uint g = mixBits(s + uint(generation) * 2654435761u);
+            uint g = hash32(s + uint(generation) * 2654435761u);
             float chance = odds - unit(g + 4u);
             if (chance <= 0.0) continue;
-            Foot foot = footOf(tile, mixBits(g + 5u), a * period * 4096.0);
+            Foot foot = footOf(tile, hash32(g + 5u), a * period * 4096.0);
             if (!foot.found) continue;
             float vigour = flameFade(materials[foot.material], foot.age, 0.2);
-            // The young ones first: a line of fire, and embers behind it.
+            // Young texels first: a line of fire with embers behind it.
             float strength = smoothstep(0.0, 0.4 * odds, chance) * saturate(1.8 * (vigour - 0.07)) *
                              smoothstep(0.0, 1.0, foot.left);
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
             MaterialLook look = looks[materials[foot.material].look];
             uvec2 packedTexel = texels[object.texelBase + foot.texel];
-            vec4 rest = vec4(object.originQuantum.xyz +
-                                 object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
-                                                               packedTexel.x >> 16u,
-                                                               packedTexel.y & 0xFFFFu), 1.0);
+            vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
+                                                               packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;
             SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
@@ -171,8 +160,7 @@ void main() {
                 rest.xyz = moved.place;
                 n = moved.normal;
             }
-            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
-                              dot(object.worldRow2, rest));
+            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest), dot(object.worldRow2, rest));
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
@@ -185,7 +173,7 @@ void main() {
                 float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
-                // They lie kFlameCover deep: what fewer of them leave open is less than their share.
+                // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their share.
                 float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
                                   (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
@@ -193,8 +181,7 @@ void main() {
                 quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
                                            axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
-                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *
-                               (1.0 - smoothstep(0.62, 1.0, a));
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) * (1.0 - smoothstep(0.62, 1.0, a));
                 quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
                 quad.kelvin = 1570.0 + 90.0 * r3;
             } else {
@@ -207,23 +194,16 @@ void main() {
                 quad.opacity = strength * 0.42 * min(look.smoke, 1.6) * smoothstep(0.0, 0.30, a) *
                                (1.0 - smoothstep(0.35, 1.0, a));
                 quad.phase = 0.10 * age + 5.0 * r4;
-                // The fire below lights it from its first moments.
+                // Lit by the fire below from birth.
                 quad.kelvin = 1.0 - a;
             }
             quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
-            // The world's books: fire's, smoke's.
+            // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame, its foot at 1/20.
             uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
-            if (book != 0u) {
-                uint at = (book - 1u) * kBookRecordWords;
-                bool loops = (books[at + 6u] & kBookLoops) != 0u;
-                quad.phase = bookTime(loops, uintBitsToFloat(books[at + 8u]), a, a * period, r4);
-                quad.kind |= book << kQuadBook;
-                // A flame fills a part of its page; its foot is a twentieth up.
-                if (!smoke && loops) {
-                    quad.axisWidth.w *= 2.4;
-                    quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
-                    quad.baseHeight.w *= 1.45;
-                }
+            if (showByBook(quad, book, a, a * period, r4) && !smoke) {
+                quad.axisWidth.w *= 2.4;
+                quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
+                quad.baseHeight.w *= 1.45;
             }
             if (quad.opacity > 0.004) emit(quad);
         }

@@ -1,8 +1,7 @@
 #version 450
-// One tongue of flame, puff of smoke, ball of fire or spark. The tongue is a profile looked up at a
-// displaced height: zero-mean noise that scrolls upwards, squeezed towards the axis as it rises;
-// soot glows in thin sheets where the noise is zero. The ball is noise at places that two vortices
-// have carried along, eaten away as it ages. Premultiplied: colour, and what it hides.
+// A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced height (zero-mean noise
+// that scrolls upwards and narrows with height); soot glows in thin sheets where the noise is zero. Fireball: noise
+// advected by two vortices, eroded with age. Output is premultiplied: colour, and coverage.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -15,20 +14,19 @@ layout(location = 0) centroid in vec2 inPlace;
 layout(location = 1) flat in vec4 inState;
 layout(location = 2) flat in uint inKind;
 layout(location = 3) flat in float inWidth;
-layout(location = 4) flat in vec2 inSun;  // where the light comes from, in the quad's plane
+layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 
 #ifdef FW_BOOKS
 #include "shared/book.h"
-// Books show all but sparks: the noise of what has none is left out, which a software device would
-// read and work on for every quad.
-layout(constant_id = 2) const uint kPagesAlone = 0u;
+// If flipbooks show all but sparks, the noise is compiled out: a software device would sample it for every quad.
+layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
 layout(set = 1, binding = 0) uniform sampler2D bookPicture;
-layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of that after
+layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of the frame after
 layout(location = 6) flat in vec4 inMotions;  // the same of their motion
 layout(location = 7) flat in vec4 inSizes;    // texels of a frame, of its motion
-layout(location = 8) flat in vec2 inBetween;  // part of the way, most motion
+layout(location = 8) flat in vec2 inBetween;  // blend weight, largest motion
 
-// Half a texel beyond a border nothing is left: there lies the texel between frames.
+// Reads up to half a texel beyond a border, into the empty texel between frames.
 vec4 bookTexel(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.xy, vec2(-0.5), inSizes.xy + 0.5);
     return textureLod(bookPicture, (at + p) / vec2(textureSize(bookPicture, 0)), 0.0);
@@ -43,10 +41,10 @@ vec4 showBook(vec2 uv) {
     vec2 after = bookAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
     return bookMix(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
 }
-const float kBookSpan = 600.0;  // K between a book's coldest and its hottest, about the quad's own
-const float kBookHides = 1.05;  // what it covers is as bright as where a volume burns
+const float kBookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
+const float kBookHides = 1.05;  // coverage relative to brightness, matching volumes
 #else
-const uint kPagesAlone = 0u;
+const uint kOnlyFlipbooks = 0u;
 #endif
 
 layout(location = 0) out vec4 outColor;
@@ -54,15 +52,14 @@ layout(location = 0) out vec4 outColor;
 #include "lib/colour.glsl"
 #include "lib/look_noise.glsl"
 
-const float kFlameWhite = 2.4;  // of thin soot at 1600 K, in the host's units
-const float kNoiseBall = 0.9;   // of that: a jet of noise has the light of one of books
+const float kFlameWhite = 2.4;  // host units of thin soot at 1600 K
+const float kNoiseBall = 0.9;   // of that: a jet of noise is as bright as one of flipbooks
 const float kSunStep = 0.18;    // of a puff's radius, towards the light
-const float kSmokeRolls = 0.5;  // of a ball's life: as long has a puff's smoke rolled up
-const vec2 kAcross = vec2(0.6, 0.8);  // how its octaves lie to each other: cosine, sine
+const float kSmokeRolls = 0.5;  // of a fireball's life: age of the roll in smoke
+const vec2 kAcross = vec2(0.6, 0.8);  // rotation between octaves: cosine, sine
 
-// Of a ball's soot at a temperature: what has not burnt away, and what of the light behind it takes.
-// Soot that cools burns, or is smoke, which has quads of its own. What were left of it would be dark
-// red contours on ground in the sun: dim itself, and in front of what is bright.
+// A fireball's soot at a temperature: share that has not burnt away, and its coverage. Cooling soot burns or becomes
+// smoke, which has its own quads. Without this its rest would be dark red outlines on sunlit ground.
 float sootLeft(float kelvin) { return smoothstep(1120.0, 1400.0, kelvin); }
 float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin); }
 
@@ -70,7 +67,7 @@ float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin)
 #include "lib/soft_depth.glsl"
 #endif
 
-// Turns `p` about `c` by twice atan(h).
+// Rotates p about c by twice atan(h).
 vec2 rolled(vec2 p, vec2 c, float h) {
     vec2 d = p - c;
     float k = 2.0 / (1.0 + h * h);
@@ -78,7 +75,7 @@ vec2 rolled(vec2 p, vec2 c, float h) {
 }
 
 struct Roll {
-    vec3 left, right;  // where a vortex is, and how far it has turned
+    vec3 left, right;  // position of a vortex, and how far it has rotated
 };
 vec2 rolledUp(vec2 p, Roll roll) {
     vec2 fromLeft = p - roll.left.xy, fromRight = p - roll.right.xy;
@@ -97,46 +94,43 @@ void main() {
     vec2 c = vec2(x, 2.0 * y - 1.0);
     float r = length(c);
 
-    // Software devices run every branch: what they all need is fetched once, from where each wants
-    // it. A ball of fire rolls up about two vortices that rise in it; so has smoke, long since.
+    // Shared samples for all branches: software devices execute every branch. A fireball rolls up about two rising
+    // vortices; smoke keeps that shape.
     float rolls = smoke ? kSmokeRolls : phase;
     Roll roll;
     roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
-    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y,
-                      -(0.25 + rolls) * (1.2 - seed.y));
+    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y, -(0.25 + rolls) * (1.2 - seed.y));
     float mirror = seed.x < 0.5 ? -1.0 : 1.0;
     vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
-    // No two puffs lie the same way.
+    // Each puff has its own orientation.
     vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
-             : smoke ? turnedBy(m, way) * 0.15
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? turnedBy(m, way) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
     float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
     vec4 n1 = vec4(0.5), n2 = vec4(0.5);
-    // Smoke asks a step towards its light, too: what pixels beside differ by is a texel's grain.
+    // Smoke also samples one step towards its light; differences between pixels would show texel grain.
     vec2 ahead = kSunStep * inSun, scroll = vec2(0.0, slow * phase);
     float aheadNoise = 0.5;
-    if (kPagesAlone == 0u) {
+    if (kOnlyFlipbooks == 0u) {
         n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
         vec2 sunward = turnedBy(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), way) * 0.15 + seed;
         aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
-    // Octaves of smoke lie across each other: along the lattice of one both would show it.
+    // Rotated octaves hide the noise lattice in smoke.
     vec2 q = (smoke ? turnedBy(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
-    if (kPagesAlone == 0u)
+    if (kOnlyFlipbooks == 0u)
         n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
     vec3 color;
     float alpha;
-    // Of a tongue: two octaves; the finer one is faster, so that shapes change and do not just
-    // travel.
+    // Tongue: two octaves; the finer one is faster, so shapes change instead of only moving.
     float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
-    // Soot glows in folds of a sheet.
+    // Soot glows in folded sheets.
     float sheet = (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
     float fold = exp2(sheet * sheet * (tongue ? -120.0 : -103.0));
     float kelvin, soot, hides, white = kFlameWhite * (tongue ? 1.0 : kNoiseBall);
@@ -144,12 +138,10 @@ void main() {
         float yy = max(y - 0.62 * sqrt(y) * turbulence, 0.45 * y);
         float xx = abs(x + 0.5 * y * (n1.b - 0.5)) * (1.0 + 0.15 * turbulence * y);
         float narrow = sqrt(max(1.0 - yy, 0.0));
-        float halfWidth = 0.78 * narrow * sqrt(narrow) *
-                          (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
+        float halfWidth = 0.78 * narrow * sqrt(narrow) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
-        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
-                (1.0 - smoothstep(0.90, 1.0, y)) *
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
                 (1.0 - smoothstep(0.60, 0.98, abs(x)));
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
@@ -157,8 +149,8 @@ void main() {
                  110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
         hides = 0.75;
     } else {
-        // Torn from a ball to rags as it ages, hot inside, dark in its folds; at last its edges are
-        // soft and its folds lost, or the least of it would be lines.
+        // A ball breaks into rags with age, hot inside and dark in its folds. Old edges are soft and folds fade, or the
+        // remains would be lines.
         float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
@@ -170,59 +162,55 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_BOOKS
-    bool booked = kPagesAlone != 0u || (inKind >> kQuadBook & 0xFFu) != 0u;
+    bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
-    vec4 page = showBook(uv);
+    vec4 frame = showBook(uv);
     if (booked) {
-        soot = page.y;
-        kelvin = inState.z + kBookSpan * (page.x - 0.5);
+        soot = frame.y;
+        kelvin = inState.z + kBookSpan * (frame.x - 0.5);
         white = kFlameWhite;
         soot *= sootLeft(kelvin);
-        hides = kBookHides * sootHides(kelvin) * page.z / max(page.y, 1e-4);
+        hides = kBookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
     }
 #endif
     vec3 glow = sootRadiance(spark ? inState.z : kelvin);
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
-    // Of smoke: billows, and between them nothing; the thinner it is, the more of it is eaten away.
-    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
-                 mix(0.4, 0.0, saturate(3.0 * opacity));
+    // Smoke: separate billows; thin smoke is eroded more.
+    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) - mix(0.4, 0.0, saturate(3.0 * opacity));
     if (smoke) {
         float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
         alpha = body * opacity;
-        // Where it gets thinner towards the light it faces it.
+        // Thinner towards the light: it faces the light.
         float billow = 0.9 * (1.1 * (length(c + ahead) - r) + 6.0 * (n1.r - aheadNoise));
 #ifdef FW_BOOKS
         if (booked) {
-            alpha = page.z * opacity;
-            // Thinner towards the light than here: it faces it.
+            alpha = frame.z * opacity;
             vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
-            billow = 1.6 * (page.w - bookTexel(inFrames.xy, uv + 0.09 * sun).w);
+            billow = 1.6 * (frame.w - bookTexel(inFrames.xy, uv + 0.09 * sun).w);
         }
 #endif
-        // Crests catch the sun and the sky, hollows the fire below.
+        // Crests catch sun and sky, hollows the fire below.
         float crest = saturate(0.45 + 0.9 * billow + 0.25 * c.y);
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
                    view.sunColor.rgb * (0.45 * crest * crest);
-        vec3 fire = vec3(1.0, 0.38, 0.10) *
-                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+        vec3 fire = vec3(1.0, 0.38, 0.10) * (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
 #ifdef FW_BOOKS
-        if ((inKind >> kQuadBook & 0xFFu) != 0u) body = page.y * opacity;
+        if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
-        // Its true light falls a thousandfold while it flies: nobody would see the end of it.
+        // Compressed: the true radiance falls a thousandfold during the flight.
         color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
         alpha = 0.0;
     }
 #ifdef FW_SOFT
-    // A tongue is as deep as it is wide, a puff twice so. Half of a tongue stands before its quad: a
-    // rail that is not as thick does not cut it.
+    // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad, so thin objects do
+    // not cut it.
     float gap = gapToScene();
-    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
-                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
+    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap) : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif
@@ -230,9 +218,8 @@ void main() {
     if (alpha < 0.002 && !emits) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
-        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
-        // a thin one must turn red, not grey. As much light as a display has hides what is behind
-        // it: many that burn one behind the other would sum up to white.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
+        // not grey. Saturated light hides what is behind it, or overlapping flames would sum up to white.
         float whole = smoke ? max(alpha, 1e-6) : 1.0;
         color = encodeOutput(color / whole, kEncoding) * whole;
         float brightest = max(max(color.r, color.g), color.b);

@@ -1,5 +1,5 @@
-// Particles as they are kept. Who moves them defines FW_MOVES. A software device reads two texels of
-// one faster than its eight words, and writes words faster than texels.
+// Stored particles. A shader that moves them defines FW_MOVES. A software device reads two texels per particle faster
+// than eight words, and writes words faster than texels.
 #ifdef FW_MOVES
 #define FW_KEPT_ACCESS coherent
 #define FW_KEPT_TEXELS coherent readonly
@@ -17,7 +17,7 @@ layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_PARTICLES)
     FW_KEPT_TEXELS uniform uimageBuffer particlesIn;
 #endif
 
-// All of one, but what its emitter does not make of it (shared/particle.h: stops, grows).
+// Loads a particle; stops, grows: whether its emitter uses hits and path lengths.
 ParticleWords keptAt(uint at, bool stops, bool grows) {
     ParticleWords kept;
 #ifdef FW_TEXELS

@@ -1,6 +1,5 @@
-// Clusters burning tiles into cells and the cells into the strongest lights, which shine for all of
-// them: no watt is lost. One group; sums are integers, so the result does not depend on the order of
-// the list.
+// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power of all cells: no
+// watt is lost. One group; integer sums make the result independent of order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -10,27 +9,22 @@ layout(local_size_x = 128) in;
 #define FW_USE_COUNTERS readonly
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
-#include "shared/look.h"
-layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer LooksBuffer {
-    MaterialLook looks[];
-};
+#define FW_EMITTER_LOOKS
+#define FW_EMITTER_DRAW_ARGS writeonly
+#include "emitter/buffers.glsl"
 layout(std430, set = 0, binding = FW_BIND_LIGHTS) writeonly buffer LightsBuffer {
     BurnLight lights[];
 };
-layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) writeonly buffer ArgsBuffer {
-    uint drawArgs[];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #include "emitter/cells.glsl"
 
-const uint kMost = 1024u;      // cells that compete
+const uint kMost = 1024u;      // competing cells
 const uint kMostLights = 64u;
 shared uint candidate[kMost];  // slots of cells
 shared float score[kMost];
 shared uint candidates, bestScore, bestKey, bestAt;
-shared uint lightPower[kMostLights], lightRelease[kMostLights];  // W: that shines, and all
-shared uint homelessPower, homelessRelease;  // W of tiles and cells that found no room
-shared uint lightNear[kMostLights];          // 16 W: that is near enough to say where the light is
+shared uint lightPower[kMostLights], lightRelease[kMostLights];  // W: shining, and total
+shared uint homelessPower, homelessRelease;  // W of tiles and cells without a light
+shared uint lightNear[kMostLights];          // 16 W: near enough to influence the light's position
 shared int lightOffset[kMostLights * 3u];
 shared uint lightArea[kMostLights];
 shared uint lightSlot[kMostLights];
@@ -52,7 +46,7 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
         }
         atomicAdd(cells[cellWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
         atomicMax(cells[cellWord(slot, 6u)], floatBitsToUint(side));
-        // Every tile of a cell writes the same.
+        // All tiles of a cell write the same values.
         for (uint k = 0u; k < 3u; ++k) cells[cellWord(slot, 7u + k)] = uint(cell[k]);
         cells[cellWord(slot, 10u)] = level;
         atomicAdd(cells[cellWord(slot, 11u)], release);
@@ -63,13 +57,12 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     atomicAdd(homelessRelease, release);
 }
 
-// m, world: weighted mean of the cell.
+// Weighted mean position of a cell, m, world.
 vec3 cellPlace(uint slot) {
     float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
     vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
                        cells[cellWord(slot, 4u)]) / (64.0 * float(cells[cellWord(slot, 1u)]));
-    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)],
-                       cells[cellWord(slot, 9u)]);
+    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)], cells[cellWord(slot, 9u)]);
     return (vec3(cell) + within) * side;
 }
 
@@ -77,13 +70,13 @@ vec3 placeOfLight(uint light) {
     return vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u], lightPlace[light * 4u + 2u]);
 }
 
-// Power, release and area of a cell, or a part of them, to a light.
+// Adds a cell's power, release and area, or a part of them, to a light.
 void give(uint slot, uint light, uvec3 what) {
     atomicAdd(lightPower[light], what.x);
     atomicAdd(lightRelease[light], what.y);
     float side = lightPlace[light * 4u + 3u];
     vec3 d = cellPlace(slot) - placeOfLight(light);
-    if (dot(d, d) > 36.0 * side * side) return;  // it shines for it, but is not drawn to it
+    if (dot(d, d) > 36.0 * side * side) return;  // too far to influence the light's position
     uint weight = max(what.x >> 4u, 1u);
     ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
     atomicAdd(lightNear[light], weight);
@@ -148,8 +141,7 @@ void main() {
         }
         barrier();
         for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore &&
-                cells[cellWord(candidate[i], 0u)] == bestKey)
+            if (floatBitsToUint(score[i]) == bestScore && cells[cellWord(candidate[i], 0u)] == bestKey)
                 bestAt = i;
         }
         barrier();
@@ -157,7 +149,7 @@ void main() {
         float side = uintBitsToFloat(cells[cellWord(candidate[bestAt], 6u)]);
         for (uint i = me; i < competing; i += 128u) {
             if (i == bestAt) continue;
-            // Neighbours of a chosen one wait, or one corner takes all lights.
+            // Reduces the score of neighbours, or one corner would get all lights.
             float d = length(cellPlace(candidate[i]) - here) / (1.5 * side);
             score[i] *= clamp(d, 0.05, 1.0);
         }
@@ -177,8 +169,8 @@ void main() {
         barrier();
     }
 
-    // Every cell gives its power to the nearest light; a last one that comes or goes has a share of
-    // it, and the next nearest has the rest.
+    // Each cell gives its power to the nearest light. The last light, which comes or goes, only gets a share; the rest
+    // goes to the next nearest.
     float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
@@ -193,15 +185,14 @@ void main() {
             next = d2 < leastNext && !last ? light : next;
             leastNext = last ? leastNext : min(leastNext, d2);
         }
-        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)],
-                          cells[cellWord(slot, 5u)]);
+        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)], cells[cellWord(slot, 5u)]);
         float share = nearest + 1u == found ? lastShare : 1.0;
         uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
         give(slot, nearest, own);
         if (share < 1.0) give(slot, next, all - own);
     }
     barrier();
-    // There may have been more.
+    // Clears unused lights, too.
     for (uint light = me; light < uint(lights.length()); light += 128u) {
         BurnLight l;
         l.positionRadius = vec4(0.0);
@@ -214,16 +205,14 @@ void main() {
             float weight = float(lightNear[light]);
             float side = lightPlace[light * 4u + 3u];
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
-                             float(lightOffset[light * 3u + 2u])) *
-                        (side / (64.0 * max(weight, 1.0)));
+                             float(lightOffset[light * 3u + 2u])) * (side / (64.0 * max(weight, 1.0)));
             uint key = cells[cellWord(lightSlot[light], 0u)];
             float area = float(lightArea[light]) * 1e-5;
             uint homeless = light == 0u ? homelessPower : 0u;
             float power = float(lightPower[light] + homeless);
             float len = flameLength(min(weight * 16.0, power), area);
             vec3 at = placeOfLight(light) + mean + view.up.xyz * (0.25 * len);
-            // Sines that never meet again: no lookup, no pop. What shines from afar is of many fires,
-            // and steady.
+            // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is steady.
             float t = view.ambientSky.w, p = 6.2832 * unit(key);
             float flicker = 1.0 + min(weight * 16.0 / power, 1.0) *
                                       (0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
@@ -237,14 +226,13 @@ void main() {
         }
         lights[light] = l;
     }
-    // How many quads are wished for: flames share what there is.
+    // Requested quads, for the share of the available ones.
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
-        vec2 near = vec2(float(cells[cellWord(slot, 1u)]),
-                         float(cells[cellWord(slot, 5u)]) * 1e-5);
+        vec2 near = vec2(float(cells[cellWord(slot, 1u)]), float(cells[cellWord(slot, 5u)]) * 1e-5);
         float large = clamp(4.0 * uintBitsToFloat(cells[cellWord(slot, 6u)]), 0.5, 4.0);
         vec2 around = cellFire(cellKey(ivec3(floor(cellPlace(slot) / large)), large));
-        float wish = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));
-        atomicAdd(cells[0], uint(min(wish, 4096.0) * 16.0));
+        float quads = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));
+        atomicAdd(cells[0], uint(min(quads, 4096.0) * 16.0));
     }
 }

@@ -1,30 +1,18 @@
-// What particles look like to the frame's view: quads. A group works on a part of one emitter's ring.
+// Particles to quads of the frame's view. A group handles a part of one emitter's ring.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#include "shared/book.h"
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/particle.h"
-layout(std430, set = 0, binding = FW_BIND_EMITTERS) readonly buffer EmittersBuffer {
-    ParticleEmitter emitters[];
-};
-layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer GroupsBuffer {
-    uvec2 groups[];  // emitter, first slot of its ring
-};
+#define FW_EMITTER_FLAMES writeonly
+#define FW_EMITTER_DRAW_ARGS
+#define FW_EMITTER_BOOKS
+#define FW_EMITTER_EMITTERS
+#include "emitter/buffers.glsl"
 #include "emitter/kept.glsl"
-layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
-    FlameQuad flameQuad[];
-};
-layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
-layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer BooksBuffer { uint books[]; };
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(push_constant) uniform Push { ParticlePush push; };
 
-const float kNearFade = 0.3;  // m before the eye
+const float kNearFade = 0.3;  // m before the camera
 
-// Of an emitter's record what its particles' looks need: a software device loads each word for each
-// lane.
+// Loads the emitter data for display only: a software device loads each word for each lane.
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
     e.carried.w = emitters[i].carried.w;
@@ -45,16 +33,7 @@ ParticleEmitter emitterOf(uint i) {
     return e;
 }
 
-// What shows a quad by `book` (+ 1; 0: nothing does, and its phase is its own).
-void show(inout FlameQuad quad, uint book, float life, float age, float own) {
-    if (book == 0u) return;
-    uint at = (book - 1u) * kBookRecordWords;
-    bool loops = (books[at + 6u] & kBookLoops) != 0u;
-    quad.phase = bookTime(loops, uintBitsToFloat(books[at + 8u]), life, age, own);
-    quad.kind |= book << kQuadBook;
-}
-
-// A quad of fire, one of smoke, both or none.
+// Writes a quad of fire, of smoke, both or none.
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
@@ -72,20 +51,19 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     vec2 way = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
     float follows = particleFollows(e, a, speed, p.hit.w);
     float stretch = particleStretch(e, a, speed, p.hit.w);
-    // Its own turn, or that of its way with some of it.
+    // Blend of its own rotation and that of its path.
     float spin = 2.0 * t.own - 1.0;
     float own = 1.6 * spin + 2.2 * (t.other - 0.5) * age;
     float turned = mix(own, 0.5 * spin * smoothstep(0.1, 0.4, a), follows);
     vec2 axis = way * cos(turned) + vec2(way.y, -way.x) * sin(turned);
-    // Close to the eye it fades, and so does what would fill the view.
-    float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
-                 (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
+    // Fades close to the camera, and when it would fill the view.
+    float near = smoothstep(kNearFade, kNearFade + 0.8, far) * (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
     near *= shows;
     bool drawn = near > 0.0;
 
     FlameQuad quad;
     vec3 along = right * axis.x + above * axis.y;
-    // A fire's foot is where it is born; nothing reaches into the ground.
+    // A fire's foot is at its birth place; nothing reaches into the ground.
     bool jet = (e.flags & kEmitterJet) != 0u;
     place += e.up.xyz * (jet ? 0.0 : 0.35 * size * (1.0 - smoothstep(0.0, 0.5, a)));
     float height = dot(place, e.up.xyz) - e.carried.w;
@@ -98,19 +76,18 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     quad.axisWidth = vec4(along, wide);
     quad.baseHeight = vec4(place - along * (0.5 * tall), tall);
     quad.opacity = opacity;
-    // What is whole has no shape yet.
+    // An unbroken ball has no shape yet.
     quad.phase = min(0.10 + max(a, 0.0) * (0.75 + 0.3 * t.other), 0.98);
     quad.kelvin = particleKelvin(e, a, t.own);
     quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
-    // A book begins as a ball without shape too.
+    // A flipbook, too, begins as a shapeless ball.
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    show(quad, particleBook(e.books, 3u, seed), shown, age, t.own);
+    showByBook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
     smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
-    // It leaves walls and lies on the ground as it grows: a puff that reaches into them ends at a
-    // straight line.
+    // Leaves walls and stays above the ground as it grows: inside them it would end in a straight line.
     place += p.hit.xyz * particleOffWall(p, e.up.xyz, size, a);
     float sunk = kPuffReach * size - (dot(place, e.up.xyz) - e.carried.w);
     place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, sunk) : 0.0);
@@ -119,11 +96,10 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
     smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    show(smoke, particleBook(e.otherBooks, 2u, seed),
-         (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
+    showByBook(smoke, particleFlipbook(e.otherBooks, 2u, seed), (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
-    // What emits alone has its own places: nobody sorts it.
+    // Emissive quads have separate places: they are not sorted.
     if (fire && (e.flags & kEmitterEmits) != 0u) {
         uint light = atomicAdd(drawArgs[kFlameLights], 1u);
         quad.kind |= kQuadEmits;
@@ -144,7 +120,7 @@ void main() {
     if ((e.flags & kEmitterHidden) != 0u) return;
     bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    // It asks at its end: a software device would go through it once more with nobody in it.
+    // Tests at its end: see lib/stride.glsl.
     uint turn = 0u;
     do {
         uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;

@@ -1,7 +1,6 @@
-// Particles of all emitters: births and one frame of motion. A group works on a part of one
-// emitter's ring. A software device runs what stands in an `if` for every particle, and a loop that
-// asks at its start once more with nobody in it: so births have a loop of their own, over the few
-// turns that have any, and so has what meets something on its way; the others ask at their end.
+// Births and one frame of motion of all emitters' particles. A group handles a part of one emitter's ring. A software
+// device executes an `if` body for every particle, so births and collisions have loops of their own over the few
+// iterations that have any.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,8 +19,8 @@ layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer Groups
 #include "emitter/kept.glsl"
 layout(push_constant) uniform Push { ParticlePush push; };
 
-// Of an emitter's record what every particle needs. A software device loads each word for each lane:
-// the rest is read where it is needed, and there alone.
+// Loads the emitter data that every particle needs; the rest is loaded where it is used. A software device loads each
+// word for each lane.
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
     e.from.w = emitters[i].from.w;
@@ -50,8 +49,7 @@ ParticleEmitter emitterOf(uint i) {
     return e;
 }
 
-// A birth on a flaming tile of the emitter's mesh, each as likely as it has power: of a few that it
-// meets. None met: it is never seen.
+// Birth on a flaming tile of the emitter's mesh, chosen by power among a few samples. Without a sample it is invisible.
 Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
     uint count = push.burnRow == kNoBurnRow ? 0u : counters[push.burnRow].runCount;
     uint met = 0u;
@@ -68,8 +66,7 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
         normal = there;
         place = burnTiles[tile].positionArea;
     }
-    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)),
-                       place.w);
+    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)), place.w);
     p.placeAge.w = met > 0u ? p.placeAge.w : 1e6;
     return p;
 }
@@ -89,18 +86,17 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
         uint k = 0u;
         for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
             k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
-        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz,
-                            emitters[i].patches[2u * k + 1u].xyz);
+        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz, emitters[i].patches[2u * k + 1u].xyz);
     }
     if (e.object != 0u) p = bornOnTile(e, p, seed);
     return p;
 }
 
-// What nothing stops has no hit, what does not grow on its way needs none of it.
+// Particles without obstacles need no hit; particles that do not grow need no path length.
 bool stops(ParticleEmitter e) { return (e.flags & (kEmitterGround | kEmitterJet)) != 0u; }
 bool grows(ParticleEmitter e) { return e.size.y > 0.0; }
 
-// `hit`: what it struck may be news.
+// hit: the collision state may have changed.
 void keep(ParticleEmitter e, uint at, Particle p, bool hit) {
     ParticleWords kept = particlePacked(p);
     particles[at].placeAge = kept.placeAge;
@@ -110,16 +106,16 @@ void keep(ParticleEmitter e, uint at, Particle p, bool hit) {
     if (grows(e)) particles[at].path = kept.path;
 }
 
-// s before the frame's end that a fresh one is born, and that any other moves.
+// s of this frame that a particle lives: from its birth, or all of it.
 float livedOf(ParticleEmitter e, uint births) {
     return births < e.fresh ? e.age + e.apart * float(births) : e.from.w;
 }
 
-struct Flight {  // a particle's frame
+struct Flight {  // one particle in one frame
     ParticleTraits traits;
     Particle p;
     uint seed;
-    uint at;     // where it is kept
+    uint at;     // storage place
     bool there;
     float now;   // s, cosmetic
     float dt;    // s of each step
@@ -140,7 +136,7 @@ Flight flightOf(ParticleEmitter e, uint slot) {
     return f;
 }
 
-// One step of its flight as if nothing were in its way. True: it came down to the ground.
+// One step without obstacles. True: it reached the ground.
 bool fliesFreely(ParticleEmitter e, inout Flight f) {
     f.p = particleStep(e, f.traits, f.p, f.now, f.dt);
     f.now += f.dt;
@@ -151,7 +147,7 @@ bool fliesFreely(ParticleEmitter e, inout Flight f) {
     return lands;
 }
 
-// One step, in which what is in its way, of its jet's shields (of emitter `i`) or the ground, stops it.
+// One step with obstacles: those of its jet (of emitter i), and the ground.
 void flies(ParticleEmitter e, uint i, inout Flight f) {
     vec3 from = f.p.placeAge.xyz;
     f.p = particleStep(e, f.traits, f.p, f.now, f.dt);
@@ -181,8 +177,8 @@ void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
     ParticleEmitter e = emitterOf(group.x);
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    // Births lie in a row that ends before the ring's head and may begin at its end. Turns with any:
-    // a thread gives birth to those that it then moves.
+    // Births occupy a range that ends before the ring's head and may wrap around. A thread spawns the particles that it
+    // then moves.
     uint end = group.y + turns * 64u;
     uint low = max(e.head - min(e.fresh, e.head), group.y), high = min(e.head, end);
     uint wrapped = max(e.ring - (e.fresh - min(e.fresh, e.head)), group.y), top = min(e.ring, end);
@@ -199,9 +195,8 @@ void main() {
             keep(e, e.first + slot, bornNow(e, group.x, seed, livedOf(e, births)), true);
         }
     }
-    memoryBarrier();  // what is written by words may be read by texels
-    // Particles of a jet before something are asked for what is in their way, others where they come
-    // to the ground: those are few, and one bit for each turn of this thread says which.
+    memoryBarrier();  // words written above are read as texels below
+    // A jet's particles all test obstacles; others only when they reach the ground: a bit per iteration marks those.
     bool jet = e.shieldCount > 0u;
     uint met = 0u, turn = jet ? turns - 1u : 0u;
     do {

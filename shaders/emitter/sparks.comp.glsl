@@ -1,5 +1,5 @@
-// Sparks and embers of all sources to quads of the frame's view: of a source's slots, or of the slots
-// of the burning tiles that feed it. Nothing is kept: see shared/spark.h.
+// Sparks and embers of all sources to quads of the frame's view: from a source's slots, or from slots of burning tiles.
+// No state is stored: see shared/spark.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -7,17 +7,11 @@ layout(local_size_x = 64) in;
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
 #include "shared/book.h"
-#include "shared/burn.h"
-#include "shared/look.h"
 #include "shared/spark.h"
-layout(std430, set = 0, binding = FW_BIND_SPARKS) readonly buffer SparksBuffer {
-    SparkSource sources[];
-};
-layout(std430, set = 0, binding = FW_BIND_FLAMES) writeonly buffer FlamesBuffer {
-    FlameQuad flameQuad[];
-};
-layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) buffer ArgsBuffer { uint drawArgs[]; };
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+layout(std430, set = 0, binding = FW_BIND_SPARKS) readonly buffer SparksBuffer { SparkSource sources[]; };
+#define FW_EMITTER_FLAMES writeonly
+#define FW_EMITTER_DRAW_ARGS
+#include "emitter/buffers.glsl"
 layout(push_constant) uniform Push { SparkPush push; };
 
 #ifdef FW_TEXELS
@@ -29,9 +23,9 @@ vec4 sparkCell(SparkBounds b, uint i) {
 vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
 #endif
 
-const float kNearFade = 0.3;  // m before the eye
+const float kNearFade = 0.3;  // m before the camera
 
-// Of a source's record all but its way and its walls.
+// Loads a source's data without its path and obstacles.
 SparkSource sourceOf(uint i) {
     SparkSource s;
     s.direction = sources[i].direction;
@@ -61,17 +55,15 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     return b;
 }
 
-void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried,
-          float strength) {
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried, float strength) {
     SparkKind kind = sparkKind(slot.seed);
-    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz,
-                            slot.age);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz, slot.age);
     vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
     vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
     float a = slot.age / kind.life;
     vec3 toEye = view.eye.xyz - place, streak = place - before;
     float far = view.forward.w > 0.5 ? dot(-toEye, view.forward.xyz) : 1e3;
-    // A book's streak fills a third of its page. How wide a pixel is the draw knows alone.
+    // A flipbook's streak fills a third of its frame.
     float wide = kind.width * (s.book != 0u ? 3.0 : 1.0);
     float length_ = length(streak);
     FlameQuad quad;
@@ -81,10 +73,10 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
     quad.opacity = sparkFades(a) * strength * smoothstep(kNearFade, kNearFade + 0.8, far) *
                    shareShows(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
-    quad.phase = s.book != 0u ? bookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
+    quad.phase = s.book != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
-    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadBook | kQuadSpark;
-    // Close to the eye a thin thing is a wide one.
+    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadFlipbookShift | kQuadSpark;
+    // Hides sparks that would be wide on the screen.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameLights], 1u);
     if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
@@ -102,7 +94,7 @@ void showOwn(SparkSource s, SparkBounds bounds, uint source, uint slot) {
          s.direction.xyz, carried, 1.0);
 }
 
-// Of a tile's power as it is now: a spark does not remember it. So it fades in and out with it.
+// Uses the tile's current power: sparks fade in and out with it.
 void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
     uint seed = particleSeed(s.seed + tile.tile, tile.object);
     float mean = rate * tile.normalPower.w * 1e-3;
@@ -115,8 +107,7 @@ void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
         vec3 at = tile.positionArea.xyz + normal * 0.01 +
                   sparkOff(normal, 0.8 * sqrt(tile.positionArea.w), vec3(0.0), now.seed);
         if (chance > 0.0)
-            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0),
-                 clamp(chance / fades, 0.0, 1.0));
+            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0), clamp(chance / fades, 0.0, 1.0));
     }
 }
 

@@ -1,4 +1,4 @@
-// Fire across gaps of a few centimetres: each texel's run of links by the thread of its first.
+// Fire across gaps of a few centimetres: a texel's run of links by the thread of its first link.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 #include "lib/change.glsl"
 #include "lib/light.glsl"
 
-// When this link's source lights what it leads to, or kNever.
+// Tick at which this link's source lights its target, or kNever.
 uint linkTick(uint i, out uint by) {
     uint from = contacts[i].fromObject;
     uint texel = contacts[i].fromTexel;
@@ -19,12 +19,9 @@ uint linkTick(uint i, out uint by) {
     if ((remoteObjects[from].flags & kRemoteLive) == 0u || objectCounters[from].burning == 0u ||
         !mayGive(remoteObjects[from], hops, push.hopsMost))
         return kNever;
-    uint material = (texels[objects[from].texelBase + texel].y >> 16u) & (kMaterialsPerObject - 1u);
-    uint tick = contactTick(state[objects[from].stateBase + texel],
-                            materials[from * kMaterialsPerObject + material].flameTicks,
+    uint tick = contactTick(state[objects[from].stateBase + texel], materials[materialOfTexel(from, texel)].flameTicks,
                             contacts[i].delay, contacts[i].since, push.now);
-    if (tick == kNever ||
-        !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
+    if (tick == kNever || !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
                  bothChances(push.chance, remoteObjects[from].chance)))
         return kNever;
     by = litBy(hops, from);
@@ -36,7 +33,7 @@ void main() {
     if (first >= push.count) return;
     uint object = contacts[first].object;
     uint texel = contacts[first].texel;
-    if (object == kNoneTexel) return;  // between two objects' links
+    if (object == kNoneTexel) return;  // padding between two objects' links
     if (first > 0u && contacts[first - 1u].object == object && contacts[first - 1u].texel == texel)
         return;
     if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;

@@ -1,4 +1,4 @@
-// Embers whose way a blocker or the shield crosses are none. A thread an object slot.
+// Removes embers whose path an occluder box or the heat-occlusion grid crosses. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,22 +20,13 @@ bool stopped(FireSource source) {
     uint object = landsOn(ember.landing, upAxis(worldUp()), tile);
     if (tile == kNoneTexel) return true;
     ivec3 flame = alongFlame(source, worldUp(), 8);
-    ivec3 place = remotePlace(remoteObjects[object],
-                              tileMiddle(remoteTiles[objects[object].tileBase + tile]));
+    ivec3 place = remotePlace(remoteObjects[object], tileMiddle(remoteTiles[objects[object].tileBase + tile]));
     for (uint b = 0u; b < push.blockers; ++b)
-        if (blockerCuts(blockers[b], flame, ember.landing) ||
-            blockerCuts(blockers[b], ember.landing, place))
+        if (blockerCuts(blockers[b], flame, ember.landing) || blockerCuts(blockers[b], ember.landing, place))
             return true;
     if (push.shieldCell == 0u) return false;
     ShieldEnds ends = emberEnds(source, object, push.shieldCell);
     return shieldCuts(ends, flame, ember.landing) || shieldCuts(ends, ember.landing, place);
 }
 
-void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= push.count) return;
-    uvec2 range = sourcesOf(slot);
-    for (uint at = range.x; at < range.y; ++at)
-        for (bool sent = sendsEmber(at); sent; sent = false)
-            if (stopped(sources[at])) sources[at].ember = 0u;
-}
+void main() { FW_EACH_EMBER(if (stopped(sources[at])) sources[at].ember = 0u;) }

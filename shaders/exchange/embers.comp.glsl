@@ -1,5 +1,5 @@
-// Embers that nothing stopped on their way: whether each lights what it lies on. A thread an object
-// slot takes its sources in turn; embers are rare.
+// Landing of the remaining embers: whether each lights its target. A thread per object slot handles its sources; embers
+// are rare.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -53,10 +53,4 @@ void land(FireSource source) {
     atomicAdd(objectCounters[object].spots, lit);
 }
 
-void main() {
-    uint slot = gl_GlobalInvocationID.x;
-    if (slot >= push.count) return;
-    uvec2 range = sourcesOf(slot);
-    for (uint at = range.x; at < range.y; ++at)
-        for (bool sent = sendsEmber(at); sent; sent = false) land(sources[at]);
-}
+void main() { FW_EACH_EMBER(land(sources[at]);) }

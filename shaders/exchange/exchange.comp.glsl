@@ -1,7 +1,6 @@
-// What sources send to the tiles of the objects that they may warm, an eighth of the tiles each
-// time. A group a receiver, a thread a tile. FW_SHIELD: a heat shield stands between some of them;
-// without one its code would be paid for all the same (a software device runs a loop's text once
-// where no thread enters it).
+// Heat from sources to the tiles of the objects that they may heat, an eighth of the tiles per exchange. One group per
+// receiver, one thread per tile. FW_SHIELD: with a heat-occlusion grid; a variant, as a software device executes loop
+// bodies once even without active lanes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,4 @@
-// Burning tiles into the fire sources of their objects: sums, so that order is of no account. 64 of
-// the tiles that `reduce` found a group.
+// Sums burning tiles into the fire sources of their objects, in any order. 64 of the tiles found by `reduce` per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-// Per object: who lit it, whether it may go on, where its sources stand in the world and which of
-// them send an ember. Wakes whom they may warm. One thread an object slot.
+// Per object: who lit it, whether it may continue, world positions of its sources, and which of them send an ember.
+// Wakes the objects that they may heat. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -40,8 +40,7 @@ void main() {
     objectCounters[slot].litTick = c.litTick;
     objectCounters[slot].stopTick = c.stopTick;
     objectCounters[slot].spotTexel = c.spotTexel;
-    objectCounters[slot].held =
-        heldBits(counters[kRowBurn + push.burnParity].runCount, push.tilesMost, c.burningTiles,
+    objectCounters[slot].held = heldBits(counters[kRowBurn + push.burnParity].runCount, push.tilesMost, c.burningTiles,
                  remoteObjects[slot].tilesMost, c.stopTick, push.now);
     for (bool once = c.burning != 0u; once; once = false) {
         uint hops = hopsOf(c.litBy);

@@ -1,5 +1,5 @@
-// Fire from part to part of one mesh, over gaps of a few centimetres: 64 of the tiles that `reduce`
-// found a group. Whoever lights a texel does so at the exchange's tick, so order is of no account.
+// Fire between parts of one mesh, over gaps of a few centimetres. 64 of the tiles found by `reduce` per group. All
+// ignitions have the exchange's tick, so order does not matter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -18,14 +18,13 @@ void lightFrom(uint object, uint tile, uint link, uint block) {
     uint tilesX = objects[object].tilesX;
     uint from = (tile / tilesX * 8u + (lane >> 3u)) * width + tile % tilesX * 8u + (lane & 7u);
     uint to = link % kPartTexels;
-    uvec2 a = texels[objects[object].texelBase + from];
-    uvec2 b = texels[objects[object].texelBase + to];
-    uint its = object * kMaterialsPerObject + ((a.y >> 16u) & (kMaterialsPerObject - 1u));
-    uint others = object * kMaterialsPerObject + ((b.y >> 16u) & (kMaterialsPerObject - 1u));
-    uint delay = partDelay(materials[others], decodePosition(b) - decodePosition(a));
+    uint others = materialOfTexel(object, to);
+    ivec3 gap = decodePosition(texels[objects[object].texelBase + to]) -
+                decodePosition(texels[objects[object].texelBase + from]);
+    uint delay = partDelay(materials[others], gap);
     if ((materials[others].flags & 1u) != 0u &&
-        partCrossed(state[objects[object].stateBase + from], materials[its].flameTicks, delay,
-                    push.now))
+        partCrossed(state[objects[object].stateBase + from], materials[materialOfTexel(object, from)].flameTicks,
+                    delay, push.now))
         lightTexel(object, to, push.now, 0u);
 }
 

@@ -1,5 +1,4 @@
-// Which objects others may warm now, and by which sources: the strongest 64, found by halving. One
-// thread an object slot.
+// Receivers of this exchange and their 64 strongest sources, found by halving. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,7 +12,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_RECEIVERS writeonly
 #include "lib/buffers.glsl"
 
-// Does a neighbour (an entry of the table) give fire to this object?
+// Does the neighbour of a table entry give fire to this object?
 bool gives(uint slot, uint entry) {
     uint from = entry & 0xFFFFFFu;
     return (entry >> 24u) != 0u && (remoteObjects[from].flags & kRemoteLive) != 0u &&
@@ -23,46 +22,36 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
-// The object's sources, counted by their weight's highest bit.
+// Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry` and a `weight`.
+#define FW_EACH_SOURCE(statement)                                                                     \
+    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {                                  \
+        uint entry = neighbours[remoteObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
+        if (!gives(slot, entry)) continue;                                                            \
+        uint base = remoteObjects[from].sourceBase, end = base + remoteObjects[from].sourceCount;     \
+        for (uint source = base; source < end; ++source) {                                            \
+            uint weight = sourceWeight(sources[source], middle);                                      \
+            if (weight == 0u) continue;                                                               \
+            statement                                                                                 \
+        }                                                                                             \
+    }
+
+// Counts the object's sources by the highest bit of their weight.
 uint weightBits[32];
 uint countSources(uint slot, ivec3 middle) {
-    uint first = remoteObjects[slot].neighbourFirst;
     uint count = 0u;
-    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
-        uint entry = neighbours[first + n];
-        if (!gives(slot, entry)) continue;
-        uint from = entry & 0xFFFFFFu;
-        uint base = remoteObjects[from].sourceBase;
-        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
-            uint weight = sourceWeight(sources[base + cell], middle);
-            if (weight == 0u) continue;
-            weightBits[topBit(weight)] += 1u;
-            ++count;
-        }
-    }
+    FW_EACH_SOURCE(weightBits[topBit(weight)] += 1u; ++count;)
     return count;
 }
 
-// Lists those of weight [low, ...), which are `strong`, and behind them those of half of it, as far
-// as there is room. How many it lists.
+void listSource(uint slot, uint place, uint source, uint entry) {
+    if (place < kSourcesPerReceiver)
+        receivers[slot * kReceiverWords + 2u + place] = source | (entry & 0xFF000000u);
+}
+// Lists sources of weight >= low, of which there are `strong`, then those of at least half of it, up to the capacity.
+// Returns the number of listed sources.
 uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
-    uint first = remoteObjects[slot].neighbourFirst;
     uint listed = 0u, weak = strong;
-    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {
-        uint entry = neighbours[first + n];
-        if (!gives(slot, entry)) continue;
-        uint from = entry & 0xFFFFFFu;
-        uint base = remoteObjects[from].sourceBase;
-        for (uint cell = 0u; cell < remoteObjects[from].sourceCount; ++cell) {
-            uint weight = sourceWeight(sources[base + cell], middle);
-            if (weight == 0u || weight < low / 2u) continue;
-            uint at = weight >= low ? listed : weak;
-            if (at < kSourcesPerReceiver)
-                receivers[slot * kReceiverWords + 2u + at] = (base + cell) | (entry & 0xFF000000u);
-            listed += weight >= low ? 1u : 0u;
-            weak += weight >= low ? 0u : 1u;
-        }
-    }
+    FW_EACH_SOURCE(if (weight >= low / 2u) listSource(slot, weight >= low ? listed++ : weak++, source, entry);)
     return min(weak, kSourcesPerReceiver);
 }
 
@@ -77,7 +66,7 @@ void gather(uint slot) {
     ivec3 middle = boxMiddle(remoteObjects[slot]);
     FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
     uint count = countSources(slot, middle);
-    // The least power of two that so few are not below.
+    // Least power of two above which few enough sources lie.
     uint least = 0u;
     while (count > kSourcesPerReceiver) {
         count -= weightBits[least];
@@ -90,8 +79,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= push.count) return;
     for (bool warm = objectCounters[slot].until >= push.now; warm; warm = false)
-        if ((remoteObjects[slot].flags & kRemoteLive) != 0u &&
-            (objects[slot].flags & kObjectHeat) != 0u) {
+        if ((remoteObjects[slot].flags & kRemoteLive) != 0u && (objects[slot].flags & kObjectHeat) != 0u) {
             objectCounters[slot].held |= kHeldWarm;
             gather(slot);
         }

@@ -1,5 +1,4 @@
-// The planes of particle fields, as their passes see them. A shader defines FW_FIELD_<NAME> as the
-// access it needs before it includes this.
+// Buffers of particle fields. A shader defines FW_FIELD_<NAME> as the access it needs before it includes this.
 #ifndef FW_FIELD_BUFFERS_GLSL
 #define FW_FIELD_BUFFERS_GLSL
 #include "shared/burn.h"

@@ -1,6 +1,6 @@
-// One step of particle fields. A thread walks up a strip of four columns: of each row it works out
-// what the six columns from one left to one right of it give, so that nobody hands over anything.
-// What is emitted comes last. Eight strips are a unit, a group has units of whole fields.
+// One step of particle fields. A thread walks up a strip of four columns and computes for each row what its six columns
+// (one left to one right of the strip) give, so threads exchange nothing. Emission comes last. Eight strips are a unit;
+// a group holds units of whole fields.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,21 +20,21 @@ layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_FIELD_CELLS) readonl
 #endif
 layout(push_constant) uniform Push { FieldPush push; };
 
-shared uvec4 tallies[64];  // of each thread: particles, emitted, died, bands of eight rows that hold any
+shared uvec4 tallies[64];  // per thread: particles, emitted, died, occupied bands of eight rows
 
 const uint kNoLimit = 0x7FFF8000u;
-const uint kRows = 4u;  // that share a random direction
+const uint kRows = 4u;  // rows that share a random direction
 
 uint height, strips, spread, open;
 uint from, to;             // first quads
-uint strip, left, right;   // the thread's, and beside it
-uint leftOpen, rightOpen;  // of columns beyond a border: their room
+uint strip, left, right;   // of the thread, and beside it
+uint leftOpen, rightOpen;  // capacity of columns beyond a border
 bool hasLeft, hasRight;
 
 struct Row {        // from one column left of the strip to one right of it
     uint cell[6];   // fieldCell
 };
-Row rowAt(uint y) {  // beyond the field too
+Row rowAt(uint y) {  // also beyond the field
     bool within = y < height;
     uint at = from + min(y, height - 1u) * strips;
     uvec4 own = FW_QUAD(at + strip);
@@ -43,7 +43,7 @@ Row rowAt(uint y) {  // beyond the field too
                      within ? own.y : kFieldWallCell, within ? own.z : kFieldWallCell,
                      within ? own.w : kFieldWallCell, within && hasRight ? b : kFieldWallCell));
 }
-struct Seen {       // of a row, by who is beside it
+struct Seen {       // of a row, for its neighbours
     uint full[6];   // particles times spread
     uint room[6];
 };
@@ -57,13 +57,13 @@ Seen seenAt(Row row, uint y) {
         s.full[j] = full * (spread & 0x1FFFu);
         s.room[j] = fieldRoom(full) | border;
     }
-    // Corners beyond a border are open if both are.
+    // Corners beyond a border are open if both borders are.
     s.room[0] = hasLeft ? s.room[0] : leftOpen & all;
     s.room[5] = hasRight ? s.room[5] : rightOpen & all;
     return s;
 }
 
-struct Sums {     // of a strip's cells: particles and what they carry
+struct Sums {     // of a strip's cells: particles and their motion
     uint n[4];
     uint x[4];
     uint y[4];
@@ -74,8 +74,8 @@ FieldPushes pushesAt(FieldWeights w, uint key, uint quad, uint rows) {
     return fieldPushes(w, fieldChaos(fieldRandom(key, quad, rows)));
 }
 
-// Rows that get something: around what is there, where something is emitted, and what the cells that
-// are written held two steps ago. In fours.
+// Rows that may change: around occupied ones, emitting ones, and those that the output cells held two steps ago. In
+// fours.
 uvec2 activeRows(uint now, uint before, uvec2 sources) {
     uvec2 rows = uvec2(0xFFFFu, 0u);
     if (now != 0u) rows = uvec2(8u * uint(findLSB(now)), 8u * uint(findMSB(now)) + 9u);
@@ -105,7 +105,7 @@ void main() {
     strips = rules.width >> 2u;
     from = fieldCells(f, run.y) >> 2u;
     to = fieldCells(f, run.y + 1u) >> 2u;
-    strip = (run.x >> 16u) * 8u + (thread & 7u);  // from none on: idle
+    strip = (run.x >> 16u) * 8u + (thread & 7u);  // beyond the last strip: idle
     bool odd = (run.y & 1u) != 0u, works = strip < strips;
     strip = min(strip, strips - 1u);
 
@@ -131,14 +131,14 @@ void main() {
     uint giving = fieldKey(run.y, rules.seed, 0u), chance = fieldKey(run.y >> 2u, rules.seed, 1u);
     uint dying = fieldKey(run.y, rules.seed, 2u), emitting = fieldKey(run.y, rules.seed, 3u);
     uint memory = rules.memory & 255u, fresh = 128u - memory;
-    // What was done in a direction, by its part: none, a whole one, a diagonal's, to both sides.
+    // Displacement by component: none, whole, diagonal to both sides.
     uint still = uint(kFieldStill) * fresh, whole = uint(kFieldSpeed) * fresh, slant = 85u * fresh;
 
     uvec4 tally = uvec4(0u);
     uint y = rows.x - 1u;
     Row below = rowAt(y - 1u), here = rowAt(y);
-    Sums under = kNothing;  // of the row below, all but what comes from here
-    Sums sums = kNothing;   // of here, from the row below
+    Sums under = kNothing;  // row below, without the flow from this row
+    Sums sums = kNothing;   // this row, from the row below
     while (int(y) <= int(rows.y)) {
         uint fours = (y + 1u) >> 2u;
         FieldPushes pushes[3];
@@ -151,13 +151,13 @@ void main() {
             Seen seenBelow = seenAt(below, y - 1u), seen = seenAt(here, y), seenAbove = seenAt(above, y + 1u);
             uint random[3] = uint[3](fieldRandom(giving, left, y), fieldRandom(giving, strip, y),
                                      fieldRandom(giving, right, y));
-            Sums next = kNothing;  // of the row above
+            Sums next = kNothing;  // row above
             FW_UNROLL for (int j = 0; j < 6; ++j) {
                 const int q = j == 0 ? 0 : (j == 5 ? 2 : 1), l = max(j - 1, 0), r = min(j + 1, 5);
                 FieldPushes p = pushes[q];
                 FieldGiver g = fieldGiver(here.cell[j], p.sum, spread, f.weights.inertia, f.weights.inertiaDiagonal,
                                           fieldDither(random[q], uint(j + 3)));
-                // What each carries, below 2^15.
+                // Motion carried, below 2^15.
                 uint x0 = ((here.cell[j] >> 16u) & 255u) * (memory & 255u) + still;
                 uint y0 = (here.cell[j] >> 24u) * (memory & 255u) + still;
                 uint flat_ = y0 & 0x7FFFu, up = (y0 + slant) & 0x7FFFu, down = (y0 - slant) & 0x7FFFu;
@@ -218,7 +218,7 @@ void main() {
                     }
                 }
             }
-            // The row below has all that it gets.
+            // The row below is complete.
             uint done = y - 1u;
             uint random2 = fieldRandom(dying, strip, done);
             uvec4 result = uvec4(0u);
@@ -245,7 +245,7 @@ void main() {
         } while (++row < kRows);
     }
 
-    // What is emitted into the strip's own cells.
+    // Emission into the strip's own cells.
     uint source = max(sources.x, rows.x), sourceEnd = min(sources.y, rows.y);
     for (uint i = 4u * source; i < 4u * sourceEnd; ++i) {
         uint cellY = i >> 2u, cellX = 4u * strip + (i & 3u), at = to + cellY * strips + strip;

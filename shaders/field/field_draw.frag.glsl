@@ -1,7 +1,6 @@
-// A particle field: density between its cells by cubic splines, fine structure by tiled noise that
-// the motion carries in two phases. What emits is looked up in the volumetric fires' profile, what
-// absorbs takes sun and sky, what refracts has a surface that gleams. Premultiplied: colour, and what
-// it hides.
+// A particle field: density by cubic splines between cells, fine structure by tiled noise that the motion advects in
+// two phases. Emission uses the volumetric fires' profile; absorption takes sun and sky; refraction has a specular
+// surface. Output is premultiplied: colour, and coverage.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/black_body.h"
@@ -12,7 +11,7 @@
 #include "shared/volume_draw.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-layout(constant_id = 2) const uint kVariant = 0u;  // 0: it only emits, 1: absorbs, 2: refracts too
+layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs, 2: also refracts
 layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShownBuffer {
     uint shown[];
 };
@@ -38,19 +37,19 @@ layout(location = 0) out vec4 outColor;
 #endif
 
 const float kPeriod = 0.8;      // s, of the noise's two phases
-const float kTile = 44.0;       // cells that a tile of noise covers
-const float kFieldWhite = 1.25;  // of thin soot at 1600 K, in the host's units
+const float kTile = 44.0;       // cells per tile of noise
+const float kFieldWhite = 1.25;  // host units of thin soot at 1600 K
 const float kFieldTip = 1370.0;  // K
 const vec2 kStretch = kVariant == 0u ? vec2(1.15, 0.62) : (kVariant == 1u ? vec2(0.8) : vec2(2.4, 0.42));
 
 struct Shown {
     float density;
-    vec2 motion;     // cells a step
+    vec2 motion;     // cells per step
     float sun;
-    vec2 slope;      // of density, a cell
+    vec2 slope;      // of density, per cell
 };
 
-// Cubic B-splines: 16 cells, weights and their slopes.
+// Cubic B-splines: 16 cells, weights and derivatives.
 Shown shownAt(vec2 place) {
     int w = int(inField.y), h = int(inField.z);
     vec2 at = place * vec2(float(w), float(h)) - 0.5;
@@ -102,11 +101,11 @@ void main() {
     float facing = dot(normal, toEye);
     float detail = inLook.x;
 
-    // Two phases half a period apart: each is only seen while its way is short.
+    // Two phases half a period apart: each is only visible while its displacement is short.
     float turns = inLook.z / kPeriod + hash(uvec3(uint(inSize.w), 1u, 1u));
     float phase = turns - floor(turns), other = fract(turns + 0.5);
     float share = abs(2.0 * phase - 1.0);
-    vec2 speed = f.motion * inTint.w;  // cells a second
+    vec2 speed = f.motion * inTint.w;  // cells per second
     float pixel = view.eye.w * (view.forward.w > 0.5 ? dot(inToEye, -view.forward.xyz) : 1.0);
     float lod = min(noiseLod(pixel, 1.0 / (kTile * inSize.x)), 5.0);
     vec4 noise = mix(carried(cell, speed, phase, floor(turns), lod),
@@ -114,7 +113,7 @@ void main() {
     float rough = (noise.r - 0.5) * 1.5 + (noise.b - 0.5) * 0.9;
     float ridge = noise.g - 0.45;
 
-    // Silhouettes and borders of the field fade.
+    // Fades silhouettes and borders.
     float edge = 1.0;
     if (round_) {
         edge = smoothstep(0.0, 0.75, abs(facing));
@@ -127,13 +126,13 @@ void main() {
     float alpha = 0.0;
 
     if (kVariant <= 1u) {  // emits
-        // Tongues: the higher the more of it the noise takes away, but for a thin tip, which still
-        // glows: cooler soot would only hide, and a flame end in a stump.
+        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot would only hide, and
+        // a flame would end in a stump.
         float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
         float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
                   detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
         d = max(d, 0.0);
-        // Dense is the flame's axis, thin its rim.
+        // Dense parts map to the flame's axis, thin ones to its rim.
         float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
         vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
         vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
@@ -151,7 +150,7 @@ void main() {
         float share1 = clamp(1.0 - abs(body - 1.0), 0.0, 1.0);
         float cover = (1.0 - exp(-tau * strength)) * edge * share1;
         if (round_) cover *= step(0.0, facing);
-        // Billows: towards where it is thinner they turn to the side.
+        // Billows tilt towards thinner density.
         vec3 up = normalize(cross(normal, inAlong));
         vec2 lean = -f.slope * 2.2 - detail * vec2(noise.r - noise.b, noise.g - noise.r) * 0.9;
         vec3 n = normalize(normal + inAlong * lean.x + up * lean.y);
@@ -166,8 +165,8 @@ void main() {
     if (kVariant == 2u) {  // refracts
         float d = max(f.density * (1.0 + 1.6 * detail * rough), 0.0);
         vec3 up = normalize(cross(normal, inAlong));
-        // A sheet ends within a cell or two, above a pool and at its source: turned as far as that the
-        // rims would be rows of white dots where the sun is mirrored.
+        // A sheet ends within a cell or two at pools and sources: full slopes there would make rims rows of white
+        // highlights.
         vec2 wave = -f.slope * (round_ ? 2.4 : 0.25) - detail * vec2(rough, 0.6 * ridge) * 1.8;
         vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
         float film = smoothstep(0.10, 0.42, d) * edge;
@@ -175,11 +174,10 @@ void main() {
         float facingN = clamp(dot(n, toEye), 0.0, 1.0);
         float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
         vec3 back = reflect(-toEye, n);
-        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
-                       smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
+        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb, smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
         vec3 half_ = normalize(view.sunDirection.xyz + toEye);
         float gleam = pow(max(dot(n, half_), 0.0), 60.0);
-        // Where it breaks it is white.
+        // Foam where it breaks.
         float foam = smoothstep(0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * ridge + 0.25 * length(f.motion));
         vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
         vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
@@ -200,7 +198,7 @@ void main() {
     color *= view.sunDirection.w;
     lit *= view.sunDirection.w;
     if (kEncoding != 0u) {
-        // Blending happens on what is shown: see flames.frag.
+        // The target blends encoded values: see flames.frag.
         color = encodeOutput(color, kEncoding);
         lit = encodeOutput(lit / alpha, kEncoding) * alpha;
     }

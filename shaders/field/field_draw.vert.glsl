@@ -1,5 +1,5 @@
-// A particle field's body, made from the vertex number: a card that turns about its up axis towards
-// the eye, or a spheroid around which the field is wound, bulging where it is dense if it is displaced.
+// A particle field's body, generated from the vertex number: a billboard that turns about its up axis, or a spheroid
+// around which the field is wound, displaced by density if requested.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
@@ -13,15 +13,15 @@ layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShow
     uint shown[];
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-
+#include "lib/billboard.glsl"
 layout(location = 0) centroid out vec2 outPlace;          // over the field, [0, 1]
 layout(location = 1) centroid out vec3 outNormal;         // of the body
 layout(location = 2) centroid out vec3 outToEye;          // m
-layout(location = 3) centroid out vec3 outAlong;          // where x of the field goes
+layout(location = 3) centroid out vec3 outAlong;          // direction of the field's x
 layout(location = 4) flat out vec4 outLook;      // detail, body, time s, opacity
-layout(location = 5) flat out vec4 outTint;      // w: steps a second
-layout(location = 6) flat out uvec4 outField;    // first cell, width, height, 1: round
-layout(location = 7) flat out vec4 outSize;      // m a cell; cells it comes; depth m; seed
+layout(location = 5) flat out vec4 outTint;      // w: steps per second
+layout(location = 6) flat out uvec4 outField;    // first cell, width, height, 1: spheroid
+layout(location = 7) flat out vec4 outSize;      // m per cell; cells of mean height; depth m; seed
 
 const float kPi = 3.14159265;
 const float kBulge = 0.22;
@@ -47,32 +47,25 @@ void main() {
 
     vec3 foot = d.place.xyz - view.eye.xyz;
     vec3 middle = foot + d.up.xyz * (0.5 * d.size.y);
-    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
+    float perspective = view.forward.w;  // a weight instead of a branch, see ARCHITECTURE.md
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
-    // A card: at least half of its height stays visible from above.
-    vec3 axis = d.up.xyz;
-    float along = abs(dot(axis, toEye));
-    vec3 screenUp = view.up.xyz - toEye * dot(view.up.xyz, toEye);
-    screenUp = dot(screenUp, screenUp) > 1e-4 ? normalize(screenUp) : vec3(0.0, 0.0, 1.0);
-    vec3 flat_ = axis - toEye * dot(axis, toEye);
-    axis = mix(axis, normalize(flat_ + screenUp * 1e-3), smoothstep(0.6, 0.95, along));
-    vec3 side = normalize(cross(axis, toEye) + vec3(1e-6, 0.0, 0.0));
-    float way = dot(side, d.right.xyz) < 0.0 ? -1.0 : 1.0;  // wind blows the way it does
+    Billboard b = billboard(d.up.xyz, toEye, false);
+    vec3 axis = b.axis, side = b.side;
+    float way = dot(side, d.right.xyz) < 0.0 ? -1.0 : 1.0;  // the wind keeps its direction
     vec3 onCard = foot + side * ((turn.x - 0.5) * d.size.x) + axis * (turn.y * d.size.y);
     vec2 cardPlace = vec2(way * (turn.x - 0.5) + 0.5, turn.y);
 
     vec2 ballPlace = vec2((float(quad % kFieldAround) + turn.x) / float(kFieldAround),
                           (float(quad / kFieldAround) + turn.y) / float(kFieldUp));
-    // Around by the angle, up by the height along the axis and the angle, half of each: cells keep
-    // their shape in the middle and the poles are not all of it.
+    // Longitude by angle; latitude half by height and half by angle, so cells keep their shape in the middle and the
+    // poles do not dominate.
     float lon = 2.0 * kPi * ballPlace.x, lat = kPi * (ballPlace.y - 0.5);
     vec3 ball = vec3(cos(lat) * cos(lon), sin(lat), -cos(lat) * sin(lon));
     vec3 normal = normalize(d.right.xyz * (ball.x / d.size.x) + d.up.xyz * (ball.y / d.size.y) +
                             d.forward.xyz * (ball.z / d.size.z));
     vec3 onBall = middle + 0.5 * (d.right.xyz * (ball.x * d.size.x) + d.up.xyz * (ball.y * d.size.y) +
                                   d.forward.xyz * (ball.z * d.size.z));
-    float bulge = d.shape == kFieldDisplaced
-                      ? kBulge * min(min(d.size.x, d.size.y), d.size.z) * cos(lat) : 0.0;
+    float bulge = d.shape == kFieldDisplaced ? kBulge * min(min(d.size.x, d.size.y), d.size.z) * cos(lat) : 0.0;
     onBall += normal * (bulge * (densityAt(d, ballPlace) - 0.35));
 
     vec3 at = card ? onCard : onBall;

@@ -1,6 +1,5 @@
-// What cells of particle fields show in this frame: between the last two steps each is carried along
-// its motion, so that nothing jumps; and how much of the sun comes through to it. kFieldShowGroups
-// groups for each field. Looks only.
+// Displayed cells of particle fields: density between the last two steps, advected by each cell's motion so that
+// nothing jumps, and the share of sunlight. kFieldShowGroups groups per field. Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -20,7 +19,7 @@ layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) writeonly buffer FieldSho
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
-const float kShadow = 0.004;  // of the sun, by a particle on its way
+const float kShadow = 0.004;  // of sunlight, absorbed per particle on its path
 
 uint width, height, ring;
 
@@ -34,8 +33,7 @@ float particlesAt(uint first, vec2 at) {
     vec2 low = floor(at), part = at - low;
     int x = int(low.x), y = int(low.y);
     vec4 n = vec4(fieldNumber(cells[first + cellIndex(x, y)]), fieldNumber(cells[first + cellIndex(x + 1, y)]),
-                  fieldNumber(cells[first + cellIndex(x, y + 1)]),
-                  fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
+                  fieldNumber(cells[first + cellIndex(x, y + 1)]), fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
     vec2 rows = mix(n.xz, n.yw, part.x);
     return mix(rows.x, rows.y, part.y);
 }
@@ -49,7 +47,7 @@ void main() {
     uint count = width * height, share = (count + kFieldShowGroups - 1u) / kFieldShowGroups;
     uint end = min((part + 1u) * share, count);
     float between = d.place.w;
-    // Towards the sun, in cells; a card has it from its side, and what comes from behind shines through.
+    // Direction to the sun in cells. A billboard is lit from its side; light from behind shines through.
     vec2 sun = vec2(dot(view.sunDirection.xyz, d.right.xyz), dot(view.sunDirection.xyz, d.up.xyz));
     sun = sun / max(length(sun), 0.3);
     for (uint i = part * share + gl_LocalInvocationID.x; i < end; i += 64u) {
@@ -60,15 +58,15 @@ void main() {
         float before = particlesAt(d.before, at - between * motion);
         float after = particlesAt(d.cells, at + (1.0 - between) * motion);
         float n = mix(before, after, between);
-        float way = 0.0, reach = 2.0;
+        float column = 0.0, reach = 2.0;
         FW_UNROLL for (int k = 0; k < 4; ++k) {
             vec2 there = at + sun * reach + 0.5;
             uint c = cellIndex(int(floor(there.x)), int(floor(there.y)));
-            way += 0.9 * reach * mix(float(fieldNumber(cells[d.before + c])), float(fieldNumber(cells[d.cells + c])), between);
+            column += 0.9 * reach * mix(float(fieldNumber(cells[d.before + c])), float(fieldNumber(cells[d.cells + c])), between);
             reach *= 1.9;
         }
         bool wall = cell == kFieldWallCell;
         shown[d.shown + i] = fieldShownPacked(wall ? 0.0 : sqrt(n * (1.0 / kFieldFull)), motion,
-                                              exp(-kShadow * way));
+                                              exp(-kShadow * column));
     }
 }

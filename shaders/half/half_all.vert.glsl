@@ -1,5 +1,5 @@
 #version 450
-// All of the viewport, once.
+// Covers the viewport.
 void main() {
     uint corner = uint(gl_VertexIndex) % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1

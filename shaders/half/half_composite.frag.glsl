@@ -1,7 +1,7 @@
 #version 450
-// What was drawn at half resolution, over the picture: of the four texels around a pixel those count
-// that were drawn against a depth like its own, so edges of what stands in flames and smoke are those
-// of full resolution. Premultiplied, as it was encoded and blended there: `over` is associative.
+// Composites the half-resolution target. Of the four texels around a pixel, those drawn against a similar depth count,
+// so edges of objects in flames and smoke stay at full resolution. Premultiplied, encoded and blended: `over` is
+// associative.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
@@ -25,14 +25,14 @@ void main() {
         ivec2 step = ivec2(i & 1, i >> 1), texel = clamp(first + step, ivec2(0), last);
         vec2 share = mix(1.0 - part, part, vec2(step));
         shares[i] = share.x * share.y;
-        apart[i] = halfApart(away, volumeMetres(push.clip, texelFetch(halfDepth, texel, 0).r));
+        apart[i] = halfApart(away, metresOfDepth(push.clip, texelFetch(halfDepth, texel, 0).r));
         four[i] = texelFetch(halfColor, texel, 0);
         least = min(least, four[i]);
         greatest = max(greatest, four[i]);
         nearest = min(nearest, apart[i]);
     }
-    // All four beyond an edge, as around a thin thing: one of those around them may not be. Else the
-    // darkest stands in: what glows behind a thing does not show before it.
+    // All four lie across an edge, as around a thin object: uses a matching one of those around them, else the darkest,
+    // so that light behind an object does not show in front.
     vec4 other = least;
     float best = kHalfEdge;
     int around = nearest > kHalfEdge ? 12 : 0;
@@ -40,7 +40,7 @@ void main() {
         ivec2 step = ivec2(i < 4 ? i - 1 : i < 6 ? 2 : i < 10 ? 8 - i : -1,
                            i < 4 ? -1 : i < 6 ? i - 4 : i < 10 ? 2 : 11 - i);
         ivec2 texel = clamp(first + step, ivec2(0), last);
-        float off = halfApart(away, volumeMetres(push.clip, texelFetch(halfDepth, texel, 0).r));
+        float off = halfApart(away, metresOfDepth(push.clip, texelFetch(halfDepth, texel, 0).r));
         if (off < best) {
             best = off;
             other = texelFetch(halfColor, texel, 0);

@@ -1,9 +1,9 @@
 #version 450
-// Those tiles of the target of half resolution that show anything.
+// Draws the tiles of the half-resolution target that show anything.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
-layout(set = 2, binding = 0) uniform sampler2D halfDepth;  // below it: half_tiles.frag's
+layout(set = 2, binding = 0) uniform sampler2D halfDepth;  // below it: output of half_tiles.frag
 layout(push_constant) uniform Push { HalfPush push; };
 
 void main() {

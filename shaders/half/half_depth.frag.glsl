@@ -1,7 +1,6 @@
 #version 450
-// The host's depth at half resolution. A texel is one of its four pixels' depths, not their mean,
-// which would be where nothing is: the least or the greatest by turns, so that on either side of an
-// edge some texel beside a pixel is on its side.
+// The host's depth at half resolution. A texel alternately takes the least or greatest depth of its four pixels, not
+// their mean, which lies on no surface. So beside an edge some texel lies on each side.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 #include "lib/scene_depth.glsl"

@@ -1,5 +1,5 @@
 #version 450
-// 1 where a tile, or a texel beside it that its pixels take of, shows anything.
+// 1 where a tile, or an adjacent texel that its pixels sample, shows anything.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
@@ -8,7 +8,7 @@ layout(push_constant) uniform Push { HalfPush push; };
 layout(location = 0) out float outShows;
 
 void main() {
-    // They lie below the depth.
+    // Stored below the depth.
     ivec2 tile = ivec2(gl_FragCoord.xy) - ivec2(0, push.texelsY);
     ivec2 last = ivec2(push.texelsX, push.texelsY) - 1;
     ivec2 low = max(tile * int(kHalfTile) - 1, ivec2(0));

@@ -1,5 +1,5 @@
 #version 450
-// The host's picture as it was before we drew; the blend constant says how much of it counts.
+// The host's image before our drawing; the blend constant is its weight.
 layout(set = 1, binding = 0) uniform sampler2D hostColor;
 layout(location = 0) out vec4 outColor;
 

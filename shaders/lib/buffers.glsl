@@ -1,5 +1,5 @@
-// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs
-// (readonly, writeonly, or FW_READ_WRITE) before it includes this; only those are declared.
+// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs (readonly, writeonly,
+// or FW_READ_WRITE) before it includes this; only those are declared.
 #ifndef FW_LIB_BUFFERS_GLSL
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
@@ -10,9 +10,9 @@
 #include "shared/heat.h"
 #endif
 
-// *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
-// at once for little more than one, and pays for every load, taken or not. It also runs a loop's
-// text until no lane is left, and a `for` finds that out one turn late: hot loops are `do`, `while`.
+// *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words at once for little
+// more than one, and pays for every load, taken or not. It also runs a loop's text until no lane is left, and a `for`
+// finds that out one turn late: hot loops are `do`, `while`.
 #define FW_READ_WRITE
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
@@ -70,7 +70,7 @@ FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
 FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinkQuadsBuffer, uvec4, linkQuads);
 #endif
 #ifdef FW_USE_READERS
-FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, ReadersBuffer, uint, readers);
+FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, DependentsBuffer, uint, readers);
 #endif
 #ifdef FW_USE_TILES
 // Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
@@ -106,11 +106,10 @@ FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
 FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 #endif
 #ifdef FW_USE_RUN
-// World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its row
-// of `tiles`.
+// World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its row of `tiles`.
 FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
 const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
-const uint kRunNews = 2u;   // due because texels just caught: settled ones need no run
+const uint kRunLitBeside = 2u;   // due because texels just caught: settled ones need no run
 const uint kRunBits = 3u;
 #endif
 #ifdef FW_USE_SCRATCH
@@ -119,9 +118,9 @@ FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
 uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 #endif
 #ifdef FW_USE_SCRATCH_QUADS
-// A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of
-// the prediction: (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first
-// texel, object). The scratch's end lists rim texels, see rimItem.
+// A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of the prediction:
+// (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first texel, object). The scratch's end
+// lists rim texels, see rimItem.
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS
@@ -140,8 +139,7 @@ FW_BUFFER(FW_BIND_EVENTS, FW_USE_EVENTS, EventsBuffer, TexelEvent, events);
 FW_BUFFER(FW_BIND_WAKE_GROUPS, FW_USE_WAKE_GROUPS, WakeGroupsBuffer, uvec2, wakeGroups);
 #endif
 #ifdef FW_USE_OBJECT_COUNTERS
-FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters,
-          objectCounters);
+FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters, objectCounters);
 #endif
 #ifdef FW_USE_BURN_LISTS
 FW_BUFFER(FW_BIND_BURN_A, FW_USE_BURN_LISTS, BurnABuffer, uint, burnA);
@@ -202,10 +200,10 @@ FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
 #endif
 
 #ifdef FW_USE_REMOTE_OBJECTS
-FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, RemoteObjectsBuffer, RemoteObject, remoteObjects);
+FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, ExchangeObjectsBuffer, RemoteObject, remoteObjects);
 #endif
 #ifdef FW_USE_REMOTE_TILES
-FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, RemoteTilesBuffer, RemoteTile, remoteTiles);
+FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, ExchangeTilesBuffer, RemoteTile, remoteTiles);
 #endif
 #ifdef FW_USE_SOURCES
 FW_BUFFER(FW_BIND_SOURCES, FW_USE_SOURCES, SourcesBuffer, FireSource, sources);
@@ -217,10 +215,10 @@ FW_BUFFER(FW_BIND_NEIGHBOURS, readonly, NeighboursBuffer, uint, neighbours);
 FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
 #endif
 #ifdef FW_USE_BLOCKERS
-FW_BUFFER(FW_BIND_BLOCKERS, readonly, BlockersBuffer, Blocker, blockers);
+FW_BUFFER(FW_BIND_BLOCKERS, readonly, HeatOccludersBuffer, Blocker, blockers);
 #endif
 #ifdef FW_USE_SHIELD
-FW_BUFFER(FW_BIND_SHIELD, readonly, ShieldBuffer, uint, shield);
+FW_BUFFER(FW_BIND_SHIELD, readonly, OcclusionBuffer, uint, shield);
 #endif
 #ifdef FW_USE_ROOMS
 #include "shared/room.h"
@@ -240,8 +238,8 @@ layout(push_constant) uniform StepPushBlock { StepPush push; };
 
 const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
 
-// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next
-// pass drops them: `alive` is false for those.
+// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next pass drops them:
+// `alive` is false for those.
 #if defined(FW_USE_OBJECTS) && defined(FW_USE_TILE_STATE)
 struct TileRef {
     uint object, local;
@@ -251,15 +249,13 @@ TileRef tileRef(uint worldTile) {
     TileRef r;
     r.object = tileState[worldTile].object;
     r.local = worldTile - objects[r.object].worldTileBase;
-    r.alive = (objects[r.object].flags & kObjectLive) != 0u &&
-              r.local < objects[r.object].tileCount;
+    r.alive = (objects[r.object].flags & kObjectLive) != 0u && r.local < objects[r.object].tileCount;
     return r;
 }
 // Texel of a lane of a tile, in the object's own map.
 uint texelOf(uint object, uint local, uint lane) {
     uint tilesX = objects[object].tilesX;
-    return ((local / tilesX) * 8u + (lane >> 3u)) * objects[object].width +
-           (local % tilesX) * 8u + (lane & 7u);
+    return ((local / tilesX) * 8u + (lane >> 3u)) * objects[object].width + (local % tilesX) * 8u + (lane & 7u);
 }
 #endif
 #endif

@@ -1,5 +1,5 @@
-// What follows a texel's change that is not the front kernel's: its tile and whoever reads it are
-// due, and counters and lists know of it. For events, contacts and embers.
+// Effects of a texel's change outside the front kernel: dependent tiles become due, counters and lists are updated. For
+// events, contacts and embers.
 #ifndef FW_LIB_CHANGE_GLSL
 #define FW_LIB_CHANGE_GLSL
 
@@ -17,19 +17,15 @@ TexelPlace placeOfTexel(uint object, uint texel) {
     return p;
 }
 
-// `end`: end tick of the window in which a texel caught.
-void nowBurns(uint object, uint worldTile, uint end) {
-    atomicMax(objectCounters[object].lastIgnition, end);
-    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
-        burnAppend(push.burnParity, worldTile);
-        atomicAdd(objectCounters[object].burningTiles, 1u);
-    }
+// Row of the object's materials that a texel uses.
+uint materialOfTexel(uint object, uint texel) {
+    return object * kMaterialsPerObject + ((texels[objects[object].texelBase + texel].y >> 16u) & 7u);
 }
 void litFrom(uint object, uint by) {
     if (objectCounters[object].litTick == 0u) atomicMax(objectCounters[object].litBy, by);
 }
 
-// `burns`: the texel is a source now.
+// burns: the texel is a source now.
 void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
     predictTouch(push.predictParity, p.worldTile);
     if ((objects[object].flags & kObjectPublished) != 0u) {
@@ -41,7 +37,6 @@ void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
         return;
     }
     tileState[p.worldTile].lastChange = push.now;
-    touchReaders(object, p.local,
-                 p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
+    touchReaders(object, p.local, p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
 }
 #endif

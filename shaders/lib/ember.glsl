@@ -1,17 +1,15 @@
-// Where embers come down. They are rare: each looks through all objects, then through the tiles of
-// one.
+// Landing of embers. They are rare: each tests all objects, then the tiles of one.
 #ifndef FW_LIB_EMBER_GLSL
 #define FW_LIB_EMBER_GLSL
 
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
 
 Ember emberFrom(FireSource source) {
-    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
-                 unpackWind(uint(remoteObjects[source.object].high.w));
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) + unpackWind(uint(remoteObjects[source.object].high.w));
     return flyingEmber(source, source.ember, worldUp(), wind);
 }
 
-// The object, and its tile; that is kNoneTexel where it falls on none.
+// Returns the object and sets its tile; kNoneTexel: none.
 uint landsOn(ivec3 at, uint axis, out uint tile) {
     uint object = kNoneTexel;
     tile = kNoneTexel;
@@ -40,11 +38,19 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
     return object;
 }
 
-// The sources of a slot that burns, from x on and before y.
+// Range of sources of a burning slot.
 uvec2 sourcesOf(uint slot) {
     bool burns = (remoteObjects[slot].flags & kRemoteLive) != 0u && objectCounters[slot].burning != 0u;
     uint first = remoteObjects[slot].sourceBase;
     return uvec2(first, burns ? first + remoteObjects[slot].sourceCount : first);
 }
 bool sendsEmber(uint at) { return sources[at].ember != 0u && sources[at].watts != 0u; }
+
+// Runs a statement for each ember, at source `at`. One thread per object slot.
+#define FW_EACH_EMBER(statement)                                       \
+    uint slot = gl_GlobalInvocationID.x;                               \
+    if (slot >= push.count) return;                                    \
+    uvec2 range = sourcesOf(slot);                                     \
+    for (uint at = range.x; at < range.y; ++at)                        \
+        for (bool sent = sendsEmber(at); sent; sent = false) statement
 #endif

@@ -1,9 +1,9 @@
-// Fire that comes to a texel from another object.
+// Ignition of a texel by another object.
 #ifndef FW_LIB_LIGHT_GLSL
 #define FW_LIB_LIGHT_GLSL
 
-// True: it caught at that tick, by this flame or by another one as well: each counts, so that the
-// order of threads decides nothing. All that light a texel in one dispatch do so at the same tick.
+// True: it caught at this tick, by this flame or also by another one. Each counts, so the order of threads does not
+// matter: all ignitions of a texel in one dispatch have the same tick.
 bool lightTexel(uint object, uint texel, uint tick, uint by) {
     uint at = objects[object].stateBase + texel;
     uint before = state[at];

@@ -1,5 +1,4 @@
-// Buffers that lightTexel (lib/light.glsl) needs, with what each pass that calls it is pushed: included
-// before lib/buffers.glsl, beside what a pass has of its own. gpu/passes/light_uses.h binds them.
+// Buffers that lib/light.glsl needs; include before lib/buffers.glsl. gpu/passes/light_uses.h binds them.
 #define FW_USE_EXCHANGE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_TILES readonly

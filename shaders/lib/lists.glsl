@@ -1,5 +1,5 @@
-// Appending to the lists of tiles, and touching tiles. Membership is a flag bit of the tile, so a
-// tile is in a list at most once and the order never matters.
+// Appends to tile lists, and touching of tiles. Membership is a flag bit, so a tile is in a list at most once and the
+// order does not matter.
 #ifndef FW_LIB_LISTS_GLSL
 #define FW_LIB_LISTS_GLSL
 
@@ -22,7 +22,7 @@ void frontAppend(uint parity, uint row, uint worldTile) {
     if (parity == 0u) listA[slot] = worldTile;
     else listB[slot] = worldTile;
 }
-// `bits` beside kTileListed.
+// bits: set in addition to kTileListed.
 void touchTile(uint parity, uint row, uint worldTile, uint bits) {
     uint old = atomicOr(tileState[worldTile].flag, kTileListed | bits);
     if ((old & kTileListed) == 0u) frontAppend(parity, row, worldTile);
@@ -43,7 +43,7 @@ void hotStore(uint parity, uint slot, uint worldTile) {
     if (parity == 0u) hotLists[slot].x = worldTile;
     else hotLists[slot].y = worldTile;
 }
-// Slots for so many; the first. A group of `heat` goes through 256.
+// First of `count` slots. A group of `heat` handles 256.
 const uint kHotPerGroup = 256u;
 uint hotSlots(uint parity, uint count) {
     uint row = kRowHot + parity;
@@ -60,8 +60,8 @@ uint hotSlots(uint parity, uint count) {
 void hotAppend(uint parity, uint worldTile) {
     hotStore(parity, listSlot(kRowHot + parity, kHotPerGroup), worldTile);
 }
-// Of objects with heat only: something of the tile's temperature, water or flux changes from now on,
-// and it takes every step (kTileWarm), or its turns.
+// Objects with heat only: the tile's temperature, water or flux changes from now on. It is updated every step
+// (kTileWarm), or at intervals.
 void hotList(uint parity, uint worldTile, uint warm) {
     uint old = atomicOr(tileState[worldTile].flag, kTileHot | warm);
     if ((old & kTileHot) == 0u) hotAppend(parity, worldTile);
@@ -81,25 +81,39 @@ void predictTouch(uint parity, uint worldTile) {
 }
 #endif
 
+#if defined(FW_USE_BURN_LISTS) && defined(FW_USE_OBJECT_COUNTERS) && defined(FW_USE_TILE_STATE) && \
+    (defined(FW_USE_PUSH) || defined(FW_USE_EXCHANGE_PUSH))
+// end: end tick of the window in which a texel caught.
+void nowBurns(uint object, uint worldTile, uint end) {
+    atomicMax(objectCounters[object].lastIgnition, end);
+    if ((atomicOr(tileState[worldTile].flag, kTileBurning) & kTileBurning) == 0u) {
+        burnAppend(push.burnParity, worldTile);
+        atomicAdd(objectCounters[object].burningTiles, 1u);
+    }
+}
+void addEnergy(uint object, uint low, uint high) {
+    uint before = atomicAdd(objectCounters[object].energyLow, low);
+    atomicAdd(objectCounters[object].energyHigh, high + (before + low < low ? 1u : 0u));
+}
+#endif
+
 #if defined(FW_USE_BURN_LISTS) && defined(FW_USE_PREDICT_LISTS) && defined(FW_USE_TILE_STATE)
 #include "shared/grant.h"
-// Where the tiles that burn are counted against a limit, none is lit that is not on the burn list.
-// A pass that lights runs twice: first it only asks for tiles, then it lights what `grant` put on the
-// list in between, and leaves all else as it was. Those that asked are listed where nothing else is
-// meanwhile: the predict list that the frame's prediction will write, and in the burn list that the
-// next reduction will, by world tile, the marks of those that did.
-const uint kAsked = 0xFFFFFFF0u;  // no world tile is that large
-const uint kAskedFits = 1u;       // + these: its object has room, the world has
-const uint kAskedMay = 2u;
+// Where burning tiles are limited, no tile is lit that is not on the burn list. A lighting pass runs twice: first it
+// requests tiles, then it lights those that `grant` put on the list in between; all else stays unchanged. Requests use
+// storage that is free meanwhile: the predict list that the frame's prediction will write, and, as marks per world
+// tile, the burn list that the next reduction will write.
+const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
+const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
+const uint kRequestAllocated = 2u;
 bool asksOnly() { return (push.switches & kSwitchAsks) != 0u; }
 bool mayBurn(uint worldTile) {
-    return (push.switches & kSwitchCapped) == 0u ||
-           (tileState[worldTile].flag & kTileBurning) != 0u;
+    return (push.switches & kSwitchCapped) == 0u || (tileState[worldTile].flag & kTileBurning) != 0u;
 }
 void askToBurn(uint worldTile) {
-    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kAsked)
-                                     : atomicExchange(burnA[worldTile], kAsked);
-    if (had == kAsked) return;
+    uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kRequested)
+                                     : atomicExchange(burnA[worldTile], kRequested);
+    if (had == kRequested) return;
     uint slot = atomicAdd(counters[kRowBurn + (push.burnParity ^ 1u)].workCount, 1u);
     if (push.predictParity == 0u) predictB[slot] = worldTile;
     else predictA[slot] = worldTile;
@@ -109,36 +123,38 @@ void askToBurn(uint worldTile) {
 #ifdef FW_USE_READERS
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
-    // kFrontRingX and Y in words of eight: `k` is no constant here, and devices are slow at that.
+    // kFrontRingX and Y packed in words: `k` is not constant, and devices index arrays slowly.
     int x = tileX + int((0x901Au >> (2u * k)) & 3u) - 1;
     int y = tileY + int((0x01A9u >> (2u * k)) & 3u) - 1;
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
 }
-// Local tile `r` of those that read tile `local` over seams. The switches are the test suite's.
-uint readerTile(uint object, uint readerStart, uint r) {
+// r-th dependent tile over seams. The switches serve the tests.
+uint dependentTile(uint object, uint readerStart, uint r) {
     uint reader = readers[objects[object].readerBase + readerStart + r];
     return (push.switches & kSwitchWrongReaders) != 0u ? 0u : reader;
 }
 #if defined(FW_USE_LISTS) && defined(FW_USE_TILES) && defined(FW_USE_OBJECTS)
-// Texels of this mask of a tile changed between iterations: touches the tile and all who read them.
-void touchReaders(uint object, uint local, uvec2 mask) {
+// Touches the tiles beside a tile, and over seams, that depend on its texels of `mask`.
+void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uint bits) {
     uint worldTileBase = objects[object].worldTileBase;
-    touchTile(push.parity, push.row, worldTileBase + local, kTileTouched);
     uint tilesX = objects[object].tilesX;
     uint tileY = divide(local, tilesX);
     uint tileX = local - tileY * tilesX;
     int tilesY = int(objects[object].height >> 3u);
     for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
         uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), uint(findLSB(beside)));
-        if (other != kNoneTexel)
-            touchTile(push.parity, push.row, worldTileBase + other, kTileTouched);
+        if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, bits);
     }
     if ((push.switches & kSwitchNoSeamWake) != 0u) return;
     uvec4 seam = tiles[(objects[object].tileBase + local) * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
-        touchTile(push.parity, push.row, worldTileBase + readerTile(object, seam.z, r),
-                  kTileTouched);
+        touchTile(parity, row, worldTileBase + dependentTile(object, seam.z, r), bits);
+}
+// Texels of this mask of a tile changed between iterations: touches the tile and all tiles that depend on them.
+void touchReaders(uint object, uint local, uvec2 mask) {
+    touchTile(push.parity, push.row, objects[object].worldTileBase + local, kTileTouched);
+    touchBeside(push.parity, push.row, object, local, mask, kTileTouched);
 }
 #endif
 #endif

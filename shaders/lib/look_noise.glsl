@@ -1,9 +1,10 @@
-// The look textures' noise at a place in metres. The includer declares `lookTextures`.
+// Samples of the appearance textures at a place in metres. The includer declares `lookTextures`.
+#include "shared/integer.h"
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
-// Level of detail of a pattern of `tiles` per metre at `pixel` metres per pixel. A whole one: the
-// software device fetches two levels otherwise, for twice the time.
+// Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device would fetch two mips
+// otherwise, for twice the time.
 float noiseLod(float pixel, float tiles) {
     return floor(log2(max(pixel * tiles * kLookTextureSide, 1.0)) + 0.5);
 }
@@ -17,12 +18,7 @@ vec4 lookLayer(vec2 uv, float layer, float lod) {
 }
 
 float hash(uvec3 v) {
-    uint x = v.x * 73856093u ^ v.y * 19349663u ^ v.z * 83492791u;
-    x ^= x >> 16;
-    x *= 0x7feb352du;
-    x ^= x >> 15;
-    x *= 0x846ca68bu;
-    x ^= x >> 16;
+    uint x = hash32(v.x * 73856093u ^ v.y * 19349663u ^ v.z * 83492791u);
     return float(x >> 8) * (1.0 / 16777216.0);
 }
 

@@ -1,5 +1,5 @@
-// Shared by the passes of the shown arrival: times, gradients, and the tiles that a change concerns. With
-// FW_USE_PREDICT_LISTS include after lists.glsl.
+// Shared by the prediction passes: times, gradients, and dependent tiles. With FW_USE_PREDICT_LISTS include after
+// lists.glsl.
 #ifndef FW_LIB_PREDICT_GLSL
 #define FW_LIB_PREDICT_GLSL
 
@@ -7,7 +7,7 @@
 
 bool hasTime(uint p) { return p < kLiveEnd; }
 
-// Difference quotient over +-2 texels along one axis, s per texel; 0 where neither side is known.
+// Difference quotient over +-2 texels along one axis, s per texel; 0 if neither side is known.
 float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
     uint low = centre;
     uint high = centre;
@@ -29,15 +29,14 @@ float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
     return span == 0 ? 0.0 : float(int(high - low)) / (float(span) * float(kTicksPerSecond));
 }
 
-// As packGradient; the soot there stays.
+// As packGradient; keeps the soot.
 uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
-    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) |
-           (gradient[at] & 0xFFu);
+    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) | (gradient[at] & 0xFFu);
 }
 
-// A round reads the times of the one before and nothing that it writes itself, so that a picture does
-// not depend on the order in which a device runs its threads. A changed texel's new time waits in its
-// gradient, which is found again afterwards: 24 bits, ticks from `push.now` on.
+// A round reads the times of the round before and nothing that it writes, so the result does not depend on the order of
+// threads. A changed texel's new time is stored in its gradient (24 bits, ticks from `push.now`) and the gradient is
+// computed afterwards.
 const uint kNoTimeNext = 0x80000000u;
 uint packTimeNext(uint word, uint time) {
     int ticks = clamp(int(time - push.now), -0x7FFFFF, 0x7FFFFF);
@@ -48,23 +47,22 @@ uint unpackTimeNext(uint word) {
     return min(push.now + uint(int(word) >> 8), kLiveEnd - 1u);
 }
 
-// Is this change worth a neighbour's while? Rings would chase rounding for ever; and the farther
-// ahead, the less small changes matter.
+// Is this change large enough to update neighbours? Rings would chase rounding forever; the further ahead, the larger a
+// change must be.
 bool concernsOthers(uint before, uint now) {
     int ahead = max(int(now - push.now), 0);
     return !(hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8);
 }
 
 #ifdef FW_USE_PREDICT_LISTS
-// Lists the tile, and who reads its texels of `mask` (lane = y * 8 + x), for the next frame.
+// Lists the tile, and those that depend on its texels of `mask` (lane = y * 8 + x), for the next frame.
 void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY) {
     uint parity = push.predictParity ^ 1u;
     predictTouch(parity, worldTile);
     uvec4 places = objectPlaces(object);
     uvec4 sizes = objectSizes(object);
     for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
-        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY),
-                                uint(findLSB(beside)));
+        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY), uint(findLSB(beside)));
         if (other != kNoneTexel) predictTouch(parity, places.x + other);
     }
     uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];

@@ -1,4 +1,4 @@
-// Buffers of every pass of prediction: included before lib/buffers.glsl, beside what a pass has of its own.
+// Buffers of the prediction passes: include before lib/buffers.glsl.
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_OBJECT_QUADS

@@ -1,12 +1,11 @@
-// A refined vertex now, from the arrivals around its texel and around the wall behind it. Expects the
-// buffers of lib/refine_buffers.glsl with FW_USE_PREDICT.
+// Refined vertex of this frame, from the arrivals around its texel and around the opposite wall. Needs the buffers of
+// lib/refine_buffers.glsl with FW_USE_PREDICT.
 #ifndef FW_LIB_REFINE_ARRIVAL_GLSL
 #define FW_LIB_REFINE_ARRIVAL_GLSL
 
 bool isDoused(uint t) { return t == kOut || t == kOutWet; }
 
-// As the surface shows it: what nothing holds falls to ash early, and a texel that was put out stays
-// as burnt as it was, younger every frame.
+// As the surface shows it: unsupported pieces turn to ash early, and a texel that was put out keeps its age.
 float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
     uint at = refined[object].stateBase + base;
     uint up = at + refined[object].textureWidth;
@@ -21,16 +20,14 @@ float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
     return refineArrival(t, weights, nowTick, refined[object].epochTick);
 }
 
-// behind: s since the object's epoch when the wall behind it was lit; unlit: as if it will be once a
-// wall takes to burn through, so that corners around what is lit know the way to it.
-RefineVertex refineNow(uint object, RefineSlot slot, uint nowTick, float recede,
-                       out float behind) {
+// behind: s since the object's epoch when the opposite wall was lit; unlit: assumed one burn-through time ahead, so
+// that corners around a lit area know the distance to it.
+RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float recede, out float behind) {
     float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights, nowTick);
     behind = kRefineNever;
     bool walled = slot.opposite != kRefineOpposed;
     while (walled) {
-        behind = arrivalAt(object, slot.opposite & 0xFFFFFFu,
-                           refineOppositeWeights(slot.opposite), nowTick);
+        behind = arrivalAt(object, slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite), nowTick);
         walled = false;
     }
     uint material = slot.texel >> 24u;

@@ -1,5 +1,5 @@
-// Storage buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs
-// before it includes this; only those are declared. One list entry is one workgroup's share.
+// Buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs before it includes this. One
+// list entry is one workgroup's share.
 #ifndef FW_LIB_REFINE_BUFFERS_GLSL
 #define FW_LIB_REFINE_BUFFERS_GLSL
 #include "shared/burn.h"
@@ -18,8 +18,7 @@ FW_BUFFER(FW_BIND_REFINE_WORDS, FW_USE_WORDS, RefineWordsBuffer, uint, words);
 uint tableToken(uint entry) { return (words[entry >> 1u] >> (16u * (entry & 1u))) & 0xFFFFu; }
 #endif
 #ifdef FW_USE_TRIANGLES
-FW_BUFFER(FW_BIND_REFINE_TRIANGLES, FW_USE_TRIANGLES, RefineTrianglesBuffer, RefineTriangle,
-          triangles);
+FW_BUFFER(FW_BIND_REFINE_TRIANGLES, FW_USE_TRIANGLES, RefineTrianglesBuffer, RefineTriangle, triangles);
 #endif
 #ifdef FW_USE_EDGES
 FW_BUFFER(FW_BIND_REFINE_EDGES, FW_USE_EDGES, RefineEdgesBuffer, RefineEdge, edges);
@@ -53,8 +52,7 @@ FW_BUFFER(FW_BIND_REFINE_CUTS, FW_USE_CUTS, RefineCutsBuffer, uvec4, cuts);
 FW_BUFFER(FW_BIND_REFINE_CUT_DRAWS, FW_USE_CUTS, RefineCutDrawsBuffer, uint, cutDraws);
 #endif
 #ifdef FW_USE_OBJECT_COUNTERS
-FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters,
-          objectCounters);
+FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters, objectCounters);
 #endif
 #ifdef FW_USE_PREDICT
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
@@ -62,13 +60,13 @@ FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);
 #endif
 #ifdef FW_USE_ARP
 #include "shared/arp.h"
-FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, ArpGroupsBuffer, uvec2, groups);
-FW_BUFFER(FW_BIND_ARP_LIST, readonly, ArpListBuffer, uint, arpList);
+FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, PatternGroupsBuffer, uvec2, groups);
+FW_BUFFER(FW_BIND_ARP_LIST, readonly, PatternListBuffer, uint, arpList);
 layout(push_constant) uniform Push { ArpPush push; };
 #else
 layout(push_constant) uniform Push { RefinePush push; };
 
-const uint kMostGroups = 65535u;  // of a dispatch; the rest is strided over
+const uint kMaxGroups = 65535u;  // of a dispatch; the rest is strided over
 
 uint edgeList() { return kRefineWorkLists; }
 uint triangleList() { return edgeList() + 2u * push.edgeGroups; }
@@ -76,7 +74,7 @@ uint cornerList() { return triangleList() + 2u * push.triangleGroups; }
 uint morphJobs() { return push.placeJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
 uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u); }
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
-// Per object of the list: cut triangles of each material, then the first for which there is no room.
+// Per object of the list: cut triangles of each material, then the first that exceeds the capacity.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
 #endif
 #endif

@@ -1,4 +1,4 @@
-// The host's depth at a pixel; of several samples the first, for a choice of one needs a feature.
+// The host's depth at a pixel; the first of several samples, as choosing one needs a device feature.
 #ifndef FW_LIB_SCENE_DEPTH_GLSL
 #define FW_LIB_SCENE_DEPTH_GLSL
 #if FW_SOFT == 2

@@ -1,10 +1,9 @@
-// What stands in the way of fire, cell by cell: shared/exchange.h, with the buffers. As
-// gpu/cpu/cpu_exchange.cpp.
+// Heat-occlusion tests: shared/exchange.h with the buffers. The CPU backend's twin is gpu/cpu/cpu_exchange.cpp.
 #ifndef FW_LIB_SHIELD_GLSL
 #define FW_LIB_SHIELD_GLSL
 #include "shared/heat.h"
 
-// Is the texel that fills a cell of the shield still there?
+// Does the texel that fills an occlusion cell still stand?
 bool shieldStands(uint what, uint texel) {
     bool stands = (what & kShieldStays) != 0u;
     for (bool asks = !stands; asks; asks = false) {
@@ -13,22 +12,21 @@ bool shieldStands(uint what, uint texel) {
         uint t = state[objects[slot].stateBase + texel];
         bool gone = isSource(t) && t <= push.now && push.now - t >= holes;
         if (gone && (objects[slot].flags & kObjectHeat) != 0u)
-            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t,
-                            push.now);
+            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t, push.now);
         stands = !gone;
     }
     return stands;
 }
 
-// In two loops, or a software device would ask of every cell of every way, whether it is solid or
-// not, what only cells in the way need: it runs the text of a branch for all threads of its group.
+// Two loops: a software device executes a branch's body for all lanes of its group, so the expensive test of a solid
+// cell stays out of the walk over empty ones.
 bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
     ShieldWalk w = shieldWalk(push, a, b);
     uint words = shieldWords(push.shieldCounts);
     bool cut = false;
     while (w.within && !cut) {
         uint what = 0u, texel = 0u;
-        bool stops = false;  // what it is in, if that stands
+        bool stops = false;  // in a solid cell
         while (w.within && !stops) {
             uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
             for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
@@ -40,8 +38,7 @@ bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
                     texel = shield[3u * words + 2u * i + 1u];
                 }
                 uint slot = what & kShieldSlot;
-                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot,
-                                      push.shieldCell);
+                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot, push.shieldCell);
             }
             shieldStep(w, push.shieldCell);
         }

@@ -1,5 +1,5 @@
-// Where a texel is on vertices that move: the host's, or a sheet's. Every thread loads: objects
-// that have none read the first records.
+// Position of a texel on moving vertices: the host's, or a sheet's. Every thread loads; objects without them read the
+// first records.
 #ifndef FW_LIB_SKIN_GLSL
 #define FW_LIB_SKIN_GLSL
 layout(std430, set = 0, binding = FW_BIND_SKIN_TEXELS) readonly buffer SkinTexelsBuffer {

@@ -1,5 +1,4 @@
-// A normal from object to world axes under any scale, as cofactors do it; not of unit length. Rows
-// are those of the object's matrix, which does not mirror.
+// Transforms a normal by the cofactors of a matrix given by rows, which does not mirror; not of unit length.
 vec3 turnNormal(vec3 row0, vec3 row1, vec3 row2, vec3 n) {
     return vec3(dot(cross(row1, row2), n), dot(cross(row2, row0), n), dot(cross(row0, row1), n));
 }

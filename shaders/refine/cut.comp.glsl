@@ -1,9 +1,8 @@
-// Holes of the objects near the eye, cut out of their small triangles, in phases with a barrier
-// between: 0 lists the coarse triangles with a hole, and of what has an inside those along open edges,
-// a lane each; 1 a workgroup each: small triangles that a hole crosses leave the index list, and what
-// is left of them is written as vertices, with their inner skin and walls along the hole and along
-// open edges; without room they stay whole; 2 draw arguments. Of objects whose texels tell their holes
-// triangles stay whole until all of them is gone, and have walls along open edges alone.
+// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0 lists coarse triangles
+// with a hole, and those along open edges of closed meshes, one lane each. 1, one workgroup each: small triangles
+// crossed by a hole leave the index list; the rest of them is written as vertices, with inner skin and walls along the
+// hole and along open edges; without capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes
+// keep triangles whole until all of a triangle is gone, and only get walls along open edges.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,13 +21,13 @@ layout(local_size_x = 64) in;
 #include "lib/refine_buffers.glsl"
 #include "lib/refine_arrival.glsl"
 
-const uint kLost = 0x80000000u;  // of a job's triangle: all of it is gone
+const uint kLost = 0x80000000u;  // of a job's triangle: all burnt through
 
 uint slotOf(uint object, uint vertex) {
     return meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
 }
 
-// Sides on open edges of what has an inside, a bit each.
+// Sides on open edges, one bit each; meshes with an inner skin only.
 uint openSides(uint object, RefineTriangle t) {
     uint open = 0u;
     for (uint e = 0u; e < 3u; ++e)
@@ -36,12 +35,11 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
-bool isTold(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
+bool hasPerPixelHoles(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
 
 bool isGone(uint object, float hole) { return hole <= refined[object].now; }
 
-// Whether fire has been through all of it, by its corners, the middles of its sides and three places
-// within.
+// Is all of it burnt through? Tests its corners, the middles of its sides and three inner points.
 bool isLost(uint object, RefineTriangle t) {
     bool lost = true;
     for (uint v = 0u; v < 3u; ++v) {
@@ -58,8 +56,7 @@ bool isLost(uint object, RefineTriangle t) {
             s = refineInnerSlot(t, side == 1u ? 2u : 1u, side == 2u ? 2u : 1u, 2u);
         RefineSlot slot = slots[refined[object].meshSlots + s];
         float behind;
-        lost = lost &&
-               isGone(object, refineNow(object, slot, push.nowTick, push.recede, behind).hole);
+        lost = lost && isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
     }
     return lost;
 }
@@ -77,8 +74,8 @@ void find(uint object, uint triangle) {
         if (lost) heat[own] |= kRefineLost;
         asks = false;
     }
-    if (isTold(object) && !lost && open == 0u) return;
-    // Most of what is burnt is gone, and coarse again: no workgroup for that.
+    if (hasPerPixelHoles(object) && !lost && open == 0u) return;
+    // Most burnt triangles are gone and coarse again: no workgroup for those.
     uvec2 packed = levels[refined[object].triangles + triangle];
     if (lost && packed.x == 0u) {
         uint to = refined[object].indices + packed.y * 3u;
@@ -86,12 +83,12 @@ void find(uint object, uint triangle) {
         return;
     }
     uint job = atomicAdd(work[kRefineWorkCut + 3u], 1u);
-    atomicMax(work[kRefineWorkCut], min(job + 1u, kMostGroups));
+    atomicMax(work[kRefineWorkCut], min(job + 1u, kMaxGroups));
     work[push.cutJobs + 2u * job] = object;
     work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }
 
-// Of the first triangle of material m, and its end.
+// First triangle of material m.
 uint materialStart(uint object, uint m) {
     uvec4 low = refined[object].materialEnd0;
     uvec4 high = refined[object].materialEnd1;
@@ -100,20 +97,19 @@ uint materialStart(uint object, uint m) {
     return m == 0u ? 0u : start;
 }
 uint roomBefore(uint object, uint m) {
-    return refineCutShare(refined[object].cutTriangles, materialStart(object, m),
-                          refined[object].triangleCount);
+    return refineCutShare(refined[object].cutTriangles, materialStart(object, m), refined[object].triangleCount);
 }
 
 struct Point {   // of a kept polygon
     vec3 outer;
     vec3 inner;
-    uvec4 atlas;   // second and third word quads of its vertex, but the last word
+    uvec4 atlas;   // second and third quad of its vertex, without the last word
     uvec4 detail;
     uint normal;
     float left;    // s to the hole
 };
 
-// `at`: see RefineCut::corner.
+// at: see RefineCut::corner.
 Point pointOf(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, uint at) {
     uint i = at & 3u, j = at < 4u ? i : refineNext(i);
     bool ordered = slots_[i] <= slots_[j];
@@ -140,8 +136,7 @@ Point pointOf(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, uint at) {
     uvec4 a1 = meshVertices[first + 1u], b1 = meshVertices[second + 1u];
     uvec4 a2 = meshVertices[first + 2u], b2 = meshVertices[second + 2u];
     p.atlas = floatBitsToUint(mix(uintBitsToFloat(a1), uintBitsToFloat(b1), share));
-    p.detail.xy =
-        floatBitsToUint(mix(uintBitsToFloat(a2.xy), uintBitsToFloat(b2.xy), share));
+    p.detail.xy = floatBitsToUint(mix(uintBitsToFloat(a2.xy), uintBitsToFloat(b2.xy), share));
     p.detail.z = near ? a2.z : b2.z;
     p.detail.w = 0u;
     return p;
@@ -154,8 +149,7 @@ void writeVertex(uint at, Point p, bool inner, float left) {
     cuts[at * 3u + 2u] = uvec4(p.detail.xyz, floatBitsToUint(left));
 }
 
-void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
-                 uint first) {
+void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole, uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
@@ -202,11 +196,10 @@ void cutGroup(uint object, uint triangle, bool lost) {
         }
         uint border = 0u;
         for (uint v = 0u; v < 3u; ++v) {
-            uint sides = refineSidesOf(packed.x, codes[v]) &
-                         refineSidesOf(packed.x, codes[refineNext(v)]);
+            uint sides = refineSidesOf(packed.x, codes[v]) & refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
-        if (isTold(object)) solid = 7u;
+        if (hasPerPixelHoles(object)) solid = 7u;
         if (lost) solid = 0u;
         bool whole = solid == 7u;
         uint crossed = solid != 0u && (!whole || border != 0u) ? 1u : 0u;
@@ -218,8 +211,7 @@ void cutGroup(uint object, uint triangle, bool lost) {
                 atomicMin(work[counts + 8u], at);
                 whole = true;
             } else {
-                cutTriangle(object, drawn, slots_, fields, cut, whole,
-                            refined[object].cuts + 3u * (before + at));
+                cutTriangle(object, drawn, slots_, fields, cut, whole, refined[object].cuts + 3u * (before + at));
             }
             crossed = 0u;
         }

@@ -1,5 +1,5 @@
-// One lane per output triangle of the objects whose levels changed: finds its coarse triangle, looks
-// its pattern's triangle up, writes three draw vertices.
+// One lane per output triangle of the objects whose levels changed: finds its coarse triangle, looks up the pattern,
+// writes three draw vertices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,7 +19,7 @@ void main() {
         bool here = k < total;
         k = min(k, total - 1u);
         uint base = refined[object].triangles;
-        uint low = 0u;  // its start <= k < that of high
+        uint low = 0u;  // its start <= k < start of high
         uint high = refined[object].triangleCount;
         while (high - low > 1u) {
             uint middle = (low + high) >> 1u;

@@ -1,6 +1,6 @@
-// Warms the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn list:
-// a wave of heat that runs ahead of the fire. One lane per tile. Of objects that are fresh all tiles
-// that burnt are warmed once, a workgroup each object: their holes are there from the first picture on.
+// Heats the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn list, ahead of the
+// fire. One lane per tile. For fresh objects all burnt tiles are heated once, one workgroup per object, so their holes
+// are there in the first frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -80,8 +80,7 @@ void main() {
         uint local = tile - objectQuads[object * 10u + 1u].x;
         bool known = object < push.objectEnd;
         object = known ? object : 0u;
-        known = known && (refined[object].flags & kRefineIsActive) != 0u &&
-                local < refined[object].tileCount;
+        known = known && (refined[object].flags & kRefineIsActive) != 0u && local < refined[object].tileCount;
         bool burns = push.parity >= 2u || (tileState[tile].flag & kTileBurning) != 0u;
         uint bits = kRefineHot | (burns ? kRefineBurning : 0u);
         while (known) {

@@ -1,7 +1,6 @@
-// Levels of edges and interiors, in phases with a barrier between: 0 aim (items), 1 what each bias
-// would come to (triangles; only where not all fit), 2 the least that fits (one group, over all that
-// share the budget), 3 move (items), 4 pack (triangles): what changed makes its object emit, what
-// moves is listed to be placed.
+// Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for each bias (only over
+// budget); 2 least bias that fits (one group); 3 move (items); 4 pack (triangles): changed objects emit, moving items
+// are listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -23,7 +22,7 @@ float edgeLod(uint object, RefineEdge edge) {
     return eye.w > 0.0 ? lod : float(kRefineDepth + 1u);
 }
 
-// Numbers of edges and interiors, for the order in which they lose levels.
+// Order in which edges and interiors lose levels.
 uint spreadId(uint item, uint edgeCount) {
     return item < edgeCount ? item * 2u : (item - edgeCount) * 2u + 1u;
 }
@@ -32,8 +31,7 @@ float wanted(uint object, uint item, float bias) {
     uint at = refined[object].items + item;
     float target = items[at].target;
     if (target == 0.0 || bias == 0.0) return target;
-    return refineBiased(target, bias,
-                        refineSpread(spreadId(item, refined[object].edgeCount),
+    return refineBiased(target, bias, refineSpread(spreadId(item, refined[object].edgeCount),
                                      heat[at] >> kRefineHeatShift));
 }
 
@@ -43,7 +41,7 @@ float leastBias() {
 
 uint sumsOf(uint object) { return refined[object].triangles + refined[object].triangleCount; }
 
-// Adds what the triangle comes to with each bias, but for the one that it always is.
+// Adds the triangle's count for each bias, minus the one that it always has.
 void count(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint edgeCount = refined[object].edgeCount;
@@ -56,12 +54,11 @@ void count(uint object, uint triangle) {
     }
     uint sums = sumsOf(object), k = 0u;
     bool more = target != vec4(0.0);
-    while (more) {  // until a bias leaves nothing of it
+    while (more) {  // until a bias leaves nothing
         float bias = float(k) * kRefineBiasStep;
         uvec4 top;
         for (int i = 0; i < 4; ++i) top[i] = refineTop(refineBiased(target[i], bias, spread[i]));
-        uint sum = refineCount(
-            refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
+        uint sum = refineCount(refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
         if ((k & 1u) == 0u)
             atomicAdd(levels[sums + (k >> 1u)].x, sum);
         else
@@ -102,13 +99,13 @@ void aim(uint object, uint item) {
     if (fresh) s = RefineLevel(0.0, 0.0, -kRefineNever, kRefineNever);
     uint seen = heat[at];
     uint warm = seen & 3u;
-    // As long as it opens, and where the rim of a hole stays, it keeps its levels.
+    // Keeps its levels while it opens, and where a hole's rim stays.
     uint rim = kRefineGone | kRefineStays;
     if ((seen & kRefineGoing) != 0u || (seen & rim) == rim) warm |= kRefineHot;
     if (push.full != 0u) warm = kRefineHot | kRefineBurning;
     uint kept = seen & (kRefineGone | kRefineLost);
     heat[at] = kept | (warm << kRefineHeatShift);
-    // Most of a mesh has no heat and nothing left of it.
+    // Most of a mesh is cold and flat.
     uint awake = warm == 0u && s.level == 0.0 && s.target == 0.0 ? 0u : 1u;
     while (awake != 0u) {
         float lod = 0.0;
@@ -140,7 +137,7 @@ void move(uint object, uint item) {
     heat[at] |= kRefineMoving;
     if (item >= refined[object].edgeCount) return;
     uint job = atomicAdd(work[kRefineWorkEdges + 3u], 1u);
-    atomicMax(work[kRefineWorkEdges], min(job / 64u + 1u, kMostGroups));
+    atomicMax(work[kRefineWorkEdges], min(job / 64u + 1u, kMaxGroups));
     work[edgeJobs() + 2u * job] = object;
     work[edgeJobs() + 2u * job + 1u] = item;
 }
@@ -155,20 +152,19 @@ void pack(uint object, uint triangle) {
     uint m = refineFit(a, b, c, refineTop(items[own].level));
     uint packed = refinePack(a, b, c, m);
     uint at = refined[object].triangles + triangle;
-    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u ||
-                   levels[at].x != packed;
+    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u || levels[at].x != packed;
     levels[at].x = packed;
     if (changed) atomicOr(work[objectList() + 2u * refined[object].ordinal + 1u], 1u);
     uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
     if (m >= 2u && (changed || (moving & kRefineMoving) != 0u)) {
         uint job = atomicAdd(work[kRefineWorkPlace + 3u], 1u);
-        atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMostGroups));
+        atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMaxGroups));
         work[push.placeJobs + 2u * job] = object;
         work[push.placeJobs + 2u * job + 1u] = triangle;
         float level = items[own].level;
         if (refineTop(level) != m || refineAge(level, m) >= 1.0) return;
         job = atomicAdd(work[kRefineWorkMorph + 3u], 1u);
-        atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMostGroups));
+        atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMaxGroups));
         work[morphJobs() + 2u * job] = object;
         work[morphJobs() + 2u * job + 1u] = triangle;
     }

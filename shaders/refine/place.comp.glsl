@@ -1,6 +1,5 @@
-// Places of the vertices that move, in phases with a barrier between: 0 corners, a lane each; 1 edges
-// that move, a lane each, their own places and then the morph of their newest points; 2 interiors,
-// half a workgroup each; 3 their morph.
+// Positions of moving vertices, in phases with a barrier between: 0 corners, one lane each; 1 moving edges, one lane
+// each, positions and then the morph of their newest points; 2 interiors, half a workgroup each; 3 their morph.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -16,7 +15,7 @@ layout(local_size_x = 64) in;
 #include "lib/refine_buffers.glsl"
 #include "lib/refine_arrival.glsl"
 
-// What a vertex that is burnt through at `hole` says of its edge or interior.
+// Bits that a vertex with this burn-through time adds to its edge or interior.
 uint fateOf(uint object, float hole) {
     if (hole <= refined[object].now) return kRefineGone;
     return hole < kRefineNever ? kRefineStays | kRefineGoing : kRefineStays;
@@ -25,7 +24,7 @@ uint fateOf(uint object, float hole) {
 uint evaluate(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float behind;
-    RefineVertex v = refineNow(object, slot, push.nowTick, push.recede, behind);
+    RefineVertex v = evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
     vertices[refined[object].vertices + s] = v;
     uint inner = refined[object].inner;
     while (inner != 0u) {
@@ -76,7 +75,7 @@ void edgeLane(uint object, uint e) {
               placeOf(object, refineEdgeSlot(edge, i + 1u, l)), age);
 }
 
-// Lane k's lattice point: rows from both ends are put together, so that no lane is idle.
+// Lattice point k: rows from both ends are paired, so no lane is idle.
 uvec2 latticePoint(uint k, uint n) {
     uint width = n - 1u;  // of a row and its partner: (n - 2) + 1, (n - 3) + 2, ...
     uint row = k / width, at = k % width;
@@ -129,7 +128,7 @@ void interiors(uint dispatched, uint list, bool morphs) {
 }
 
 void main() {
-    // Loops, as a software device takes both sides of a branch.
+    // Loops: a software device executes both sides of a branch.
     uint phase = push.phase;
     while (phase == 0u) {
         for (uint g = gl_WorkGroupID.x; g < push.cornerGroups; g += gl_NumWorkGroups.x) {

@@ -1,6 +1,5 @@
-// The published refinement scheme's share of a frame, in phases with a barrier between: 0 places all
-// vertices of its templates, a lane each; 1 names the three of each triangle that the host's
-// statuses draw, none where it is consumed.
+// Refinement pattern of the reference, in phases with a barrier between: 0 places all pattern vertices, one lane each;
+// 1 writes the vertices of each triangle that the host's statuses draw, degenerate if consumed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -17,8 +16,7 @@ layout(local_size_x = 64) in;
 void place(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float behind;
-    vertices[refined[object].vertices + s] =
-        refineNow(object, slot, push.nowTick, push.recede, behind);
+    vertices[refined[object].vertices + s] = evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
 }
 
 void name(uint object, uint entry) {

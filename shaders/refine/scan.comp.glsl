@@ -1,6 +1,5 @@
-// Where each triangle's output begins: an exclusive sum of its count, by one workgroup per object. Of
-// objects whose levels changed; they get new draw arguments, and their output is listed to be emitted.
-// Readbacks tell how much that is.
+// Output offset of each triangle: an exclusive sum, one workgroup per object whose levels changed. Writes draw
+// arguments and lists the output to be emitted. Readbacks report the sums.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -43,7 +42,7 @@ void scan(uint object, uint ordinal) {
         work[objectList() + 2u * ordinal + 1u] = total;
         objectCounters[object].refined = total;
         firstJob = atomicAdd(work[kRefineWorkEmit + 3u], jobs);
-        atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMostGroups));
+        atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMaxGroups));
     }
     if (lane < kMaterialsPerObject) {
         uvec4 low = refined[object].materialEnd0;
@@ -72,7 +71,7 @@ void scan(uint object, uint ordinal) {
 void main() {
     for (uint o = gl_WorkGroupID.x; o < push.objects; o += gl_NumWorkGroups.x) {
         uint object = work[objectList() + 2u * o];
-        // A loop, as a branch that all of a group takes costs a software device the same either way.
+        // A loop: a uniform branch costs a software device the same.
         uint changed = work[objectList() + 2u * o + 1u];
         barrier();
         while (changed != 0u) {

@@ -1,20 +1,18 @@
-// The published refinement scheme per lane, one text for C++ and GLSL: a triangle of its template
-// as a word, the vertices it names, and which of its children are consumed. It loads nothing. Which
-// triangles are drawn is decided in runtime/mesh/refine; the product's scheme is refine.h.
-// GLSL too, and laid out by hand.
+// Refinement pattern of the reference implementation: packing of a pattern triangle in one word, its vertices, and the
+// rule that consumes its children. The host chooses the drawn triangles (runtime/mesh/refine). The product's scheme is
+// in refine.h.
 // clang-format off
-#ifndef FW_SHARED_ARP_H
-#define FW_SHARED_ARP_H
+#ifndef FW_SHARED_REFERENCE_PATTERN_H
+#define FW_SHARED_REFERENCE_PATTERN_H
 #include "shared/refine.h"
 
 FW_SHARED_BEGIN
 
-// A word: bits 0 and 6: lattice point of the corner with the right angle, in steps of 2^depth from
-// corner 0 of the coarse triangle towards corners 1 and 2; 12: halvings; 15: it points down; 16: the
-// coarse triangle.
-FW_SHARED_CONST uint kArpNothing = 0xFFFFFFFFu;  // fills a list up to whole groups
+// Pattern word. Bits 0 and 6: lattice point of the right-angled corner, in steps of 2^depth from corner 0 of the coarse
+// triangle towards corners 1 and 2. Bit 12: halvings. Bit 15: points down. Bit 16: coarse triangle.
+FW_SHARED_CONST uint kArpNothing = 0xFFFFFFFFu;  // pads a list to whole groups
 FW_SHARED_CONST uint kArpDown = 0x8000u;
-FW_SHARED_CONST uint kArpMostTriangles = 65535u;  // coarse
+FW_SHARED_CONST uint kArpMostTriangles = 65535u;  // coarse triangles
 
 FW_SHARED_FN uint arpWord(uint c1, uint c2, uint halvings, bool down) {
     return c1 | (c2 << 6u) | (halvings << 12u) | (down ? kArpDown : 0u);
@@ -22,7 +20,7 @@ FW_SHARED_FN uint arpWord(uint c1, uint c2, uint halvings, bool down) {
 FW_SHARED_FN uint arpHalvings(uint word) { return (word >> 12u) & 7u; }
 FW_SHARED_FN uint arpCoarse(uint word) { return word >> 16u; }
 
-// Lattice point k: the corners, then the middles of the sides from corner k - 3.
+// Lattice point k: 0..2 are the corners, 3..5 the middle of the side that starts at corner k - 3.
 FW_SHARED_FN uvec2 arpPoint(uint word, uint depth, uint k) {
     uint c1 = word & 63u, c2 = (word >> 6u) & 63u;
     uint side = 1u << (depth - arpHalvings(word)), half_ = side >> 1u;
@@ -32,7 +30,7 @@ FW_SHARED_FN uvec2 arpPoint(uint word, uint depth, uint k) {
     return uvec2(down ? c1 - d1 : c1 + d1, down ? c2 - d2 : c2 + d2);
 }
 
-// The draw vertex at a lattice point of a coarse triangle whose sides are all of its depth.
+// Draw vertex of a lattice point. All sides of the coarse triangle have the interior's depth.
 FW_SHARED_FN uint arpDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
     uint depth = refineInteriorDepth(t.flags);
     uint c0 = (1u << depth) - c1 - c2;
@@ -43,8 +41,8 @@ FW_SHARED_FN uint arpDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
     return refineDrawVertex(t, refinePack(depth, depth, depth, depth), code);
 }
 
-// The burn-level rule, as it is drawn. gone: a bit for each of the six points that is burnt through.
-// A triangle is consumed when its corners are, or two of its four children; finest: it has none.
+// Burn-level rule. gone: one bit for each of the six points that is burnt through. A triangle is consumed if all
+// corners are gone, or if two of its four children are. finest: it has no children.
 FW_SHARED_FN bool arpConsumed(uint gone, bool finest) {
     if (finest || (gone & 7u) == 7u) return (gone & 7u) == 7u;
     uint children = ((gone & 0x29u) == 0x29u ? 1u : 0u) + ((gone & 0x1Au) == 0x1Au ? 1u : 0u) +
@@ -55,8 +53,8 @@ FW_SHARED_FN bool arpConsumed(uint gone, bool finest) {
 struct ArpPush {
     uint phase;
     uint nowTick;
-    uint firstGroup;  // of the phase, in the list
-    float recede;     // share of a slot's reach, below 1
+    uint firstGroup;  // first group of the phase in the list
+    float recede;     // share of a slot's reach, [0, 1)
 };
 FW_SHARED_SIZE(ArpPush, 16)
 

@@ -1,9 +1,6 @@
-// Fire at a distance: what flames send to a receiver by radiation and plume, who may light whom,
-// and where embers land. Integers only, one text for C++ and GLSL; it loads nothing. Not what the
-// receiver makes of it (heat.h), nor how sources and receivers are found.
-//
-// World places are mm. A pair of places further apart than kExchangeFar does not exchange anything.
-// GLSL too, and laid out by hand.
+// Inter-object heat transfer: radiation and plume at a receiver, ignition rules between objects, and ember flight.
+// Integers only, for C++ and GLSL; it accesses no buffer. The receiver's response is in heat.h. World positions are mm;
+// a pair further apart than kExchangeFar does not interact.
 // clang-format off
 #ifndef FW_SHARED_EXCHANGE_H
 #define FW_SHARED_EXCHANGE_H
@@ -13,44 +10,43 @@
 FW_SHARED_BEGIN
 
 FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
-FW_SHARED_CONST uint kExchangeSteps = 4u;       // between two exchanges
+FW_SHARED_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
 FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
-FW_SHARED_CONST uint kExchangeTurns = kRests;   // of a receiver's tiles, every so many'th each time
+FW_SHARED_CONST uint kExchangeTurns = kRests;   // exchanges until all tiles of a receiver have been updated
 FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
-FW_SHARED_CONST uint kSourceGrid = 4u;          // an object's sources: cells along its longest side
-FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most, so
+FW_SHARED_CONST uint kSourceGrid = 4u;          // cells along the longest side of an object, for its sources
+FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most
 FW_SHARED_CONST uint kMaxBlockers = 64u;
-FW_SHARED_CONST uint kShieldSide = 256u;        // cells along an axis of the shield, at most
-FW_SHARED_CONST uint kShieldCells = 2097152u;   // all of them, at most
-FW_SHARED_CONST uint kShieldBaked = 262144u;    // of these what objects fill, at most
-FW_SHARED_CONST uint kReceiverWords = 66u;  // a slot; then its sources: how many, and
-                                            // source | what is seen of it, of 255, << 24
+FW_SHARED_CONST uint kShieldSide = 256u;        // cells along an axis of the occlusion grid, at most
+FW_SHARED_CONST uint kShieldCells = 2097152u;   // cells of the grid, at most
+FW_SHARED_CONST uint kShieldBaked = 262144u;    // cells filled by objects, at most
+FW_SHARED_CONST uint kReceiverWords = 66u;  // slot; number of sources; then source | visible share, of 255, << 24
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
 FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
-FW_SHARED_CONST uint kNearest = 300u;           // mm: no fire counts as nearer than half of this
-FW_SHARED_CONST uint kPilotReach = 100u;        // mm around a flame in which it lights vapours
-FW_SHARED_CONST uint kContactGap = 50u;         // mm that a flame licks across
-FW_SHARED_CONST uint kChanceOne = 65536u;       // of chances
+FW_SHARED_CONST uint kNearest = 300u;           // mm: distances below half of this count as that
+FW_SHARED_CONST uint kPilotReach = 100u;        // mm around a flame in which it ignites vapours
+FW_SHARED_CONST uint kContactGap = 50u;         // mm that a flame bridges
+FW_SHARED_CONST uint kChanceOne = 65536u;       // probability 1
 
-// Of a world, as FwWorldFlags.
+// ExchangePush::flags, as FwWorldFlags.
 FW_SHARED_CONST uint kRemoteRadiation = 1u;
 FW_SHARED_CONST uint kRemotePlume = 2u;
 FW_SHARED_CONST uint kRemoteContact = 4u;
 FW_SHARED_CONST uint kRemoteEmbers = 8u;
 // RemoteObject::flags
 FW_SHARED_CONST uint kRemoteLive = 1u;
-FW_SHARED_CONST uint kRemoteGives = 2u;         // its fire may reach others
-FW_SHARED_CONST uint kRemoteTwoSided = 4u;      // what falls on its back counts too
+FW_SHARED_CONST uint kRemoteGives = 2u;         // its fire may reach other objects
+FW_SHARED_CONST uint kRemoteTwoSided = 4u;      // both sides receive
 
-struct RemoteObject {  // an object as others see it: latched at a step's start, so all integers
-    ivec4 row0;        // world mm = w + (xyz . position >> shift); position: units of its mesh
+struct RemoteObject {  // object data of the exchange, latched at a step's start, all integers
+    ivec4 row0;        // world mm = w + (xyz . position >> shift); position: mesh units
     ivec4 row1;
     ivec4 row2;
-    ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its box in the world, mm
+    ivec4 turn0;       // xyz: its rotation, Q12; w: low corner of its world box, mm
     ivec4 turn1;
     ivec4 turn2;
-    ivec4 high;        // xyz: the other corner; w: what wind zones add there, see wind.h
-    uvec4 power0;      // 1/16 W that a flaming texel gives, by material
+    ivec4 high;        // xyz: the other corner; w: wind of the zones there, see wind.h
+    uvec4 power0;      // 1/16 W of a flaming texel, by material
     uvec4 power1;
     uint shift;
     uint flags;
@@ -58,44 +54,44 @@ struct RemoteObject {  // an object as others see it: latched at a step's start,
     uint sourceCount;
     uint neighbourFirst;  // into neighbours
     uint neighbourCount;
-    uint chance;       // of each jump to another object, of kChanceOne
-    uint hopsMost;     // gives fire only if fewer jumps brought it here; kNoneTexel: no limit
-    uint lifeTicks;    // its front stops this long after it caught; kNoneTexel: never
-    uint tilesMost;    // none more of its tiles catches while so many burn; kNoneTexel: no limit
-    uint catches;      // of embers: damping by its moisture, Q8
+    uint chance;       // probability of each jump to another object, of kChanceOne
+    uint hopsMost;     // passes fire on only below this many jumps; kNoneTexel: no limit
+    uint lifeTicks;    // ticks from ignition until its front stops; kNoneTexel: never
+    uint tilesMost;    // limit of its burning tiles; kNoneTexel: no limit
+    uint catches;      // embers: damping by its moisture, Q8
     uint texelArea;    // mm^2
 };
 FW_SHARED_SIZE(RemoteObject, 192)
 
-struct RemoteTile {    // one tile of a mesh, as a place that gives and receives
+struct RemoteTile {    // one tile of a mesh, as source and receiver
     uint xy;           // middle of its texels, position units
     uint z;            // z | source cell << 16 | material << 24
-    uint normal;       // their mean, signed 11:11:10
+    uint normal;       // mean normal, signed 11:11:10
     uint texels;       // real ones; 0: the tile is empty
-    uvec4 parts;       // of each of its blocks, of 4 x 4 texels: where fire leaves it for another part of the mesh,
-                       // and to which texel; see partFrom. kNoneTexel: none is near
+    uvec4 parts;       // per 4 x 4 block: source lane and target texel of a link to another part of the mesh,
+                       // see partFrom; kNoneTexel: none
 };
 FW_SHARED_SIZE(RemoteTile, 32)
-FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // that such a link may lead to
+FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // limit of a link's target texel
 
-struct FireSource {    // what burns in one cell of an object
-    uint power;        // 1/16 W, summed by `cells`
-    uint texels;       // that flame
-    uint tiles;        // that they are in
-    uint sumX;         // of the tiles' middles, 4 position units
+struct FireSource {    // fire in one cell of an object
+    uint power;        // 1/16 W, summed by fire_cells
+    uint texels;       // flaming
+    uint tiles;        // that contain them
+    uint sumX;         // sum of the tiles' middles, 4 position units
     uint sumY;
     uint sumZ;
     uint object;       // slot
-    uint watts;        // from here on by `sources`; 0: nothing burns, or it gives nothing
+    uint watts;        // from here on written by fire_sources; 0: no fire, or it is not passed on
     ivec4 place;       // xyz: mm, world; w: height of the flame, mm
     uint diameter;     // mm
     uint scale;        // watts^0.4, Q8
-    uint ember;        // hash of the ember it sends this time; 0: none
+    uint ember;        // hash of the ember of this exchange; 0: none
     uint hops;         // jumps that brought the fire here
 };
 FW_SHARED_SIZE(FireSource, 64)
 
-struct Blocker {       // a box that fire does not see, blow or fly through
+struct Blocker {       // box that stops radiation, plumes and embers
     ivec4 turn0;       // xyz: row of its rotation, world to box, Q12; w: middle, mm
     ivec4 turn1;
     ivec4 turn2;
@@ -103,13 +99,13 @@ struct Blocker {       // a box that fire does not see, blow or fly through
 };
 FW_SHARED_SIZE(Blocker, 64)
 
-struct ContactLink {   // a texel that another object's may light across a gap
-    uint object;       // slot, the one that catches
+struct ContactLink {   // texel that another object's texel may light across a gap
+    uint object;       // slot that catches
     uint texel;
     uint fromObject;
     uint fromTexel;
     uint delay;        // ticks
-    uint since;        // tick at which they came together
+    uint since;        // tick at which both came together
     uint reserved0;
     uint reserved1;
 };
@@ -139,11 +135,11 @@ struct ExchangePush {  // push constants of the passes that exchange
     uint brands;       // embers per 1/16 W and exchange, Q32
     uint ambient;      // 1/16 K
     uint hotParity;
-    uint warms;        // 1: some object may be warmed by others
-    int shieldX;       // low corner of the shield, mm
+    uint warms;        // 1: an object may be heated by others
+    int shieldX;       // low corner of the occlusion grid, mm
     int shieldY;
     int shieldZ;
-    uint shieldCell;   // side of its cells, mm; 0: there is none
+    uint shieldCell;   // cell side, mm; 0: no grid
     uint shieldCounts; // cells along x | y << 10 | z << 20
     uint reserved0;
     uint reserved1;
@@ -151,96 +147,87 @@ struct ExchangePush {  // push constants of the passes that exchange
 };
 FW_SHARED_SIZE(ExchangePush, 128)
 
-// ---- places
+// ---- positions
 
+FW_SHARED_FN int dotRow(ivec4 row, ivec3 p) { return row.x * p.x + row.y * p.y + row.z * p.z; }
+FW_SHARED_FN ivec3 dotRows(ivec4 row0, ivec4 row1, ivec4 row2, ivec3 p) {
+    return ivec3(dotRow(row0, p), dotRow(row1, p), dotRow(row2, p));
+}
 FW_SHARED_FN ivec3 remotePlace(FW_IN(RemoteObject) o, ivec3 p) {
-    int s = int(o.shift);
-    return ivec3(o.row0.w + ((o.row0.x * p.x + o.row0.y * p.y + o.row0.z * p.z) >> s),
-                 o.row1.w + ((o.row1.x * p.x + o.row1.y * p.y + o.row1.z * p.z) >> s),
-                 o.row2.w + ((o.row2.x * p.x + o.row2.y * p.y + o.row2.z * p.z) >> s));
+    return ivec3(o.row0.w, o.row1.w, o.row2.w) + (dotRows(o.row0, o.row1, o.row2, p) >> int(o.shift));
 }
-// Q12, of a normal in Q14.
-FW_SHARED_FN ivec3 remoteTurn(FW_IN(RemoteObject) o, ivec3 n) {
-    return ivec3((o.turn0.x * n.x + o.turn0.y * n.y + o.turn0.z * n.z) >> 14,
-                 (o.turn1.x * n.x + o.turn1.y * n.y + o.turn1.z * n.z) >> 14,
-                 (o.turn2.x * n.x + o.turn2.y * n.y + o.turn2.z * n.z) >> 14);
-}
+// Q12. n: normal in Q14.
+FW_SHARED_FN ivec3 remoteTurn(FW_IN(RemoteObject) o, ivec3 n) { return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14; }
 FW_SHARED_FN ivec3 tileMiddle(FW_IN(RemoteTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
 }
 FW_SHARED_FN uint tileCell(FW_IN(RemoteTile) t) { return (t.z >> 16u) & 0xFFu; }
 FW_SHARED_FN uint tileMaterial(FW_IN(RemoteTile) t) { return t.z >> 24u; }
 
-FW_SHARED_FN bool withinReach(ivec3 d) {
+FW_SHARED_FN bool isWithinExchangeRange(ivec3 d) {
     return d.x <= kExchangeFar && d.x >= -kExchangeFar && d.y <= kExchangeFar &&
            d.y >= -kExchangeFar && d.z <= kExchangeFar && d.z >= -kExchangeFar;
 }
 FW_SHARED_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
 
-// Does the straight way from a to b, but for its ends, meet the box?
+// Does the segment from a to b, without its ends, intersect the box?
 FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
     if (k.size.w == 0u) return false;
     ivec3 c = ivec3(k.turn0.w, k.turn1.w, k.turn2.w);
-    ivec3 m = ivec3(a.x - c.x + (b.x - a.x) / 2, a.y - c.y + (b.y - a.y) / 2,
-                    a.z - c.z + (b.z - a.z) / 2);
-    ivec3 d = ivec3((b.x - a.x) / 2, (b.y - a.y) / 2, (b.z - a.z) / 2);
+    ivec3 d = (b - a) / 2;
+    ivec3 m = a - c + d;
     uint far = mostOf(mostOf(absolute(m.x), absolute(m.y)), absolute(m.z));
     uint reach = mostOf(mostOf(absolute(d.x), absolute(d.y)), absolute(d.z));
     if (far > 131071u || reach > 65535u) return false;
-    // What hangs on a wall is not behind it: 6 cm of each end do not count.
-    uint length = isqrtNear(squareSum(ivec3(d.x / 4, d.y / 4, d.z / 4))) * 4u;
+    // The last 6 cm at each end do not count, so a box does not block what is attached to it.
+    uint length = isqrtNear(squaredLength(d / 4)) * 4u;
     uint spare = leastOf(60u, length / 2u);
     int kept = length == 0u ? 0 : int(divide((length - spare) << 12u, length));  // Q12
-    d = ivec3((d.x / 4 * kept) / 1024, (d.y / 4 * kept) / 1024, (d.z / 4 * kept) / 1024);
-    // In the box's own frame, 4 mm a unit: products stay below 2^31.
-    ivec3 o = ivec3((k.turn0.x * m.x + k.turn0.y * m.y + k.turn0.z * m.z) / 16384,
-                    (k.turn1.x * m.x + k.turn1.y * m.y + k.turn1.z * m.z) / 16384,
-                    (k.turn2.x * m.x + k.turn2.y * m.y + k.turn2.z * m.z) / 16384);
-    ivec3 h = ivec3((k.turn0.x * d.x + k.turn0.y * d.y + k.turn0.z * d.z) / 16384,
-                    (k.turn1.x * d.x + k.turn1.y * d.y + k.turn1.z * d.z) / 16384,
-                    (k.turn2.x * d.x + k.turn2.y * d.y + k.turn2.z * d.z) / 16384);
+    d = (d / 4 * kept) / 1024;
+    // In the box's frame, 4 mm a unit: products stay below 2^31.
+    ivec3 o = dotRows(k.turn0, k.turn1, k.turn2, m) / 16384;
+    ivec3 h = dotRows(k.turn0, k.turn1, k.turn2, d) / 16384;
     uint ex = (k.size.x + 3u) >> 2u, ey = (k.size.y + 3u) >> 2u, ez = (k.size.z + 3u) >> 2u;
     uint hx = absolute(h.x), hy = absolute(h.y), hz = absolute(h.z);
     if (absolute(o.x) > ex + hx || absolute(o.y) > ey + hy || absolute(o.z) > ez + hz) return false;
     return absolute(o.y * h.z - o.z * h.y) <= ey * hz + ez * hy &&
-           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz &&
-           absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
+           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz && absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
 }
 
-// ---- the shield: cells that fire does not see, blow or fly through
+// ---- heat-occlusion grid: cells that stop radiation, plumes and embers
 //
-// As words: a bit per cell that is solid, in the cells' order (x fastest, then y, then z); then, per
-// 32 of them, the bits of those that objects fill, and how many such are before these; then two
-// words for each of those, what and which texel it is. A cell of an object is as solid as that texel.
+// Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those that objects fill
+// and the number of such cells before these. Then two words for each of them: object key and texel. A cell of an object
+// is solid while that texel stands.
 FW_SHARED_CONST uint kShieldStays = 0x80000000u;  // | slot | material << 24: it never gives way
 FW_SHARED_CONST uint kShieldSlot = 0xFFFFFFu;
 
-FW_SHARED_FN uint shieldSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
+FW_SHARED_FN uint occlusionSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
 FW_SHARED_FN uint shieldWords(uint counts) {  // of one bit per cell
-    return (shieldSide(counts, 0u) * shieldSide(counts, 1u) * shieldSide(counts, 2u) + 31u) >> 5u;
+    return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) + 31u) >> 5u;
 }
 
-struct ShieldWalk {  // from cell to cell, through their faces: those that a straight way meets, to 3 mm
-    bool within;     // of the grid, and of the way
-    uint cell;       // where it is
-    uint whole;      // mm, all of the way
-    uint passed;     // of it, out of `of`, as the walk came into this cell
+struct ShieldWalk {  // visits the cells that a segment crosses, face by face, to 3 mm
+    bool within;     // within the grid and the segment
+    uint cell;       // current cell
+    uint whole;      // mm, length of the segment
+    uint passed;     // position on the segment, out of `of`, where it entered this cell
     uint of;
     ivec3 strides;   // to the next cell
-    ivec3 room;      // cells left in the grid
-    uvec3 ahead;     // mm along the axis from where it began to the next face
-    uvec3 way;       // mm along the axis, all of it
+    ivec3 room;      // cells left in the grid, per axis
+    uvec3 ahead;     // mm along the axis from the start to the next face
+    uvec3 way;       // mm along the axis, whole segment
 };
 
-struct ShieldAxis {
+struct OcclusionAxis {
     int cell;
     int stride;
     int room;
     uint ahead;
 };
-// begins, at: mm in the grid, where the way begins, and where it comes in.
-FW_SHARED_FN ShieldAxis shieldAxis(int begins, int at, int d, int cells, int side) {
-    ShieldAxis a;
+// begins, at: mm in the grid, start of the segment and entry point.
+FW_SHARED_FN OcclusionAxis makeOcclusionAxis(int begins, int at, int d, int cells, int side) {
+    OcclusionAxis a;
     int inside = at < 0 ? 0 : (at >= cells * side ? cells * side - 1 : at);
     a.cell = int(divide(uint(inside), uint(side)));
     a.stride = d > 0 ? 1 : (d < 0 ? -1 : 0);
@@ -249,8 +236,8 @@ FW_SHARED_FN ShieldAxis shieldAxis(int begins, int at, int d, int cells, int sid
     a.ahead = d == 0 || face < 0 ? 1u : uint(face);
     return a;
 }
-// Q14 of the way after which it is between the two faces of an axis; above 16384: never.
-FW_SHARED_FN uint shieldEnters(int begins, int d, int size) {
+// Position on the segment, Q14, where it enters the slab of an axis; above 16384: never.
+FW_SHARED_FN uint occlusionEntry(int begins, int d, int size) {
     uint outside = begins < 0 ? uint(-begins) : (begins >= size ? uint(begins - size + 1) : 0u);
     if (outside == 0u) return 0u;
     bool comes = begins < 0 ? d > 0 : d < 0;
@@ -269,38 +256,37 @@ FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
     w.room = ivec3(0, 0, 0);
     w.ahead = uvec3(1u, 1u, 1u);
     w.way = uvec3(0u, 0u, 0u);
-    ivec3 d = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
-    if (g.shieldCell == 0u || !withinReach(d)) return w;
-    // Halves first: places and grid may be 3e9 mm apart.
-    ivec3 off = ivec3(a.x / 2 - g.shieldX / 2, a.y / 2 - g.shieldY / 2, a.z / 2 - g.shieldZ / 2);
+    ivec3 d = b - a;
+    if (g.shieldCell == 0u || !isWithinExchangeRange(d)) return w;
+    ivec3 low = ivec3(g.shieldX, g.shieldY, g.shieldZ);
+    ivec3 off = a / 2 - low / 2;  // halves: positions and grid may be 3e9 mm apart
     uint far = mostOf(mostOf(absolute(off.x), absolute(off.y)), absolute(off.z));
     if (far > 1500000u) return w;
-    ivec3 s = ivec3(a.x - g.shieldX, a.y - g.shieldY, a.z - g.shieldZ);
+    ivec3 s = a - low;
     int side = int(g.shieldCell);
-    ivec3 n = ivec3(int(shieldSide(g.shieldCounts, 0u)), int(shieldSide(g.shieldCounts, 1u)),
-                    int(shieldSide(g.shieldCounts, 2u)));
-    uint enters = mostOf(mostOf(shieldEnters(s.x, d.x, n.x * side), shieldEnters(s.y, d.y, n.y * side)),
-                         shieldEnters(s.z, d.z, n.z * side));
+    ivec3 n = ivec3(int(occlusionSide(g.shieldCounts, 0u)), int(occlusionSide(g.shieldCounts, 1u)),
+                    int(occlusionSide(g.shieldCounts, 2u)));
+    uint enters = mostOf(mostOf(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
+                         occlusionEntry(s.z, d.z, n.z * side));
     if (enters > 16384u) return w;
     int t = int(enters);
-    ShieldAxis x = shieldAxis(s.x, s.x + d.x * t / 16384, d.x, n.x, side);
-    ShieldAxis y = shieldAxis(s.y, s.y + d.y * t / 16384, d.y, n.y, side);
-    ShieldAxis z = shieldAxis(s.z, s.z + d.z * t / 16384, d.z, n.z, side);
-    w.whole = isqrtNear(squareSum(d));
+    ivec3 at = s + d * t / 16384;
+    OcclusionAxis x = makeOcclusionAxis(s.x, at.x, d.x, n.x, side);
+    OcclusionAxis y = makeOcclusionAxis(s.y, at.y, d.y, n.y, side);
+    OcclusionAxis z = makeOcclusionAxis(s.z, at.z, d.z, n.z, side);
+    w.whole = isqrtNear(squaredLength(d));
     w.passed = enters;
     w.cell = uint((z.cell * n.y + y.cell) * n.x + x.cell);
     w.strides = ivec3(x.stride, y.stride * n.x, z.stride * n.x * n.y);
     w.room = ivec3(x.room, y.room, z.room);
     w.ahead = uvec3(x.ahead, y.ahead, z.ahead);
     w.way = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
-    // Beside the grid where it comes level with the last of its faces: it never is within.
-    ivec3 at = ivec3(s.x + d.x * t / 16384, s.y + d.y * t / 16384, s.z + d.z * t / 16384);
-    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side &&
-               at.z <= n.z * side;
+    // Rounding may place the entry beside the grid: then it never is within.
+    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side && at.z <= n.z * side;
     return w;
 }
 
-// Into the next cell. Products of a way and what is ahead stay below 2^31.
+// Moves to the next cell. Products of a length and a distance ahead stay below 2^31.
 FW_SHARED_FN void shieldStep(FW_INOUT(ShieldWalk) w, uint side) {
     bool alongX = w.ahead.x * w.way.y < w.ahead.y * w.way.x;
     uint ahead = alongX ? w.ahead.x : w.ahead.y, way = alongX ? w.way.x : w.way.y;
@@ -325,35 +311,19 @@ FW_SHARED_FN void shieldStep(FW_INOUT(ShieldWalk) w, uint side) {
     }
 }
 
-struct ShieldEnds {  // whom a way is between, and how near to them what is their own does not count
+struct ShieldEnds {  // objects at both ends, and the distance within which their own cells do not count
     uint from;       // slot
     uint to;
     uint fromSpare;  // mm
     uint toSpare;
 };
-// Is the cell that the walk is in too near to an end? All are within a cell of it: what a fire
-// leans on is not in its way. slot: whose the cell is; kNoneTexel: the host's, everybody's own.
+// Is the current cell too near to an end? Everything within one cell of an end is, so what supports a fire does not
+// block it. slot: owner of the cell; kNoneTexel: the host, which counts as either end.
 FW_SHARED_FN bool shieldSpares(FW_IN(ShieldWalk) w, FW_IN(ShieldEnds) e, uint slot, uint side) {
     uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
     uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
     uint to = slot == e.to || slot == kNoneTexel ? e.toSpare : side;
     return at < from || w.whole < at + to + side / 2u;
-}
-// From a flame to a surface. Own walls: a source is somewhere among the texels that it sums up, and
-// what comes flat along a surface passes many of that surface's cells.
-FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal,
-                                   uint side) {
-    ShieldEnds e;
-    e.from = s.object;
-    e.to = to;
-    e.fromSpare = side * 2u + leastOf(s.diameter / 2u, 1000u);
-    ivec3 d = ivec3(flame.x - at.x, flame.y - at.y, flame.z - at.z);
-    e.toSpare = side * 2u;
-    if (!withinReach(d)) return e;
-    uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
-    uint leaves = divide(side * isqrtNear(squareSum(d)), mostOf(over, 1u));  // a cell over it
-    e.toSpare = mostOf(e.toSpare, leastOf(leaves + leaves / 2u, side * 6u));
-    return e;
 }
 FW_SHARED_FN ShieldEnds emberEnds(FW_IN(FireSource) s, uint to, uint side) {
     ShieldEnds e;
@@ -361,6 +331,17 @@ FW_SHARED_FN ShieldEnds emberEnds(FW_IN(FireSource) s, uint to, uint side) {
     e.to = to;
     e.fromSpare = side * 2u + leastOf(s.diameter / 2u, 1000u);
     e.toSpare = side * 2u;
+    return e;
+}
+// From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a grazing angle
+// crosses many cells of its own surface.
+FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal, uint side) {
+    ShieldEnds e = emberEnds(s, to, side);
+    ivec3 d = flame - at;
+    if (!isWithinExchangeRange(d)) return e;
+    uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
+    uint leaves = divide(side * isqrtNear(squaredLength(d)), mostOf(over, 1u));  // mm until one cell above it
+    e.toSpare = mostOf(e.toSpare, leastOf(leaves + leaves / 2u, side * 6u));
     return e;
 }
 
@@ -380,7 +361,7 @@ FW_SHARED_FN uint topBit(uint x) {  // of x > 0
 FW_SHARED_FN uint power04(uint x) {
     if (x == 0u) return 0u;
     uint fours = 0u;
-    while (x >= 32768u) {  // a 32nd of it is a 4th of the power
+    while (x >= 32768u) {  // x^0.4 of a 32nd is a 4th
         x >>= 5u;
         fours += 2u;
     }
@@ -393,18 +374,18 @@ FW_SHARED_FN uint power04(uint x) {
     return ((base * m) >> 19u) << (k / 5u * 2u + fours);
 }
 
-// mm, of the disc with this area in mm^2.
+// Diameter in mm of a disc of `area` mm^2.
 FW_SHARED_FN uint fireDiameter(uint area) {
     return isqrtNear(leastOf(mulShift(area, 83443u, 16u), 0xFFFC0000u));
 }
-// mm, Heskestad's; a wide weak fire is many small ones. scale: power04 of its watts.
+// Flame height in mm (Heskestad); a wide weak fire counts as many small ones. scale: power04(watts).
 FW_SHARED_FN uint flameHeight(uint scale, uint diameter) {
     uint tall = mulShift(scale, 3796u, 16u);
     uint less = diameter + diameter / 50u;
     return mostOf(tall - leastOf(less, tall), tall / 3u);
 }
 
-// From sums to a source in the world. What cannot be told from nothing stays nothing.
+// Turns sums into a source in the world. An empty source stays empty.
 FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(RemoteObject) o) {
     s.watts = s.tiles == 0u ? 0u : s.power >> 4u;
     if (s.watts == 0u) return;
@@ -418,15 +399,14 @@ FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(RemoteObject) o) {
 
 FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
     int h = (s.place.w * eighths) >> 3;
-    return ivec3(s.place.x + ((up.x * h) >> 12), s.place.y + ((up.y * h) >> 12),
-                 s.place.z + ((up.z * h) >> 12));
+    return ivec3(s.place.x, s.place.y, s.place.z) + ((up * h) >> 12);
 }
 
 // Radiation from one point of a flame. normal: Q12; nearest: mm.
 FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
-    ivec3 d = ivec3(flame.x - at.x, flame.y - at.y, flame.z - at.z);
-    if (!withinReach(d)) return 0u;
-    uint length = mostOf(isqrtNear(squareSum(d)), 1u);
+    ivec3 d = flame - at;
+    if (!isWithinExchangeRange(d)) return 0u;
+    uint length = mostOf(isqrtNear(squaredLength(d)), 1u);
     int along = (normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z;  // Q10
     if (along <= 0 && !both) return 0u;
     uint cosine = leastOf(divide(absolute(along), length) >> 2u, 256u);
@@ -438,12 +418,11 @@ FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec
 FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 normal, bool both) {
     uint nearest = mostOf(s.diameter, kNearest) / 2u;
     ivec3 middle = alongFlame(s, up, 4);
-    ivec3 d = ivec3(middle.x - at.x, middle.y - at.y, middle.z - at.z);
-    if (!withinReach(d)) return 0u;
+    ivec3 d = middle - at;
+    if (!isWithinExchangeRange(d)) return 0u;
     uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
-    bool row = size >= 65535u || squareSum(d) <= size * size;  // near: a row of four
-    // A loop: software devices end one early, and would compute both sides of a branch. It loads
-    // nothing, so threads may leave it one by one.
+    bool row = size >= 65535u || squaredLength(d) <= size * size;  // near: four points along the flame
+    // A loop, not a branch: a software device would execute both sides of a branch.
     uint part = row ? s.watts / 4u : s.watts, sum = 0u;
     int end = row ? 8 : 5, apart = row ? 2 : 4, eighths = row ? 1 : 4;
     do {
@@ -453,49 +432,47 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
     return leastOf(sum, kFluxMost);
 }
 
-// K above ambient on the axis of a plume at z mm above its base: McCaffrey's three zones.
+// K above ambient on a plume's axis, z mm above its base: McCaffrey's three zones.
 FW_SHARED_FN uint plumeRise(uint z, uint scale) {
     if (scale == 0u) return 0u;
-    uint q = divide(leastOf(z, 65535u) * 4057u, scale);  // 1/1000 of his z / Q^0.4
+    uint q = divide(leastOf(z, 65535u) * 4057u, scale);  // 1/1000 of z / Q^0.4
     if (q < 80u) return 800u;
     if (q < 200u) return divide(63000u, q);
-    uint rise = 315u << 8u;  // Q8, falls by (5/3)th powers: 0.315 an octave
+    uint rise = 315u << 8u;  // Q8, falls with the power 5/3: factor 0.315 an octave
     while (q >= 400u) {
         q = (q + 1u) >> 1u;
         rise = (rise * 20643u) >> 16u;
     }
-    uint x = q - 200u;  // [0, 200): four straight pieces, Q12 at their ends
-    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u)
-                : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
-                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u)
-                           : 1612u - (((x - 150u) * 322u) / 50u);
+    uint x = q - 200u;  // [0, 200): piecewise linear, Q12
+    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u) : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
+                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u) : 1612u - (((x - 150u) * 322u) / 50u);
     return (rise * part) >> 20u;
 }
 
-struct FlameFrame {  // a receiver as a flame sees it
-    int above;       // mm over its base
+struct FlameFrame {  // a receiver in a flame's frame
+    int above;       // mm above its base
     uint beside2;    // mm^2 from its axis
     bool near;       // within kExchangeFar
 };
 FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
     FlameFrame f;
-    ivec3 d = ivec3(at.x - s.place.x, at.y - s.place.y, at.z - s.place.z);
-    f.near = withinReach(d);
+    ivec3 d = at - ivec3(s.place.x, s.place.y, s.place.z);
+    f.near = isWithinExchangeRange(d);
     f.above = 0;
     f.beside2 = 0xFFFFFFFFu;
     if (!f.near) return f;
     f.above = (up.x * d.x + up.y * d.y + up.z * d.z) / 4096;
-    uint square = squareSum(d), high = absolute(f.above) * absolute(f.above);
+    uint square = squaredLength(d), high = absolute(f.above) * absolute(f.above);
     f.beside2 = square - leastOf(high, square);
     return f;
 }
 
-// W/m^2 that a plume gives to a surface at `heat`, 1/16 K; ambient, too.
+// W/m^2 from a plume to a surface at `heat`, 1/16 K; ambient: 1/16 K.
 FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
     uint width = (uint(f.above) * 492u) / 4096u + s.diameter / 2u;  // mm: 0.12 z + D/2
     width = leastOf(mostOf(width, 10u), 20000u);
     uint square = width * width, flux = 0u;
-    // As a loop, which costs nothing where no plume comes.
+    // A loop costs nothing where no plume arrives.
     for (bool within = f.near && f.above > 0 && f.beside2 < square * 9u; within; within = false) {
         uint x = divide(f.beside2, (square >> 12u) + 1u) * 23u;  // (r/b)^2 log2(e), Q16
         uint gas = (plumeRise(uint(f.above), s.scale) * halvings(x)) >> 12u;  // 1/16 K
@@ -505,7 +482,7 @@ FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat,
     return flux;
 }
 
-// Does this flame light the vapours of a hot surface there?
+// Does this flame ignite the vapours of a hot surface there?
 FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
     if (!f.near || f.above < -int(kPilotReach) || f.above > s.place.w) return false;
     uint reach = s.diameter / 2u + kPilotReach;
@@ -513,15 +490,15 @@ FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
 }
 
 FW_SHARED_FN ivec3 boxMiddle(FW_IN(RemoteObject) o) {
-    return ivec3(o.turn0.w + (o.high.x - o.turn0.w) / 2, o.turn1.w + (o.high.y - o.turn1.w) / 2,
-                 o.turn2.w + (o.high.z - o.turn2.w) / 2);
+    ivec3 low = ivec3(o.turn0.w, o.turn1.w, o.turn2.w);
+    return low + (ivec3(o.high.x, o.high.y, o.high.z) - low) / 2;
 }
 
 struct Received {
     uint flux;   // W/m^2
     uint pilot;  // 1: a flame is near
 };
-// What one source sends to a place, under the world's switches; seen: of 255.
+// Heat from one source at a position, under the world's switches. seen: visible share, of 255.
 FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up, ivec3 at,
                                    ivec3 normal, bool both, uint seen) {
     Received r;
@@ -534,34 +511,33 @@ FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient
     return r;
 }
 
-// How strongly a source acts on a place: to choose among many. W/cm^2, about.
+// Weight of a source at a position, to choose among many; about W/cm^2.
 FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
-    ivec3 d = ivec3(s.place.x - at.x, s.place.y - at.y, s.place.z - at.z);
-    if (s.watts == 0u || !withinReach(d)) return 0u;
-    uint square = mostOf(divide(squareSum(d), 100u), 100u);
+    ivec3 d = ivec3(s.place.x, s.place.y, s.place.z) - at;
+    if (s.watts == 0u || !isWithinExchangeRange(d)) return 0u;
+    uint square = mostOf(divide(squaredLength(d), 100u), 100u);
     return divide(leastOf(s.watts, 0xFFFFFFu) << 8u, square) + 1u;
 }
 
-// ---- who may light whom
+// ---- ignition rules
 
 FW_SHARED_FN uint bothChances(uint a, uint b) { return mulShift(a, b, 16u); }
 FW_SHARED_FN bool drawn(uint hash, uint chance) { return (hash >> 16u) < chance; }
 FW_SHARED_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E3779B9u)); }
 
-// Decided once for a pair and a fire: `caught` is the tick at which the giver was found alight.
+// Decided once per pair and fire. caught: tick at which the source object was found alight.
 FW_SHARED_FN bool mayJump(uint seed, uint from, uint to, uint caught, uint chance) {
     return drawn(mixed(mixed(mixed(seed, from), to), caught), chance);
 }
-FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint worldHopsMost) {
-    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, worldHopsMost);
+FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint maxWorldHops) {
+    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, maxWorldHops);
 }
 
-// What the exchange notes of an object: when it was found alight, and when its front stops.
-FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o,
-                           FW_IN(ExchangePush) rules) {
+// Updates an object's lit and stop ticks at an exchange.
+FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o, FW_IN(ExchangePush) rules) {
     c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
-        // Who warms it may have lit it by the next time.
+        // An object that heats it may light it by the next exchange.
         if ((c.held & kHeldWarm) == 0u) c.litBy = 0u;
         c.litTick = 0u;
         c.stopTick = 0u;
@@ -572,7 +548,7 @@ FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o,
     }
 }
 
-// Who lit an object: fewest jumps first, then the lowest slot, whatever the order. 0: nobody yet.
+// Key of the object that lit another: fewest jumps win, then the lowest slot, in any order. 0: none yet.
 FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
 FW_SHARED_FN uint litBy(uint hops, uint from) {
     return ~((leastOf(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
@@ -583,28 +559,24 @@ FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
 }
 
 FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && now >= stopTick; }
-// May a tile that does not burn not catch, because enough do? Counts are of before the iteration.
-FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint worldMost, uint objectBurning,
-                            uint objectFlags, uint objectMost) {
+// Is a tile that does not burn held back by a limit? Counts are those before the iteration.
+FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
+                            uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
-    return burning >= worldMost ||
-           ((objectFlags & kRemoteLive) != 0u && objectBurning >= objectMost);
+    return burning >= maxWorld || ((objectFlags & kRemoteLive) != 0u && objectBurning >= maxObject);
 }
-// What the exchange finds of an object: kHeld bits.
-FW_SHARED_FN uint heldBits(uint burning, uint worldMost, uint objectBurning, uint objectMost,
-                           uint stopTick, uint now) {
-    uint held = (burning >= worldMost || objectBurning >= objectMost) ? kHeldFull : 0u;
+// kHeld bits of an object at an exchange.
+FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject, uint stopTick, uint now) {
+    uint held = (burning >= maxWorld || objectBurning >= maxObject) ? kHeldByLimit : 0u;
     return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
 }
-// May a tile with this flag be lit from afar?
+// May another object light a tile with this flag?
 FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
-    return (held & kHeldStopped) == 0u &&
-           ((held & kHeldFull) == 0u || (tileFlag & kTileBurning) != 0u);
+    return (held & kHeldStopped) == 0u && ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
 }
 
-// When fire crossed a contact, or kNever: not yet, or never. t: state of the texel it comes from,
-// which burnt at the exchange before this one: so none that is lit in this one counts yet, in
-// whatever order.
+// Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt at the exchange
+// before, so texels lit in the current one do not count, in any order.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
     uint begins = mostOf(t, since);
@@ -613,21 +585,21 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
     return arrives + kExchangeTicks < now ? now : arrives;
 }
 
-// A link between two parts of a mesh, of block `block` of a tile: lane that fire leaves from. It leads to
-// `link` % kPartTexels.
+// Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target is `link` %
+// kPartTexels.
 FW_SHARED_FN uint partFrom(uint link, uint block) {
     uint lane = link >> 28u;
     return ((block >> 1u) * 4u + (lane >> 2u)) * 8u + (block & 1u) * 4u + (lane & 3u);
 }
-// Ticks that fire takes there: those of an ordinary link of that length, in position units, in still air.
+// Ticks over such a link: those of an ordinary link of that length, in position units, in still air.
 FW_SHARED_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
-    return mulShift(to.sigma0, isqrtNear(squareSum(gap)) * 8u, 22u);
+    return mulShift(to.sigma0, isqrtNear(squaredLength(gap)) * 8u, 22u);
 }
-// Whether it is there. t: state of the texel that it leaves, lit before the last exchange, as of a contact.
+// Has fire crossed it? t: state of the source texel, lit before the last exchange, as for a contact.
 FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
     return isSource(t) && t + kExchangeTicks < now && delay <= now - t && flames(t, now, flameTicks);
 }
-// The exchange at which it is found there.
+// Tick of the exchange that finds fire at the target.
 FW_SHARED_FN uint partArrives(uint t, uint delay) {
     uint arrives = mostOf(t + delay, t + kExchangeTicks + 1u);
     return (arrives + kExchangeTicks - 1u) / kExchangeTicks * kExchangeTicks;
@@ -635,7 +607,7 @@ FW_SHARED_FN uint partArrives(uint t, uint delay) {
 
 // ---- embers
 
-// Axis of the world that is most along `up`, and how far along it (b * 2 | 1: downwards).
+// World axis most parallel to `up`: axis * 2 | 1 if it points down.
 FW_SHARED_FN uint upAxis(ivec3 up) {
     uint ux = absolute(up.x), uy = absolute(up.y), uz = absolute(up.z);
     uint axis = (uy >= ux && uy >= uz) ? 1u : ux >= uz ? 0u : 2u;
@@ -649,7 +621,7 @@ FW_SHARED_FN int heightOf(ivec3 p, uint axis) {
 FW_SHARED_FN ivec3 acrossUp(ivec3 p, uint axis) {
     return axis < 2u ? ivec3(0, p.y, p.z) : axis < 4u ? ivec3(p.x, 0, p.z) : ivec3(p.x, p.y, 0);
 }
-// Top of an object that is below a place, mm; kNoTop: the place is beside or under that.
+// Height of an object's top below a position, mm; kNoTop: the position is beside or under it.
 FW_SHARED_CONST int kNoTop = -2147483647;
 FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
     ivec3 low = acrossUp(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis);
@@ -661,30 +633,29 @@ FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
                                 : heightOf(ivec3(o.high.x, o.high.y, o.high.z), axis);
     return top <= heightOf(at, axis) ? top : kNoTop;
 }
-// How badly a tile fits what falls down there, [0, kMisses]: least wins.
+// How badly a tile matches a landing position, [0, kMisses]: least wins.
 FW_SHARED_CONST uint kMisses = 16383u;
-FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top,
-                              uint axis) {
+FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top, uint axis) {
     if (tile.texels == 0u) return kMisses;
     int facing = heightOf(remoteTurn(o, decodeNormal(tile.normal)), axis);
     if ((o.flags & kRemoteTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
     if (facing < 512) return kMisses;
     ivec3 p = remotePlace(o, tileMiddle(tile));
-    ivec3 d = acrossUp(ivec3(p.x - at.x, p.y - at.y, p.z - at.z), axis);
+    ivec3 d = acrossUp(p - at, axis);
     if (absolute(d.x) > 2000u || absolute(d.y) > 2000u || absolute(d.z) > 2000u) return kMisses;
-    uint beside = isqrtNear(squareSum(d));
+    uint beside = isqrtNear(squaredLength(d));
     int below = top - heightOf(p, axis);
     uint miss = beside * 2u + uint(below < 0 ? 0 : (below > 16000 ? 16000 : below)) / 2u;
     return leastOf(miss, kMisses);
 }
 
 struct Ember {
-    uint flight;     // ticks that it was under way: what lands now set out then
-    uint energy;     // J that it still has
-    ivec3 landing;   // mm; its height is where it set out, plus its loft
+    uint flight;     // ticks of flight: an ember that lands now started then
+    uint energy;     // J left
+    ivec3 landing;   // mm; its height is the start plus the loft
 };
 
-// Does this source send one this time? Its hash, not 0, or 0.
+// Hash of the ember that the source sends in this exchange; 0: none.
 FW_SHARED_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power, uint brands) {
     uint roll = mixed(mixed(seed ^ 0x5EEDE3BEu, from * kSourcesPerObject + cell), now);
     uint high, low;
@@ -693,44 +664,41 @@ FW_SHARED_FN uint emberOf(uint seed, uint from, uint cell, uint now, uint power,
     return roll < chance ? (hash32(roll) | 1u) : 0u;
 }
 
-// A disc of char, 1 to 4 mm thick, that rose one to four flame heights and falls at its own speed.
+// A char disc, 1 to 4 mm thick, lofted one to four flame heights, falling at terminal speed.
 FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 wind) {
     Ember e;
     uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
     uint thick = (a & 3u);
     uint falls = thick == 0u ? 1410u : thick == 1u ? 2000u : thick == 2u ? 2450u : 2830u;  // mm/s
-    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u,
-                        30000u);
+    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
     uint seconds = leastOf(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
     e.flight = seconds;
-    // Spread sideways by a quarter of the loft; winds carry it 28 m at most.
+    // Lateral spread: a quarter of the loft. Wind carries it 28 m at most.
     int spread = int(loft / 4u) + int(s.diameter / 2u);
     int jx = (int(c & 0xFFFFu) - 32768) * (spread >> 2) / 8192;
     int jz = (int(c >> 16u) - 32768) * (spread >> 2) / 8192;
-    ivec3 carried = ivec3((wind.x / 8) * int(seconds >> 4u) / 32, (wind.y / 8) * int(seconds >> 4u) / 32,
-                          (wind.z / 8) * int(seconds >> 4u) / 32);
-    // Jitter lies across `up`: along the two world axes that are least along it.
+    ivec3 carried = (wind / 8) * int(seconds >> 4u) / 32;
+    // Jitter lies across `up`, along the two world axes least parallel to it.
     uint axis = upAxis(up);
     ivec3 jitter = axis < 2u ? ivec3(0, jx, jz) : axis < 4u ? ivec3(jx, 0, jz) : ivec3(jx, jz, 0);
-    ivec3 shift = ivec3(carried.x + jitter.x, carried.y + jitter.y, carried.z + jitter.z);
+    ivec3 shift = carried + jitter;
     int most = 28000;
     shift = ivec3(shift.x > most ? most : (shift.x < -most ? -most : shift.x),
                   shift.y > most ? most : (shift.y < -most ? -most : shift.y),
                   shift.z > most ? most : (shift.z < -most ? -most : shift.z));
     int h = int(loft);
-    e.landing = ivec3(s.place.x + shift.x + ((up.x * h) >> 12), s.place.y + shift.y + ((up.y * h) >> 12),
-                      s.place.z + shift.z + ((up.z * h) >> 12));
+    e.landing = ivec3(s.place.x, s.place.y, s.place.z) + shift + ((up * h) >> 12);
     uint life = (thick + 1u) * (10u << 12u);  // it loses 0.1 mm a second
     uint whole = (thick + 1u) * 225u;         // J
     e.energy = seconds >= life ? 0u : divide(whole * ((life - seconds) >> 4u), life >> 4u);
     return e;
 }
 
-// mm, [0, 65535], that a texel is beside a place as seen from above.
+// Horizontal distance of a texel from a position, mm, [0, 65535].
 FW_SHARED_FN uint besidePlace(FW_IN(RemoteObject) o, ivec3 position, ivec3 at, uint axis) {
     ivec3 p = remotePlace(o, position);
-    ivec3 d = acrossUp(ivec3(p.x - at.x, p.y - at.y, p.z - at.z), axis);
-    return withinReach(d) ? isqrtNear(squareSum(d)) : 65535u;
+    ivec3 d = acrossUp(p - at, axis);
+    return isWithinExchangeRange(d) ? isqrtNear(squaredLength(d)) : 65535u;
 }
 // Is `other` in the disc that an ember on `lane` of the same tile lights?
 FW_SHARED_FN bool besideLane(uint lane, uint other) {
@@ -738,7 +706,7 @@ FW_SHARED_FN bool besideLane(uint lane, uint other) {
     return dx >= -1 && dx <= 1 && dy >= -1 && dy <= 1;
 }
 
-// Chance of kChanceOne that it lights what it lies on: 1 - exp(-E / 200 J), damped by moisture.
+// Ignition probability of kChanceOne: 1 - exp(-E / 200 J), damped by moisture.
 FW_SHARED_FN uint emberLights(uint energy, uint catches) {
     uint unlit = halvings(leastOf(energy, 4000u) * 473u);  // Q16: log2(e) / 200
     return ((65536u - leastOf(unlit, 65536u)) * leastOf(catches, 256u)) >> 8u;

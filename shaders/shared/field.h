@@ -1,10 +1,8 @@
-// A 2D particle field: what one cell gives to its eight neighbours, and what it becomes of what
-// they give. Integers only, so that no particle is lost or made. It loads nothing: callers hand
-// over cells.
+// 2D particle field: what a cell gives to its eight neighbours, and its state after a step. Integers only, so no
+// particle is lost or created. It accesses no buffer.
 //
-// One cell side and one step are the units: a speed of 1 is a cell per step. Directions are a ring
-// as the front's: counter-clockwise from +x, odd ones diagonal; +y is up.
-// GLSL too, and laid out by hand.
+// Units: cell side and step; a speed of 1 is one cell per step. Directions are a ring as in front.h: counter-clockwise
+// from +x, odd ones diagonal, +y up.
 // clang-format off
 #ifndef FW_SHARED_FIELD_H
 #define FW_SHARED_FIELD_H
@@ -15,41 +13,41 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST uint kFieldSources = 4u;         // of a field
 FW_SHARED_CONST uint kFieldSideMost = 256u;      // cells
 FW_SHARED_CONST uint kFieldCellMost = 32767u;    // particles of a cell
-FW_SHARED_CONST uint kFieldCellFull = 16384u;    // from which nothing is emitted into it
-FW_SHARED_CONST uint kFieldAll = 32768u;         // Q15, a share: all of a cell's particles
-FW_SHARED_CONST int kFieldStill = 128;           // a mean motion's byte: none
-FW_SHARED_CONST int kFieldSpeed = 120;           // beside it: a cell a step
-FW_SHARED_CONST uint kFieldWallCell = 0x8080FFFFu;  // a cell's word where a wall is
-FW_SHARED_CONST uint kFieldSpreadMost = 4096u;   // Q15: an eighth; twice this is unstable
+FW_SHARED_CONST uint kFieldCellFull = 16384u;    // above it no more are emitted
+FW_SHARED_CONST uint kFieldAll = 32768u;         // Q15, share of all of a cell's particles
+FW_SHARED_CONST int kFieldStill = 128;           // byte of a mean motion of 0
+FW_SHARED_CONST int kFieldSpeed = 120;           // byte difference of one cell per step
+FW_SHARED_CONST uint kFieldWallCell = 0x8080FFFFu;  // word of a wall cell
+FW_SHARED_CONST uint kFieldSpreadMost = 4096u;   // Q15: an eighth; twice as much is unstable
 
 FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
-FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: so often a field steps in it at most
-FW_SHARED_CONST uint kFieldUnits = 8u;          // of eight strips, each four columns, that a group steps
-FW_SHARED_CONST uint kFieldWall = 255u;          // of a cell's mask; below: how much of the paint is there
-FW_SHARED_CONST uint kFieldOpenLeft = 1u;        // bits of FieldRules::open: particles leave the field there
+FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
+FW_SHARED_CONST uint kFieldUnits = 8u;          // units per group; a unit is eight strips of four columns
+FW_SHARED_CONST uint kFieldWall = 255u;          // of a cell's mask; below: strength of the paint there
+FW_SHARED_CONST uint kFieldOpenLeft = 1u;        // bits of FieldRules::open: particles may leave the field there
 FW_SHARED_CONST uint kFieldOpenRight = 2u;
 FW_SHARED_CONST uint kFieldOpenBottom = 4u;
 FW_SHARED_CONST uint kFieldOpenTop = 8u;
-FW_SHARED_CONST uint kFieldFresh = 0x80000000u;  // of a run's step, when masked: the field becomes empty
-FW_SHARED_CONST uint kFieldRing = 16u;           // instead, its left and right border are one
+FW_SHARED_CONST uint kFieldFresh = 0x80000000u;  // of a masked run's step: empties the field
+FW_SHARED_CONST uint kFieldRing = 16u;           // instead: left and right border are joined
 
-struct FieldSource {     // a rectangle of cells that emits
+struct FieldSource {     // rectangle of cells that emits
     ivec4 cells;         // first x, first y, end x, end y
-    uint rate;           // Q8 particles of a cell and step
-    uint disc;           // 1: the disc as wide as the rectangle, about its middle
+    uint rate;           // Q8 particles per cell and step
+    uint disc;           // 1: the inscribed disc instead of the rectangle
     uint pad0; uint pad1;
 };
 FW_SHARED_SIZE(FieldSource, 32)
 
 struct FieldRules {      // of one field
-    int forceX;          // Q7, outer force (wind, buoyancy, weight): 128 moves all by one cell a step
+    int forceX;          // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step
     int forceY;
     uint inertia;        // Q8, weight of the cell's mean motion
-    uint chaos;          // Q8, weight of a random direction, the same over 4 x 4 cells and 4 steps
+    uint chaos;          // Q8, weight of a random direction, shared by 4 x 4 cells and 4 steps
 
-    uint spread;         // Q15, [0, kFieldSpreadMost]: share of a difference that flows to each neighbour
-    uint memory;         // Q7, how much of its motion a particle keeps in a step
-    uint death;          // Q16, share that dies in a step
+    uint spread;         // Q15, [0, kFieldSpreadMost]: share of a difference that diffuses to each neighbour
+    uint memory;         // Q7, share of its motion that a particle keeps per step
+    uint death;          // Q16, share that dies per step
     uint seed;
 
     uint width;          // cells
@@ -57,23 +55,23 @@ struct FieldRules {      // of one field
     uint open;           // kFieldOpen bits; elsewhere borders are walls
     uint sourceCount;
 
-    uint paint;          // Q8 particles of a step, of a cell whose mask is 254
+    uint paint;          // Q8 particles per step of a cell whose mask is 254
     uint pad0; uint pad1; uint pad2;
 
     FieldSource sources[kFieldSources];
 };
 FW_SHARED_SIZE(FieldRules, 192)
 
-struct FieldPush {       // push constants of the fields' passes
+struct FieldPush {       // push constants of the field passes
     uint first;          // of the runs
     uint pad0; uint pad1; uint pad2;
 };
 FW_SHARED_SIZE(FieldPush, 16)
 
-// A cell: particles (15 bits; none and the 16th bit: a wall), mean motion, a byte each way.
+// A cell: particles (15 bits; a wall has 0 and the 16th bit), mean motion, one byte per axis.
 FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) { return n | (motion.x << 16u) | (motion.y << 24u); }
 FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
-FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }  // all ones of a wall
+FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }  // all ones for a wall
 FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kFieldCellMost; }
 
 // Unit vector of direction k, Q7.
@@ -88,17 +86,17 @@ FW_SHARED_FN ivec2 fieldNeighbour(uint k) {  // the same in cells
     return ivec2(d.x == 0 ? 0 : (d.x > 0 ? 1 : -1), d.y == 0 ? 0 : (d.y > 0 ? 1 : -1));
 }
 
-// Random numbers of a step: one key for each use of them, one number of a pair of coordinates.
+// Random numbers of a step: one key per use, one number per pair of coordinates.
 FW_SHARED_FN uint fieldKey(uint step, uint seed, uint salt) {
     return hash32((seed * 0x9E3779B9u) ^ (step * 0x85EBCA6Bu + salt));
 }
 FW_SHARED_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
 
-// A random unit vector, Q7 (within 1 of it), all angles alike: an eighth of a turn to both sides of
-// an axis by the first terms of sine and cosine.
+// Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of an axis by the first
+// terms of sine and cosine.
 FW_SHARED_FN ivec2 fieldChaos(uint h) {
     int a = int(h & 255u) - 128;
-    a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no side is favoured
+    a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no bias to one side
     int c = 128 - ((a * a * 75) >> 15u);
     int s = a * (1646592 - 10 * a * a);  // Q28
     s = s >= 0 ? (s >> 21u) : -((-s) >> 21u);
@@ -106,7 +104,7 @@ FW_SHARED_FN ivec2 fieldChaos(uint h) {
     return (h & 512u) != 0u ? d : ivec2(-d.x, -d.y);
 }
 
-// Four cells of a row, x = 4 i ..., share a number: each one's dither of shares, Q15; and of deaths, Q16.
+// Four cells of a row, x = 4 i ..., share a random number: dither of shares, Q15, and of deaths, Q16.
 FW_SHARED_FN uint fieldDither(uint random, uint x) { return (((random >> (8u * (x & 3u))) & 255u) << 7u) + 64u; }
 FW_SHARED_FN uint fieldWindow(uint random, uint x) {
     return ((x & 3u) == 3u ? (random >> 24u) | (random << 8u) : random >> (8u * (x & 3u))) & 0xFFFFu;
@@ -116,24 +114,23 @@ struct FieldEight { uint k[8]; };  // of each direction
 
 FW_SHARED_FN int fieldLobe(int along) { return along > 0 ? along : 0; }
 
-// What moves particles, as shares (Q15) that are kFieldAll at most together: blended, if they were more.
+// Shares (Q15) that move particles; scaled down if their sum would exceed kFieldAll.
 struct FieldWeights {
     FieldEight force;      // of each direction
     uint chance;           // of a cosine lobe
-    uint inertia;          // of a cosine lobe, of motion kFieldSpeed: Q7 more
-    uint inertiaDiagonal;  // beside it, of the sum of both parts
+    uint inertia;          // cosine lobe of motion kFieldSpeed: Q7 more
+    uint inertiaDiagonal;  // diagonals, of the sum of both components
 };
 FW_SHARED_FN FieldWeights fieldWeights(FieldRules rules) {
     FieldWeights w;
     uint sum = 0u;
     FW_UNROLL for (uint k = 0u; k < 8u; ++k) {
         ivec2 u = fieldDirection(k);
-        // The eight cosines of a unit vector sum up to 2.41..2.61: 0.41 of one is its share.
         w.force.k[k] = (uint(fieldLobe(rules.forceX * u.x + rules.forceY * u.y)) * 210u) >> 8u;
         sum += w.force.k[k];
     }
     uint chance = rules.chaos << 7u, inertia = rules.inertia << 7u;
-    // 0.41 of eight cosines is 1.0714 at most, and rounding makes motion longer by one part of 80.
+    // 0.41 of eight cosines is 1.0714 at most, and rounding lengthens motion by one part in 80.
     sum += ((chance + inertia) * 35u) >> 5u;
     uint most = kFieldAll - 64u;
     uint scale = sum > most ? divide(most << 16u, sum) : 65535u;
@@ -148,25 +145,25 @@ struct FieldRecord {     // of one field on a device
     FieldRules rules;
     FieldWeights weights;  // of the rules
     uint pad0;
-    uint cellBase;       // into the cells' planes
-    uint cellRoom;       // from its first cells to its second: even steps read the first
+    uint cellBase;       // into the cell buffers
+    uint cellRoom;       // from its first cells to its second; even steps read the first
     uint pad1; uint pad2;
 };
 FW_SHARED_SIZE(FieldRecord, 256)
 
-struct FieldCounters {   // since it began
+struct FieldCounters {   // totals
     uint inside;         // particles, now
     uint pad0;
     uint emittedLow; uint emittedHigh;  // low + 2^32 high
     uint diedLow; uint diedHigh;
     uint leftLow; uint leftHigh;
-    uint bands0; uint bands1;           // of the first and second cells: bit k, rows 8k.. hold particles
+    uint bands0; uint bands1;           // of the first and second cells: bit k is set if rows 8k.. hold particles
     uint steps;
     uint pad1;
 };
 FW_SHARED_SIZE(FieldCounters, 48)
 
-// Shares by force and by a random vector, which both are those of many cells; and all of them.
+// Shares by force and random vector, common to many cells, and their sum.
 struct FieldPushes {
     FieldEight to;
     uint sum;
@@ -186,14 +183,14 @@ FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
     return p;
 }
 
-// A cell that gives: what is the same for all directions. The masks say what is known of a value:
-// devices that multiply 16 bits faster than 32 then do.
+// A giving cell: terms common to all directions. The masks tell the compiler value ranges: some devices multiply 16
+// bits faster than 32.
 struct FieldGiver {
     uint n;
     uint own;        // particles times spread
-    uint most;       // that spread to each neighbour at most, Q15: an eighth of those that no force moves
-    int v0; int v1; int v2; int v3;  // shares by its motion, of directions 0 to 3; below 0 of the opposite
-    uint ahead;      // first dithers, Q15: of directions 7 0 1 2 and 3 4 5 6
+    uint most;       // Q15, limit of diffusion to each neighbour: an eighth of the particles that no force moves
+    int v0; int v1; int v2; int v3;  // shares by its motion, directions 0 to 3; negative: the opposite direction
+    uint ahead;      // first dithers, Q15: directions 7 0 1 2 and 3 4 5 6
     uint behind;
 };
 FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia, uint inertiaDiagonal,
@@ -213,8 +210,8 @@ FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint ine
     g.behind = 32767u - dither;
     return g;
 }
-// What it gives in direction k, Q15. push: of the direction; around: particles of the neighbour times
-// spread (a wall is full, as is what lies beyond a border); room: what that takes.
+// Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times spread (walls and
+// cells beyond a border count as full); room: what the neighbour can take.
 FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
     int v = (k & 3u) == 0u ? g.v0 : ((k & 3u) == 1u ? g.v1 : ((k & 3u) == 2u ? g.v2 : g.v3));
     uint share = push + uint(k < 4u ? fieldLobe(v) : fieldLobe(v) - v);
@@ -223,22 +220,25 @@ FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint r
     uint flow = g.n * (share & 0x7FFFu) + spreads;
     return flow < room ? flow : room;
 }
-// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6: what is cut off one is carried to
-// the next, and the first dithers are one together, so that no more are given than there are, and every
-// direction gets its flow on average. sum: of the arc so far, its dither at first.
+// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to the next direction,
+// and both first dithers sum up to one. So no more is given than exists, and each direction gets its flow on average.
+// sum: of the arc so far, starting with its dither.
 FW_SHARED_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
 
-// What a cell of n particles takes from each direction, Q15: an eighth of its room.
+// Flow that a cell of n particles takes per direction, Q15: an eighth of its free capacity.
 FW_SHARED_FN uint fieldRoom(uint n) { return ((kFieldCellMost - n) << 12u) & ~32767u; }
 
-// What a particle carries that moves along u (a direction's part in cells: 0, 1 and the diagonals' 0.7)
-// out of a cell of this motion: what it remembers, and what it did. Q7.
+// Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a cell of this motion:
+// memory and displacement. Q7.
 FW_SHARED_FN uint fieldCarried(uint motion, int u, uint memory) {
     return motion * memory + uint(kFieldStill + u) * (128u - memory);
 }
-FW_SHARED_FN int fieldSpeed(int direction) { return direction == 0 ? 0 : (direction == 128 ? kFieldSpeed : (direction == -128 ? -kFieldSpeed : (direction > 0 ? 85 : -85))); }
+FW_SHARED_FN int fieldSpeed(int direction) {
+    int size = direction == 0 ? 0 : direction == 128 || direction == -128 ? kFieldSpeed : 85;
+    return direction < 0 ? -size : size;
+}
 
-// The motion's byte of n particles that carry `sum` together: rounded.
+// Motion byte of n particles with the summed motion `sum`, rounded.
 FW_SHARED_FN uint fieldMean(uint sum, uint n) {
     uint t = (sum >> 7u) + (n >> 1u);  // below 2^23
 #ifdef __cplusplus
@@ -252,10 +252,10 @@ FW_SHARED_FN uint fieldMean(uint sum, uint n) {
 #endif
 }
 
-// How many of n die. random: 16 bits.
+// Deaths among n particles. random: 16 bits.
 FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) { return (n * death + random) >> 16u; }
 
-// How many are emitted into a cell of n particles with this mask. random: 32 bits.
+// Particles emitted into a cell of n particles with this mask. random: 32 bits.
 FW_SHARED_FN uint fieldEmission(uint x, uint y, uint n, uint mask, FieldRules rules, uint random) {
     uint rate = (rules.paint * mask * 258u) >> 16u;
     FW_UNROLL for (uint k = 0u; k < kFieldSources; ++k) {

@@ -1,44 +1,38 @@
-// How a particle field is drawn: what draws are told of it, and what they read of a cell. The step
-// is in field.h.
-// GLSL too, and laid out by hand.
+// Drawing of a particle field: draw records and displayed cells. The simulation step is in field.h.
 // clang-format off
 #ifndef FW_SHARED_FIELD_DRAW_H
 #define FW_SHARED_FIELD_DRAW_H
 #include "shared/types.h"
 
 FW_SHARED_BEGIN
-#ifdef __cplusplus
-using glm::clamp;
-#endif
-
-FW_SHARED_CONST uint kFieldShowGroups = 8u;  // of a field, by rows
+FW_SHARED_CONST uint kFieldShowGroups = 8u;  // per field, by rows
 FW_SHARED_CONST uint kFieldCard = 0u;        // FieldDraw::shape, as FwFieldShape
 FW_SHARED_CONST uint kFieldSpheroid = 1u;
 FW_SHARED_CONST uint kFieldDisplaced = 2u;
-FW_SHARED_CONST uint kFieldAround = 32u;     // quads around a spheroid, and up
+FW_SHARED_CONST uint kFieldAround = 32u;     // quads around a spheroid; kFieldUp: along its axis
 FW_SHARED_CONST uint kFieldUp = 16u;
-FW_SHARED_CONST float kFieldFull = 96.0f;    // particles of a cell that is shown as full
+FW_SHARED_CONST float kFieldFull = 96.0f;    // particles of a cell displayed as full
 
 struct FieldDraw {
-    vec4 place;          // m, world: middle of the lower edge; w: into the running step, [0, 1]
+    vec4 place;          // m, world: middle of the lower edge; w: time since the last step, [0, 1] of a step
     vec4 size;           // m: width, height, depth; w: opacity
-    vec4 right;          // its axes in the world; w: detail
+    vec4 right;          // axes in the world; w: detail
     vec4 up;             // w: body
     vec4 forward;        // w: s, cosmetic time
     vec4 tint;           // w: steps a second
-    uint cells;          // first of those that the last step wrote
-    uint before;         // first of those it read
+    uint cells;          // first cell that the last step wrote
+    uint before;         // first cell that the last step read
     uint shown;
     uint width;          // cells
     uint height;
     uint shape;          // kFieldCard ...
-    float tall;          // cells that its particles come, on the mean
+    float tall;          // cells, mean height of the particles
     uint seed;
 };
 FW_SHARED_SIZE(FieldDraw, 128)
 
-// What a cell shows: density (0 to 2: square root of its particles over kFieldFull), motion (cells a
-// step, within 1.3), and how much sun reaches it (0 to 1).
+// A displayed cell: density (0 to 2: root of its particles over kFieldFull), motion (cells per step, within 1.3), and
+// the share of sunlight that reaches it.
 FW_SHARED_FN uint fieldShownPacked(float density, vec2 motion, float sun) {
     uint d = uint(clamp(density, 0.0f, 2.0f) * 511.5f + 0.5f);
     uint x = uint(clamp(motion.x * 48.0f + 64.5f, 0.0f, 127.0f));

@@ -1,24 +1,14 @@
-// The front kernel: when does a texel catch fire from the eight of its ring? Integers only, one
-// text for C++ and GLSL. It loads nothing: callers hand over ticks and links. Not the driver of
-// lists and tiles (shaders/burn, runtime/gpu/cpu).
+// Front kernel: when a texel catches fire from the eight texels of its ring. Integers only, for C++ and GLSL. It
+// accesses no buffer. Lists and tiles are driven by shaders/burn and runtime/gpu/cpu.
 //
-// Slowness along a unit vector v is A * (1 - e.v): head and back of an ellipse, exactly. Times
-// inside the kernel are 1/16 tick after the earliest counting source of the ring.
-// GLSL too, and laid out by hand.
+// Slowness along a unit vector v is A * (1 - e.v), exactly an ellipse. Times inside the kernel are 1/16 tick after the
+// earliest counting source of the ring.
 // clang-format off
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H
 #include "shared/burn.h"
 #include "shared/integer.h"
 
-#ifdef __cplusplus
-#include <cmath>
-#define FW_IN(T) const T&
-#define FW_INOUT(T) T&
-#else
-#define FW_IN(T) T
-#define FW_INOUT(T) inout T
-#endif
 
 FW_SHARED_BEGIN
 
@@ -35,20 +25,20 @@ FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.
 FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
 FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
 FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
-FW_SHARED_CONST uint kFarPast = 0x80000000u;      // TileState::lastChange of a tile never changed
+FW_SHARED_CONST uint kFarPast = 0x80000000u;      // TileState::lastChange of a tile that never changed
 
 struct FrontPrep {  // slowness of one texel: A * (1 - e.v)
     uint A;         // Q22 ticks per 1/8 position unit
     ivec3 e;        // Q14
 };
 
-struct FrontRing {  // what a texel sees
-    uint tick[8];   // states of the eight
-    ivec3 link[8];  // own position less theirs, position units; of those that count
-    uint burn[8];   // ticks that they flame, kNoneTexel: without end; of those that count
+struct FrontRing {  // the ring of a texel
+    uint tick[8];   // states
+    ivec3 link[8];  // own position minus theirs, position units; counting sources only
+    uint burn[8];   // ticks that they flame, kNoneTexel: unlimited; counting sources only
 };
 
-// Does a texel with these material flags (texel word >> 16) take part at all?
+// Can a texel with these material flags (texel word >> 16) burn?
 FW_SHARED_FN bool texelBurns(uint materialFlags, uint slowness, uint burnFlags) {
     return (materialFlags & kTexelReal) != 0u && slowness != 0u && (burnFlags & 1u) != 0u;
 }
@@ -59,15 +49,14 @@ FW_SHARED_FN bool flames(uint t, uint now, uint flameTicks) {
 }
 
 // Modulo 2^32: exact while the sum fits, and never undefined.
-FW_SHARED_FN uint squareSum(ivec3 a) {
+FW_SHARED_FN uint squaredLength(ivec3 a) {
     return uint(a.x) * uint(a.x) + uint(a.y) * uint(a.y) + uint(a.z) * uint(a.z);
 }
 FW_SHARED_FN int dotInt(ivec3 a, ivec3 b) {
     return int(uint(a.x) * uint(b.x) + uint(a.y) * uint(b.y) + uint(a.z) * uint(b.z));
 }
 
-// Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one on any
-// device; the integers repair it.
+// Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one; integers correct it.
 FW_SHARED_FN uint isqrtNear(uint n) {
 #ifdef __cplusplus
     uint r = uint(int(std::sqrt(float(n))));
@@ -93,7 +82,7 @@ FW_SHARED_FN uint mulShift(uint a, uint b, uint s) {
     umulExtended(a, b, high, low);
     return (high >> s) != 0u ? 0xFFFFFFFFu : ((high << (32u - s)) | (low >> s));
 }
-// (a * b) >> 32, to nearest.
+// (a * b) >> 32, rounded.
 FW_SHARED_FN uint mulHighRound(uint a, uint b) {
     uint high, low;
     umulExtended(a, b, high, low);
@@ -112,15 +101,14 @@ FW_SHARED_FN ivec3 decodePosition(uvec2 texel) {
     return ivec3(int(texel.x & 0xFFFFu), int(texel.x >> 16u), int(texel.y & 0xFFFFu));
 }
 
-// The spread law at one texel. normal: Q14; noise: Q7 slowness factor, not 0.
+// Spread law at one texel. normal: Q14; noise: Q7 slowness factor, not 0.
 FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
     FrontPrep p;
     ivec3 drive = ivec3(m.driveX, m.driveY, m.driveZ);
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
     uint s0 = mulShift(m.sigma0, noise, 7u);
     if (m.ceiling != 0u) {
-        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)),
-                            n12) >> 12);  // Q10
+        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)), n12) >> 12);  // Q10
         if (down > 0) {
             uint faster = 1024u + ((m.ceiling * uint(down < 1024 ? down : 1024)) >> 8u);
             s0 = mulShift(s0, divide(1u << 30u, faster), 20u);
@@ -130,10 +118,9 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     p.e = ivec3(0, 0, 0);
     if ((m.driveX | m.driveY | m.driveZ) == 0) return p;
     int along = dotInt(drive, n12) >> 12;
-    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14),
-                    drive.y - ((along * normal.y + 8192) >> 14),
+    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14), drive.y - ((along * normal.y + 8192) >> 14),
                     drive.z - ((along * normal.z + 8192) >> 14));
-    uint s = isqrtNear(squareSum(u));
+    uint s = isqrtNear(squaredLength(u));
     uint capped = s < m.driveMax ? s : m.driveMax;
     uint head = 1024u + ((m.headGain * capped) >> 8u);  // Q10
     uint back = 1024u + ((m.backGain * s) >> 8u);
@@ -158,27 +145,26 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
     return p;
 }
 
-// Travel time, 1/16 ticks, over a link in 1/8 units: its square, and its product with p.e.
+// Travel time, 1/16 ticks, over a link in 1/8 units. square, along: the link's square and its product with p.e.
 FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontPrep) p) {
     int y = int((isqrtNear(square) << 14u) - along);
     uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
     return int(t < uint(kFrontTimeMax) ? t : uint(kFrontTimeMax));
 }
-// link8: own position less the source's, 1/8 units.
+// link8: own position minus the source's, 1/8 units.
 FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
-    return travelTime(squareSum(link8), uint(dotInt(link8, p.e)), p);
+    return travelTime(squaredLength(link8), uint(dotInt(link8, p.e)), p);
 }
 
-// When fire leaves the point between two sources: a with weight w/64, b with the rest.
+// Start time of fire at the point between two sources: a with weight w/64, b with the rest.
 FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     int dr = ra - rb;
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
-// How travel time begins to change on the way from source a to source b, 1/16 ticks over the whole
-// way. Arrival is convex along it: does this not outweigh the delay of b, a alone is the best of the
-// two. l: length of a, 1/8 units.
-FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // whatever the delay
+// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way. Arrival is convex along
+// it: if the slope does not outweigh the delay of b, a alone is best. l: length of a, 1/8 units.
+FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
 FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
     if (l == 0u) return kPairFalls;
@@ -192,13 +178,12 @@ FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
     return y < 0 ? -change : change;
 }
 
-// Best over the segment between two sources: three weights, one parabola step, one more. The ends
-// cost ga and gb.
-FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
-                            FW_IN(FrontPrep) p) {
+// Best arrival over the segment between two sources: three weights, one parabola step, one more. The ends cost ga and
+// gb.
+FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
-    uint bb = squareSum(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squareSum(d) * 4u;
+    uint bb = squaredLength(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squaredLength(d) * 4u;
     uint be = uint(dotInt(b, p.e)) * 8u, de = uint(dotInt(d, p.e)) * 2u;
     int g1 = pairStart(ra, rb, 16) + travelTime(bb + bd + dd, be + de, p);
     int g2 = pairStart(ra, rb, 32) + travelTime(bb + bd * 2u + dd * 4u, be + de * 2u, p);
@@ -226,8 +211,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
         off = num < 0 ? -off : off;
         if (off != 0) {
             int weight = w + off;
-            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3),
-                                b.y * 8 + ((weight * d.y + 4) >> 3),
+            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3), b.y * 8 + ((weight * d.y + 4) >> 3),
                                 b.z * 8 + ((weight * d.z + 4) >> 3));
             int g = pairStart(ra, rb, weight) + linkCost(link8, p);
             best = g < best ? g : best;
@@ -236,11 +220,10 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b,
     return best;
 }
 
-// Which of the ring count: sources that burn by the window's end, diagonals not cut off by two
-// barriers. Bit k of `present`: the ring has a k-th texel. `wake` falls to a source to come. (What
-// this function and the next say of `wake` concerns receptive texels only.)
-FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
-                               FW_INOUT(uint) wake) {
+// Sources of the ring that count: burning by the window's end, and not diagonals cut off by two barriers. Bit k of
+// `present`: the ring has a k-th texel. `wake` is lowered to the tick of a coming source; it matters for receptive
+// texels only, here and in frontArrival.
+FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd, FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
@@ -251,13 +234,13 @@ FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowE
             walls |= 1u << uint(k);
         }
     }
-    walls &= present;  // a lost link must not cut a diagonal
+    walls &= present;  // a missing link must not cut a diagonal
     uint cut = (walls << 1u) & (walls >> 1u) & 0x2Au;
     if ((walls & 0x41u) == 0x41u) cut |= 0x80u;
     return counts & ~cut;
 }
 
-// One of eight: devices keep arrays that are indexed in memory, and seven selects are cheaper.
+// One of eight by selects: cheaper on devices that would index an array in memory.
 #ifdef __cplusplus
 inline int pick(const int (&of)[8], int k) { return of[k]; }
 inline ivec3 pickLink(const FrontRing& ring, int k) { return ring.link[k]; }
@@ -277,14 +260,13 @@ ivec3 pickLink(FrontRing ring, int k) {
 }
 #endif
 
-// Arrival tick from the counting sources, kNever if none is left. A source burnt out before it
-// could light this texel is dropped; `wake` then falls to the tick after which it can no longer
-// count again under another wind: until then its reader must stay on the list. `settles`: asks for
-// `news` too, the tick from which on another source of this ring would leave the answer as it is,
-// kNever: unknown. It wants the links of all eight.
+// Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it could light this
+// texel is dropped. `wake` is then lowered to the tick after which it cannot count again under another wind: until then
+// the texel's tile stays listed. settles: also computes `settledFrom`, the tick from which another source of this ring
+// would not change the result; kNever: unknown. It needs all eight links.
 FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
-                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) news) {
+                               bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
     int cost[8];
     uint base = kNever;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
@@ -310,7 +292,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int rel[8];
     int best = 0x7FFFFFFF;
     int bestK = 0;
-    int idle = 0x3FFFFFFF;  // the least cost of those that do not count
+    int idle = 0x3FFFFFFF;  // least cost of those that do not count
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         if ((counts & (1u << uint(k))) != 0u) {
             uint delay = ring.tick[k] - base;
@@ -332,7 +314,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     int a = hasA || settles ? (bestK + 7) & 7 : bestK;
     int relB = pick(rel, bestK), relC = pick(rel, c), relA = pick(rel, a);
     ivec3 linkB = pickLink(ring, bestK), linkC = pickLink(ring, c), linkA = pickLink(ring, a);
-    uint l = isqrtNear(squareSum(linkB) * 64u);
+    uint l = isqrtNear(squaredLength(linkB) * 64u);
     int changeC = hasC || settles ? pairChange(linkB, linkC, l, p) : 0;
     int changeA = hasA || settles ? pairChange(linkB, linkA, l, p) : 0;
     bool byC = hasC && changeC < relB - relC;
@@ -346,7 +328,7 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
         bound = !hasA && soonA > bound ? soonA : bound;
         int ticks = (bound + 15) >> 4;
         uint before = uint(ticks < 0 ? -ticks : 0);
-        news = ticks >= 0 ? base + uint(ticks) : base - (before < base ? before : base);
+        settledFrom = ticks >= 0 ? base + uint(ticks) : base - (before < base ? before : base);
     }
     if (byC) {
         int g = bestOfPair(relB, relC, hop, pick(cost, c), linkB, linkC, p);
@@ -356,19 +338,19 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
         int g = bestOfPair(relB, relA, hop, pick(cost, a), linkB, linkA, p);
         best = g < best ? g : best;
     }
-    // Hashed rounding: whole ticks would slow fast fires down or hurry them.
+    // Hashed rounding: whole ticks would bias fast fires.
     return base + (uint(best + int(hash32(texel) & 15u)) >> 4u);
 }
 
 FW_SHARED_FN uint frontFloor(uint now, uint window) { return now > window ? now - window : 0u; }
 
-// May this texel still change? Receptive, or a source young enough for a correction.
+// May this texel still change? It is receptive, or young enough for a correction.
 FW_SHARED_FN bool frontEligible(uint t, uint floorTick) {
     return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
 }
 
-// What becomes of state t with this candidate: the new tick, or t. `wake` falls to a pending
-// arrival; late: 1 if the candidate came too late and was moved to the floor.
+// State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending arrival. late: 1 if the
+// candidate came too late and was moved to the window's floor.
 FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floorTick,
                               FW_INOUT(uint) wake, FW_OUT(uint) late) {
     late = 0u;
@@ -386,8 +368,8 @@ FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floor
     return candidate;
 }
 
-// Iteration `k` of a step (2^stepShift iterations) for an object with `shift`: its window.
-// Objects with fewer substeps take part in every 2^(stepShift - shift)-th iteration.
+// Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in every 2^(stepShift -
+// shift)-th iteration.
 FW_SHARED_FN bool takesPart(uint k, uint stepShift, uint shift) {
     uint skip = stepShift - (shift < stepShift ? shift : stepShift);
     return (k & ((1u << skip) - 1u)) == 0u;
@@ -396,20 +378,19 @@ FW_SHARED_FN uint windowTicks(uint stepShift, uint shift) {
     return kStepTicks >> (shift < stepShift ? shift : stepShift);
 }
 
-// End of the window that iteration `k` runs for such an object, ticks.
+// End tick of the window of iteration k for an object with `shift`.
 FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift) {
     uint own = shift < stepShift ? shift : stepShift;
     return stepNow + ((k >> (stepShift - own)) + 1u) * (kStepTicks >> own);
 }
 
-// Must a latch of the drive at tick `now` touch this tile? What waits is on the list; a source that
-// may still be corrected is younger than the window, so its tile changed since. (Unsigned: a tile
-// never changed is far in the past.)
+// Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that may still be
+// corrected is younger than the window, so its tile changed since. Unsigned: kFarPast is far in the past.
 FW_SHARED_FN bool latchTouches(bool listed, uint lastChange, uint now, uint window) {
     return listed || now - lastChange <= window + kStepTicks;
 }
 
-// Which of the eight grid neighbours of a tile read a texel of this mask (lane = y * 8 + x).
+// Grid neighbours of a tile that depend on a texel of this mask (lane = y * 8 + x), one bit each.
 FW_SHARED_FN uint neighboursOf(uint maskLow, uint maskHigh) {
     uint all = maskLow | maskHigh;
     bool right = (all & 0x80808080u) != 0u;

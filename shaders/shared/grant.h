@@ -1,22 +1,20 @@
-// A limit of burning tiles: who of those that ask to burn may. Integers, the same everywhere; the
-// mechanism is in lib/lists.glsl and runtime/ARCHITECTURE.md.
-// GLSL too, and laid out by hand.
+// Burn budget: which of the tiles that request to burn may do so. Integers, equal on all devices. The mechanism is in
+// lib/lists.glsl and runtime/ARCHITECTURE.md.
 // clang-format off
-#ifndef FW_SHARED_GRANT_H
-#define FW_SHARED_GRANT_H
+#ifndef FW_SHARED_BURN_BUDGET_H
+#define FW_SHARED_BURN_BUDGET_H
 #include "shared/exchange.h"
 
 FW_SHARED_BEGIN
 
-// Beside kSwitchGoverned: how many tiles may burn is limited.
+// Set beside kSwitchGoverned: the number of burning tiles is limited.
 FW_SHARED_CONST uint kSwitchCapped = 0x20000u;
-// A pass lights nothing, it only asks. Of `grant`: the front's due tiles ask with it.
+// The pass only requests and lights nothing. In `grant`: the front's due tiles request through it.
 FW_SHARED_CONST uint kSwitchAsks = 0x40000u;
 
-// How many more tiles may burn.
+// Tiles that may still start to burn.
 FW_SHARED_FN uint roomFor(uint burning, uint most) { return most - leastOf(burning, most); }
-// In which order tiles get leave to burn where not all may: by chance, and by place where that is
-// equal, so that the order in which they asked is of no matter.
+// Allocation order: by hash, then by place, so the order of requests does not matter.
 FW_SHARED_FN uint askOrder(uint object, uint local, uint now) {
     return mixed(mixed(now, object), local);
 }

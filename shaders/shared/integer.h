@@ -1,5 +1,4 @@
-// Integer helpers of more than one kernel: a hash and an exact division. One text for C++ and GLSL.
-// GLSL too, and laid out by hand.
+// A hash and an exact division, for C++ and GLSL. GLSL too, and laid out by hand.
 // clang-format off
 #ifndef FW_SHARED_INTEGER_H
 #define FW_SHARED_INTEGER_H
@@ -15,8 +14,8 @@ FW_SHARED_FN uint hash32(uint x) {
     return x ^ (x >> 16u);
 }
 
-// n / d, exactly, d > 0. Devices without integer division (all software ones) are slow at it, so
-// floats guess from below and integers mend: a guess is short by 2 millionths of it and one, at most.
+// n / d, exact, d > 0. Software devices lack integer division: floats estimate from below (short by 2 millionths and
+// one, at most), integers correct.
 FW_SHARED_FN uint divide(uint n, uint d) {
 #ifdef __cplusplus
     return n / d;

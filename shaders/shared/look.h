@@ -1,6 +1,5 @@
-// What the passes that draw share: the record of a burning material's look, the view, one flame
-// quad. Lengths in m, times in look seconds (see BurnMaterial::timeScale), temperatures in K.
-// GLSL too, and laid out by hand.
+// Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths in m, times in
+// appearance seconds (see BurnMaterial::timeScale), temperatures in K.
 // clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H
@@ -8,7 +7,7 @@
 
 FW_SHARED_BEGIN
 
-// How the fresh material is drawn where no image is given.
+// Pattern of the unburnt material where no image is given.
 FW_SHARED_CONST uint kBasePlain = 0u;
 FW_SHARED_CONST uint kBaseWood = 1u;
 FW_SHARED_CONST uint kBasePaint = 2u;
@@ -21,17 +20,17 @@ FW_SHARED_CONST uint kBaseLeather = 8u;
 FW_SHARED_CONST uint kBasePlastic = 9u;
 FW_SHARED_CONST uint kBaseStone = 10u;
 
-// Variants of the surface pass: which materials it can draw, and whether they burn.
+// Variants of the surface pass: families of materials, and states.
 FW_SHARED_CONST uint kSurfaceWood = 1u;   // char blocks, grain
 FW_SHARED_CONST uint kSurfaceSheet = 2u;  // paper, cloth: sparks, wrinkles
 FW_SHARED_CONST uint kSurfacePlant = 4u;  // leaf, straw
 FW_SHARED_CONST uint kSurfaceHide = 8u;   // leather, plastic
-FW_SHARED_CONST uint kSurfaceBurns = 16u; // some event reached the object
+FW_SHARED_CONST uint kSurfaceBurns = 16u; // an event has reached the object
 FW_SHARED_CONST uint kSurfacePaint = 32u; // on wood: film, blisters
 FW_SHARED_CONST uint kSurfaceImage = 64u; // the object's image instead of a pattern
-FW_SHARED_CONST uint kSurfaceCold = 128u; // of what burns, only triangles far from all traces of it
+FW_SHARED_CONST uint kSurfaceCold = 128u; // only triangles far from all traces of fire
 
-// Layers of the look texture array: 512^2 RGBA8, tiling, with mips.
+// Layers of the appearance texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
 FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, BA slopes of cracks
 FW_SHARED_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
@@ -92,14 +91,14 @@ struct MaterialLook {        // zero switches a feature off
     float holeTiles;         // tiles per metre of the hole noise
     float holeFine;          // [0, 1] weight of crumbs
     float drip;              // stretch of the hole noise along y, 1: none
-    float blur;              // m, smallest noise footprint
+    float blur;              // m, least noise footprint
 
     vec4 wiltColor;          // w: m, width of the wilted band of living tissue
 
     uint base;               // kBase...
-    float baseScale;         // of the procedural pattern, 1
-    float flame;             // of flame height, 1 wood
-    float smoke;             // of smoke, 1 wood
+    float baseScale;         // scale of the procedural pattern, 1
+    float flame;             // flame height relative to wood
+    float smoke;             // smoke relative to wood
 };
 FW_SHARED_SIZE(MaterialLook, 224)
 
@@ -112,22 +111,22 @@ struct ViewParams {          // uniform block, one per view
     vec4 forward;            // unit; w: 1 perspective, 0 orthographic
     vec4 sunDirection;       // towards the sun; w: exposure
     vec4 sunColor;           // w: emission scale
-    vec4 ambientSky;         // w: s, cosmetic time, wrapped at 4096
-    vec4 ambientGround;      // w: ticks into the running tick, [0, 1)
+    vec4 ambientSky;         // w: s, cosmetic time, wraps at 4096
+    vec4 ambientGround;      // w: ticks since the current tick, [0, 1)
     vec4 up;                 // world up; w: pace factor of the world
-    vec4 wind;               // m/s; w: clip z over w of what is clipped away beyond the far plane
+    vec4 wind;               // m/s; w: clip z over w of geometry clipped beyond the far plane
     uint now;                // tick
-    uint lightCount;         // most lights
-    uint flameCapacity;      // most flame quads
+    uint lightCount;         // limit of lights
+    uint flameCapacity;      // limit of flame quads
     uint seed;
     vec4 viewport;           // px: x, y, width, height
-    vec4 quads;              // x: share that shows of flames and particles; y: how much wider that is;
-                             // z: share of its own fires that the last light shines for
+    vec4 quads;              // x: visible share of flames and particles; y: widening that compensates it; z: share
+                             // of its own fires that the last light represents
 };
 FW_SHARED_SIZE(ViewParams, 240)
 
-// Whether what has this number in [0, 1) shows, where a share of all does: 0 or 1, and between them
-// for a few, so that none comes or goes at once.
+// Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1, with a short fade so
+// that no item pops.
 FW_SHARED_FN float shareShows(float share, float own) {
     float shows = (share - own) * 12.0f + share;
     return shows < 0.0f ? 0.0f : shows > 1.0f ? 1.0f : shows;
@@ -136,19 +135,18 @@ FW_SHARED_FN float shareShows(float share, float own) {
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
 FW_SHARED_CONST float kWhiteLuminance = 40.0f;
 
-FW_SHARED_CONST uint kLookRows = 16u; // of the looks table
+FW_SHARED_CONST uint kLookRows = 16u; // of the appearance table
 
-// kSurfaceCold knows triangles by the marks of the tiles within `coldReach` texels of their corners:
-// no point is farther than 0.58 edges from one, or looked up beyond 1.5 texels. At most kColdReach.
+// kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their corners: no point is
+// farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most kColdReach.
 FW_SHARED_CONST float kColdReach = 12.0f;
 FW_SHARED_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
 
-// The strongest lights are the ones that light surfaces.
+// Only the strongest lights light surfaces.
 FW_SHARED_CONST uint kSurfaceLights = 16u;
 
-// Push constants of the surface pass: one object, one of its materials. Everything that is the same
-// for a whole draw comes this way or in uniform blocks, never through a storage buffer: software
-// devices gather those word by word and lane by lane.
+// Push constants of the surface pass: one object, one material. Per-draw constants never come from storage buffers:
+// software devices gather those word by word and lane by lane.
 struct SurfaceDraw {
     vec4 row0;               // object to world
     vec4 row1;
@@ -159,47 +157,46 @@ struct SurfaceDraw {
     float tintB;
     float timeScale;         // as BurnMaterial
     float thickness;         // m
-    float horizon;           // s that the prediction looks ahead
-    uint look;               // row of the looks table
+    float horizon;           // s that the prediction reaches ahead
+    uint look;               // row of the appearance table
     uint stateBase;          // as BurnObject
     uint size;               // texels: width, << 16: height
     uint flags;              // kObject..., kDrawVertexLight
-    uint places;             // with kDrawPlaced: of vertex slot 0 among the refined places
-    uint inner;              // from there to its place on the inner skin; 0: has none
+    uint places;             // with kDrawPlaced: first refined position
+    uint inner;              // offset to its position on the inner skin; 0: none
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
-    float filmMost;          // g/m^2 of water that stay on it; 0: no heat plane
+    float filmMost;          // g/m^2 of water that the surface holds; 0: no heat buffer
     float now;               // with kDrawPlaced: s on the clock of its holes
-    float nearness;          // with kDrawCut: 0 where cut and discarded rims must look the same, to 1;
-                             // of kSurfaceCold: texels, coldReach
+    float nearness;          // with kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
-// SurfaceDraw::flags, beyond kObject...: triangles are small, flames light their corners.
+// SurfaceDraw::flags beyond kObject...: triangles are small, flames light their corners.
 FW_SHARED_CONST uint kDrawVertexLight = 0x10000u;
-// Vertices lie where the refinement placed their slots.
+// Vertices come from the refinement's positions.
 FW_SHARED_CONST uint kDrawPlaced = 0x20000u;
-// Its heat plane says how hot it is and how deep its char.
+// Temperature and char depth come from its heat buffer.
 FW_SHARED_CONST uint kDrawHeat = 0x40000u;
-// Water or the heat of others reached it, some day.
+// Water or heat from other objects has reached it.
 FW_SHARED_CONST uint kDrawWet = 0x80000u;
 // It chars through from the surface.
 FW_SHARED_CONST uint kDrawThick = 0x100000u;
-// Holes are cut out of the triangles: vertices know how long each point still stands.
+// Holes are cut out of the triangles: vertices hold the time until each point burns through.
 FW_SHARED_CONST uint kDrawCut = 0x200000u;
-// Walls along open edges where nothing is cut: texels say how long each point still stands.
+// Walls along open edges without cut triangles: texels hold the time until each point burns through.
 FW_SHARED_CONST uint kDrawTold = 0x400000u;
-// Of placed vertices those on the inner skin.
+// Placed vertices on the inner skin.
 FW_SHARED_CONST uint kDrawInner = 0x800000u;
-// Share of a wall by which refined faces recede; what is left is char, and shows at rims.
+// Share of a wall by which refined faces recede; the rest is char, visible at rims.
 FW_SHARED_CONST float kRefineRecede = 0.6f;
 
 struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m
     vec4 axisWidth;          // unit, foot to tip; w: half width m
     float opacity;           // [0, 1]
-    float phase;             // s of scroll, already offset by its seed; of kQuadFire: its life, [0, 1];
-                             // of one with a book bookPlace's time
-    float kelvin;            // K of the hottest part; of kQuadSmoke: how lit by fire, [0, 1]
-    uint kind;               // kQuad... | seed << 2 | its book + 1 << 18, 0: it has none | kQuadEmits
+    float phase;             // s of scroll, offset by the seed; kQuadFire: its life, [0, 1]; with a flipbook:
+                             // bookPlace's time
+    float kelvin;            // K of the hottest part; kQuadSmoke: share lit by fire, [0, 1]
+    uint kind;               // kQuad... | seed << 2 | flipbook + 1 << 18 (0: none) | kQuadEmits
 };
 FW_SHARED_SIZE(FlameQuad, 48)
 
@@ -208,24 +205,23 @@ FW_SHARED_CONST uint kQuadSmoke = 1u;
 FW_SHARED_CONST uint kQuadFire = 2u;    // of a particle
 FW_SHARED_CONST uint kQuadSpark = 3u;
 FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
-FW_SHARED_CONST uint kQuadBook = 18u;
-FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // it hides nothing; of kQuadSpark it is understood
+FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
+FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 
-// Draw arguments of the flames, then the order they are drawn in, then as many words that the sort
-// works in. Quads are burning tiles', at most kFlameCapacity, then particles', then those that emit
-// alone: sparks, and fire of books that hide nothing. These are not sorted: they are laid between
-// those that hide, farthest first, and among each other as they come.
-FW_SHARED_CONST uint kFlameTiles = 4u;       // word: quads of tiles that were wished for
-FW_SHARED_CONST uint kFlameParticles = 5u;   // word: of particles, that hide
-FW_SHARED_CONST uint kFlameLights = 6u;      // word: of those that emit alone
-FW_SHARED_CONST uint kFlameLightDraw = 8u;   // words: draw arguments of those that emit alone, by their places
+// Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are first those of
+// burning tiles (at most kFlameCapacity), then of particles, then emissive ones: sparks, and flipbook fire that hides
+// nothing. Emissive quads are not sorted but placed between those that hide, farthest first.
+FW_SHARED_CONST uint kFlameTiles = 4u;       // word: requested quads of tiles
+FW_SHARED_CONST uint kFlameParticles = 5u;   // word: quads of particles that hide
+FW_SHARED_CONST uint kFlameLights = 6u;      // word: emissive quads
+FW_SHARED_CONST uint kFlameLightDraw = 8u;   // words: draw arguments of the emissive quads, in buffer order
 FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
-FW_SHARED_CONST uint kFlameCapacity = 4096u; // hard limit of tiles' quads drawn
+FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
 FW_SHARED_CONST uint kMostQuads = 65536u;    // of all
-FW_SHARED_CONST uint kMostFewQuads = 2048u;  // that the sort has room for in shared memory
+FW_SHARED_CONST uint kMostFewQuads = 2048u;  // capacity of the sort in shared memory
 
-// Specialization constant 3 of what draws quads. A target of half resolution has all but sparks, which are as thin as a
-// pixel; they follow at the picture's.
+// Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are as thin as a pixel
+// and are drawn at full resolution.
 FW_SHARED_CONST uint kPartAll = 0u;
 FW_SHARED_CONST uint kPartSoft = 1u;
 FW_SHARED_CONST uint kPartSparks = 2u;
@@ -234,15 +230,15 @@ struct SortPush {
     uint tiles;      // quads of tiles, at most
     uint particles;  // of particles, at most
     uint lights;     // of those that emit alone, at most
-    uint few;        // to sort, <= kMostFewQuads: beyond, another way is cheaper
+    uint few;        // to sort, <= kMostFewQuads: more use the radix sort
 };
 FW_SHARED_SIZE(SortPush, 16)
 
-// Hash grid of burning cells: kLightCellHeader words, then cells of kLightCellWords.
+// Hash grid of heat-release clusters: kLightCellHeader words, then cells of kLightCellWords.
 FW_SHARED_CONST uint kLightCells = 4096u;
 // Key, power / 16 W, 3 weighted offsets, area / 0.1 cm^2, side, 3 cell coordinates, level, unused.
 FW_SHARED_CONST uint kLightCellWords = 12u;
-FW_SHARED_CONST uint kLightCellHeader = 16u; // [0] quads wished for, in 1/16
+FW_SHARED_CONST uint kLightCellHeader = 16u; // [0]: requested quads, in 1/16
 
 FW_SHARED_END
 #endif

@@ -1,6 +1,5 @@
-// Adaptive refinement per lane, one text for C++ and GLSL: how levels move, where a vertex lies;
-// with refine_pattern.h and refine_cut.h all of it. It loads nothing: callers hand over table
-// words, ticks and positions. Cosmetic: floats, never simulated. GLSL too, and laid out by hand.
+// Adaptive refinement per lane, for C++ and GLSL: motion of levels and position of a vertex; with refine_pattern.h and
+// refine_cut.h. It accesses no buffer. Cosmetic floats.
 // clang-format off
 #ifndef FW_SHARED_REFINE_H
 #define FW_SHARED_REFINE_H
@@ -12,7 +11,7 @@ FW_SHARED_BEGIN
 
 // ---- levels
 
-// Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at 1 m.
+// Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at a distance of 1 m.
 FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels) {
     vec3 middle = (a + b) * 0.5f;
     float d = distance(middle, eye);
@@ -25,19 +24,17 @@ FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels
     return log2(segments > 1.0f ? segments : 1.0f);
 }
 
-// Notes the heat; sets the target. cool: s that a level outlives its heat.
-FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now,
-                            float cool) {
+// Updates the heat times and sets the target. cool: s that a level outlives its heat.
+FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now, float cool) {
     if ((heat & kRefineHot) != 0u) s.lastHot = now;
     if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
     bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
     s.target = kept ? (lod < depth ? lod : depth) : 0.0f;
 }
 
-// Who gives up a level last: what burns, then by number.
+// Order in which items lose levels: burning items last, then by number.
 FW_SHARED_FN float refineSpread(uint id, uint heat) {
-    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) +
-           0.45f * float(hash32(id) >> 8u) / 16777216.0f;
+    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * float(hash32(id) >> 8u) / 16777216.0f;
 }
 FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
     float less = bias - spread;
@@ -52,34 +49,32 @@ FW_SHARED_FN uint refineTop(float level) {
     int whole = int(l);
     return uint(float(whole) < l ? whole + 1 : whole);
 }
-// How far the points of the top level have come from between their parents.
+// Morph progress of the points of the top level from the middle of their parents.
 FW_SHARED_FN float refineAge(float level, uint top) {
     float f = level - float(top) + 1.0f;
     return f < 1.0f ? f : 1.0f;
 }
 
-// Towards `want`: upwards at once while all is flat, else by `rate` levels per s. grace: s of
+// Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per s. grace: s of
 // burning after which a surface is no longer flat.
-FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate,
-                             float grace) {
+FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate, float grace) {
     float step = rate * dt;
     bool flatStill = now - s.burningSince < grace;
     if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
     else s.level = s.level - step < want ? want : s.level - step;
 }
 
-// ---- places
+// ---- positions
 
 FW_SHARED_FN vec3 refineOffset(uint offset) {
     int x = int(offset << 21u) >> 21;
     int y = int(offset << 10u) >> 21;
     int z = int(offset) >> 22;
-    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f),
-                float(z) * (2.0f / 511.0f));
+    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f), float(z) * (2.0f / 511.0f));
 }
 
-// Arrival at a slot, s since `epoch`, from its four texels: over those lit by `now` (ticks) only.
-// Ticks may lie before the world began.
+// Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks). Ticks may lie
+// before the world began.
 FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
     float sum = 0.0f, weight = 0.0f;
     for (int k = 0; k < 4; ++k) {
@@ -90,7 +85,7 @@ FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uin
     }
     return weight > 0.0f ? sum / weight * (1.0f / 4096.0f) : kRefineNever;
 }
-// Weights of the texels around a place between them.
+// Bilinear weights of the texels around a place between them.
 FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
     uint fx = (opposite >> 24u) & 15u, fy = opposite >> 28u;
     uint a = (16u - fx) * (16u - fy), b = fx * (16u - fy), c = (16u - fx) * fy, d = fx * fy;
@@ -98,8 +93,7 @@ FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
     return a | (b << 8u) | (c << 16u) | (d << 24u);
 }
 
-// When a wall is burnt through: `through` s after it is lit from one side; from both, when the two
-// fronts meet.
+// When a wall burns through: `through` s after it is lit from one side; from both, when the fronts meet.
 FW_SHARED_FN float refineHole(float a, float b, float through) {
     float one = a < b ? a : b;
     if (one >= kRefineNever) return kRefineNever;
@@ -111,8 +105,7 @@ FW_SHARED_FN float refineHole(float a, float b, float through) {
     return alone < both ? alone : both;
 }
 
-// burnSeconds: of a wall of full thickness; negative: its char stays, it never opens. recede: share
-// of the slot's reach, below 1.
+// burnSeconds: of a wall of full thickness; negative: it never opens. recede: share of the slot's reach, [0, 1).
 FW_SHARED_FN vec4 refineEvaluate(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
                                  float burnSeconds, float recede) {
     vec3 rest = vec3(s.x, s.y, s.z);
@@ -126,13 +119,13 @@ FW_SHARED_FN vec4 refineEvaluate(FW_IN(RefineSlot) s, float arrival, float oppos
     vec3 p = rest + refineOffset(s.offset) * depth;
     return vec4(p.x, p.y, p.z, hole);
 }
-// The inner skin: the slot at its full reach.
+// Position on the inner skin: the slot at its full reach.
 FW_SHARED_FN vec3 refineInnerSkin(FW_IN(RefineSlot) s) {
     float depth = float(s.reach & 0xFFFFu) * 1e-5f;
     return vec3(s.x, s.y, s.z) + refineOffset(s.offset) * depth;
 }
 
-// ---- morph: a point of the top level starts between its parents
+// ---- morph: a point of the top level starts in the middle of its parents
 
 FW_SHARED_FN vec3 refineMorph(vec3 own, vec3 a, vec3 b, float age) {
     float k = age * age * (3.0f - 2.0f * age);
@@ -145,7 +138,7 @@ struct RefineParents {
 };
 // Is a lattice point of the top level only?
 FW_SHARED_FN bool refineIsNew(uint c1, uint c2) { return ((c1 | c2) & 1u) != 0u; }
-// They lie along the direction of its two odd coordinates.
+// Parents lie along the direction of the point's two odd coordinates.
 FW_SHARED_FN RefineParents refineParents(uint c1, uint c2) {
     RefineParents p;
     uint d1 = c1 & 1u, d2 = c2 & 1u;
@@ -161,12 +154,12 @@ FW_SHARED_FN RefineParents refineParents(uint c1, uint c2) {
     return p;
 }
 
-struct RefineSpot {  // a place on a side of a triangle's lattice
+struct RefineSpot {  // a position on a side of a triangle's lattice
     uint side;       // 3: inside
-    uint i;          // segment of the edge, from the low end
-    float f;         // place in it
+    uint i;          // edge segment, from the low end
+    float f;         // position in the segment
 };
-// Where lattice point (c1, c2) of 2^m steps lies on the polyline of the edges.
+// Position of lattice point (c1, c2) of 2^m steps on the polyline of the edges.
 FW_SHARED_FN RefineSpot refineSpot(FW_IN(RefineTriangle) t, uint levels, uint c1, uint c2) {
     RefineSpot spot;
     uint n = 1u << refineInterior(levels);

@@ -1,5 +1,5 @@
-// Holes and open borders of refined triangles: what is kept of a small triangle, the walls along
-// its rim and along the mesh's open edges, and the inner skin. GLSL too, and laid out by hand.
+// Holes and open borders of refined triangles: the kept part of a small triangle, walls along its rim and along open
+// edges, and the inner skin.
 // clang-format off
 #ifndef FW_SHARED_REFINE_CUT_H
 #define FW_SHARED_REFINE_CUT_H
@@ -7,16 +7,15 @@
 
 FW_SHARED_BEGIN
 
-// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon in front of
-// the line between.
+// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon on the solid side.
 
 // s to the hole.
 FW_SHARED_FN float refineField(float hole, float now) {
     float f = hole - now;
     return f < kRefineUnlit ? f : kRefineUnlit;
 }
-// Share of the way from the low slot (fa) to the high one (fb), one of them gone: a function of the
-// small edge, the same for all who cut it, and never on a vertex.
+// Cut position between the low slot (fa) and the high one (fb), one of them burnt through: a function of the small
+// edge, equal for both triangles, and never on a vertex.
 FW_SHARED_FN float refineCutAt(float fa, float fb) {
     float t = fa / (fa - fb);
     t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
@@ -27,10 +26,10 @@ FW_SHARED_FN vec3 refineCutPoint(vec3 low, vec3 high, float fa, float fb) {
     return p;
 }
 
-struct RefineCut {   // a small triangle's kept polygon
+struct RefineCut {   // kept polygon of a small triangle
     uint points;     // 0, 3 or 4
-    uint corner[4];  // k: corner k; 4 + k: cut of the side from k
-    uint rim;        // polygon side that runs along the hole; 4: none
+    uint corner[4];  // k: corner k; 4 + k: cut point of the side from k
+    uint rim;        // polygon side along the hole; 4: none
     uint open;       // bit per polygon side: on an open edge of the mesh
 };
 // solid, open: bit per corner, bit per side.
@@ -61,14 +60,14 @@ FW_SHARED_FN uint refineCutWalls(FW_IN(RefineCut) cut) {
     uint o = cut.open;
     return (cut.rim < 4u ? 1u : 0u) + (o & 1u) + ((o >> 1u) & 1u) + ((o >> 2u) & 1u) + (o >> 3u);
 }
-// Triangles: outer skin, inner skin, two for every wall.
+// Triangles: outer skin, inner skin, two per wall.
 FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
     if (cut.points == 0u) return 0u;
     uint fan = cut.points - 2u;
     return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
 }
-// What is drawn of a small triangle beside the list of indices; the k-th is refineCutTriangle's of
-// refineCutDrawn. A whole one is in that list, and has walls only; sheets have no inner skin.
+// Triangles drawn in addition to the index list; the k-th is refineCutTriangle(refineCutDrawn(k)). A whole triangle is
+// in the index list and only adds walls; sheets have no inner skin.
 FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut, bool inner, bool whole) {
     if (cut.points == 0u) return 0u;
     uint fan = cut.points - 2u;
@@ -79,17 +78,17 @@ FW_SHARED_FN uint refineCutDrawn(FW_IN(RefineCut) cut, uint k, bool inner, bool 
     if (whole) return k + 2u * fan;
     return inner || k < fan ? k : k + fan;
 }
-// Room for cut triangles before those of a material whose first triangle of `triangles` is `first`.
+// Capacity for cut triangles before a material whose first triangle of `triangles` is `first`.
 FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
     return room * (first < triangles ? first : triangles) / triangles;
 }
 FW_SHARED_CONST uint kRefineCutMost = 1u << 14u;  // cut triangles of an object
-// Last word of a cut vertex, a float: s to the hole, 0 at it; of walls instead:
+// Last word of a cut vertex, a float: s to the hole, 0 at the hole; for walls one of:
 FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
 FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
 FW_SHARED_CONST float kRefineBorder = -3.0f;   // along an open edge, at the outer skin
 FW_SHARED_CONST float kRefineBorderDeep = -4.0f;
-// Polygon side that the k-th triangle, of a wall, stands on.
+// Polygon side on which the k-th triangle's wall stands.
 FW_SHARED_FN uint refineCutWallSide(FW_IN(RefineCut) cut, uint k) {
     uint wanted = (k - 2u * (cut.points - 2u)) >> 1u;
     uint x = 0u;
@@ -104,7 +103,7 @@ FW_SHARED_FN uint refineCutWallSide(FW_IN(RefineCut) cut, uint k) {
     }
     return x;
 }
-// Polygon points of its k-th triangle; + 4: on the inner skin.
+// Polygon points of the k-th triangle; + 4: on the inner skin.
 FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
     uint fan = cut.points - 2u;
     if (k < fan) return uvec3(0u, k + 1u, k + 2u);

@@ -1,5 +1,5 @@
-// Patterns of refined triangles: which triangle is the k-th of a pattern, and which vertex stands
-// at its corners, whatever the levels around it. GLSL too, and laid out by hand.
+// Patterns of refined triangles: the k-th triangle of a pattern, and the vertices at its corners, for any levels around
+// it.
 // clang-format off
 #ifndef FW_SHARED_REFINE_PATTERN_H
 #define FW_SHARED_REFINE_PATTERN_H
@@ -7,8 +7,8 @@
 
 FW_SHARED_BEGIN
 
-// ---- patterns. A code is a pattern's vertex: 0x8000 | side << 8 | i, i in 0..2^l from the side's
-// first corner; or c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
+// ---- patterns. A vertex code: 0x8000 | side << 8 | i, i in 0..2^l from the side's first corner; or
+// c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
 
 FW_SHARED_CONST uint kRefineOnSide = 0x8000u;
 FW_SHARED_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
@@ -26,20 +26,20 @@ FW_SHARED_FN uint refineInnerStart(uint m) {
 
 // Token j of a strip: bit 0 set: (edge i, row j + 1, row j), else (edge i, edge i + 1, row j).
 FW_CONSTANT_FN uint refineStripToken(uint row, uint i, uint j) { return row | (i << 1u) | (j << 7u); }
-// Token of the lattice: bit 10: the triangle that points down.
+// Token of the lattice: bit 10: the triangle points down.
 FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) { return a | (b << 5u) | (down << 10u); }
-// Token for m < 2: three vertices of three bits, 0..2 corners, 3..5 middles of the sides.
+// Token for m < 2: three vertices of three bits; 0..2 corners, 3..5 middles of the sides.
 FW_SHARED_FN uint refineHandCode(uint v) {
     return v < 3u ? refineOnSide(v, 0u) : refineOnSide(v - 3u, 1u);
 }
 
-// j-th point of the lattice's row beside side e, in the direction of the side.
+// j-th point of the lattice row beside side e, in the side's direction.
 FW_SHARED_FN uint refineRowPoint(uint e, uint j, uint n) {
     uint near = n - 1u - j;  // c[e]; c[e + 1] = j, c[e + 2] = 1
     return e == 0u ? refineInside(j, 1u) : e == 1u ? refineInside(near, j) : refineInside(1u, near);
 }
 
-struct RefinePlace {  // where to look the k-th triangle up
+struct RefinePlace {  // table position of the k-th triangle
     uint entry;       // of the table
     uint part;        // 0..2: strip of that side; 3: lattice; 4: m < 2
     uint k;           // number in that part
@@ -49,8 +49,7 @@ FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
     RefinePlace place;
     uint m = refineInterior(levels);
     if (m < 2u) {
-        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) |
-                    (refineSide(levels, 2u) << 2u);
+        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) | (refineSide(levels, 2u) << 2u);
         place.entry = kRefineHand + mask * 4u + k;
         place.part = 4u;
         place.k = k;
@@ -81,7 +80,7 @@ FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
     return place;
 }
 
-// The triangle's codes, counter-clockwise. token: table[place.entry].
+// Codes of the triangle, counter-clockwise. token: table[place.entry].
 FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token) {
     if (place.part == 4u)
         return uvec3(refineHandCode(token & 7u), refineHandCode((token >> 3u) & 7u),
@@ -90,18 +89,16 @@ FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token
         uint a = token & 31u;
         uint b = (token >> 5u) & 31u;
         if ((token & 1024u) != 0u)
-            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u),
-                         refineInside(a + 1u, b + 2u));
-        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u),
-                     refineInside(a + 1u, b + 2u));
+            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u), refineInside(a + 1u, b + 2u));
+        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u), refineInside(a + 1u, b + 2u));
     }
     uint e = place.part, f = refineNext(e), p = refineBefore(e);
     uint m = refineInterior(levels), n = 1u << m;
     uint l = refineSide(levels, e), steps = 1u << l;
     uint i = (token >> 1u) & 63u, j = token >> 7u;
     uint row = refineRowPoint(e, j, n);
-    // Corners take the other diagonal where both sides have the lattice's level: with l = m all
-    // around the result is the regular lattice, and levels nest.
+    // Corners use the other diagonal where both sides have the lattice's level: with l = m everywhere the result is the
+    // regular lattice, and levels nest.
     if (place.k == 0u && l == m && refineSide(levels, p) == m)
         return uvec3(refineOnSide(e, 1u), row, refineOnSide(p, (1u << refineSide(levels, p)) - 1u));
     if (place.k == steps + n - 4u && l == m && refineSide(levels, f) == m)
@@ -123,7 +120,7 @@ FW_SHARED_FN uvec3 refineWeights(uint levels, uint code) {
     return uvec3(32u - c1 - c2, c1, c2);
 }
 
-// Sides of the coarse triangle that a code lies on, one bit each.
+// Sides of the coarse triangle that contain a code, one bit each.
 FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
     if ((code & kRefineOnSide) == 0u) return 0u;
     uint e = refineCodeSide(code), i = refineCodeStep(code);
@@ -133,7 +130,7 @@ FW_SHARED_FN uint refineSidesOf(uint levels, uint code) {
     return bits;
 }
 
-// ---- identity: a vertex keeps its number through all levels
+// ---- identity: a vertex keeps its number on all levels
 
 // Inner point i (1 .. 2^l - 1, from the low end) of an edge, counted from the edge's first.
 FW_SHARED_FN uint refineEdgePoint(uint i, uint l, uint depth) { return (i << (depth - l)) - 1u; }

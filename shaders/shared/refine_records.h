@@ -1,51 +1,44 @@
-// Records of adaptive refinement, and the levels of a triangle packed in one word: what the other
-// refine headers are about. A coarse triangle has a level per edge (0..5: 2^l segments) and one of
-// its interior (m). Edge levels are shared by all owners, so no crack can open; the interior is a
-// lattice of 2^m steps, and a strip joins each edge to it. m < 2: no lattice, a small table.
-// GLSL too, and laid out by hand.
+// Records of adaptive refinement, and the packed levels of a triangle. A coarse triangle has a level per edge (0..5:
+// 2^l segments) and one for its interior (m). Edge levels are shared by all owners, so no crack can open. The interior
+// is a lattice of 2^m steps; a strip joins each edge to it. m < 2: a small table instead.
 // clang-format off
 #ifndef FW_SHARED_REFINE_RECORDS_H
 #define FW_SHARED_REFINE_RECORDS_H
 #include "shared/front.h"
 
 #ifdef __cplusplus
-#define FW_PRECISE
 #define FW_CONSTANT_FN constexpr
 #else
-#define FW_PRECISE precise
 #define FW_CONSTANT_FN
 #endif
 
 FW_SHARED_BEGIN
 
-#ifdef __cplusplus
-using std::log2;
-#endif
 
 FW_SHARED_CONST uint kRefineDepth = 5u;
 // The table of u16 tokens: strips by (m, edge level), lattices by m, then eight rows of four for m < 2.
 FW_SHARED_CONST uint kRefineInner = 540u;
 FW_SHARED_CONST uint kRefineHand = 1576u;
 FW_SHARED_CONST uint kRefineTableSize = 1608u;
-FW_SHARED_CONST float kRefineNever = 1e30f;   // s: not lit, or no hole to come
-FW_SHARED_CONST float kRefineUnlit = 1000.0f; // s to the hole of a vertex that has none
-FW_SHARED_CONST uint kRefineInside = 0x80000000u;  // in RefineCorner::high: of the inner skin
+FW_SHARED_CONST float kRefineNever = 1e30f;   // s: not lit, or no hole
+FW_SHARED_CONST float kRefineUnlit = 1000.0f; // s to the hole of a vertex without one
+FW_SHARED_CONST uint kRefineInside = 0x80000000u;  // in RefineCorner::high: on the inner skin
 FW_SHARED_CONST uint kRefineOpposed = 0xFFFFFFFFu; // RefineSlot::opposite: none
 // Heat of a tile, an edge or an interior.
 FW_SHARED_CONST uint kRefineHot = 1u;      // the front is near, or it burns
 FW_SHARED_CONST uint kRefineBurning = 2u;  // something of it burns
-// What its vertices say when they are placed.
+// Results of placing its vertices.
 FW_SHARED_CONST uint kRefineGone = 4u;     // some are burnt through; kept
 FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
-FW_SHARED_CONST uint kRefineGoing = 16u;   // some of these are lit
-FW_SHARED_CONST uint kRefineLost = 32u;    // of an interior: all of the triangle is burnt through; kept
+FW_SHARED_CONST uint kRefineGoing = 16u;   // some of the others are lit
+FW_SHARED_CONST uint kRefineLost = 32u;    // interior: the whole triangle is burnt through; kept
 
-struct RefineTriangle {  // a coarse triangle; corners and sides counter-clockwise, side e = e, e + 1
+struct RefineTriangle {  // coarse triangle; corners and sides counter-clockwise, side e from e to e + 1
     uint edge[3];
     uint flags;          // bit e: side e runs from the edge's high end; 4 bits each from 4, 8, 12:
                          // deepest level of the sides; from 16: of the interior
     uint corner[3];      // draw vertices
-    uint slot;           // first of the interior; its draw vertices have the same numbers
+    uint slot;           // first of the interior; draw vertices use the same numbers
     uint side[3];        // draw vertex of the first point of each side's edge, low end first
     uint source;         // triangle of the burn domain
 };
@@ -65,40 +58,40 @@ struct RefineSlot {      // a vertex at rest
     uint reach;          // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
     uint texel;          // 24 bits: lower left of four; 8 bits: material
     uint weights;        // 4 x 8 bits: of texel, + 1, + width, + width + 1
-    uint opposite;       // 24 bits: lower left texel of the wall behind; 4 + 4 bits: place between
+    uint opposite;       // 24 bits: lower left texel of the opposite wall; 4 + 4 bits: place between
 };                       // texels, 1/16; or kRefineOpposed
 FW_SHARED_SIZE(RefineSlot, 32)
 
-struct RefineVertex {    // a vertex now
+struct RefineVertex {    // a vertex in this frame
     float x, y, z;       // m, object space
-    float hole;          // s since the object's epoch: burnt through; kRefineNever: not known;
-                         // on the inner skin: when the wall behind was lit, see refineNow
+    float hole;          // s since the object's epoch: burnt through; kRefineNever: unknown. On the inner skin:
+                         // when the opposite wall was lit, see evaluateSlotNow
 };
 FW_SHARED_SIZE(RefineVertex, 16)
 
-struct RefineDraw {      // what an index names: a slot seen from one chart
+struct RefineDraw {      // what an index names: a slot in one chart
     uint slot;
-    uint triangle;       // of the burn domain; all attributes are mixed from its corners
+    uint triangle;       // of the burn domain; attributes are interpolated from its corners
     float weight1;       // of corner 1; corner 0 has the rest
     float weight2;
 };
 FW_SHARED_SIZE(RefineDraw, 16)
 
 struct RefineLevel {     // of an edge or an interior; s since the object's epoch
-    float level;         // 2^ceil segments; the fraction is how far the newest points have come
+    float level;         // 2^ceil segments; the fraction is the morph progress of the newest points
     float target;        // before the budget
     float lastHot;
     float burningSince;
 };
 FW_SHARED_SIZE(RefineLevel, 16)
 
-struct RefineCorner {    // of a triangle of the cut shell
+struct RefineCorner {    // corner of the cut shell
     uint low;            // slot
     uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
 };
 
-// An object in the frame's passes, rewritten in each frame that refines it: see isDue. Bases are in records of
-// the planes; mesh...: what objects share.
+// An object in the frame's passes, rewritten in each frame that refines it (see isDue). Bases are record indices of the
+// buffers; mesh...: shared by objects.
 struct RefineObject {
     uint items;          // edges, then interiors
     uint triangles;
@@ -107,13 +100,13 @@ struct RefineObject {
     uint meshTriangles;
     uint meshEdges;
     uint meshSlots;
-    uint meshWords;      // per tile and one: where its items start; then the items
+    uint meshWords;      // per tile + 1: start of its items; then the items
     uint edgeCount;
     uint triangleCount;  // sorted by material
     uint cornerCount;
     uint textureWidth;   // texels
     uint stateBase;      // as BurnObject
-    uint epochTick;      // s count from here
+    uint epochTick;      // origin of its clock
     uint flags;          // kRefineIs...
     uint ordinal;        // in the frame's list of objects
     uint meshDraws;      // first draw vertex
@@ -126,54 +119,53 @@ struct RefineObject {
     uvec4 materialEnd0;  // per material: its last triangle + 1
     uvec4 materialEnd1;
     uint cuts;           // first of its cut vertices
-    uint cutTriangles;   // room for; shared out to materials by their triangles
-    float dt;            // s since it was last refined
-    uint inner;          // from a vertex to its place on the inner skin; 0: a sheet, it has none
+    uint cutTriangles;   // capacity; divided among materials by their triangles
+    float dt;            // s since its last refinement
+    uint inner;          // offset to a vertex on the inner skin; 0: a sheet, none
     uint reserved1; uint reserved2; uint reserved3; uint reserved4;
 };
 FW_SHARED_SIZE(RefineObject, 192)
 FW_SHARED_CONST uint kRefineIsActive = 1u;
-FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing of it is initialised yet
+FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing is initialised yet
 FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
-FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all its triangles are emitted again
-FW_SHARED_CONST uint kRefineIsTold = 32u;  // of what is cut: coarser than its size asks for, so that corners
-                                           // do not know its holes, and texels say where they are
-FW_SHARED_CONST uint kRefineIsCounted = 16u;  // shares the budget, whether it is its turn or not
+FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all triangles are emitted again
+FW_SHARED_CONST uint kRefineIsTold = 32u;  // cut, but coarser than its size requires: corners miss holes, and
+                                           // per-pixel holes are used
+FW_SHARED_CONST uint kRefineIsCounted = 16u;  // counts against the budget in every frame
 
-// A word of the heat plane: what the lists of tiles say for the next frame; the same for this one; and
-// whether this frame places the item anew.
+// A word of the heat buffer: heat from the tile lists for the next frame, then for this one, and whether this frame
+// places the item again.
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
-// The work plane: five indirect dispatches, the bias, then lists of two words (object slot, number).
+// Work buffer: five indirect dispatches, the bias, then lists of two words (object slot, number).
 FW_SHARED_CONST uint kRefineWorkEmit = 0u;    // x, y, z, jobs: 64 output triangles each
 FW_SHARED_CONST uint kRefineWorkPlace = 4u;   // x, y, z, jobs: interiors, two a group
 FW_SHARED_CONST uint kRefineWorkCut = 8u;     // x, y, z, jobs: a triangle with a hole each
 FW_SHARED_CONST uint kRefineWorkEdges = 12u;  // x, y, z, jobs: edges that move, 64 a group
-FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: those with points on their way
-FW_SHARED_CONST uint kRefineWorkBias = 20u;   // the least, in steps, with which all fits the budget
+FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: items with morphing points
+FW_SHARED_CONST uint kRefineWorkBias = 20u;   // least bias, in steps, that fits the budget
 FW_SHARED_CONST uint kRefineWorkLists = 24u;
-// After an object's triangles in the plane of levels: what each bias comes to, two a record, as of its
-// last turn.
+// Behind an object's triangles in the level buffer: triangle sum for each bias, two per record, from its last turn.
 FW_SHARED_CONST uint kRefineSums = 8u;
 
 struct RefinePush {
     uint phase;
     uint nowTick;
-    uint budget;      // triangles; 0: all fit
+    uint budget;      // triangles; 0: no limit
     uint row;         // heat: counters row of the list
-    uint parity;      // heat: of the list; + 2: it is the burn list; kRefineFreshHeat
-    uint full;        // 1: everything at its deepest and moving, for comparison
+    uint parity;      // heat: of the list; + 2: burn list; kRefineFreshHeat
+    uint full;        // 1: everything at its deepest level and moving, for comparison
     uint reserved;
-    float recede;     // share of a slot's reach, below 1
-    uint edgeGroups;  // 64 edges each; lists follow each other in this order
+    float recede;     // share of a slot's reach, [0, 1)
+    uint edgeGroups;  // 64 edges each; lists follow in this order
     uint triangleGroups;
     uint cornerGroups;
-    uint objects;     // (object slot, triangles that it emits; 0: none)
+    uint objects;     // (object slot, emitted triangles; 0: none)
     uint emitJobs;    // first words of the lists that the device writes
-    uint placeJobs;   // half way to cutJobs: of the morph
+    uint placeJobs;   // morph jobs start half way to cutJobs
     uint objectEnd;   // object slots with a record
-    uint cutJobs;     // as far behind it: edges
+    uint cutJobs;     // edge jobs start as far behind it
 };
 FW_SHARED_SIZE(RefinePush, 64)
 FW_SHARED_CONST uint kRefineFreshHeat = 4u;  // RefinePush::parity
@@ -194,7 +186,7 @@ FW_SHARED_FN bool refineFlipped(uint flags, uint e) { return ((flags >> e) & 1u)
 FW_SHARED_FN uint refineNext(uint e) { return e == 2u ? 0u : e + 1u; }
 FW_SHARED_FN uint refineBefore(uint e) { return e == 0u ? 2u : e - 1u; }
 
-// The interior level nearest to m from above that these sides can be joined to.
+// Least interior level >= m that these sides can be joined to.
 FW_SHARED_FN uint refineFit(uint l0, uint l1, uint l2, uint m) {
     uint most = l0 > l1 ? l0 : l1;
     most = most > l2 ? most : l2;

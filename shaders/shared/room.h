@@ -1,7 +1,5 @@
-// The air of rooms: what fires take of its oxygen, what comes in from outside, how strongly fire
-// burns in what is left, and when a room flashes over. Integers only, one text for C++ and GLSL;
-// it loads nothing. Not what a texel makes of it (heat.h).
-// GLSL too, and laid out by hand.
+// Air of rooms: oxygen that fires consume, ventilation, burning strength, and flashover. Integers only, for C++ and
+// GLSL; no buffer access. A texel's response is in heat.h.
 // clang-format off
 #ifndef FW_SHARED_ROOM_H
 #define FW_SHARED_ROOM_H
@@ -12,38 +10,37 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST uint kMaxRooms = 64u;
 // Oxygen by volume, 2^-32 of the air.
 FW_SHARED_CONST uint kAirOutside = 899795648u;  // 20.95 %
-FW_SHARED_CONST uint kAirLeast = 515396076u;    // 12 %: nothing burns in less
-FW_SHARED_CONST uint kAirStep = 503316u;        // from there on it burns stronger by 1/256 with each: 3 % to full
-FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;  // of their steps, which come before heat's
+FW_SHARED_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
+FW_SHARED_CONST uint kAirStep = 503316u;        // burning strength grows by 1/256 per step; 3 % to full
+FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;  // of room steps, which precede heat steps
 
-struct Room {     // as the host has it
-    uint takes;   // of the oxygen, by a J of fire, Q20
-    uint mixes;   // part of what it lacks that comes from outside in a period, Q32
-    uint starts;  // oxygen that it begins with
-    uint epoch;   // which beginning that is; 0: there is no such room
-    uint flashes; // J of fire in a period, as a mean, at which it flashes over; 0: it never does
-    uint power;   // RoomAir::power and flash that it begins with
+struct Room {     // as the host defines it
+    uint takes;   // oxygen consumed per J of fire, Q20
+    uint mixes;   // share of the oxygen deficit that flows in per period, Q32
+    uint starts;  // oxygen at its start
+    uint epoch;   // counts its restarts; 0: no room
+    uint flashes; // J per period, mean, at which it flashes over; 0: never
+    uint power;   // RoomAir::power and flash at its start
     uint flash;
     uint reserved;
 };
 FW_SHARED_SIZE(Room, 32)
 
-struct RoomAir {  // and what has become of it
+struct RoomAir {  // state
     uint oxygen;
-    uint epoch;   // as its room's, once it has begun
+    uint epoch;   // as Room::epoch once it has started
     uint drawn;   // J of fire in the last period
-    uint stirs;   // 1: something of it changed in that
-    uint power;   // kRoomMeans - 1 times the mean of what was drawn, over about so many periods
-    uint flash;   // how often it has flashed over, times 2; odd: it burns so now
-    uint flashTick; // when it last did
+    uint stirs;   // 1: it changed in the last period
+    uint power;   // kRoomMeans - 1 times the mean heat, over about that many periods
+    uint flash;   // twice the number of flashovers; odd: flashed over now
+    uint flashTick; // of the last flashover
     uint reserved;
 };
 FW_SHARED_SIZE(RoomAir, 32)
 FW_SHARED_CONST uint kRoomMeans = 8u;
-FW_SHARED_CONST uint kFlashMost = (1u << 28u) - 1u;  // J in a period: the mean's bits hold as much
+FW_SHARED_CONST uint kFlashMost = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
 
-// Whole J that an object's fire gave off since the last time, when it stood at `drawn`; what is left
-// over waits there. Both in 2^-20 J.
+// Whole J that an object's fire released since `drawn`; the remainder waits there. Both in 2^-20 J.
 FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_INOUT(uint) drawnHigh) {
     uint restLow = low - drawnLow;
     uint restHigh = high - drawnHigh - (low < drawnLow ? 1u : 0u);
@@ -54,9 +51,8 @@ FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_I
     return joules;
 }
 
-// A period's part in the mean, which ends at nothing; and whether that is a flashover: told again
-// only once it has been half as much.
-FW_SHARED_FN void roomFlashes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+// Updates the mean and the flashover state. A flashover is reported again only after the mean fell to half.
+FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     air.power += (joules < kFlashMost ? joules : kFlashMost);
     air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);
     bool over = (air.flash & 1u) != 0u;
@@ -69,7 +65,7 @@ FW_SHARED_FN void roomFlashes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joul
 
 // One period of a room, up to `now`, in which fires gave off so many J.
 FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
-    if (air.epoch != room.epoch) {  // it begins
+    if (air.epoch != room.epoch) {  // it starts
         air.oxygen = room.starts;
         air.power = room.power;
         air.flash = room.flash;
@@ -86,14 +82,14 @@ FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint jou
     comes = comes < off ? comes : off;
     air.oxygen = less ? air.oxygen + comes : air.oxygen - comes;
     air.drawn = joules;
-    roomFlashes(air, room, joules, now);
+    updateFlashover(air, room, joules, now);
     air.stirs = joules != 0u || air.oxygen != before || air.power != power ? 1u : 0u;
 }
 
-// How strongly fire burns in it, Q8.
+// Burning strength, Q8.
 FW_SHARED_FN uint roomStrength(uint oxygen) {
-    if (oxygen <= kAirLeast) return 0u;
-    uint strength = divide(oxygen - kAirLeast, kAirStep);
+    if (oxygen <= minKAir) return 0u;
+    uint strength = divide(oxygen - minKAir, kAirStep);
     return strength < kAirFull ? strength : kAirFull;
 }
 

@@ -1,6 +1,5 @@
-// Sparks and embers of fire emitters: each is a function of the clock, of its number and of what
-// its source says of a frame. Nothing is kept of one, so any moment may be shown without those
-// before it. Looks alone. SI units, kelvin. GLSL too, and laid out by hand.
+// Sparks and embers of fire emitters. Each is a function of the clock, its number and its source's record. Nothing is
+// stored per spark, so any moment can be shown without those before it. Cosmetic. SI units, kelvin.
 // clang-format off
 #ifndef FW_SHARED_SPARK_H
 #define FW_SHARED_SPARK_H
@@ -8,37 +7,37 @@
 
 FW_SHARED_BEGIN
 
-// A slot throws one spark after another, each in a turn of its own length: none lives longer.
+// A slot emits one spark after another, each within a cycle of this length.
 FW_SHARED_CONST float kSparkTurn = 2.5f;     // s
-FW_SHARED_CONST uint kSparkKeys = 12u;       // of a source's way: a turn, and the running step
+FW_SHARED_CONST uint kSparkKeys = 12u;       // of a source's path: one cycle, and the running step
 FW_SHARED_CONST float kSparkKeyStep = 0.25f; // s
 FW_SHARED_CONST uint kMostSparks = 2048u;    // slots of a source
 FW_SHARED_CONST uint kTileSparks = 8u;       // slots of a burning tile
 FW_SHARED_CONST uint kMostTileSparks = 1024u; // quads of all burning tiles of a source
-FW_SHARED_CONST uint kSparkGroups = 4u;      // of 64 threads, for each source
-FW_SHARED_CONST uint kSparkLegs = 3u;        // a flight, and two bounces
-FW_SHARED_CONST uint kSparkLooks = 8u;       // places of a leg where it is asked for what it meets
-FW_SHARED_CONST uint kSparkHalvings = 8u;    // and halvings of where it does
-FW_SHARED_CONST float kSparkShutter = 0.02f; // s that a streak shows
-FW_SHARED_CONST float kSparkClear = 0.005f;  // m: nothing comes nearer to what it bounces off
-FW_SHARED_CONST float kSparkBehind = 6.0f;    // m that one may be in a wall between two looks
-FW_SHARED_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume carries one up
+FW_SHARED_CONST uint kSparkGroups = 4u;      // of 64 threads, per source
+FW_SHARED_CONST uint kSparkLegs = 3u;        // a flight and two bounces
+FW_SHARED_CONST uint kSparkLooks = 8u;       // collision samples per leg
+FW_SHARED_CONST uint kSparkHalvings = 8u;    // bisections of a hit
+FW_SHARED_CONST float kSparkShutter = 0.02f; // s of motion shown as a streak
+FW_SHARED_CONST float kSparkClear = 0.005f;  // m: least distance to surfaces
+FW_SHARED_CONST float kSparkBehind = 6.0f;    // m that a spark may be inside a wall between two samples
+FW_SHARED_CONST float kSparkPlume = 1.7f;    // in drag times: how long the plume lifts a spark
 
 // SparkSource::flags
 FW_SHARED_CONST uint kSparkGround = 1u;
 FW_SHARED_CONST uint kSparkWall = 2u;
 
 struct SparkSource {  // one frame of an emitter
-    vec4 keys[12];    // m, world: where it was, now first, then at the clock's steps; w: sparks a second
-                      // there and then; of burning tiles, for each kW of them
+    vec4 keys[12];    // m, world: past positions, now first, then at the clock's steps; w: sparks a second at that
+                      // time; of burning tiles, per kW
     vec4 direction;   // unit; w: rad, sigma of its cone
     vec4 half_;       // m: from the middle of its line to an end; w: m/s
     vec4 up;          // unit; w: m along up, the ground
-    vec4 wind;        // m/s; w: m/s up, of its plume
-    vec4 wall;        // m, world: a disc that stops them, and its radius
-    vec4 wallNormal;  // unit; w: share of its own motion that sparks get
+    vec4 wind;        // m/s; w: m/s up in its plume
+    vec4 wall;        // m, world: a disc that stops sparks, and its radius
+    vec4 wallNormal;  // unit; w: share of its motion that sparks inherit
     float radius;     // m, of its disc
-    float part;       // of the running turn, [0, 1)
+    float part;       // of the running cycle, [0, 1)
     float keyAge;     // s since keys[1]
     float kelvin;     // of a spark at birth
     uint turn;
@@ -46,27 +45,27 @@ struct SparkSource {  // one frame of an emitter
     uint slots;
     uint flags;
     uint book;        // + 1; 0: none
-    uint object;      // slot + 1 of the burning mesh whose tiles throw them; 0: it does itself
+    uint object;      // slot + 1 of the burning mesh whose tiles emit sparks; 0: the source itself
     uint reserved0; uint reserved1;
-    vec4 grid;        // m: x and z where its cells begin, side of one; w: 1: there are any
-    vec4 cells[64];   // m: heights of the host's field about it, at the corners of each cell, rows
-                      // along x: two at its z, and two at the next
+    vec4 grid;        // m: x and z where its cells begin, side of one; w: 1: has cells
+    vec4 cells[64];   // m: heights of the host's field at the corners of each cell, rows along x: two at its z, two
+                      // at the next
 };
 FW_SHARED_SIZE(SparkSource, 1376)
-FW_SHARED_CONST uint kSparkSourceQuads = 86u;  // its size in words of four, and
-FW_SHARED_CONST uint kSparkCellQuad = 22u;     // where among them its cells begin
+FW_SHARED_CONST uint kSparkSourceQuads = 86u;  // size of SparkSource in quads
+FW_SHARED_CONST uint kSparkCellQuad = 22u;     // quad where its cells begin
 FW_SHARED_CONST uint kSparkCells = 8u;         // of a row
 FW_SHARED_CONST float kSparkCellSide = 1.0f;   // m
 
 struct SparkPush {
-    uint quads;      // that may be shown; they emit alone (kFlameLights)
-    uint firstQuad;  // of them
+    uint quads;      // visible, at most; all emissive (kFlameLights)
+    uint firstQuad;  // first of them
     uint burnRow;    // as ParticlePush
     uint reserved;
 };
 FW_SHARED_SIZE(SparkPush, 16)
 
-struct SparkSlot {  // what a slot shows now
+struct SparkSlot {  // current spark of a slot
     uint seed;
     float age;      // s
 };
@@ -78,23 +77,23 @@ FW_SHARED_FN SparkSlot sparkSlot(uint seed, uint slot, uint turn, float part) {
     s.seed = particleBits(own + (turn + (x >= 1.0f ? 1u : 0u)) * 2654435761u);
     return s;
 }
-// How surely there is one, > 0: there is. Slots 0, 1, 2 ... are there until so many are as the rate is
-// worth, and the last with the chance of what is left: the mean is the rate, exactly.
+// Chance that a slot has a spark now, > 0: it has. The first slots always have one, up to the rate's integral part; the
+// next has the remaining probability: the mean is exactly the rate.
 FW_SHARED_FN float sparkChance(float rate, uint slot, uint seed) {
     return rate * kSparkTurn - float(slot) - particleHash(seed + 1u);
 }
-// Between which keys it was `age` s ago: whole part and how far on.
+// Position in the keys `age` s ago: integral part and fraction.
 FW_SHARED_FN float sparkKey(float keyAge, float age) {
     return min(age < keyAge ? age / max(keyAge, 1e-4f) : 1.0f + (age - keyAge) / kSparkKeyStep,
                float(kSparkKeys) - 1.001f);
 }
 
-struct SparkKind {  // of one, by its seed alone
+struct SparkKind {  // follows from the seed alone
     float life;     // s
     float width;    // m
     float tau;      // s of drag
-    float fall;     // m/s^2 down; < 0: it is carried up
-    float ember;    // 1: a glowing flake, slow and long
+    float fall;     // m/s^2 down; < 0: rises
+    float ember;    // 1: a glowing flake, slow and long-lived
 };
 FW_SHARED_FN SparkKind sparkKind(uint seed) {
     SparkKind s;
@@ -107,29 +106,27 @@ FW_SHARED_FN SparkKind sparkKind(uint seed) {
     return s;
 }
 
-struct SparkLeg {  // of its flight, from one thing that it meets to the next
+struct SparkLeg {  // flight from one collision to the next
     vec3 from;     // m
     vec3 speed;    // m/s
-    vec3 settled;  // m/s: as fast as it would fall and drift in the end
+    vec3 settled;  // m/s: terminal velocity
     float plume;   // m/s up that the plume still gives
     float began;   // s of its age
     float ends;
 };
-// `t` s into the leg. Drag is linear, the plume dies down: both are exponentials.
+// Position `t` s into the leg. Drag is linear and the plume decays: both are exponentials.
 FW_SHARED_FN vec3 sparkArc(SparkLeg leg, vec3 up, float tau, float t) {
     float slow = tau * kSparkPlume;
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
-    return leg.from + leg.settled * t +
-           (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
+    return leg.from + leg.settled * t + (leg.speed - leg.settled - carried) * (tau * (1.0f - exp(-t / tau))) +
            carried * (slow * (1.0f - exp(-t / slow)));
 }
 FW_SHARED_FN vec3 sparkArcSpeed(SparkLeg leg, vec3 up, float tau, float t) {
     vec3 carried = up * (leg.plume / (1.0f - 1.0f / kSparkPlume));
-    return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) +
-           carried * exp(-t / (tau * kSparkPlume));
+    return leg.settled + (leg.speed - leg.settled - carried) * exp(-t / tau) + carried * exp(-t / (tau * kSparkPlume));
 }
 
-// What stops sparks of a source.
+// Collision geometry of a source.
 struct SparkBounds {
     vec4 ground;  // unit normal, m along it
     vec4 wall;    // m, middle of the disc, and its radius; 0: none
@@ -144,9 +141,9 @@ struct SparkBounds {
 #ifdef __cplusplus
 FW_SHARED_FN vec4 sparkCell(SparkBounds b, uint i) { return b.cells ? b.cells[i] : vec4(0.0f); }
 #else
-vec4 sparkCell(SparkBounds b, uint i);  // whoever includes this has them
+vec4 sparkCell(SparkBounds b, uint i);  // defined by the includer
 #endif
-// Of the ground nearest to it, plane or field: unit normal; w: m that it is above it.
+// Nearest ground, plane or height field: unit normal; w: m above it.
 FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
     float above = dot(p, vec3(b.ground.x, b.ground.y, b.ground.z)) - b.ground.w;
     float side = max(b.grid.z, 1e-3f), most = float(kSparkCells) - 1e-3f;
@@ -157,21 +154,19 @@ FW_SHARED_FN vec4 sparkGround(SparkBounds b, vec3 p) {
     float here = mix(cell.x, cell.y, x), next = mix(cell.z, cell.w, x);
     vec3 n = normalize(vec3(mix(cell.x - cell.y, cell.z - cell.w, z), side, here - next));
     float over = (p.y - mix(here, next, z)) * n.y;
-    return b.grid.w > 0.5f && over < above
-               ? vec4(n, over)
-               : vec4(b.ground.x, b.ground.y, b.ground.z, above);
+    return b.grid.w > 0.5f && over < above ? vec4(n, over) : vec4(b.ground.x, b.ground.y, b.ground.z, above);
 }
 FW_SHARED_FN float sparkBefore(SparkBounds b, vec3 p) {
     vec3 d = p - vec3(b.wall.x, b.wall.y, b.wall.z);
     float before = dot(d, b.normal);
     vec3 aside = d - b.normal * before;
-    // What is far behind it came by another way.
+    // Far behind the disc: it took another path.
     return dot(aside, aside) < b.wall.w * b.wall.w && before > -kSparkBehind ? before : 1e9f;
 }
 FW_SHARED_FN float sparkClearance(SparkBounds b, vec3 p) { return min(sparkGround(b, p).w, sparkBefore(b, p)); }
 
-// s into the leg until it meets something; `most`: nothing until then. Looked for at the same places
-// whatever moment is shown, so that a bounce stays where it is; at first, while it is fast, often.
+// s into the leg until a collision; `most`: none. Sampled at the same places for any moment shown, so a bounce stays in
+// place; densely at first, while it is fast.
 FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, float most) {
     float low = most, high = most;
     bool met = false;
@@ -193,7 +188,7 @@ FW_SHARED_FN float sparkMeets(SparkLeg leg, SparkBounds b, vec3 up, float tau, f
     return met ? min(low, most * 0.9999f) : most;
 }
 
-// The leg that it flies at `age`. One that met something for the last time lies still.
+// Leg of the flight at `age`. After its last collision a spark lies still.
 FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec3 up, float age) {
     SparkLeg leg = born;
     leg.ends = kind.life;
@@ -220,7 +215,7 @@ FW_SHARED_FN SparkLeg sparkLeg(SparkKind kind, SparkLeg born, SparkBounds b, vec
     return leg;
 }
 
-// m: where it is at `age`, which its leg holds. Eddies shake it, but into nothing.
+// Position at `age`, m, within its leg. Eddies shake it without pushing it into surfaces.
 FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 up, uint seed, float age) {
     float t = clamp(age, leg.began, leg.ends) - leg.began;
     vec3 p = sparkArc(leg, up, kind.tau, t);
@@ -230,12 +225,12 @@ FW_SHARED_FN vec3 sparkPlace(SparkLeg leg, SparkKind kind, SparkBounds b, vec3 u
     vec3 across = particleAcross(up), aside = cross(across, up);
     p += (across * sin(turns * age + first) + aside * cos(0.83f * turns * age + second) +
           up * (0.6f * sin(1.31f * turns * age + second))) * shaken;
-    // What the look at few places, and halving, left.
+    // Removes the error of sampling and bisection.
     vec4 ground = sparkGround(b, p);
     return p + vec3(ground.x, ground.y, ground.z) * max(kSparkClear - ground.w, 0.0f);
 }
 
-// As it is born at `at`, of what moves as fast as `carried`.
+// Leg at birth, at `at`, from a source that moves at `carried`.
 FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 at, vec3 way, vec3 carried) {
     vec3 up = vec3(s.up.x, s.up.y, s.up.z), wind = vec3(s.wind.x, s.wind.y, s.wind.z);
     vec3 r = particleAcross(way), u = cross(r, way);
@@ -251,14 +246,14 @@ FW_SHARED_FN SparkLeg sparkBorn(SparkSource s, SparkKind kind, uint seed, vec3 a
     leg.ends = kind.life;
     return leg;
 }
-// m: where on the source, off its middle.
+// Offset on the source from its middle, m.
 FW_SHARED_FN vec3 sparkOff(vec3 way, float radius, vec3 half_, uint seed) {
     vec3 r = particleAcross(way), u = cross(r, way);
     float disc = radius * sqrt(particleHash(seed + 15u)), turn = 6.2831853f * particleHash(seed + 16u);
     return (r * cos(turn) + u * sin(turn)) * disc + half_ * (2.0f * particleHash(seed + 17u) - 1.0f);
 }
 
-// K, and how much of it shows, at `a` of its life.
+// K, and opacity, at `a` of its life.
 FW_SHARED_FN float sparkKelvin(float kelvin, SparkKind kind, uint seed, float a) {
     float gust = sin(19.0f * a * kind.life + 6.2831853f * particleHash(seed + 18u));
     return mix(kelvin - 650.0f * a, kelvin - 330.0f - 480.0f * a + 60.0f * gust, kind.ember);

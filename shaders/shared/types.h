@@ -1,21 +1,40 @@
-// One language for shared headers: GLSL 4.50, and C++ through GLM. Structs use vec4, uvec4, uint,
-// int and float only, in multiples of 16 bytes; their sizes are asserted in C++.
+// Common ground of shared headers: GLSL 4.50, and C++ through GLM. Structs use vec4, uvec4, uint, int and float only,
+// in multiples of 16 bytes; C++ asserts their sizes.
 #ifndef FW_SHARED_TYPES_H
 #define FW_SHARED_TYPES_H
 #ifdef __cplusplus
+#include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
 namespace fw::gpu {
 using uint = std::uint32_t;
+using glm::clamp;
+using glm::cross;
+using glm::dot;
 using glm::ivec2;
 using glm::ivec3;
 using glm::ivec4;
+using glm::length;
+using glm::max;
+using glm::min;
+using glm::mix;
+using glm::normalize;
+using glm::smoothstep;
 using glm::uvec2;
 using glm::uvec3;
 using glm::uvec4;
 using glm::vec2;
 using glm::vec3;
 using glm::vec4;
+using std::abs;
+using std::cos;
+using std::exp;
+using std::exp2;
+using std::floor;
+using std::log2;
+using std::pow;
+using std::sin;
+using std::sqrt;
 inline void umulExtended(uint a, uint b, uint& high, uint& low) {
     const std::uint64_t product = std::uint64_t(a) * b;
     high = uint(product >> 32);
@@ -26,7 +45,10 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 #define FW_SHARED_END }
 #define FW_SHARED_FN inline
 #define FW_SHARED_CONST constexpr
+#define FW_IN(T) const T&
 #define FW_OUT(T) T&
+#define FW_INOUT(T) T&
+#define FW_PRECISE
 #define FW_UNROLL
 #define FW_SHARED_SIZE(T, bytes) static_assert(sizeof(T) == (bytes));
 #else
@@ -34,8 +56,11 @@ inline void umulExtended(uint a, uint b, uint& high, uint& low) {
 #define FW_SHARED_END
 #define FW_SHARED_FN
 #define FW_SHARED_CONST const
+#define FW_IN(T) T
 #define FW_OUT(T) out T
-// Of loops over small arrays: these become registers only if every index is a constant.
+#define FW_INOUT(T) inout T
+#define FW_PRECISE precise
+// For loops over small arrays: these become registers only if every index is constant.
 #extension GL_EXT_control_flow_attributes : require
 #define FW_UNROLL [[unroll]]
 #define FW_SHARED_SIZE(T, bytes)

@@ -1,7 +1,5 @@
-// Volumetric flames: records, coordinates along a curve, noise, and what a point in a flame emits
-// and absorbs. The march's loop and the profile's fetch are the caller's: between flameLookup and
-// flameMedium it reads the profile. Lengths m, times s, temperatures K.
-// GLSL too, and laid out by hand.
+// Volumetric flames: records, coordinates along a curve, noise, emission and absorption at a point. The includer runs
+// the march and samples the profile between flameLookup and flameMedium. Lengths m, times s, temperatures K.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_H
 #define FW_SHARED_VOLUME_H
@@ -10,89 +8,71 @@
 #include <bit>
 #endif
 
-#ifdef __cplusplus
-#define FW_INOUT(T) T&
-#else
-#define FW_INOUT(T) inout T
-#endif
 
 FW_SHARED_BEGIN
 #ifdef __cplusplus
-using glm::clamp;
-using glm::cross;
-using glm::dot;
-using glm::length;
-using glm::min;
-using glm::mix;
-using glm::smoothstep;
 using glm::unpackUnorm4x8;
-using std::abs;
-using std::exp;
-using std::floor;
-using std::pow;
-using std::sin;
-using std::sqrt;
 inline float intBitsToFloat(int x) { return std::bit_cast<float>(x); }
 #endif
 
-FW_SHARED_CONST uint kFlameNodes = 24u;          // of a curve
-FW_SHARED_CONST uint kFlameOctaves = 4u;         // most of a flame
+FW_SHARED_CONST uint kFlameNodes = 24u;          // per curve
+FW_SHARED_CONST uint kFlameOctaves = 4u;         // per flame, at most
 FW_SHARED_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
-FW_SHARED_CONST uint kProfileHeight = 128u;      // over y in [0, 1]
+FW_SHARED_CONST uint kProfileHeight = 128u;      // texels over y in [0, 1]
 FW_SHARED_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
 FW_SHARED_CONST float kFlameReach = 1.2f;        // |p| over the tube's radius beyond which nothing burns
 FW_SHARED_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
-FW_SHARED_CONST float kFlameWrap = 4096.0f;      // cells after which noise repeats along a flame
-FW_SHARED_CONST float kFlameMeanAbs = 0.177f;    // E|flameNoise|: what makes ridged noise unbiased
+FW_SHARED_CONST float kFlameWrap = 4096.0f;      // noise cells after which noise repeats along a flame
+FW_SHARED_CONST float kFlameMeanAbs = 0.177f;    // E|flameNoise|, which removes the bias of ridged noise
 FW_SHARED_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
 
-struct FlameNode {        // of a curve, evenly spaced along it
+struct FlameNode {        // point of a curve, evenly spaced
     vec4 centre;          // xyz m, world; w: m, radius of the tube
     vec4 along;           // xyz unit: normal of the bisector plane; w: m from the base
-    vec4 side;            // xyz unit, of the rotation-minimising frame; w: >= 1, how much a wall widens the tube
-    vec4 squeeze;         // xyz: unit, which way a wall flattens it; w: [0, 0.9] how much
+    vec4 side;            // xyz unit, of the rotation-minimising frame; w: >= 1, widening of the tube by a wall
+    vec4 squeeze;         // xyz: unit, flattening direction of a wall; w: [0, 0.9] strength
 };
 FW_SHARED_SIZE(FlameNode, 64)
 
-struct FlameRecord {      // one flame of a frame
-    vec4 low;             // xyz m, world: bounds of all that it shows; w: m, diameter
-    vec4 high;            // w: m, height of the profile: what is seen is higher, see heightFactor
-    vec4 scroll;          // cells that each octave has risen, [0, kFlameWrap)
-    vec4 place;           // xyz: cells, where in the noise it lies; w: [0, 1) phase of the puffing
+struct FlameRecord {      // one flame in one frame
+    vec4 low;             // xyz m, world: bounds of all its visible parts; w: m, diameter
+    vec4 high;            // w: m, height of the profile; the visible flame is higher, see heightFactor
+    vec4 scroll;          // noise cells that each octave has risen, [0, kFlameWrap)
+    vec4 place;           // xyz: noise cells, offset in the noise; w: [0, 1) phase of the puffing
     vec4 tint;            // rgb linear; w: weight, 0 is black body
-    vec4 glow;            // xyz m, world: where smoke is lit from; w: strength, radiance m^2
+    vec4 glow;            // xyz m, world: point that lights the smoke; w: strength, radiance m^2
 
-    vec4 air;             // rgb: light from all sides that smoke scatters; w: [0, 1] density, fades flames
+    vec4 air;             // rgb: ambient light that smoke scatters; w: [0, 1] density, fades flames
 
     float warpScroll; float columnScroll; float smokeScroll; // cells, as scroll
     float speed;          // m/s, of gas at half height
 
-    float tauStart;       // m, of the speed's virtual origin below the base
-    float tauFree;        // m, from here the speed no longer grows
+    float tauStart;       // m, distance of the speed's virtual origin below the base
+    float tauFree;        // m, height from which the speed is constant
     float lambda;         // m, wavelength of turbulence
     float lambdaWarp;     // m, of rolling eddies
 
-    float lambdaColumn;   // m, of the slow field that makes tongues unequal
-    float stretch;        // 1 isotropic; more: silky
+    float lambdaColumn;   // m, wavelength of the slow field that varies the height of tongues
+    float stretch;        // 1 isotropic; more: stretched along the flame
     float turbulence;     // amplitude of the height's displacement
     float radial;         // amplitude of the radius' displacement
 
-    float warp;           // amplitude of eddies, of the diameter
+    float warp;           // amplitude of eddies, in diameters
     float columns;        // amplitude of columns
     float ridge;          // 0 signed noise, 1 ridged
-    float converge;       // how far tongues lean inward
+    float converge;       // lean of tongues towards the axis
 
-    float puff;           // amplitude of a travelling bulge; 0 where the curve's radii carry it
-    float soot;           // 1/m, absorption where the profile says 1
-    float blue;           // radiance per diameter, of gas without soot
+    float puff;           // amplitude of a travelling bulge; 0 if the curve's radii contain it
+    float soot;           // 1/m, absorption where the profile is 1
+    float blue;           // radiance per diameter, of soot-free gas
     float blueHeight;     // of y
 
     float erode;          // thinning with height
-    float filament;       // [0, 1] how much of the soot lies in sheets
+    float filament;       // [0, 1] share of the soot in sheets
     float filamentWidth; float filamentBase;
 
-    float filamentHeight; // y at which sheets are whole
-    float tipFill;        // one-sided fill of sheets at the top
+    float filamentHeight; // y at which sheets are complete
+    float tipFill;        // one-sided filling of sheets at the top
     float smoke;          // 1/m
     float smokeTop;       // y at which smoke ends
 
@@ -100,29 +80,29 @@ struct FlameRecord {      // one flame of a frame
     uint tintCore;        // rgb of the hottest under a tint: roots of linear, 8 bits each
     float tintLow; float tintHigh; // K
 
-    uint key;             // of the flame, from frame to frame
+    uint key;             // of the flame, constant over frames
     uint tier;            // FwFireTier
     uint profile;         // layer
     uint octaves;         // [1, 4]
 };
 FW_SHARED_SIZE(FlameRecord, 256)
 
-struct FlamePlace {       // of a point, in a curve's own coordinates
+struct FlamePlace {       // a point in a curve's coordinates
     vec2 p;               // m off the axis, along side and cross(along, side)
     float s;              // m along
     float radius;         // m of the tube there
 };
 
-struct FlameLookup {      // where in the profile to look, and what is done to the answer
+struct FlameLookup {      // where to sample the profile, and how to use the sample
     float rho; float y;
     float erode; float sheet; float guard;
-    float lit;            // 0: nothing here, do not fetch
+    float lit;            // 0: nothing here, do not sample
 };
 
 struct FlameMedium {
     float soot;           // 1/m
     float smoke;          // 1/m
-    float smokeShade;     // [0, 1] crest of its billows
+    float smokeShade;     // [0, 1], 1 on the crests of its billows
     vec3 emission;        // radiance per m
 };
 
@@ -131,7 +111,7 @@ struct FlameRay {
     vec3 through;         // transmittance
 };
 
-// 2^x within 1e-4 for x in [-60, 60], clamped there: devices' own is four times as long.
+// 2^x within 1e-4, x clamped to [-60, 60]: four times faster than devices' own.
 FW_SHARED_FN float flameExp2(float x) {
     float whole = floor(clamp(x, -60.0f, 60.0f));
     float f = clamp(x, -60.0f, 60.0f) - whole;
@@ -141,28 +121,39 @@ FW_SHARED_FN float flameExp2(float x) {
 
 // ---- noise: gradient noise, mean 0, rms 0.220, |n| < 1; repeats along y after kFlameWrap cells
 
-// One multiplication a corner: noise is most of what a flame costs.
+// One multiplication per corner: noise dominates the cost of a flame.
 FW_SHARED_FN uint flameCorner(uint h) {
     h = (h ^ (h >> 15)) * 0x2C1B3C6Du;
     return h ^ (h >> 13);
 }
 
-// What a corner adds at f from it; its gradient is uniform in a cube of half side 2^31.
+// Contribution of a corner at distance f. Its gradient is uniform in a cube of half side 2^31.
 FW_SHARED_FN float flameCornerDot(uint key, vec3 f) {
     uint h = flameCorner(key);
     return float(int(h)) * f.x + float(int(h << 11)) * f.y + float(int(h << 21)) * f.z;
 }
 
-FW_SHARED_FN float flameNoise(vec3 x) {
+struct FlameLattice {     // cell of a noise position: offsets from both corners, weights, hashes of corners
+    vec3 f; vec3 g; vec3 u;
+    uint i; uint i1; uint j; uint j1; uint k; uint k1;
+};
+FW_SHARED_FN FlameLattice flameLattice(vec3 x) {
+    FlameLattice l;
     vec3 cell = floor(x);
-    vec3 f = x - cell;
-    vec3 g = f - vec3(1.0f);
-    vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
-    uint i = uint(int(cell.x)) * 0x9E3779B1u; uint i1 = i + 0x9E3779B1u;
-    int yy = int(cell.y);
-    uint j = uint(yy & 4095) * 0x85EBCA77u; uint j1 = uint((yy + 1) & 4095) * 0x85EBCA77u;
-    uint k = uint(int(cell.z)) * 0xC2B2AE3Du; uint k1 = k + 0xC2B2AE3Du;
-    uint ij = i ^ j; uint i1j = i1 ^ j; uint ij1 = i ^ j1; uint i1j1 = i1 ^ j1;
+    l.f = x - cell;
+    l.g = l.f - vec3(1.0f);
+    l.u = l.f * l.f * l.f * (l.f * (l.f * 6.0f - vec3(15.0f)) + vec3(10.0f));
+    int y = int(cell.y);
+    l.i = uint(int(cell.x)) * 0x9E3779B1u; l.i1 = l.i + 0x9E3779B1u;
+    l.j = uint(y & 4095) * 0x85EBCA77u; l.j1 = uint((y + 1) & 4095) * 0x85EBCA77u;
+    l.k = uint(int(cell.z)) * 0xC2B2AE3Du; l.k1 = l.k + 0xC2B2AE3Du;
+    return l;
+}
+FW_SHARED_FN float flameNoise(vec3 x) {
+    FlameLattice l = flameLattice(x);
+    vec3 f = l.f, g = l.g, u = l.u;
+    uint k = l.k, k1 = l.k1;
+    uint ij = l.i ^ l.j; uint i1j = l.i1 ^ l.j; uint ij1 = l.i ^ l.j1; uint i1j1 = l.i1 ^ l.j1;
     float a = flameCornerDot(ij ^ k, f);
     float b = flameCornerDot(i1j ^ k, vec3(g.x, f.y, f.z));
     float c = flameCornerDot(ij1 ^ k, vec3(f.x, g.y, f.z));
@@ -180,8 +171,8 @@ FW_SHARED_FN vec3 flameCornerSlope(uint h) {
     return vec3(float(int(h)), float(int(h << 11)), float(int(h << 21)));
 }
 
-// Slopes of two noises on one lattice, grown by 2^31 / 1.15: what each corner adds. `w`: its weight,
-// `dw`: the weight's slope.
+// Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its weight, dw: slope of the
+// weight.
 FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
     uint h = flameCorner(key);
     vec3 g = flameCornerSlope(h);
@@ -192,17 +183,12 @@ FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(v
 
 // Slopes of two noises at once, per cell.
 FW_SHARED_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
-    vec3 cell = floor(x);
-    vec3 f = x - cell;
-    vec3 g = f - vec3(1.0f);
-    vec3 u = f * f * f * (f * (f * 6.0f - vec3(15.0f)) + vec3(10.0f));
+    FlameLattice l = flameLattice(x);
+    vec3 f = l.f, g = l.g, u = l.u;
     vec3 v = vec3(1.0f) - u;
     vec3 d = 30.0f * f * f * (f * (f - vec3(2.0f)) + vec3(1.0f));
-    uint i = uint(int(cell.x)) * 0x9E3779B1u; uint i1 = i + 0x9E3779B1u;
-    int yy = int(cell.y);
-    uint j = uint(yy & 4095) * 0x85EBCA77u; uint j1 = uint((yy + 1) & 4095) * 0x85EBCA77u;
-    uint k = uint(int(cell.z)) * 0xC2B2AE3Du; uint k1 = k + 0xC2B2AE3Du;
-    // Products of two weights, by the axis that is left out.
+    uint i = l.i, i1 = l.i1, j = l.j, j1 = l.j1, k = l.k, k1 = l.k1;
+    // Products of two weights, named by the remaining axis.
     vec4 byX = vec4(v.y * v.z, u.y * v.z, v.y * u.z, u.y * u.z);
     vec4 byY = vec4(v.x * v.z, u.x * v.z, v.x * u.z, u.x * u.z);
     vec4 byZ = vec4(v.x * v.y, u.x * v.y, v.x * u.y, u.x * u.y);
@@ -220,7 +206,7 @@ FW_SHARED_FN void flameSlopes(vec3 x, FW_INOUT(vec3) first, FW_INOUT(vec3) secon
     second = (1.15f / 2147483648.0f) * b;
 }
 
-// Eddies: divergence-free, and limited so that none throws fire far from the flame.
+// Divergence-free eddies, limited so that none carries fire far from the flame.
 FW_SHARED_FN vec3 flameCurl(vec3 x) {
     vec3 a; vec3 b;
     flameSlopes(x, a, b);
@@ -230,8 +216,8 @@ FW_SHARED_FN vec3 flameCurl(vec3 x) {
 
 // ---- rise
 
-// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A pattern that
-// is a function of tau - t moves at the gas' speed everywhere and is stretched as the gas is.
+// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of tau - t moves with
+// the gas and stretches with it.
 FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
     float a = clamp(s, 0.0f, tauFree);
     return (2.0f / 6.84f) * (sqrt(a + tauStart) - sqrt(tauStart)) +
@@ -244,8 +230,8 @@ FW_SHARED_FN float flamePlane(vec3 x, FlameNode node) {
     return dot(x - vec3(node.centre), vec3(node.along));
 }
 
-// Of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before
-// the second. Continuous from segment to segment.
+// Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before the
+// second. Continuous across segments.
 FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
     float w = da / max(da - db, 1e-9f);
     vec4 centre = mix(a.centre, b.centre, w);
@@ -262,8 +248,7 @@ FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da,
     return place;
 }
 
-// Where a ray is near a segment: x to y, nothing where x >= y. A sphere around it; conservative.
-// `reach`: m from the axis that matter.
+// Range of a ray near a segment, by a bounding sphere: x to y, none where x >= y. reach: m from the axis.
 FW_SHARED_FN vec2 flameSegmentSpan(vec3 from, vec3 direction, FlameNode a, FlameNode b, float reach) {
     vec3 half_ = 0.5f * (vec3(b.centre) - vec3(a.centre));
     float radius = length(half_) + reach;
@@ -274,9 +259,9 @@ FW_SHARED_FN vec2 flameSegmentSpan(vec3 from, vec3 direction, FlameNode a, Flame
     return room > 0.0f ? vec2(max(at - along, 0.0f), at + along) : vec2(0.0f);
 }
 
-// ---- look
+// ---- appearance
 
-// `size`: m, footprint of the sample, the larger of its step and its pixel: detail below it fades.
+// size: m, footprint of the sample (the larger of step and pixel); finer detail fades.
 FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     FlameLookup look;
     look.lit = 0.0f; look.rho = 2.0f; look.y = 2.0f;
@@ -294,26 +279,25 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     float grow = smoothstep(0.02f, 0.9f, y);
     float z = f.speed * tau / f.stretch;
 
-    // Gas comes in from a wider base: tongues lean inward.
+    // Gas flows in over the base: tongues lean inward.
     float narrow = 1.0f - 0.6f * f.converge * rise;
     vec2 p = at.p / narrow;
-    // Eddies that roll.
     vec3 eddy = flameCurl(vec3(p.x / f.lambdaWarp + f.place.x, z / f.lambdaWarp + f.place.y - f.warpScroll,
                                p.y / f.lambdaWarp + f.place.z));
     p += vec2(eddy.x, eddy.z) * (f.warp * diameter * grow);
     float yw = y + eddy.y * (0.5f * f.warp * grow);
-    // Some tongues are tall and some short, for a while.
+    // Tongues of unequal height, changing slowly.
     float column = flameNoise(vec3(p.x / f.lambdaColumn + f.place.y,
                                    0.35f * z / f.lambdaColumn + f.place.z - f.columnScroll,
                                    p.y / f.lambdaColumn + f.place.x));
     yw /= max(0.25f, 1.0f + f.columns * (column + 0.10f));
-    // Turbulence without bias: half signed, half ridged; smaller eddies move at their own speeds.
+    // Unbiased turbulence: half signed, half ridged; smaller eddies move at their own speeds.
     vec3 x = vec3(p.x / f.lambda + f.place.z, z / f.lambda + f.place.x, p.y / f.lambda + f.place.y);
     float rough = 0.0f; float sheet = 0.0f; float weight = 1.0f;
     float lambda = f.lambda * narrow / (2.0f * size);
     vec4 scroll = f.scroll;
     uint o = 0u;
-    do {  // the same number of turns for all: not one too many
+    do {  // all lanes run the same number of iterations
         float fade = o == 0u ? 1.0f : clamp(lambda - 0.5f, 0.0f, 1.0f);
         float n = flameNoise(x - vec3(0.0f, scroll.x, 0.0f));
         rough += weight * fade * (f.ridge * (2.2f * kFlameMeanAbs) +
@@ -324,19 +308,18 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
         scroll = vec4(scroll.y, scroll.z, scroll.w, 0.0f);
         o += 1u;
     } while (o < f.octaves);
-    // The foot stays lit whatever the noise says.
+    // The foot stays lit for any noise.
     look.y = max(yw - f.turbulence * sqrt(y) * rough, 0.5f * y * (1.0f - grow));
-    look.rho = length(p) * narrow / radius *
-               (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
+    look.rho = length(p) * narrow / radius * (1.0f - f.radial * rough * smoothstep(0.0f, 0.4f, y));
     look.erode = f.erode * smoothstep(0.2f, 1.2f, y);
-    // Soot lies in sheets where the carried noise is 0, the crests of the displacement.
+    // Soot lies in sheets where the advected noise is 0, the crests of the displacement.
     float thin = 0.7f * size / (f.lambda * narrow);
     float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
     float filament = f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
     if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
     look.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
                      f.filament * smoothstep(0.0f, f.filamentHeight, y));
-    // No islands beside the foot, no edge where the tube ends.
+    // Prevents islands beside the foot and an edge at the tube's end.
     look.guard = (1.0f - smoothstep(0.0f, 0.30f, rim - mix(0.90f, 0.75f, rise))) *
                  (1.0f - smoothstep(kFlameTop - 0.3f, kFlameTop, y));
     look.lit = look.y < 1.0f && look.rho < kProfileReach && look.guard > 0.0f ? 1.0f : 0.0f;
@@ -344,11 +327,7 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
 }
 
 FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
-    // As sootRadiance.
-    float light = flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f));
-    float green = max(0.0f, 2.85e-4f * (kelvin - 940.0f));
-    float blue = max(0.0f, 1.35e-4f * (kelvin - 1815.0f));
-    vec3 radiance = vec3(1.0f, green, blue) * (light / (0.2126f + 0.7152f * green + 0.0722f * blue));
+    vec3 radiance = sootColour(kelvin, flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f)));
     if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
         float luminance = dot(radiance, vec3(0.2126f, 0.7152f, 0.0722f));
         float hot = smoothstep(f.tintLow, f.tintHigh, kelvin);
@@ -358,26 +337,25 @@ FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
     return radiance;
 }
 
-// `profile`: what the fire-profile texture says at look.rho, look.y: x in 1000 K, 0 where no gas is hot; y soot.
+// profile: sample of the fire profile at look.rho, look.y: x in 1000 K, 0 without hot gas; y soot.
 FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profile) {
     FlameMedium m;
     float soot = max(0.0f, profile.y - look.erode) / (1.0f - look.erode) * look.sheet * look.guard;
     m.soot = f.soot * f.air.w * soot;
     m.smoke = 0.0f; m.smokeShade = 0.5f;
     m.emission = m.soot * flameRadiance(f, 1000.0f * profile.x);
-    float foot = smoothstep(0.0f, 0.02f, look.y) *
-                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
+    float foot = smoothstep(0.0f, 0.02f, look.y) * (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
     float gas = clamp(profile.x, 0.0f, 1.0f) * foot * look.guard * (1.0f - 0.8f * min(soot, 1.0f));
     m.emission += f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
     return m;
 }
 
-// m, half width of the plume above a flame.
+// Half width of the plume above a flame, m.
 FW_SHARED_FN float flamePlumeWide(FlameRecord f, float s) {
     return 0.45f * f.low.w + 0.16f * max(s - 0.6f * f.high.w, 0.0f);
 }
 
-// Smoke above a flame: billows in a plume that widens. x: 1/m; y: how bright it takes light, [0, 1].
+// Smoke above a flame: billows in a widening plume. x: 1/m; y: [0, 1], how bright it appears in light.
 FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return vec2(0.0f, 0.5f);
@@ -387,8 +365,7 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     if (body < 0.01f) return vec2(0.0f, 0.5f);
     float scale = 0.55f * diameter * (0.7f + 0.35f * y);  // lateral only: along, it would shear
     vec3 x = vec3(at.p.x / scale + f.place.x,
-                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll +
-                      f.place.y,
+                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll + f.place.y,
                   at.p.y / scale + f.place.z);
     float billow = -0.5f * 1.875f; float weight = 2.0f;
     uint o = 0u;
@@ -398,7 +375,7 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
         x = vec3(2.1f * x.x + 3.1f, 2.0f * x.y, 2.1f * x.z + 9.2f);
         o += 1u;
     } while (o < max(f.octaves, 3u));
-    billow += weight * kFlameMeanAbs;  // the octave that is left out, on the mean
+    billow += weight * kFlameMeanAbs;  // mean of the omitted octave
     float density = smoothstep(0.05f, 1.0f, 1.15f * body + 0.55f * billow - 0.25f * (1.0f - body) - 0.12f);
     density *= smoothstep(0.6f, 1.7f, y) * (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
     density *= smoothstep(0.01f, 0.06f, body);
@@ -406,19 +383,20 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     return vec2(f.smoke * density * thin * thin, clamp(0.5f + 0.8f * billow, 0.0f, 1.0f));
 }
 
-// m from the axis that anything shows between two places along, in a tube of that radius, widened so.
+// Largest distance from the axis, m, of anything visible between two places along, in a tube of `radius`, widened by
+// `widened`.
 FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
     float reach = kFlameReach * (1.0f + f.puff) * radius;
     if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
     return max(reach, widened * 1.96f * flamePlumeWide(f, s1));
 }
 
-struct FlameSun {         // as a ray's smoke takes it
-    vec3 light;           // what smoke in the open scatters of it towards the eye
-    vec3 to;              // unit, towards it, in the frame of the curve's end: along side, across it, along
+struct FlameSun {         // sunlight for a ray's smoke
+    vec3 light;           // scattered towards the camera by smoke in the open
+    vec3 to;              // unit, towards the sun, in the frame of the curve's end: along side, across it, along
 };
 
-// Smoke throws light forwards: Henyey and Greenstein's phase function, against one that is even.
+// Smoke scatters forwards: Henyey-Greenstein phase function relative to isotropic scattering.
 FW_SHARED_CONST float kSmokeForward = 0.4f;
 FW_SHARED_FN FlameSun flameSun(FlameNode end, vec3 toSun, vec3 direction, vec3 light) {
     float g = kSmokeForward, q = 1.0f + g * g - 2.0f * g * dot(direction, toSun);
@@ -435,9 +413,9 @@ FW_SHARED_FN float flameErfc(float x) {
     return t * (0.3480242f - t * (0.0958798f - t * 0.7478556f)) * exp(-x * x);
 }
 
-// Optical depth of smoke from a place to the sun. What shades a plume is its body, not its billows:
-// a bell across, whose integral along a ray to without is known. As wide and dense as it is here.
-FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own with what billows gnaw off
+// Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a bell across the axis,
+// whose integral is known in closed form. Width and density are those of the position.
+FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own, reduced by billows
 FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return 0.0f;
@@ -445,7 +423,7 @@ FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float thin = 0.45f * f.low.w / wide;
     float most = 0.85f * f.smoke * f.air.w * thin * thin * smoothstep(0.6f, 1.7f, y) *
                  (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
-    // Straight up the way is not endless: smoke thins out.
+    // Limits the path straight up: smoke thins out.
     float flat2 = max(to.x * to.x + to.y * to.y, 0.08f);
     float towards = at.p.x * to.x + at.p.y * to.y;
     float a = kSmokeBell / (wide * wide);
@@ -455,9 +433,9 @@ FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     return most * beside * 0.8862269f * ahead / sqrt(a * flat2);
 }
 
-// What smoke scatters towards the eye, of the flame below, of the air around and of the sun, per unit of
-// density. What is scattered again and again gets deeper than the sun itself does. Fresh smoke is finer
-// than light's waves are long and throws the short ones aside more: a flame's deep orange gets brown.
+// Light scattered by smoke towards the camera per unit of density: from the flame below, ambient and sun. Multiple
+// scattering reaches deeper than direct sun. Fresh smoke is finer than the wavelength and scatters blue more: the
+// flame's deep orange turns brown.
 FW_SHARED_CONST vec3 kSmokeAside = vec3(1.0f, 1.4f, 1.9f);
 FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun, float depth) {
     vec3 fire = kSmokeAside * flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) *
@@ -466,20 +444,19 @@ FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, v
     return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
 }
 
-// ---- light along a ray
 
-FW_SHARED_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot takes more of the blue
+FW_SHARED_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot absorbs more blue
 
-// One step of emission and absorption, exact for a medium that is constant over it: thick flame
-// reddens. `incoming`: what smoke scatters towards the eye.
+// One step of emission and absorption, exact for a constant medium: thick flame reddens. incoming: light that smoke
+// scatters towards the camera.
 FW_SHARED_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
-    // One exponential for all: the three are its powers.
+    // One exponential; the three channels are its powers.
     float e = flameExp2(-1.442695f * 0.225f * m.soot * d);
     float e2 = e * e;
     vec3 pass = vec3(e2 * e2, e2 * e2 * e, e2 * e2 * e2) * flameExp2(-1.442695f * m.smoke * d);
     vec3 k = m.soot * kFlameAbsorb + vec3(m.smoke);
     vec3 x = k * d;
-    // (1 - exp(-x)) / k, exact where x is small too.
+    // (1 - exp(-x)) / k; series for small x.
     vec3 thickness = d * (vec3(1.0f) - x * (vec3(0.5f) - x * (1.0f / 6.0f)));
     vec3 thick = (vec3(1.0f) - pass) / max(k, vec3(1e-6f));
     thickness = vec3(x.x < 0.05f ? thickness.x : thick.x, x.y < 0.05f ? thickness.y : thick.y,

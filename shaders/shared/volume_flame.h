@@ -1,6 +1,4 @@
-// A volumetric flame as it lies in its plane, and as a draw sees it.
-// GLSL too, and laid out by hand.
-// clang-format off
+// A volumetric flame in its buffer, as a draw reads it.
 #ifndef FW_SHARED_VOLUME_FLAME_H
 #define FW_SHARED_VOLUME_FLAME_H
 #include "shared/volume.h"

@@ -1,6 +1,5 @@
-// Heat haze: how the hot gas in and above a volumetric flame bends what is seen through it. Light
-// bends towards denser air, by the slope of n - 1 = 2.9e-4 Ta / T across its way (Gladstone and
-// Dale). GLSL too, and laid out by hand.
+// Heat haze: refraction by hot gas in and above a volumetric flame. Light bends towards denser air, by the gradient of
+// n - 1 = 2.9e-4 Ta / T across its path (Gladstone and Dale).
 // clang-format off
 #ifndef FW_SHARED_VOLUME_HAZE_H
 #define FW_SHARED_VOLUME_HAZE_H
@@ -8,17 +7,16 @@
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST float kHazeTop = 3.2f;        // y at which the column no longer bends anything
-FW_SHARED_CONST float kHazeReach = 1.35f;     // half widths of the plume from the axis to where it ends
-FW_SHARED_CONST float kHazeBend = 0.012f;     // rad, of gas of the greatest contrast where noise is steepest: what air
-                                              // bends, 2.9e-4, times what a film shows of it
-FW_SHARED_CONST uint kHazeColumns = 18u;      // of the grid on whose corners it is known
+FW_SHARED_CONST float kHazeTop = 3.2f;        // y at which the column no longer refracts
+FW_SHARED_CONST float kHazeReach = 1.35f;     // half widths of the plume from the axis to its end
+FW_SHARED_CONST float kHazeBend = 0.012f;     // rad, at the greatest contrast and noise slope: air's 2.9e-4, exaggerated
+FW_SHARED_CONST uint kHazeColumns = 18u;      // of the grid on whose corners it is evaluated
 FW_SHARED_CONST uint kHazeRows = 28u;
 FW_SHARED_CONST float kHazeAir = 293.0f;      // K
-FW_SHARED_CONST float kHazePixels = 12.0f;    // most that it moves anything
+FW_SHARED_CONST float kHazePixels = 12.0f;    // largest displacement
 
-// Ta (T - Ta) / T^2, of the plume's axis: McCaffrey's excess, 800 K in the flame, then as 1 / z, in the
-// plume as z^(-5/3). What is seen of a flame is about 1.7 times its profile high.
+// Ta (T - Ta) / T^2 on the plume's axis. McCaffrey's excess: 800 K in the flame, then 1 / z, in the plume z^(-5/3). The
+// visible flame is about 1.7 times as high as its profile.
 FW_SHARED_FN float flameHazeContrast(FlameRecord f, float s) {
     float z = max(s, 0.0f) / (1.7f * f.high.w);
     float excess = 800.0f * min(1.0f, 0.4f / max(z, 0.4f) * min(1.0f, pow(max(z, 1.0f), -0.6666667f)));
@@ -26,7 +24,7 @@ FW_SHARED_FN float flameHazeContrast(FlameRecord f, float s) {
     return kHazeAir * excess / (kelvin * kelvin);
 }
 
-// How light that passes the axis there is bent, rad: along side, along, across it. Eddies rise with the gas.
+// Deflection of light that passes the axis there, rad: along side, along, across it. Eddies rise with the gas.
 FW_SHARED_FN vec3 flameHaze(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     float wide = flamePlumeWide(f, at.s);

@@ -1,7 +1,6 @@
-// The way of a ray through a flame: where it is in the tube, and where that is along the curve. The
-// curve is looked up at a few knots; samples between them take their place from two of those.
-// FW_FLAME_NODE(i) is the caller's: in GLSL a draw sees one flame's nodes as a uniform block.
-// GLSL too, and laid out by hand.
+// A ray's path through a flame: its range in the tube and its coordinates along the curve. The curve is evaluated at a
+// few knots; samples interpolate between them. FW_FLAME_NODE(i) is the includer's: in GLSL one flame's nodes are a
+// uniform block.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_MARCH_H
 #define FW_SHARED_VOLUME_MARCH_H
@@ -19,17 +18,17 @@ FW_SHARED_BEGIN
 #define FW_FLAME_IT
 #endif
 
-FW_SHARED_CONST uint kFlameSkip = 2u;         // of two nodes a march sees one
-FW_SHARED_CONST uint kFlameIntervals = 6u;    // most, between knots of a ray
-FW_SHARED_CONST uint kFlamePieces = 12u;      // of the curve, as a march sees it
-FW_SHARED_CONST uint kFlameSmokeSteps = 4u;   // of a ray through smoke
+FW_SHARED_CONST uint kFlameSkip = 2u;         // a march uses every second node
+FW_SHARED_CONST uint kFlameIntervals = 6u;    // between knots of a ray, at most
+FW_SHARED_CONST uint kFlamePieces = 12u;      // curve pieces of a march
+FW_SHARED_CONST uint kFlameSmokeSteps = 4u;   // per ray
 
-struct FlameChord {       // of a ray in a tube
-    float from; float gap;    // m along the ray: the first knot, one to the next
-    float first; float last;  // in gaps from the first knot: where something may burn; first > last: nowhere
+struct FlameChord {       // range of a ray in a tube
+    float from; float gap;    // m along the ray: first knot, distance of knots
+    float first; float last;  // in gaps from the first knot: range that may burn; first > last: none
 };
 
-// A sphere around two pieces of tube; w: its square radius.
+// Bounding sphere of two pieces of tube; w: its square radius.
 FW_SHARED_FN vec4 flameBall(FlameNode a, FlameNode middle, FlameNode b, float reach) {
     vec3 half_ = 0.5f * (vec3(b.centre) - vec3(a.centre));
     vec3 centre = vec3(a.centre) + half_;
@@ -46,7 +45,7 @@ FW_SHARED_FN vec2 flameWiden(vec2 span, vec4 ball, vec3 from, vec3 direction, bo
     return vec2(seen ? min(span.x, at - along) : span.x, seen ? max(span.y, at + along) : span.y);
 }
 
-// Where a ray may be in flame (xy) and in smoke (zw), m along it; x >= y: nowhere.
+// Range of a ray in the flame (xy) and in its smoke (zw), m; x >= y: none.
 FW_SHARED_FN vec4 flameSpans(FW_FLAME_OF FlameRecord f, vec3 from, vec3 direction) {
     vec2 fire = vec2(1e9f, -1e9f);
     vec2 smoke = fire;
@@ -66,8 +65,8 @@ FW_SHARED_FN vec4 flameSpans(FW_FLAME_OF FlameRecord f, vec3 from, vec3 directio
     return vec4(max(fire.x, 0.0f), fire.y, max(smoke.x, 0.0f), smoke.y);
 }
 
-struct FlamePieces {      // of the curve: what finds the one that a point is at
-    vec4 plane[kFlamePieces + 1u]; // between them: signed m from it is dot(x, xyz) + w
+struct FlamePieces {      // of the curve: planes to find the piece of a point
+    vec4 plane[kFlamePieces + 1u]; // signed distance in m: dot(x, xyz) + w
     vec4 middle[kFlamePieces];
 };
 
@@ -85,8 +84,8 @@ FW_SHARED_FN FlamePieces flamePieces(FW_FLAME_ALONE) {
     return pieces;
 }
 
-// Of all pairs of planes that a point lies between, the nearest; before the base and beyond the end
-// the curve goes straight on.
+// Coordinates in the nearest piece whose planes enclose the point; the curve continues straight before its base and
+// beyond its end.
 FW_SHARED_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     float best = 1e30f;
     uint at = 0u;
@@ -112,10 +111,10 @@ FW_SHARED_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     return vec4(at.p, at.s, at.radius);
 }
 
-// Whether the curve's nearest place does not jump in an interval, as between the sides of a loop.
+// Is the nearest place continuous over an interval? It jumps between the sides of a loop.
 FW_SHARED_FN bool flameWhole(FlameChord chord, vec4 delta) { return abs(delta.z) <= 3.0f * chord.gap + 1e-6f; }
 
-// What an interval says of where something burns. Where the nearest place jumps nothing does.
+// Extends the chord by an interval's burning range. A discontinuous interval burns nowhere.
 FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot, vec4 delta) {
     bool whole = flameWhole(chord, delta);
     vec4 slack = 0.125f * vec4(abs(delta.x), abs(delta.y), abs(delta.z), abs(delta.w));
@@ -141,8 +140,8 @@ FW_SHARED_FN FlamePlace flameAlong(vec4 knot, vec4 delta[kFlameIntervals], float
     return place;
 }
 
-// One step of a ray's smoke, which is marched apart from its flame: it is thin and wide. What lies
-// beyond `middle` m is kept for itself and put behind the flame by flameBetween.
+// Smoke is thin and wide and marched separately. Smoke beyond `middle` m is accumulated in `back`, which flameBetween
+// places behind the flame.
 struct FlameSmokeRay {
     FlameRay front; FlameRay back;
 };

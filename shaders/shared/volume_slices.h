@@ -1,27 +1,25 @@
-// The sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and what a
-// plane across the view cuts out of each: a convex polygon whose corners keep their place along the
-// curve. FW_FLAME_NODE(i) is the caller's, see volume_march.h. GLSL too, and laid out by hand.
-// clang-format off
+// Sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and the convex polygon that a plane
+// across the view cuts out of each. Corners keep their place along the curve. FW_FLAME_NODE(i): see volume_march.h.
 #ifndef FW_SHARED_VOLUME_SLICES_H
 #define FW_SHARED_VOLUME_SLICES_H
 #include "shared/volume_march.h"
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kSliceCorners = 6u;      // most of a polygon
-FW_SHARED_CONST uint kSliceVertices = 12u;    // of its triangles, a fan
+FW_SHARED_CONST uint kSliceCorners = 6u;      // of a polygon, at most
+FW_SHARED_CONST uint kSliceVertices = 12u;    // of its triangle fan
 
 struct SlicePoint {
     vec3 at;              // m, world
-    uint corners;         // of its polygon; 0: nothing is cut
+    uint corners;         // of its polygon; 0: no intersection
 };
 
-// m from the axis that the lattice reaches at a node, to all sides.
+// Reach of the lattice at a node, m from the axis.
 FW_SHARED_FN float sliceReach(FlameRecord f, FlameNode a) {
     return flameReachAt(f, a.along.w, a.along.w, a.centre.w, a.side.w);
 }
 
-// Corner 0 to 3 of the lattice in a node's plane, in turn around the axis.
+// Corner 0 to 3 of the lattice in a node's plane, in order around the axis.
 FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
     vec3 side = vec3(a.side);
     vec3 across = cross(vec3(a.along), side);
@@ -30,8 +28,8 @@ FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
     return vec3(a.centre) + u * side + v * across;
 }
 
-// Corner `vertex` of the polygon that the plane dot(x - eye, forward) == depth cuts out of a piece of
-// the lattice; in turn around it. Of fewer corners than `vertex` the last.
+// Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice piece, in order
+// around it. With fewer corners: the last one.
 FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward, float depth,
                                     uint vertex) {
     float reachA = sliceReach(f, a);
@@ -45,7 +43,7 @@ FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec
         under[k] = dot(low[k] - eye, forward) - depth;
         over[k] = dot(high[k] - eye, forward) - depth;
     }
-    // Four edges in either plane, four between them.
+    // Edges: four in each plane, four between them.
     vec3 cut[12];
     bool is[12];
     vec3 sum = vec3(0.0f);
@@ -67,7 +65,7 @@ FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec
     point.corners = corners < 3u ? 0u : corners;
     vec3 middle = sum / max(float(corners), 1.0f);
     point.at = middle;
-    // In turn around the middle: by the quadrant, and in it by the tangent, [0, 4).
+    // Order around the middle: by quadrant, then by tangent, [0, 4).
     vec3 right = abs(forward.y) < 0.9f ? cross(forward, vec3(0.0f, 1.0f, 0.0f)) : cross(forward, vec3(1.0f, 0.0f, 0.0f));
     vec3 upward = cross(right, forward);
     float angle[12];
@@ -91,14 +89,14 @@ FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec
     return point;
 }
 
-// Vertex [0, kSliceVertices) of a piece's triangles: a corner of its polygon.
+// Polygon corner of vertex [0, kSliceVertices).
 FW_SHARED_FN uint sliceFan(uint vertex) {
     uint triangle = vertex / 3u;
     uint corner = vertex - 3u * triangle;
     return corner == 0u ? 0u : triangle + corner;
 }
 
-// Where a point of a piece is along the curve.
+// Coordinates along the curve of a point in a piece.
 FW_SHARED_FN FlamePlace slicePlace(FlameNode a, FlameNode b, vec3 x) {
     float da = max(flamePlane(x, a), 0.0f);
     float db = min(flamePlane(x, b), 0.0f);

@@ -1,5 +1,4 @@
-// What wind zones add at an object, as its records hold it: three times 10 bits, 1/4 m/s.
-// GLSL too, and laid out by hand.
+// Packed wind of the zones at an object: three times 10 bits, 1/4 m/s.
 // clang-format off
 #ifndef FW_SHARED_WIND_H
 #define FW_SHARED_WIND_H

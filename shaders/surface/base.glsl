@@ -1,8 +1,8 @@
-// Procedural detail of the fresh material, as a factor on its base colour: grain, paint, print,
-// weave, veins, straw. Needs lib/look_noise.glsl. `coarse` and `fine`: the front warp's samples.
+// Procedural detail of the unburnt material, as a factor on its base colour: grain, paint, print, weave, veins, straw.
+// Needs lib/look_noise.glsl. coarse, fine: samples of the front warp.
 
 struct Base {
-    vec3 factor;  // on the base colour, about 1 on average
+    vec3 factor;  // on the base colour, mean about 1
     float rough;
     float delay;   // [-1, 1]
     float cavity;  // 1 exposed
@@ -11,10 +11,10 @@ struct Base {
 
 float plankOf(vec2 d, bool planks) { return planks ? floor(d.x / 0.15 + 64.0) : 3.0; }
 
-// Every plank is cut from another place of the tree.
+// Each plank samples another part of the tree.
 vec2 inTree(vec2 d, float plank) { return d + vec2(plank * 0.77, plank * 1.31); }
 
-// `grown`: noise drawn out along the grain, at `inTree`.
+// grown: noise stretched along the grain, sampled at inTree.
 void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     float plank = plankOf(d, planks);
     float across = fract(d.x / 0.15 + 64.0);
@@ -23,8 +23,7 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     float sharp = saturate(1.2 - pixel / 0.012);
     float wave = 0.5 + 0.5 * sin(ring * 502.65);
     float g = wave * wave * sharp + 0.35 * (1.0 - sharp);
-    float fibre =
-        textureLod(lookTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise), noiseLod(pixel, 24.0)).b;
+    float fibre = textureLod(lookTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise), noiseLod(pixel, 24.0)).b;
     int id = int(plank);
     b.factor = mix(vec3(1.085, 1.118, 1.146), vec3(0.698, 0.590, 0.478), g * 0.75) *
                ((0.82 + 0.36 * fibre) * (0.85 + 0.3 * hash(id, 3, 5)));
@@ -34,8 +33,7 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     b.rough = 0.62;
     if (planks) {
         float gap = min(across, 1.0 - across) * 0.15;
-        float dark =
-            (1.0 - smoothstep(0.0012, 0.0016 + pixel, gap)) * min(1.0, 0.0028 / (0.0028 + pixel));
+        float dark = (1.0 - smoothstep(0.0012, 0.0016 + pixel, gap)) * min(1.0, 0.0028 / (0.0028 + pixel));
         b.factor *= 1.0 - 0.85 * dark;
         b.height -= 0.003 * dark;
         b.cavity *= 1.0 - 0.8 * dark;
@@ -45,7 +43,7 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
 void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
     float fibre = (b.cavity - 0.6) * 2.5;
     float worn = smoothstep(0.66, 0.70, coarse.r * 0.75 + fibre * 0.2);
-    // Bare wood through the paint: its own colour, whatever the paint's.
+    // Worn paint shows wood in its own colour.
     vec3 wood = vec3(0.41, 0.26, 0.125) * b.factor / max(color, vec3(0.02));
     b.factor = mix(vec3(0.92 + 0.16 * coarse.r) * (b.cavity < 0.5 ? 0.4 : 1.0), wood, worn);
     b.rough = mix(0.28, 0.7, worn);
@@ -91,7 +89,7 @@ void weaveBase(vec2 d, float pixel, vec4 coarse, out Base b) {
 }
 
 void leafBase(vec2 d, float pixel, vec4 coarse, out Base b) {
-    // Blades of about 9 by 16 cm, staggered, each with a midrib and a herringbone of veins.
+    // Blades of about 9 by 16 cm, staggered, with a midrib and herringbone veins.
     vec2 cell = d / vec2(0.09, 0.16) + 64.0;
     cell.y += 0.5 * float(int(floor(cell.x)) & 1);
     vec2 id = floor(cell), q = (fract(cell) - 0.5) * vec2(0.09, 0.16);
@@ -141,8 +139,7 @@ void strawBase(vec2 d, float pixel, out Base b) {
     b.rough = 0.65;
 }
 
-Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine,
-               vec4 grown) {
+Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine, vec4 grown) {
     Base b;
     b.factor = vec3(0.94 + 0.12 * coarse.r);
     b.rough = 0.7;
@@ -157,8 +154,7 @@ Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coa
     if (kHasPlant && kind == kBaseLeaf) leafBase(d, pixel, coarse, b);
     if (kHasPlant && kind == kBaseStraw) strawBase(d, pixel, b);
     if (kHasHide && kind == kBaseLeather) {
-        float pore =
-            smoothstep(0.02, 0.12, lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
+        float pore = smoothstep(0.02, 0.12, lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
         b.factor = vec3((0.75 + 0.5 * coarse.r) * (0.7 + 0.3 * pore));
         b.rough = 0.60 - 0.15 * pore;
         b.height = -0.0003 * (1.0 - pore);

@@ -1,6 +1,6 @@
-// Soot that flames leave on what stands above them, and that stays: in the low byte of each texel's
-// gradient, 255 a matt black. It grows towards what the fires of the moment would lay there and never
-// fades. One thread per row of a tile, a part of all tiles each frame, in turn. Looks only.
+// Soot that flames leave on surfaces above them, stored in the low byte of each texel's gradient; 255: matt black. It
+// grows towards the current fires' soot and never fades. One thread per tile row; a part of all tiles each frame,
+// round-robin. Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,6 +13,7 @@ layout(local_size_x = 64) in;
 #include "lib/buffers.glsl"
 #include "lib/skin.glsl"
 #include "shared/look.h"
+#include "lib/stride.glsl"
 #include "surface/plume.glsl"
 
 layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
@@ -20,7 +21,7 @@ layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
 };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
-const uint kUnseen = 3u;  // soot of which nothing is seen
+const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 
 vec3 inWorld(uint object, vec3 rest) {
@@ -29,12 +30,12 @@ vec3 inWorld(uint object, vec3 rest) {
                 dot(objects[object].worldRow2, at));
 }
 vec3 restOf(uint object, uvec2 texel) {
-    return objects[object].originQuantum.xyz +
-           objects[object].originQuantum.w *
+    return objects[object].originQuantum.xyz + objects[object].originQuantum.w *
                vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
 }
 
-void sootRow(uint worldTile, uint row) {
+void sootRow(uint i, uint row) {
+    uint worldTile = push.object + i;
     TileRef tile = tileRef(worldTile);
     if (!tile.alive) return;
     uint object = tile.object;
@@ -49,22 +50,19 @@ void sootRow(uint worldTile, uint row) {
     if ((texel.y & (kTexelReal << 16u)) == 0u) return;
     vec3 middle = restOf(object, texel);
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved =
-        skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
+    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
     vec3 shift = skinned ? moved.place - middle : vec3(0.0);
     middle = inWorld(object, middle + shift);
     float reach = 9.0 * sqrt(max(objects[object].tint.w, 0.0));  // m
     uint near = 0u;
     uint count = min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count && lights[i].power > 0.0; ++i)
-        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach)
-                    ? 1u << i
-                    : 0u;
+        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach) ? 1u << i : 0u;
     uint most = uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
     bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {
         uint t = predict[at + x];
-        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word is another thing then
+        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word has another meaning then
         vec3 place = inWorld(object, restOf(object, texels[texelAt + x]) + shift);
         float soot = 0.0;
         for (uint bits = near; bits != 0u; bits &= bits - 1u) {
@@ -79,13 +77,5 @@ void sootRow(uint worldTile, uint row) {
     if (marks) atomicOr(tileState[worldTile].flag, kTileMarked);
 }
 
-void main() {
-    // `object`: the first tile; `iteration`: how many.
-    uint row = gl_LocalInvocationID.x & 7u;
-    uint i = gl_WorkGroupID.x * 8u + (gl_LocalInvocationID.x >> 3u);
-    if (i >= push.iteration) return;
-    do {
-        sootRow(push.object + i, row);
-        i += gl_NumWorkGroups.x * 8u;
-    } while (i < push.iteration);
-}
+// push.object: first tile; push.iteration: number of tiles.
+void main() { FW_STRIDE_ROWS(push.iteration, sootRow) }

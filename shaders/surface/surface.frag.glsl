@@ -1,14 +1,14 @@
 #version 450
-// A burning surface in the host's pass: looks up when this point caught or will catch fire, lets
-// look.glsl say what that looks like, and lights it. Writes linear HDR or what the target shows.
+// A burning surface in the host's pass: looks up the ignition time, evaluates look.glsl, and lights the result. Writes
+// linear HDR or encoded colour.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/heat.h"
 #include "shared/look.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-// Families of materials that a variant can draw, and whether they can burn (kSurface...). The
-// software device runs both sides of every branch, so what is of no use is left out.
+// Material families of a variant, and whether it can burn (kSurface...). A software device executes both sides of every
+// branch, so unused code is compiled out.
 layout(constant_id = 2) const uint kVariant = 127u;
 const bool kHasPaint = (kVariant & kSurfacePaint) != 0u;
 const bool kHasWood = (kVariant & kSurfaceWood) != 0u;
@@ -39,7 +39,7 @@ layout(location = 3) centroid in vec4 inTexture;
 layout(location = 4) centroid in vec4 inDetail;
 layout(location = 5) centroid in vec4 inTint;
 
-layout(location = 6) centroid in vec2 inSootLead;
+layout(location = 6) centroid in vec2 inSootOffset;
 
 layout(location = 0) out vec4 outColor;
 
@@ -56,15 +56,13 @@ layout(location = 8) in vec4 inMiddleUv;
 #endif
 
 #if FW_MULTISAMPLED == 2
-// Of the target. The rims of holes are as smooth as the edges of triangles: each sample is in a hole
-// or not. Alpha to coverage would leave its alpha in the picture, and has no say in which samples.
+// Samples of the target. Coverage per sample makes hole rims as smooth as triangle edges. Alpha to coverage would
+// change the picture's alpha and cannot choose samples.
 layout(constant_id = 4) const uint kSamples = 4u;
-// Vulkan's standard places of 2, 4, 8 and 16 samples, in sixteenths of a pixel from its middle.
-const ivec2 kSamplePlaces[30] = ivec2[30](
-    ivec2(4, 4), ivec2(-4, -4),
+// Vulkan's standard sample positions for 2, 4, 8 and 16 samples, in sixteenths of a pixel from its middle.
+const ivec2 kSamplePlaces[30] = ivec2[30](ivec2(4, 4), ivec2(-4, -4),
     ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
-    ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1),
-    ivec2(3, 7), ivec2(7, -7),
+    ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1), ivec2(3, 7), ivec2(7, -7),
     ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1), ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3),
     ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7), ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4),
     ivec2(6, 7), ivec2(-7, -8));
@@ -77,28 +75,27 @@ const ivec2 kSamplePlaces[30] = ivec2[30](
 #include "surface/base.glsl"
 #include "surface/look.glsl"
 
-// W/sr of the visible part of a flame to candela: soot glows a little for much heat.
+// W/sr of a flame's visible part to candela: soot emits little light for much heat.
 const float kCandelaPerWatt = 0.013;
 
 ivec2 lastTexel() { return ivec2(int(draw.size & 0xFFFFu), int(draw.size >> 16u)) - 1; }
 uint texelAt(ivec2 texel) { return uint(texel.y) * (draw.size & 0xFFFFu) + uint(texel.x); }
 
 struct Arrival {
-    float age;      // s since ignition, look time not applied; very negative: not in sight
+    float age;      // s since ignition, real time; very negative: not in sight
     vec2 gradient;  // s/texel
-    float known;    // [0, 1] weight of texels with a tick
+    float known;    // [0, 1] weight of texels with a time
     float out_;     // [0, 1]
     float damp;     // [0, 1] unburnt and wet
-    float ahead;    // texels from those to the fire
+    float ahead;    // texels from the wet ones to the fire
     float soot;     // [0, 1]
     bool none;      // no texel is near
 };
 
-// Bilinear over the taps that exist; towards chart borders each tap is continued along its own
-// gradient, so that both sides of a seam agree. Where all four miss, at a chart's border, the
-// nearest of the 25 around stand in.
-// `steepest`: s/texel; beyond it, where fronts meet, slopes say nothing. `scorch`: s before a front
-// that show: beside what was put out nothing comes any more, and the rim is as wide as a texel.
+// Bilinear over valid taps. At chart borders each tap is extrapolated along its gradient, so both sides of a seam
+// agree; where all four miss, the nearest of the 25 around are used. steepest: s/texel; beyond it, where fronts meet,
+// slopes are meaningless. scorch: s before a front that show: beside extinguished texels nothing arrives, and the rim
+// is one texel.
 Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
@@ -108,7 +105,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     o.gradient = vec2(0.0);
     o.known = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0, ahead = 0.0, soot = 0.0;
-    // Tested first: of lanes that leave a loop before others do, lavapipe keeps what it had at a test.
+    // The test comes first: lavapipe keeps a lane's values from its last test when it leaves a loop early.
     int taps = 4;
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
@@ -125,7 +122,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
         vec2 g = live ? unpackGradient(packed) : vec2(0.0);
         g *= min(1.0, steepest * inversesqrt(max(dot(g, g), 1e-12)));
         float age = float(int(view.now - t)) * (1.0 / 4096.0) - 0.5 * dot(g, off);
-        // How long it had burnt.
+        // Age when it was put out.
         if (doused) age = packed == 0u ? 60.0 : float(packed) * (1.0 / 4096.0);
         o.age += live || doused ? w * age : 0.0;
         o.gradient += w * g;
@@ -143,7 +140,7 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     if (burnt <= 0.0) {
         o.age = -1e6;
     } else {
-        // Wet texels say nothing of the time: see dampen().
+        // Wet texels carry no time: see dampen().
         float before = o.out_ > 0.0 ? min(scorch, draw.horizon) : draw.horizon;
         o.age = (o.age - never * before) / (burnt + never);
     }
@@ -158,10 +155,10 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
 
 struct Warmth {
     float kelvin;
-    float eaten;  // [0, 1] of the fuel
+    float eaten;  // [0, 1] of the fuel consumed
 };
 
-// Of the heat plane; loops, as a branch would cost every mesh the loads.
+// Samples the heat buffer. A loop: a branch would cost every mesh the loads.
 Warmth warmthAt(vec2 uv) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
@@ -184,9 +181,9 @@ Warmth warmthAt(vec2 uv) {
     return Warmth(kelvin / total, 1.0 - fuel / total);
 }
 
-// x: water on it, [0, 1] of what stays on it; y: browned by heat from elsewhere, [0, 1]. What was
-// poured has an edge of a texel: shown over five. Five texels tell whether there is an edge.
-vec2 coatAt(vec2 uv) {
+// x: water, [0, 1] of what the surface holds; y: browning by other objects' heat, [0, 1]. Poured water has a one-texel
+// edge, filtered over five texels. Five taps detect whether there is an edge.
+vec2 wetnessAt(vec2 uv) {
     vec2 middle = floor(uv), off = uv - middle - 0.5;
     ivec2 limit = lastTexel();
     vec2 sum = vec2(0.0);
@@ -221,13 +218,12 @@ vec2 coatAt(vec2 uv) {
     return sum / total;
 }
 
-// Over a wet border the age falls to how near the fire is on the wet side: first fast to that of
-// young char, so that most of the texel between is brown, then evenly.
+// Over a wet border the age falls to that of the wet side: first fast to that of young char, so that most of the texel
+// is brown, then evenly.
 float dampen(float age, float damp, float young, float wetAge) {
     if (damp <= 0.0) return age;
     float top = clamp(age, wetAge, young);
-    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0)
-                       : mix(top, wetAge, (damp - 0.25) / 0.75);
+    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0) : mix(top, wetAge, (damp - 0.25) / 0.75);
 }
 
 vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
@@ -246,11 +242,10 @@ vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
     return e * (s.albedo * (0.31831 * nl) + vec3((d * g * fresnel + gleam) * nl));
 }
 
-// `open`: share of the light from outside that gets here; no shadows are traced. `soot`: [0, 1] that
-// lies here; `sootable`: how much of it shows.
+// open: share of ambient light and sun (no shadows); soot: [0, 1]; sootable: visible share of it.
 vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float sootable) {
     if (dot(n, v) < 0.02) n = normalize(n + v * (0.04 - dot(n, v)));
-    // Of small triangles at their corners already, with the mean direction of what comes.
+    // Small triangles: lit per vertex, with the mean light direction.
     vec3 fire = vec3(inPositionFire.w, inRestFire.w, inNormalFire.w);
     fire *= max(0.0, dot(n, vec3(inDetail.zw, inTint.w)) + 0.25) * 0.64;
     bool small = (draw.flags & kDrawVertexLight) != 0u;
@@ -268,11 +263,9 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
     s.albedo = sooted(s.albedo, sootable * saturate(soot));
     s.rough = mix(s.rough, 0.9, sootable * saturate(soot));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
-    c += lit(s, n, v, view.sunDirection.xyz,
-             view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
+    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
     float height = dot(n, view.up.xyz);
-    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo *
-         (open * s.occlusion);
+    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo * (open * s.occlusion);
     vec3 mirror = reflect(-v, n);
     vec3 env = mix(view.ambientGround.rgb * 0.8, view.ambientSky.rgb * 1.6,
                    smoothstep(-0.3, 0.6, dot(mirror, view.up.xyz)));
@@ -281,7 +274,7 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
     c += env * (open * fresnel * s.occlusion * (1.0 - 0.5 * s.rough));
 
     fire *= kCandelaPerWatt * view.sunColor.w / kWhiteLuminance;
-    // Softly limited: a flame that touches the surface must not bleach it.
+    // Soft limit: a flame at the surface must not bleach it.
     fire /= 1.0 + 0.4 * view.sunDirection.w * (fire.r + fire.g);
     c += fire * s.albedo * (open * s.occlusion * 0.31831);
     return c;
@@ -290,21 +283,20 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
 float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
-    if (kCold && inSootLead.x > 0.0) discard;
+    if (kCold && inSootOffset.x > 0.0) discard;
     MaterialLook look = looks[min(draw.look, kLookRows - 1u)];
     if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
-    // The rim shows the host's thickness within what the look was made for.
+    // The rim uses the host's thickness, within the range of the appearance.
     if (draw.thickness > 0.0)
         look.thickness = clamp(draw.thickness, 0.4 * look.thickness, 2.0 * look.thickness);
     vec3 inPosition = inPositionFire.xyz, inRest = inRestFire.xyz, inTintColor = inTint.rgb;
     vec2 inAtlas = inTexture.xy;
 
-    // The tangent plane: how atlas and detail coordinates move along the surface.
+    // Tangent plane: derivatives of atlas and detail coordinates along the surface.
     vec3 normal = normalize(inNormalFire.xyz);
     vec3 px = dFdx(FW_POSITION), py = dFdy(FW_POSITION);
     vec3 toEye = view.forward.w > 0.5 ? normalize(-inPosition) : -view.forward.xyz;
-    // Where a surface turns away a pixel's middle may lie beyond its horizon, and differences are of
-    // any size, or none.
+    // At a silhouette a pixel's middle may lie beyond the surface, where differences are unusable.
     float depth = view.forward.w > 0.5 ? dot(inPosition, view.forward.xyz) : 1.0;
     float span = 100.0 * view.eye.w * depth;
     bool known = dot(px, px) + dot(py, py) < span * span;
@@ -312,10 +304,10 @@ void main() {
     py = known ? py : cross(toEye, px);
     vec3 face = cross(px, py);
     face *= dot(face, toEye) < 0.0 ? -1.0 : 1.0;
-    // Walls of holes that were cut and of open borders have no normals of their own.
+    // Walls of holes and open borders have no vertex normals.
     bool cut = kBurns && (draw.flags & kDrawCut) != 0u;
-    bool wall = (draw.flags & kDrawCut) != 0u && inSootLead.y < -0.5;
-    bool rim = cut && wall && inSootLead.y > -2.5;
+    bool wall = (draw.flags & kDrawCut) != 0u && inSootOffset.y < -0.5;
+    bool rim = cut && wall && inSootOffset.y > -2.5;
     if (wall) normal = normalize(face);
     bool back = dot(face, normal) < 0.0;
     vec3 r1 = cross(py, normal), r2 = cross(normal, px);
@@ -331,15 +323,14 @@ void main() {
     float facing = max(abs(dot(normal, toEye)), 0.2);
     float pixel = view.eye.w * depth * inversesqrt(facing);
 
-    // Dominant axis of the normal, dithered by zigzags: ragged joins do not show in wood.
+    // Dominant axis of the normal, dithered by zigzags, which hide the seams in wood.
     float inverseScale = inversesqrt(dot(draw.row0.xyz, draw.row0.xyz));
     vec3 ex = vec3(draw.row0.x, draw.row1.x, draw.row2.x) * inverseScale;
     vec3 ey = vec3(draw.row0.y, draw.row1.y, draw.row2.y) * inverseScale;
     vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
     float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
     float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
-    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
-             0.1 * vec3(da, db, -0.5 * (da + db));
+    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) + 0.1 * vec3(da, db, -0.5 * (da + db));
     bool facesX = w.x > w.y && w.x > w.z, facesY = !facesX && w.y > w.z;
     vec2 flatPlace = vec2(facesX ? inRest.z : inRest.x, facesY ? inRest.z : inRest.y);
 
@@ -362,40 +353,37 @@ void main() {
     vec3 along = axisX * warp.x + axisY * warp.y;
     vec2 shift = vec2(dot(gradU, along), dot(gradV, along));  // texels
     float rate = max(look.spreadRate, 1e-5);
-    // A long shift could leave the chart: what is beyond half a texel goes the linear way.
+    // A long shift could leave the chart: beyond half a texel it is linear.
     vec2 near = clamp(shift, -0.5, 0.5);
-    // Where the tangent plane is not known slopes are not believed.
+    // Without a tangent plane slopes are ignored.
     float perMetre = inverse != 0.0 ? max(length(gradU), 1.0) : 1e9;
-    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootLead.x, false);
+    Arrival arrival = Arrival(-1e6, vec2(0.0), 0.0, 0.0, 0.0, 1e3, inSootOffset.x, false);
     Warmth warmth = Warmth(300.0, 0.0);
-    vec2 coat = vec2(0.0);
+    vec2 wetness = vec2(0.0);
     if (kBurns) {
-        arrival =
-            arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * perMetre),
+        arrival = arrivalAt(inAtlas + near, 2.5 / (rate * draw.timeScale * perMetre),
                       (1.3 * look.scorchWidth / rate + 1.5 * look.jitter) / draw.timeScale);
         arrival.age -= dot(arrival.gradient, shift - near);
         warmth = warmthAt(inAtlas + near);
         vec2 creeps = vec2(coarse.r + 0.4 * fine.b, coarse.g + 0.4 * fine.r) * 3.0 - 2.0;
-        coat = coatAt(inAtlas + clamp(creeps, -1.0, 1.0));
+        wetness = wetnessAt(inAtlas + clamp(creeps, -1.0, 1.0));
     }
 
-    // A sliver that is seen edge on covers samples where the map is many texels beyond its chart: as
-    // nothing says whether it has burnt there, the triangles beside it show.
+    // A sliver seen edge-on covers samples many texels beyond its chart: no burn state is known there, so adjacent
+    // triangles show.
     bool lost = false;
 #ifdef FW_MULTISAMPLED
     lost = arrival.none && leap > 16.0;
 #endif
 
-    // Where holes come first; in wood also where its rings wander. Both walls of a solid have the same,
-    // whatever their patterns: one that is the other's mirror image would let see through them in
-    // symmetric holes. Wood's planks differ in any case.
+    // Pattern of the holes; in wood it follows the rings. Both walls of a solid use the same pattern: mirrored ones
+    // would align into symmetric see-through holes. Wood's planks differ anyway.
     bool sheet = (draw.flags & kObjectTwoSided) != 0u;
     vec2 grownAt = sheet ? d : flatPlace;
-    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3)
-                       : vec2(grownAt.x, grownAt.y / look.drip);
+    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(grownAt.x, grownAt.y / look.drip);
     vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
     vec3 color = draw.colorRough.rgb;
-    bool cutOut = false;  // the picture is not here; decided below, where no differences are needed
+    bool cutOut = false;  // transparent image texel; decided below, where no derivatives are needed
     Base fresh;
     if (kImage) {
         vec4 texel = texture(baseImage, inTexture.zw);
@@ -411,8 +399,7 @@ void main() {
         fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
     }
 
-    // Differences between pixels before any branch, and only of what no buffer is read for: lanes
-    // outside the triangle read nothing.
+    // Derivatives before any branch, and only of values without buffer reads: lanes outside the triangle read nothing.
     float height = -fresh.height;
     vec2 relief = vec2(dFdx(height), dFdy(height));
     relief = clamp(relief, -pixel, pixel);
@@ -431,21 +418,21 @@ void main() {
     float steep = length(flat_);
     site.slow = clamp(length(slope), 0.25 / rate, 1.6 / rate);  // s/m
     float ahead = 1.3 * max(look.scorchWidth, look.wiltColor.w) * site.slow + 1.5 * look.jitter;
-    // Water halves the way that heat gets.
+    // Water halves the heat's path.
     float behind = 2.0 * (arrival.ahead - 0.7) * inversesqrt(max(dot(gradU, gradU), 1.0));  // m
     float wetAge = clamp(-behind * site.slow, -1.2 * ahead, 0.0);
     site.age = dampen(arrival.age * draw.timeScale, arrival.damp, 1.5 * look.charTime, wetAge);
     site.ahead = steep > 1e-6 ? flat_ / steep : vec2(0.0, 1.0);
     site.out_ = saturate(arrival.out_ * 1.5 + arrival.damp * 6.0);
-    // As hot as its heat plane says: what is out goes on glowing until it has cooled.
+    // Glow by the heat buffer: an extinguished texel glows until it has cooled.
     bool thick = (draw.flags & kDrawThick) != 0u;
     float hot = smoothstep(430.0, 620.0, warmth.kelvin);
     if ((draw.flags & kDrawHeat) != 0u) site.out_ = (thick ? 1.0 : site.out_) * (1.0 - hot);
     site.deep = thick ? smoothstep(0.02, 0.5, warmth.eaten) : 0.45;
     site.gain = thick ? clamp(0.5 * (warmth.kelvin - 715.0), -50.0, 120.0) : 0.0;
-    site.brown = coat.y;
-    // Water creeps along what is uneven, and dries where the fire stands beside it.
-    site.water = smoothstep(0.05, 0.85, coat.x);
+    site.brown = wetness.y;
+    // Water creeps along relief, and dries beside the fire.
+    site.water = smoothstep(0.05, 0.85, wetness.x);
     if (arrival.damp > 0.0)
         site.water *= 1.0 - 0.85 * smoothstep(-0.9 * ahead, -0.15 * ahead, site.age) * arrival.damp;
     bool inside = back && (draw.flags & kObjectTwoSided) == 0u;
@@ -462,34 +449,32 @@ void main() {
     site.grown = grown;
     site.bubbleSlope = vec2(dot(swell, axisX), dot(swell, axisY));
 
-    // What the wall behind has burnt is missing here too, even before this side catches.
-    site.lead = cut ? 0.0 : inSootLead.y;
+    // The opposite wall's burn makes holes here, too, even before this side catches.
+    site.offset = cut ? 0.0 : inSootOffset.y;
     if (!cut && (draw.flags & kDrawPlaced) != 0u) {
         site.age = max(site.age, -1e3);
-        site.lead = leadOf(site.age, inSootLead.y, look.holeTime);
+        site.offset = burnThroughOffset(site.age, inSootOffset.y, look.holeTime);
     }
-    site.left = cut ? max(inSootLead.y, 0.0) * draw.timeScale : -1.0;
+    site.left = cut ? max(inSootOffset.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
-    // No rim; corners that are too far apart know nothing of a hole between them: texels do.
+    // Walls on borders have no rim. Where corners are too far apart to know a hole between them, texels do.
     if (wall && !rim) site.left = (draw.flags & kDrawTold) != 0u ? -1.0 : 1000.0;
     if (rim) {
-        // As char that has burnt through; what glows at its rim fades inwards.
+        // Burnt-through char; the rim's glow fades inwards.
         site.age = max(site.age, look.holeTime);
-        site.left = saturate(-1.0 - inSootLead.y) * look.thickness * site.slow;
+        site.left = saturate(-1.0 - inSootOffset.y) * look.thickness * site.slow;
     }
-    bool soon = site.lead >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
-    bool cold = !kBurns || look.spreadRate <= 0.0 ||
-                (site.age < -ahead && !soon && site.brown < 0.01);
+    bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
+    bool cold = !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
 #if FW_MULTISAMPLED == 2
     int covered = -1;
 #endif
     vec3 position = inPosition;
-    // Refined faces recede as they burn, at a wall's thickness in its time (until kRefineRecede of it
-    // is gone): they lean towards what caught first.
+    // Refined faces recede while they burn, by a wall's thickness in its burn time (up to kRefineRecede): they tilt
+    // towards the part that caught first.
     float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
-    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall &&
-                   !inside;
+    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
     float fall = recedes ? draw.thickness / look.holeTime : 0.0;
     fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
     vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
@@ -510,16 +495,16 @@ void main() {
         vec3 ray = vec3(dot(-toEye, axisX), dot(-toEye, axisY), -abs(dot(toEye, normal)));
         vec2 rise = uneven;
         rise = site.ahead + rise * min(1.0, 1.2 * inversesqrt(max(dot(rise, rise), 1e-8)));
-        // A wall thinner than a pixel would be there in some.
+        // A wall thinner than a pixel would flicker.
         bool walled = look.thickness > pixel;
         if (edge < 0.0) deep = walled ? rimHit(edge, rise, look.thickness, ray) : -1.0;
 #if FW_MULTISAMPLED == 2
-        // m that the edge is farther, a pixel to the right and one below; of a slope no more.
+        // Edge distance per pixel, m, limited.
         vec3 farther = axisX * rise.x + axisY * rise.y;
         vec2 perPixel = clamp(vec2(dot(farther, px), dot(farther, py)), -4.0 * pixel, 4.0 * pixel);
         int standing = 0;
         for (uint i = 0u; i < kSamples; ++i) {
-            // 2, 4, 8 and 16 begin where the smaller ones end.
+            // Positions for 2, 4, 8 and 16 samples start at count - 2.
             vec2 off = vec2(kSamplePlaces[kSamples - 2u + i]) * (1.0 / 16.0);
             float there = edge + dot(perPixel, off);
             bool stands = there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
@@ -527,7 +512,7 @@ void main() {
         }
         if (site.left < 0.0) covered = standing;  // a cut mesh ends at its rim
         if (covered == 0) discard;
-        // Samples that stand in a pixel whose middle does not are at the rim.
+        // A pixel covered only by samples lies at the rim.
         if (edge < 0.0 && deep < 0.0) {
             site.age += edge * site.slow;
             edge = 0.0;
@@ -542,7 +527,7 @@ void main() {
             site.soot = 0.0;
             site.keep = 1.0;
             vec2 bump = fine.rb - 0.5;
-            // The wall faces the hole: away from fresh material.
+            // The wall faces the hole, away from unburnt material.
             vec3 wall = -(axisX * site.ahead.x + axisY * site.ahead.y);
             facingNormal = normalize(wall + facingNormal * (0.4 - 1.2 * deep / look.thickness) +
                                      0.8 * (axisX * bump.x + axisY * bump.y));
@@ -565,10 +550,9 @@ void main() {
     tilt *= min(1.0, 1.6 * inversesqrt(max(dot(tilt, tilt), 1e-8)));
     vec3 n = normalize(facingNormal + (deep >= 0.0 ? vec3(0.0) : (back ? -tilt : tilt)));
 
-    // Hollows are black with smoke.
+    // Cavities are black with smoke.
     float soot = inside && deep < 0.0 && (kBurns || kCold) ? 0.85 : arrival.soot;
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot,
-                        (1.0 - charred) * (0.6 + 0.5 * coarse.r));
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot, (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 #if FW_MULTISAMPLED == 2
     gl_SampleMask[0] = covered;

@@ -1,6 +1,6 @@
 #version 450
-// Places one object's drawn mesh. Positions leave it relative to the eye, so that derivatives of
-// them stay precise far from the world's origin. Small triangles are lit by flames here.
+// Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far from the world's
+// origin. Lights small triangles per vertex.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -20,29 +20,28 @@ layout(set = 0, binding = FW_BIND_TILE_STATE, std430) readonly buffer TileStates
 };
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
-layout(location = 0) in vec3 inPosition;  // m, object space, as it is shown
+layout(location = 0) in vec3 inPosition;  // m, object space, as displayed
 layout(location = 1) in uint inNormal;  // signed 11:11:10
 layout(location = 2) in vec2 inAtlas;
 layout(location = 3) in vec2 inTexture;
 layout(location = 4) in vec2 inDetail;
 layout(location = 5) in vec4 inTint;
 layout(location = 6) in uint inSlot;   // of refined vertices
-layout(location = 7) in float inLead;  // look seconds that holes come earlier
-layout(location = 8) in vec3 inRest;   // m, object space: where the material is as it was
+layout(location = 7) in float inOffset;  // burn-through offset, appearance seconds
+layout(location = 8) in vec3 inRest;   // m, object space, before deformation
 
-// At a pixel whose middle lies beside the triangle, values of that middle would be of a place that
-// the mesh has not got: outlines of burnt-away triangles would stay.
-layout(location = 0) centroid out vec4 outPosition;  // m, world, from the eye; w: flames' light, red
+// centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and outline burnt triangles.
+layout(location = 0) centroid out vec4 outPosition;  // m, world, relative to the camera; w: flame light, red
 layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
 layout(location = 2) centroid out vec4 outNormal;    // w: blue
 layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) centroid out vec2 outSootLead;  // soot of flames below; look seconds, see inLead; with
-                                            // kDrawCut the last word of a cut vertex, in s; with
-                                            // kSurfaceCold x: 1 by what fire left
+layout(location = 6) centroid out vec2 outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
+                                            // kDrawCut the last word of a cut vertex, in s; with kSurfaceCold x: 1 near
+                                            // traces of fire
 #ifdef FW_MULTISAMPLED
-// Again, at pixels' middles: they lie on a grid, so that differences between them are safe.
+// At pixels' middles, which form a grid, so differences between them are safe.
 layout(location = 7) out vec3 outMiddle;    // as outPosition
 layout(location = 8) out vec4 outMiddleUv;  // as outTexture and outDetail: xy
 #endif
@@ -52,24 +51,24 @@ layout(location = 8) out vec4 outMiddleUv;  // as outTexture and outDetail: xy
 
 uint flags;
 
-// One flame's share of the light here, and of its mean direction.
+// Adds a flame's light and its share of the mean direction.
 void addFlame(BurnLight light, vec3 position, vec3 normal, inout vec3 color, inout vec4 towards) {
     vec3 d = light.positionRadius.xyz - view.eye.xyz - position;
     float r2 = dot(d, d);
     float radius = light.positionRadius.w;
     vec3 to = d * inversesqrt(max(r2, 1e-8));
     float facing = dot(normal, to);
-    if ((flags & kObjectTwoSided) != 0u) facing = abs(facing);  // thin: both sides glow
+    if ((flags & kObjectTwoSided) != 0u) facing = abs(facing);  // thin: both sides are lit
     float e = light.colorIntensity.w / (r2 + max(radius * radius * 0.25, 0.004));
     e *= clamp(4.0 * facing + 1.0, 0.0, 1.0);  // none from behind
     color += light.colorIntensity.rgb * e;
     towards += vec4(to, 1.0) * e;
-    // Where something has burnt, texels know their soot.
+    // Burnt objects store soot in texels.
     if ((kVariant & (kSurfaceBurns | kSurfaceCold)) == 0u)
-        outSootLead.x += plumeSoot(d, light.power, view.up.xyz);
+        outSootOffset.x += plumeSoot(d, light.power, view.up.xyz);
 }
 
-// Whether fire, heat, water or soot left a mark within reach.
+// Has fire, heat, water or soot left a mark within reach?
 bool markedNear(vec2 texel) {
     ivec2 last = (ivec2(int(draw.size & 0xFFFFu), int(draw.size >> 16u)) - 1) >> 3;
     ivec2 low = ivec2(max(texel - draw.nearness, 0.0)) >> 3;
@@ -83,7 +82,7 @@ bool markedNear(vec2 texel) {
 }
 
 void main() {
-    // Zero. A software device compiles a shader anew, in milliseconds a draw, for each set of
+    // A zero that is not constant: a software device recompiles a shader, in milliseconds per draw, for each set of
     // constants that alone decide its branches.
     uint zero = uint(gl_VertexIndex) >> 31u;
     flags = draw.flags | zero;
@@ -92,25 +91,24 @@ void main() {
     vec3 normal = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0);
 
     vec3 rest = inPosition;
-    float lead = inLead;
+    float offset = inOffset;
     bool placed = (flags & kDrawPlaced) != 0u;
     while (placed) {  // a branch would cost every mesh the load
         vec4 place = places[draw.places + inSlot];
         vec4 inner = places[draw.places + draw.inner + inSlot];
         rest = (flags & kDrawInner) != 0u ? inner.xyz : place.xyz;
-        // Its hole; or how long the wall behind it burns.
+        // Time to its hole, or how long the opposite wall has burnt.
         float behind = draw.inner != 0u ? draw.now - inner.w : -1000.0;
-        lead = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0)
-                                        : clamp(behind * draw.timeScale, -1000.0, 1000.0);
+        offset = (flags & kDrawCut) != 0u ? clamp(place.w - draw.now, 0.0, 1000.0)
+                                          : clamp(behind * draw.timeScale, -1000.0, 1000.0);
         placed = false;
     }
     vec3 position = fromEye(rest);
     normal = normalize(turnNormal(draw.row0.xyz, draw.row1.xyz, draw.row2.xyz, normal));
-    outSootLead = vec2(0.0, lead);
+    outSootOffset = vec2(0.0, offset);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
-    // No branch around it: a software device would take the branch and do the work masked. A loop
-    // that ends at once costs one turn.
+    // A loop, not a branch: a software device would execute the branch masked; a loop that ends at once costs one test.
     uint count = (flags & kDrawVertexLight) != 0u ? view.lightCount | zero : 0u;
     for (uint i = 0u; i < count; ++i) addFlame(lights[i], position, normal, color, towards);
     towards.xyz /= towards.w;
@@ -126,10 +124,10 @@ void main() {
     outMiddleUv = vec4(outTexture.xy, outDetail.xy);
 #endif
     gl_Position = clipPlace(position);
-    // Beyond the far plane: triangles with three such corners are clipped away, fragments of those
-    // with one or two are discarded, and what is left of them at a sample lies behind what burns.
-    if ((kVariant & kSurfaceCold) != 0u && (lead >= 1e-3 || markedNear(inAtlas))) {
-        outSootLead.x = 1.0;
+    // Moves marked corners beyond the far plane: triangles with three such corners are clipped, fragments of others are
+    // discarded, and remaining samples lie behind the burning surface.
+    if ((kVariant & kSurfaceCold) != 0u && (offset >= 1e-3 || markedNear(inAtlas))) {
+        outSootOffset.x = 1.0;
         gl_Position.z = view.wind.w * gl_Position.w;
     }
 }

@@ -1,4 +1,4 @@
-// Cells of marched flames as a draw reads them: four words each, at once where the device has texels.
+// March pixels as a draw reads them: four words each, one texel where the device has texel buffers.
 #ifdef FW_TEXELS
 layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_VOLUME_RAYS) readonly uniform uimageBuffer cells;
 uvec4 cellAt(uint word) { return imageLoad(cells, int(word / kVolumeCellWords)); }

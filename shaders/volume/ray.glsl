@@ -1,5 +1,5 @@
-// A ray on its way through a volumetric flame: where its tube is, and what a sample meets. Not the
-// loops over samples, which are their shaders'. Needs `profiles` and FW_FLAME_NODE.
+// A ray through a volumetric flame: its tube and the medium at a sample. Sample loops are in the shaders. Needs
+// `profiles`, `view` and FW_FLAME_NODE.
 #include "shared/volume_march.h"
 
 struct RayTube {
@@ -7,7 +7,7 @@ struct RayTube {
     FlamePieces pieces;
     vec4 first;  // knot
     vec4 delta[kFlameIntervals];
-    uint broken;  // a bit per interval between whose ends the curve's nearest place jumps
+    uint broken;  // one bit per interval with a discontinuous nearest place
 };
 
 RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns) {
@@ -20,10 +20,9 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     tube.first = flameKnot(tube.pieces, from + direction * tube.chord.from);
     vec4 knot = tube.first;
     uint i = 0u;
-    // Loops that end for all at once test last: a software device runs one turn more of others.
+    // Uniform loops test at their end: see lib/stride.glsl.
     do {
-        vec4 next = flameKnot(tube.pieces,
-                              from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
+        vec4 next = flameKnot(tube.pieces, from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
         FW_UNROLL
         for (uint k = 0u; k < kFlameIntervals; ++k)
             tube.delta[k] = i == k ? next - knot : tube.delta[k];
@@ -35,10 +34,9 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     return tube;
 }
 
-// What burns where a lookup looks.
+// Medium of a lookup.
 FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
-    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach),
-                      look.y * float(kProfileHeight));
+    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach), look.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
     vec2 uv = clamp(texel, vec2(0.5), texels - 0.5) / texels;
     FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
@@ -47,12 +45,12 @@ FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
     return m;
 }
 
-// At a place in the tube; `size`: as flameLookup's.
+// Medium at a place in the tube; size: as flameLookup's.
 FlameMedium placeMedium(FlameRecord f, FlamePlace at, float size) {
     return lookMedium(f, flameLookup(f, at, size));
 }
 
-// At t m along the ray.
+// Medium at t m along the ray.
 FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
     float u = (t - tube.chord.from) / max(tube.chord.gap, 1e-9);
     FlameLookup look = flameLookup(f, flameAlong(tube.first, tube.delta, u), size);
@@ -60,7 +58,7 @@ FlameMedium rayMedium(FlameRecord f, RayTube tube, float t, float size) {
     return lookMedium(f, look);
 }
 
-// Tints are what they are.
+// White balance; tints keep their colour.
 vec3 flameWhite(FlameRecord f, float emissionScale) {
     return mix(kFireWhite, vec3(1.0), f.tint.w) * (kVolumeWhite * max(emissionScale, 1e-6));
 }
@@ -68,21 +66,44 @@ vec3 flameWhite(FlameRecord f, float emissionScale) {
 vec3 flameAir(vec3 sky, vec3 ground, vec3 white) { return 0.5 * (sky + ground) / white; }
 
 // Needs `view`.
+struct ViewRay {
+    vec3 from, direction;
+    float perDepth;   // m along the ray per m along the view
+    float perMetre;   // footprint growth of a pixel of width 1 along the ray; 0: orthographic
+};
+ViewRay viewRay(vec3 way) {
+    bool perspective = view.forward.w > 0.5;
+    vec3 along = perspective ? way : view.forward.xyz;
+    ViewRay ray;
+    ray.from = view.eye.xyz + (perspective ? vec3(0.0) : way);
+    ray.perDepth = length(along);
+    ray.direction = along / ray.perDepth;
+    ray.perMetre = perspective ? 1.0 / ray.perDepth : 0.0;
+    return ray;
+}
+
+// Makes branches depend on `zero`, which is 0 but not constant: a software device recompiles a shader, in milliseconds
+// per draw, for each set of constants that alone decide its branches.
+void addZero(inout FlameRecord f, uint zero) {
+    f.octaves |= zero;
+    f.tint.w += float(zero);
+    f.smoke += float(zero);
+    f.puff += float(zero);
+}
 FlameSun raySun(vec3 direction, vec3 white) {
     return flameSun(FW_FLAME_NODE(kFlameNodes - 1u), view.sunDirection.xyz, direction, 0.3 * view.sunColor.rgb / white);
 }
 
-// Premultiplied, as it is shown; `scattered`: what of the light is smoke's.
+// Premultiplied, encoded; scattered: the smoke's share of the light.
 vec4 flameShown(FlameRay ray, vec3 scattered, vec3 white, uint encoding) {
     float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
     vec3 color = ray.radiance * white;
     if (encoding != 0u) {
-        // Blending happens on what is shown. Smoke is a thing with a colour; flame adds light, and
-        // a thin one must turn red, not grey.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
+        // not grey.
         vec3 grey = scattered * white;
         float cover = max(alpha, 1e-4);
-        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) +
-                encodeOutput(grey / cover, encoding) * cover;
+        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) + encodeOutput(grey / cover, encoding) * cover;
     }
     return vec4(min(color, vec3(60000.0)), alpha);
 }

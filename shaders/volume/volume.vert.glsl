@@ -1,6 +1,5 @@
 #version 450
-// One slab of a volumetric flame: the part of the view that its bounds cover, as two polygons: see volumeTest.
-// Instances go from the farthest slab to the nearest.
+// One slab of a volumetric flame: its screen bounds as two polygons, see volumeTest. Instances go from far to near.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
@@ -15,17 +14,17 @@ void main() {
     uint vertex = uint(gl_VertexIndex);
     uint slab = draw.slabs - 1u - uint(gl_InstanceIndex);
     float near = draw.front + draw.deep * float(slab);
-    // What is in front of all slabs, or behind them, belongs to the outermost.
+    // The outermost slabs include everything beyond.
     outSlab.x = slab == 0u ? -1e9 : near;
     outSlab.y = gl_InstanceIndex == 0 ? 1e9 : near + draw.deep;
-    vec4 over = vec4(volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.xy),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.zy),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.zw),
-                     volumeOver(draw.base, draw.clip, near, draw.deep, draw.rect.xw));
+    vec4 over = vec4(baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.xy),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zy),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zw),
+                     baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.xw));
     vec2 place = mix(draw.rect.xy, draw.rect.zw, volumeSplit(over, vertex));
     outRay = draw.rayO.xyz + place.x * draw.rayX.xyz + place.y * draw.rayY.xyz;
     outZero = vertex >> 31u;
     outBase = volumeBaseDepth(draw.base, place);
-    float depth = volumeTested(volumeTest(draw.base, draw.clip, near, draw.deep, place));
+    float depth = testedDepth(volumeTest(draw.base, draw.clip, near, draw.deep, place));
     gl_Position = vec4(place, depth, 1.0);
 }

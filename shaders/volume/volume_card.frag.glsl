@@ -1,7 +1,6 @@
 #version 450
-// A volumetric flame's card at a pixel: the mean of what it has of the pixel's square, so that its
-// light is the flame's however small it is. Where the host's depth can be read, what lies before it; else
-// what lies on the flame's side of the plane through its base.
+// A flame's billboard impostor at a pixel: its mean over the pixel's square, so a small impostor keeps its light. With
+// the host's depth: what lies in front of it, else what lies on the flame's side of the base plane.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -25,16 +24,16 @@ layout(location = 0) out vec4 outColor;
 
 void main() {
     outColor = vec4(0.0);
-    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
 #ifdef FW_SOFT
     float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
 #else
-    float cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
+    float cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     vec2 low = inCell - inHalf, high = inCell + inHalf;
     ivec2 first = ivec2(floor(low));
     vec4 color = vec4(0.0);
-    // As many turns for all pixels: cells beyond have no part in them.
+    // The same number of iterations for all pixels; cells outside have weight 0.
     for (int j = 0; j < inTaps.y; ++j) {
         int y = first.y + j;
         float tall = clamp(min(high.y, float(y + 1)) - max(low.y, float(y)), 0.0, 1.0);
@@ -46,9 +45,9 @@ void main() {
             if (x < 0 || x >= inTaps.z) weight = 0.0;
             uvec4 cell = cellAt(draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
 #ifdef FW_SOFT
-            weight *= volumeNearer(cell.z, cut);
+            weight *= slabShareNearer(cell.z, cut);
 #else
-            // Cells that are parts of a pixel have bases of their own.
+            // March pixels smaller than a pixel have bases of their own.
             weight *= max(volumeBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
 #endif
             color += weight * cellColor(cell);

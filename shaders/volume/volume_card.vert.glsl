@@ -1,15 +1,14 @@
 #version 450
-// A volumetric flame's card: what was marched of it, or of one that is like it, facing the camera,
-// as large as it is now.
+// A flame's billboard impostor: a previous march of it, or of a similar flame, facing the camera at its current size.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
 layout(push_constant) uniform Push { VolumeCard draw; };
 
 layout(location = 0) centroid out vec2 outCell;
-layout(location = 1) flat out vec2 outSlab;    // m along the view: from; 1/m: its depth
-layout(location = 2) flat out ivec4 outTaps;   // cells around a pixel, then all
-layout(location = 3) flat out vec2 outHalf;    // cells, of what a pixel averages
+layout(location = 1) flat out vec2 outSlab;    // m along the view: near distance; 1/m: depth
+layout(location = 2) flat out ivec4 outTaps;   // march pixels around a pixel, then all
+layout(location = 3) flat out vec2 outHalf;    // march pixels, half the averaged square
 layout(location = 4) flat out vec2 outShows;
 layout(location = 5) centroid out vec2 outBase;  // as volume_composite's
 
@@ -19,8 +18,8 @@ vec2 placeOf(vec2 cell) {
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
-    int zero = int(vertex >> 31u);  // not a constant, see volume.frag
-    // As wide as whole pixels, so that each cell counts alike, and as a cell at least.
+    int zero = int(vertex >> 31u);  // not constant, see volume_march
+    // A multiple of whole pixels, so all march pixels count alike, and at least one march pixel.
     vec2 perPixel = vec2(draw.perX, draw.perY);
     outHalf = 0.5 * perPixel * ceil(max(1.0 / perPixel, 1.0));
     ivec2 cells = ivec2(draw.tilesX, draw.tilesY) * int(kVolumeTile);
@@ -28,13 +27,13 @@ void main() {
     outShows = vec2(draw.from, draw.to) + float(zero);
     outSlab = vec2(draw.front, 1.0 / draw.deep);
     vec2 low = -outHalf, high = vec2(cells) + outHalf;
-    vec4 over = vec4(volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(low)),
-                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
-                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
-                     volumeOver(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
+    vec4 over = vec4(baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(low)),
+                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
+                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
+                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
     outCell = mix(low, high, volumeSplit(over, vertex));
     vec2 place = placeOf(outCell);
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
-    float depth = volumeTested(volumeTest(draw.base, draw.clip, draw.front, draw.deep, place));
+    float depth = testedDepth(volumeTest(draw.base, draw.clip, draw.front, draw.deep, place));
     gl_Position = vec4(place, depth, 1.0);
 }

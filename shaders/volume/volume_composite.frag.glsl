@@ -1,8 +1,7 @@
 #version 450
-// A slab of a marched flame at a pixel: the nearest nine cells, so weighed that the four places at
-// which neighbours' samples begin count alike; of a small flame all that lie in it. Where the host's
-// depth can be read, of each what of its light lies before it; else what lies on the flame's side of the
-// plane through its base, for light of cells beside the pixel reaches beyond that.
+// A slab of a marched flame at a pixel: the nearest nine march pixels, weighted so that the four sample phases count
+// alike; for a small flame all that lie in the pixel. With the host's depth: light in front of it, else light on the
+// flame's side of the base plane, which light of neighbouring march pixels would cross.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -25,18 +24,18 @@ layout(location = 0) out vec4 outColor;
 #include "volume/scene_depth.glsl"
 #endif
 
-float cut = 0.0;  // slabs from this one's front to the scene, or to the base
+float cut = 0.0;  // slabs from this slab's front to the scene, or to the base
 
-// A cell counts as much as the slabs before this one let through of it: the mean of that is what they
-// let through of a pixel as they are drawn, so slabs neither lose nor make light.
+// A march pixel is weighted by the transmittance of the slabs in front: its mean is what they let through when drawn,
+// so slabs neither lose nor create light.
 void add(uint at, float weight, inout vec4 color, inout float through) {
     uvec4 cell = cellAt(at);
-    weight *= volumeThrough(cell.z);
+    weight *= slabTransmittance(cell.z);
     through += weight;
 #ifdef FW_SOFT
-    weight *= volumeNearer(cell.z, cut);
+    weight *= slabShareNearer(cell.z, cut);
 #else
-    // Cells that are parts of a pixel have bases of their own, and none is a neighbour's.
+    // March pixels smaller than a pixel have bases of their own.
     weight *= inPerPixel > 1u ? 1.0 : volumeBeside(cell.z, cut, inBase.y);
 #endif
     color += weight * cellColor(cell);
@@ -45,14 +44,14 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
 void main() {
     outColor = vec4(0.0);
     bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
-    if (elsewhere || !volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0;
 #ifdef FW_SOFT
     cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
 #else
-    cut = (volumeMetres(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
+    cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
 #endif
     if (inPerPixel > 1u) {
         uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;

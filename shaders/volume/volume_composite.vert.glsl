@@ -1,6 +1,5 @@
 #version 450
-// A marched flame's tiles that show anything, slab by slab from the farthest to the nearest, each
-// at its slab's depth.
+// A marched flame's visible tiles, slab by slab from far to near, each at its slab's depth.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -9,9 +8,9 @@ layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { ui
 layout(push_constant) uniform Push { VolumeComposite draw; };
 
 layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first
-layout(location = 1) flat out uint outWords;  // the slab's first
-layout(location = 2) flat out vec2 outSlab;   // m along the view: from; 1/m: its depth
-layout(location = 3) flat out ivec4 outCells; // first and last that there are
+layout(location = 1) flat out uint outWords;  // first of the slab
+layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance; 1/m: depth
+layout(location = 3) flat out ivec4 outCells; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
 layout(location = 6) centroid out vec2 outBase;  // clip z / w of the plane through the base; VolumeDraw::base.w
@@ -21,14 +20,13 @@ void main() {
     uint quad = vertex / 6u, corner = vertex % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
     uint tiles = draw.tilesX * draw.tilesY;
-    uint listed = volumeQuotient(quad, draw.slabs);
-    uint tile = rays[draw.flags + kVolumeList * tiles + listed];
+    uint listed = quotient22(quad, draw.slabs);
+    uint tile = rays[draw.flags + kMarchTileList * tiles + listed];
     uint slab = draw.slabs - 1u - (quad - listed * draw.slabs);
-    uint row = volumeQuotient(tile, draw.tilesX);
+    uint row = quotient22(tile, draw.tilesX);
     ivec2 at = ivec2(tile - row * draw.tilesX, row);
-    // Cells around a tile reach a little into it: those of its neighbours' nearest rows and columns.
-    // Of small flames each pixel has its own.
-    // Neighbours that were not marched have none, and nothing is near them.
+    // Filters at a tile's edge read the nearest rows and columns of its neighbours; unmarched neighbours contain
+    // nothing. A small flame's pixels read their own tile only.
     uint lit = 0u;
     ivec4 reach = ivec4(-1, -1, 1, 1);
     FW_UNROLL
@@ -38,12 +36,12 @@ void main() {
             ivec2 near = at + ivec2(x, y);
             bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
             uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
-            bool is = inside && rays[of + kVolumeListed * tiles] != 0u;
+            bool is = inside && rays[of + kMarchTileListed * tiles] != 0u;
             uint there = rays[of], edges = there >> kVolumeSlabs;
             bool touches = (x == 0 || (edges & (x < 0 ? 2u : 1u)) != 0u) &&
                            (y == 0 || (edges & (y < 0 ? 8u : 4u)) != 0u);
             lit |= is && touches && (draw.perPixel == 0u || (x == 0 && y == 0)) ? there : 0u;
-            // Beyond the corner of a flame's cells are none to be read.
+            // Beyond a corner of the flame nothing is read.
             bool may = is || (x != 0 && y != 0 && !inside);
             if (x < 0) reach.x = may ? reach.x : 0;
             if (x > 0) reach.z = may ? reach.z : 0;
@@ -57,11 +55,11 @@ void main() {
     uint cells = tiles * kVolumeTile * kVolumeTile;
     outWords = draw.samples + kVolumeCellWords * cells * slab;
     float front = draw.front + draw.deep * float(slab);
-    outPerPixel = draw.perPixel | (vertex >> 31u);  // not a constant, see volume.frag
+    outPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
     outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
-    float depth = volumeTested(volumeTest(draw.base, draw.clip, front, draw.deep, place));
+    float depth = testedDepth(volumeTest(draw.base, draw.clip, front, draw.deep, place));
     gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }

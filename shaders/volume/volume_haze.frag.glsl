@@ -1,6 +1,6 @@
 #version 450
-// Heat haze: the host's scene as it is seen through a volumetric flame's hot column. A pixel shows what
-// its bent ray meets; of that nothing that stands before the column, so no foreground smears into it.
+// Heat haze: the host's scene refracted by a volumetric flame's hot column. A pixel shows where its bent ray arrives,
+// without objects in front of the column, so no foreground smears.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -18,10 +18,10 @@ layout(location = 0) out vec4 outColor;
 
 #include "volume/scene_depth.glsl"
 
-const float kFarthest = 1000.0;  // m behind the column: what is farther moves no more
-const float kSeen = 0.25;        // px of shift from which a pixel is all bent
+const float kFarthest = 1000.0;  // m behind the column: beyond, displacement is constant
+const float kSeen = 0.25;        // px of displacement at full opacity
 
-// px of the view.
+// Position in pixels of the view.
 vec2 pixelOf(vec3 fromEye) {
     vec4 clip = fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
     return 0.5 * clip.xy / clip.w * view.viewport.zw;
@@ -29,7 +29,7 @@ vec2 pixelOf(vec3 fromEye) {
 
 void main() {
     outColor = vec4(0.0);
-    float perspective = view.forward.w;  // weighed with, not branched on, see ARCHITECTURE.md
+    float perspective = view.forward.w;  // a weight instead of a branch, see ARCHITECTURE.md
     vec3 start = inRay * (1.0 - perspective);
     vec3 way = mix(view.forward.xyz, inRay, perspective);
     float perDepth = length(way), away = inBend.w;
@@ -40,7 +40,7 @@ void main() {
     float pixels = length(shift);
     shift *= min(kHazePixels / max(pixels, 1e-6), 1.0);
 
-    // The four around it, but none that stands before the column.
+    // Bilinear without texels in front of the column.
     vec2 corner = min(view.viewport.xy, view.viewport.xy + view.viewport.zw);
     ivec2 low = ivec2(max(corner, vec2(0.0)));
     ivec2 high = min(ivec2(corner + abs(view.viewport.zw)), textureSize(sceneColor, 0)) - 1;

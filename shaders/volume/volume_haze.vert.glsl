@@ -1,6 +1,6 @@
 #version 450
-// The part of the view that a volumetric flame's hot column covers, as a grid: eddies are wider than its
-// cells, so what they bend is known at corners, and a pixel has it from there.
+// Screen bounds of a volumetric flame's hot column as a grid: eddies are wider than its cells, so refraction is
+// evaluated at corners and interpolated.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -12,19 +12,19 @@ layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame 
 layout(push_constant) uniform Push { VolumeHaze draw; };
 
 layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
-layout(location = 1) centroid out vec4 outBend;  // how it is bent, per m behind the column; m along the ray to that
+layout(location = 1) centroid out vec4 outBend;  // deflection per m behind the column; m along the ray to the column
 
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_march.h"
 
-struct Passing {  // where a ray passes the column's axis
+struct Passing {  // closest point of a ray to the column's axis
     FlamePlace at;
     float away;   // m along the ray
     vec3 side, along;
-    float open;   // [0, 1]: 0 beyond where a wall or a ceiling holds the gas up
+    float open;   // [0, 1]: 0 beyond a wall or ceiling that holds the gas up
 };
 
-// By distance in half widths of the plume: of a curve that comes back the part that covers more.
+// By distance in half widths of the plume: where the curve loops, the part that covers more.
 Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
     float least = 1e30, part = 0.0, open = 1.0, openThere = 1.0;
     uint piece = 0u;
@@ -36,7 +36,7 @@ Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
         vec3 way = b.xyz - a.xyz, to = a.xyz - from;
         to -= direction * dot(to, direction);
         way -= direction * dot(way, direction);
-        // The last piece goes straight on to where the column ends.
+        // The last piece is extended to the end of the column.
         float most = k + 1u < kFlamePieces ? 1.0 : max((kHazeTop * f.high.w - s) / max(long_, 1e-6), 1.0);
         float u = clamp(-dot(to, way) / max(dot(way, way), 1e-9), 0.0, most);
         vec3 off = to + u * way;
@@ -77,7 +77,7 @@ void main() {
     vec3 haze = flameHaze(f, pass.at);
     vec3 bend = haze.x * pass.side + haze.y * pass.along + haze.z * cross(pass.along, pass.side);
     bend -= direction * dot(bend, direction);
-    // Around the eye the column has no one place.
+    // No refraction around the camera, which is inside the column.
     bend *= draw.strength * pass.open * clamp(pass.away / flamePlumeWide(f, pass.at.s), 0.0, 1.0);
     outBend = vec4(bend, pass.away);
 }

@@ -1,9 +1,8 @@
 #version 450
-// A volumetric flame's rays in cells of a few pixels, each of them once and whole, and kept slab by
-// slab: what a slab adds does not depend on the scene, so the scene's depth, which is known later
-// and for each pixel, chooses among slabs. A workgroup is a tile that volume_probe listed.
-// FW_SMOKE: volume_smoke, for flames that smoke. A device that does not skip branches would pay for
-// a sixth of that march where none does.
+// March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a slab's contribution
+// does not depend on the scene, whose depth is known later per pixel and selects slabs. A workgroup is a tile listed by
+// volume_probe. FW_SMOKE (volume_smoke): with smoke, which would cost a sixth of the march on devices that do not skip
+// branches.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -22,86 +21,76 @@ layout(push_constant) uniform Push { VolumeMarch march; };
 
 FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 
-// Keeps what slab `s` adds to what is shown without it and those behind it; `where`: light, and
-// its first and second moment over the slab. What is shown of any number of nearest slabs is then
-// exactly what one ray to there would show; and how much of them those before it let through, which
-// is what a cell weighs beside its neighbours.
+// Stores what slab `s` adds to the light without it and those behind; where_: light, and its first and second moment in
+// the slab. The nearest slabs then compose to exactly what one ray would show. Also stores the transmittance in front,
+// which is the march pixel's weight among its neighbours.
 vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float left = 1.0 / max(1.0 - before.a, 1e-4);
     vec4 color = max((shown - before) * left, 0.0);
     float middle = where_.y / max(where_.x, 1e-20);
-    // As wide as something even with that spread.
+    // Half width of a uniform range with that variance.
     float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
-    half_ = min(half_, min(middle, 1.0 - middle));  // in the slab, about the same middle
+    half_ = min(half_, min(middle, 1.0 - middle));  // within the slab, around the same middle
     vec2 reach = vec2(middle - half_, middle + half_);
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
-    rays[at + 2u] = volumeLies(reach, 1.0 - before.a);
+    rays[at + 2u] = packSlabRange(reach, 1.0 - before.a);
     return color;
 }
 
 void nothing(uint s, uint cell, float through) {
     uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
     rays[at] = rays[at + 1u] = 0u;
-    rays[at + 2u] = volumeLies(vec2(0.0, 1.0), through);
+    rays[at + 2u] = packSlabRange(vec2(0.0, 1.0), through);
 }
 
 bool shows(vec4 color) { return max(max(color.r, color.g), max(color.b, color.a)) > 1e-4; }
 
 void main() {
     FlameRecord f = flame.record;
-    // Zero. A software device compiles a shader anew, in milliseconds a dispatch, for each set of
-    // constants that alone decide its branches.
     uint zero = gl_GlobalInvocationID.x >> 31u;
-    f.octaves |= zero;
-    f.tint.w += float(zero);
-    f.smoke += float(zero);
-    f.puff += float(zero);
+    addZero(f, zero);
     uint tiles = march.cells / (kVolumeTile * kVolumeTile);
-    uint tile = rays[march.tiles + kVolumeList * tiles + gl_WorkGroupID.x];
+    uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;
-    // Those that go together are a quarter of the tile, or half of one: they turn as often.
+    // Lanes of a quarter, or half, of the tile run the same number of iterations.
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 2u) & 4u), ((lane >> 2u) & 3u) | ((lane >> 3u) & 4u));
-    uint quarter = volumeQuarter(in_.x / kVolumeQuarter, in_.y / kVolumeQuarter);
-    // Of all samples along the view those from `begin` to `end`.
-    uint begin = all - rays[march.tiles + (kVolumeBegins + quarter) * tiles + tile];
-    uint end = max(rays[march.tiles + (kVolumeEnds + quarter) * tiles + tile], 1u) - 1u;
+    uint quarter = marchQuarter(in_.x / kMarchQuarterSide, in_.y / kMarchQuarterSide);
+    // Samples from `begin` to `end` along the view.
+    uint begin = all - rays[march.tiles + (kMarchQuarterBegins + quarter) * tiles + tile];
+    uint end = max(rays[march.tiles + (kMarchQuarterEnds + quarter) * tiles + tile], 1u) - 1u;
     bool burns = begin < end;
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
 
     uint closer = burns ? volumeCloser(end - begin, march.least) : 1u;
-    // Closer samples begin and end closer to what the probe has seen.
+    // Finer samples start and end closer to the probe's range.
     begin = begin * closer + (begin > 0u ? closer / 2u : 0u);
     end = end * closer - (end < all ? closer / 2u : 0u);
     all *= closer;
     turns *= closer;
 
-    uint row = volumeQuotient(tile, march.tilesX);
+    uint row = quotient22(tile, march.tilesX);
     uvec2 place = uvec2(tile - row * march.tilesX, row) * kVolumeTile + in_;
     uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
     place += uvec2(march.originX, march.originY);
     vec2 at_ = vec2(place) + (march.perPixel > 1u ? volumeShift(place.x, place.y) : vec2(0.0));
-    vec3 ray = march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz;
-    bool perspective = view.forward.w > 0.5;
-    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : ray);
-    vec3 along = perspective ? ray : view.forward.xyz;
-    float perDepth = length(along);  // m along the ray per m along the view
-    vec3 direction = along / perDepth;
+    ViewRay way = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
+    vec3 from = way.from, direction = way.direction;
+    float perDepth = way.perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     float phase = volumePhase(place.x, place.y);
-    float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
+    float pixel = march.rayX.w * way.perMetre;
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
-    float size = 0.35 * stride;  // of all alike, or it would be seen where they get closer
+    float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
     stride /= float(closer);
-    // The curve is looked up as often as it is over the whole of the flame.
-    uint intervals = min(volumeQuotient(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
-    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
-                           direction, intervals);
+    // As many knots per metre as over the whole flame.
+    uint intervals = min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
+    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from, direction, intervals);
 
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
 #ifdef FW_SMOKE
@@ -122,18 +111,18 @@ void main() {
 #endif
 
     vec3 lit = white * view.sunDirection.w;
-    uint encoding = march.encoding | zero, last = volumeQuotient(end - 1u, turns), bits = 0u;
+    uint encoding = march.encoding | zero, last = quotient22(end - 1u, turns), bits = 0u;
     FlameRay one = smoke.front;
     vec3 scattered = one.radiance;
     vec4 before = vec4(0.0);
-    uint s = volumeQuotient(begin, turns), k = begin;
+    uint s = quotient22(begin, turns), k = begin;
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
         for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);
         bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float length_ = burns ? stride : 0.0;
-    // Every loop turns as often for all of a quarter: those that end apart end late on a software device.
+    // Every loop has the same length for all lanes of a quarter: divergent loops are slow on a software device.
     do {
         uint to = min((s + 1u) * turns, end);
         vec3 where_ = vec3(0.0);
@@ -166,7 +155,7 @@ void main() {
                     ? 1u << (slabs - 1u) : 0u;
     }
 
-    // In the tile; in its first and last column, first and last row.
+    // First and last column, first and last row of the tile.
     uint edges = (in_.x == 0u ? 1u : 0u) | (in_.x == kVolumeTile - 1u ? 2u : 0u) |
                  (in_.y == 0u ? 4u : 0u) | (in_.y == kVolumeTile - 1u ? 8u : 0u);
     if (bits != 0u) atomicOr(rays[march.tiles + tile], bits | (edges << kVolumeSlabs));

@@ -1,7 +1,6 @@
 #version 450
-// Where a volumetric flame shows anything, before it is marched: rays a few cells apart, and what
-// they meet or nearly meet. Lists the tiles that are worth a march, each with the samples
-// that are.
+// Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart, with a margin around
+// what they meet. Lists the tiles to march, each with its range of samples.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -19,28 +18,23 @@ layout(push_constant) uniform Push { VolumeMarch march; };
 #include "lib/colour.glsl"
 #include "volume/ray.glsl"
 
-// So far beyond what is shown things still count, in rho and in y: between two rays there is more.
+// Margin in rho and y for detail between two rays.
 const float kNearly = 0.08;
 
 void main() {
     FlameRecord f = flame.record;
-    uint zero = gl_GlobalInvocationID.x >> 31u;  // see volume_march
-    f.octaves |= zero;
-    f.smoke += float(zero);
-    f.puff += float(zero);
+    uint zero = gl_GlobalInvocationID.x >> 31u;
+    addZero(f, zero);
     uint tilesY = march.cells / (kVolumeTile * kVolumeTile * march.tilesX);
     uint blocksX = volumeProbeBlocks(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
-    uint row = volumeQuotient(gl_WorkGroupID.x, blocksX);
+    uint row = quotient22(gl_WorkGroupID.x, blocksX);
     uvec2 probe = uvec2(gl_WorkGroupID.x - row * blocksX, row) * 8u + in_;
     vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
-    vec3 ray = march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz;
-    bool perspective = view.forward.w > 0.5;
-    vec3 from = view.eye.xyz + (perspective ? vec3(0.0) : ray);
-    vec3 along = perspective ? ray : view.forward.xyz;
-    float perDepth = length(along);
-    vec3 direction = along / perDepth;
+    ViewRay way = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
+    vec3 from = way.from, direction = way.direction;
+    float perDepth = way.perDepth;
 
     vec4 spans = flameSpans(f, from, direction);
     RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
@@ -50,14 +44,13 @@ void main() {
     vec2 ends = tube.chord.from + tube.chord.gap * vec2(tube.chord.first, tube.chord.last);
     float k = clamp(floor((ends.x - first) / stride), 0.0, most);
     float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, most) : 0.0;
-    float pixel = march.rayX.w * (perspective ? 1.0 / perDepth : 0.0);
+    float pixel = march.rayX.w * way.perMetre;
     float nearest = 1e9, farthest = -1.0;
     while (k < last) {
         float t = first + stride * (k + 0.5);
-        FlamePlace at =
-            flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
+        FlamePlace at = flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
         FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
-        // Here, and a little nearer to the axis and the base.
+        // Here, and slightly closer to the axis and the base.
         vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(look.rho, look.y);
         vec2 low = 0.5 / vec2(float(kProfileWidth), float(kProfileHeight));
         vec3 there = vec3(clamp(here * scale, low, 1.0 - low), float(f.profile));
@@ -71,7 +64,7 @@ void main() {
         farthest = shows ? k : farthest;
         k += 1.0;
     }
-    // Smoke: its plume, whatever its billows are.
+    // Smoke counts by its plume, without billows.
     bool smokes = false;
     if (f.smoke > 0.0) {
         k = 0.0;
@@ -91,18 +84,18 @@ void main() {
     uint end = 1u + (fire ? uint(min(farthest + 2.0, most)) : 0u);
     uint begin = fire ? uint(most - max(nearest - 1.0, 0.0)) : 0u;
     uint tiles = march.cells / (kVolumeTile * kVolumeTile);
-    if (all(lessThan(at, kVolumeQuarter * uvec2(quarters))) && (fire || smokes)) {
-        // For its own quarter of a tile and the eight around it.
+    if (all(lessThan(at, kMarchQuarterSide * uvec2(quarters))) && (fire || smokes)) {
+        // Its own quarter tile and the eight around it.
         for (uint j = 0u; j < 9u; ++j) {
-            ivec2 it = ivec2(at / kVolumeQuarter) + ivec2(j % 3u, j / 3u) - 1;
+            ivec2 it = ivec2(at / kMarchQuarterSide) + ivec2(j % 3u, j / 3u) - 1;
             if (any(lessThan(it, ivec2(0))) || any(greaterThanEqual(it, quarters))) continue;
             uint t = uint(it.y / 2) * march.tilesX + uint(it.x / 2);
-            uint quarter = volumeQuarter(uint(it.x), uint(it.y));
-            atomicMax(rays[march.tiles + (kVolumeBegins + quarter) * tiles + t], begin);
-            atomicMax(rays[march.tiles + (kVolumeEnds + quarter) * tiles + t], end);
-            if (atomicOr(rays[march.tiles + kVolumeListed * tiles + t], 1u) == 0u) {
+            uint quarter = marchQuarter(uint(it.x), uint(it.y));
+            atomicMax(rays[march.tiles + (kMarchQuarterBegins + quarter) * tiles + t], begin);
+            atomicMax(rays[march.tiles + (kMarchQuarterEnds + quarter) * tiles + t], end);
+            if (atomicOr(rays[march.tiles + kMarchTileListed * tiles + t], 1u) == 0u) {
                 uint place_ = atomicAdd(work[march.flame].groups, 1u);
-                rays[march.tiles + kVolumeList * tiles + place_] = t;
+                rays[march.tiles + kMarchTileList * tiles + place_] = t;
                 atomicAdd(work[march.flame].vertices, 6u * march.slabs);
                 work[march.flame].groupsY = work[march.flame].groupsZ = 1u;
                 work[march.flame].instances = 1u;

@@ -1,6 +1,6 @@
 #version 450
-// A slice of a volumetric flame's lattice: one sample, which stands for the flame as deep as slices are
-// apart along its ray, so that how many there are does not change how bright it is. Premultiplied.
+// A slice of a volumetric flame's lattice: one sample, weighted by the slice spacing along its ray, so brightness does
+// not depend on the number of slices. Premultiplied.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -30,12 +30,9 @@ layout(location = 0) out vec4 outColor;
 
 void main() {
     outColor = vec4(0.0);
-    if (!volumeTurned(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     FlameRecord f = flame.record;
-    f.octaves |= inZero;
-    f.tint.w += float(inZero);
-    f.smoke += float(inZero);
-    f.puff += float(inZero);
+    addZero(f, inZero);
     bool perspective = view.forward.w > 0.5;
     float away = length(inOff);
     float perDepth = perspective ? away / max(inDepth, 1e-6) : 1.0;
@@ -44,7 +41,7 @@ void main() {
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     float stride = draw.spacing * perDepth;
     float pixel = view.eye.w * (perspective ? inDepth : 1.0);
-    // Somewhere in the slice's part, another place for each pixel of four: no layers show.
+    // Sampled at a random depth in the slice, different among four pixels, to hide layers.
     float later = draw.spacing * (volumePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
     vec4 place = inPlace + later * inSlope;
     FlamePlace at;
@@ -64,9 +61,8 @@ void main() {
 #endif
     FlameRay one = flameStep(FlameRay(vec3(0.0), vec3(1.0)), m, light, stride * part);
     outColor = flameShown(one, vec3(0.0), white * view.sunDirection.w, kEncoding);
-    // It hides what is behind it by one number for all colours: half by what it takes of light like its
-    // own, for that is what is behind it most of all, and half by what it takes of white, for that is what
-    // the whole of them hides of a scene.
+    // One coverage for all channels: half by its absorption of light of its own colour, which dominates what is behind,
+    // and half by its absorption of white, for the scene.
     const vec3 seen = vec3(0.2126, 0.7152, 0.0722);
     vec3 lit = seen * one.radiance;
     float all = lit.r + lit.g + lit.b;

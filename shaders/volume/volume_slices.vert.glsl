@@ -1,6 +1,6 @@
 #version 450
-// The sliced lattice of a volumetric flame: an instance is a plane across the view, the farthest first,
-// and of each piece of the lattice it holds the polygon that the plane cuts out of it.
+// Sliced lattice of a volumetric flame: an instance is a plane across the view, far to near; it contains the polygon
+// that the plane cuts out of each lattice piece.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -14,7 +14,7 @@ layout(push_constant) uniform Push { VolumeSlices draw; };
 #include "shared/volume_slices.h"
 
 layout(location = 0) centroid out vec4 outPlace;        // m: off the axis, along it, the tube's radius
-layout(location = 1) centroid out vec3 outOff;          // m, from the eye
+layout(location = 1) centroid out vec3 outOff;          // m, relative to the camera
 layout(location = 2) flat out vec2 outShows;
 layout(location = 3) flat out float outDepth;  // m along the view
 layout(location = 4) flat out uint outZero;
@@ -23,7 +23,7 @@ layout(location = 5) centroid out vec4 outSlope;        // of outPlace, per m al
 void main() {
     uint vertex = uint(gl_VertexIndex);
     uint piece = vertex / kSliceVertices;
-    uint zero = vertex >> 31u;  // not a constant, see volume.frag
+    uint zero = vertex >> 31u;  // not constant, see volume_march
     FlameRecord f = flame.record;
     f.smoke += float(zero);
     FlameNode a = FW_FLAME_NODE(flameNodeOf(piece));

@@ -1,5 +1,5 @@
-// What the ABI's tests share: a host that counts its memory and keeps its log, and small meshes.
-// Public headers only.
+// Shared by the ABI tests: a host that counts its memory and keeps its log, and small meshes.
+// Includes public headers only.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
@@ -19,9 +19,15 @@
 
 namespace host {
 
+using Bytes = std::vector<unsigned char>;
 using fw::test::addBurnable;
+using fw::test::created;
+using fw::test::getState;
+using fw::test::lastMessage;
+using fw::test::materialOf;
 
-// Memory and log of a host. Fails the `failAt`-th allocation and, if `failAlways`, all after it.
+// Memory and log of a host. Fails allocation number `failAt`; with `failAlways` also every later
+// one.
 struct Host {
     std::atomic<int64_t> bytes{0}, blocks{0}, allocations{0};
     int64_t failAt = -1;
@@ -62,18 +68,8 @@ struct Host {
     [[nodiscard]] FwCallbacks callbacks() { return {this, log, allocate, release}; }
 };
 
-inline std::string lastMessage(FwWorld* world) {
-    std::string text(fwWorld_GetLastMessage(world, nullptr, 0), '\0');
-    (void)fwWorld_GetLastMessage(world, text.data(), text.size() + 1);
-    return text;
-}
-inline std::string lastMessage(FwContext* context) {
-    std::string text(fwContext_GetLastMessage(context, nullptr, 0), '\0');
-    (void)fwContext_GetLastMessage(context, text.data(), text.size() + 1);
-    return text;
-}
-
-// Null where there is no such backend, which is a failure where a device is required.
+// Returns null if the backend is missing. A missing device fails the test where a device is
+// required.
 inline FwContext* createContext(Host& host, uint32_t backend) {
     FwContextDef def = fwDefaultContextDef();
     def.backend = backend;
@@ -81,13 +77,14 @@ inline FwContext* createContext(Host& host, uint32_t backend) {
     FwContext* context = nullptr;
     FwErrorInfo error{};
     if (fwCreateContext(&def, &context, &error) == FW_OK) return context;
-    if (backend == FW_BACKEND_CPU || std::getenv("FLAMEWRIGHT_REQUIRE_GPU"))
+    if (backend == FW_BACKEND_CPU || error.result != FW_ERROR_UNSUPPORTED_DEVICE ||
+        std::getenv("FLAMEWRIGHT_REQUIRE_GPU"))
         ADD_FAILURE() << error.message;
     return nullptr;
 }
 inline FwContext* createCpuContext(Host& host) { return createContext(host, FW_BACKEND_CPU); }
 
-// A flat sheet in the plane y = 0, cells x cells, with unique UVs.
+// A flat sheet in the plane y = 0 of cells x cells quads with unique UVs.
 struct Sheet {
     std::vector<float> positions, uvs;
     std::vector<uint32_t> indices;
@@ -132,87 +129,165 @@ inline FwMaterialDef evenMaterial(float spreadRate, float burnTime) {
     return def;
 }
 
-// A cpu world with one sheet in it.
-class SheetWorld {
- public:
-    explicit SheetWorld(const FwMaterialDef& material, float width = 1.0f, float depth = 0.25f,
-                        float texelsPerMetre = 64, const FwWorldDef& def = fwDefaultWorldDef())
-        : sheet(width, depth) {
-        context = createCpuContext(host);
-        EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
-        const FwMeshDef meshDef = sheet.def(texelsPerMetre);
-        EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh)) << lastMessage(world);
-        EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &material, &materialId))
-            << lastMessage(world);
-        object = add(7);
+// Fetches a requested answer. On a device it comes with a later frame, which may have deltaTime 0.
+template <class Fetch>
+void come(FwWorld* world, Fetch fetch) {
+    FwResult result = fetch();
+    for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
+        EXPECT_EQ(FW_OK, fwWorld_Step(world, 0)) << lastMessage(world);
+        result = fetch();
     }
-    SheetWorld(const SheetWorld&) = delete;
-    SheetWorld& operator=(const SheetWorld&) = delete;
-    ~SheetWorld() {
-        fwDestroyContext(context);  // and the world with it
+    EXPECT_EQ(FW_OK, result) << lastMessage(world);
+}
+inline Bytes saveOf(FwWorld* world) {
+    EXPECT_EQ(FW_OK, fwWorld_RequestSave(world)) << lastMessage(world);
+    uint64_t size = 0;
+    come(world, [&] { return fwWorld_FetchSave(world, nullptr, &size); });
+    Bytes bytes(size);
+    EXPECT_EQ(FW_OK, fwWorld_FetchSave(world, bytes.data(), &size)) << lastMessage(world);
+    return bytes;
+}
+
+// Hashes every texel of the objects, their heat and the tick.
+template <class Ids>
+uint64_t hashOf(FwWorld* world, const Ids& ids) {
+    uint64_t all = 0;
+    for (const FwBurnableMeshId id : ids)
+        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id)) << lastMessage(world);
+    for (const FwBurnableMeshId id : ids) {
+        uint64_t one = 0, tick = 0;
+        come(world,
+             [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
+        all = all * 31 + one + tick;
+    }
+    return all;
+}
+
+// A host with a context and a world, which are null without the backend. Fails if memory leaks.
+struct HostedWorld {
+    explicit HostedWorld(uint32_t backend, const FwWorldDef& def = fwDefaultWorldDef(),
+                         FwContext* given = nullptr)
+        : isCpu(backend == FW_BACKEND_CPU && !given),
+          context(given ? given : createContext(host, backend)) {
+        if (context) {
+            EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
+        }
+    }
+    HostedWorld(const HostedWorld&) = delete;
+    HostedWorld& operator=(const HostedWorld&) = delete;
+    ~HostedWorld() {
+        fwDestroyContext(context);  // destroys the world too
         EXPECT_EQ(0, host.blocks);
         EXPECT_EQ(0, host.bytes);
     }
 
-    FwBurnableMeshId add(uint64_t userData) {
-        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-        def.mesh = mesh;
-        def.materials[0] = materialId;
-        def.userData = userData;
-        FwBurnableMeshId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &id)) << lastMessage(world);
-        return id;
-    }
-    uint32_t ball(uint32_t kind, float x, float y, float z, float radius, float delay = 0) {
+    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
+    // Applies a ball to an object (null: to all); returns the reached texels.
+    uint32_t touch(uint32_t kind, FwBurnableMeshId id, float x, float y, float z, float radius,
+                   float delay = 0, FwResult* result = nullptr) {
         FwIgnitionDef def = fwDefaultIgnitionDef();
         def.kind = kind;
-        def.object = object;
+        def.object = id;
         def.position[0] = x;
         def.position[1] = y;
         def.position[2] = z;
         def.radius = radius;
         def.delay = delay;
         uint32_t texels = 0;
-        EXPECT_LE(FW_OK, fwWorld_Ignite(world, &def, &texels)) << lastMessage(world);
+        const FwResult got = fwWorld_Ignite(world, &def, &texels);
+        EXPECT_LE(FW_OK, got) << lastMessage(world);
+        if (result) *result = got;
         return texels;
     }
-    void run(double seconds, float deltaTime = 1.0f / 32.0f) {
+    // As touch, which must succeed and reach texels.
+    void touches(uint32_t kind, FwBurnableMeshId id, float x, float y, float z, float radius) {
+        FwResult result{};
+        EXPECT_LT(0u, touch(kind, id, x, y, z, radius, 0, &result));
+        ok(result);
+    }
+    void ignite(FwBurnableMeshId id, float x, float y, float z, float radius = 0.02f) {
+        touches(FW_IGNITE, id, x, y, z, radius);
+    }
+    void run(double seconds, float deltaTime = 1.0f / 32) {
         for (double t = 0; t < seconds - 1e-9; t += double(deltaTime))
             ASSERT_EQ(FW_OK, fwWorld_Step(world, deltaTime)) << lastMessage(world);
     }
-    std::vector<FwEvent> events() {
+    // An answer, which the cpu backend must have at once.
+    template <class Fetch>
+    void fetch(Fetch answer) {
+        if (isCpu)
+            ok(answer());
+        else
+            come(world, answer);
+    }
+    std::vector<FwEvent> poll() {
         std::vector<FwEvent> all(256);
         all.resize(fwWorld_PollEvents(world, all.data(), uint32_t(all.size())));
         return all;
     }
-    FwObjectState state() {
-        FwObjectState made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world, object, &made)) << lastMessage(world);
-        return made;
-    }
-    FwPointState point(float x, float y, float z) {
+    FwObjectState state(FwBurnableMeshId id) { return getState(fwWorld_GetObjectState, world, id); }
+    FwPointState point(FwBurnableMeshId id, float x, float y, float z) {
         const float position[3] = {x, y, z};
         FwQueryId query{};
-        EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world, object, position, &query))
-            << lastMessage(world);
+        ok(fwWorld_RequestPoint(world, id, position, &query));
         FwPointState made{};
         made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_FetchPoint(world, query, &made)) << lastMessage(world);
+        fetch([&] { return fwWorld_FetchPoint(world, query, &made); });
         return made;
     }
-    uint64_t hash(uint64_t* tick = nullptr) {
-        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, object)) << lastMessage(world);
+    uint64_t hash(FwBurnableMeshId id, uint64_t* tick = nullptr) {
+        ok(fwDebug_RequestBurnMap(world, id));
         uint64_t made = 0;
-        EXPECT_EQ(FW_OK, fwDebug_FetchBurnMap(world, object, nullptr, 0, nullptr, &made, tick))
-            << lastMessage(world);
+        fetch([&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &made, tick); });
         return made;
     }
 
+    const bool isCpu;
     Host host;
-    Sheet sheet;
     FwContext* context = nullptr;
     FwWorld* world = nullptr;
+};
+
+inline FwWorldDef pacedDef(float pace) {
+    FwWorldDef def = fwDefaultWorldDef();
+    def.paceFactor = pace;
+    return def;
+}
+inline FwWorldDef worldDef(uint32_t flags, float pace = 1, uint32_t maxSteps = 64) {
+    FwWorldDef def = fwDefaultWorldDef();
+    def.flags = flags;
+    def.paceFactor = pace;
+    def.maxStepsPerFrame = maxSteps;
+    return def;
+}
+
+// A cpu world with one sheet in it.
+class SheetWorld : public HostedWorld {
+ public:
+    explicit SheetWorld(const FwMaterialDef& material, float width = 1.0f, float depth = 0.25f,
+                        float texelsPerMetre = 64, const FwWorldDef& def = fwDefaultWorldDef())
+        : HostedWorld(FW_BACKEND_CPU, def),
+          sheet(width, depth),
+          mesh(created(fwWorld_CreateMesh, world, sheet.def(texelsPerMetre))),
+          materialId(created(fwWorld_CreateMaterial, world, material)),
+          object(add(7)) {}
+
+    FwBurnableMeshId add(uint64_t userData) {
+        FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
+        def.mesh = mesh;
+        def.materials[0] = materialId;
+        def.userData = userData;
+        return created(fwWorld_CreateBurnableMesh, world, def);
+    }
+    uint32_t ball(uint32_t kind, float x, float y, float z, float radius, float delay = 0) {
+        return touch(kind, object, x, y, z, radius, delay);
+    }
+    std::vector<FwEvent> events() { return poll(); }
+    FwObjectState state() { return HostedWorld::state(object); }
+    FwPointState point(float x, float y, float z) { return HostedWorld::point(object, x, y, z); }
+    uint64_t hash(uint64_t* tick = nullptr) { return HostedWorld::hash(object, tick); }
+
+    Sheet sheet;
     FwMeshId mesh{};
     FwMaterialId materialId{};
     FwBurnableMeshId object{};

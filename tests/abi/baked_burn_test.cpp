@@ -1,5 +1,5 @@
-// Baked burns: an object that plays one burns as the one did that was baked, with no front of its
-// own, on every backend alike; whoever disturbs it makes it live, and from then on it is simulated.
+// A baked burn replays a recorded fire front on every backend. Any disturbance switches the object
+// to live simulation.
 #include "abi/busy_world.h"
 
 #include <ctime>
@@ -10,23 +10,18 @@ namespace {
 
 using namespace host;
 
-struct Boards {  // of plywood, side by side; the first of each is the one that plays
+struct Boards : HostedWorld {  // plywood, side by side; the first of each pair plays the burn
     explicit Boards(uint32_t backend, uint32_t count = 1, uint32_t flags = 0, float gap = 3,
                     float width = 0.5f)
-        : sheet(width, 0.3f) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT;
-        def.paceFactor = 40;
-        def.maxStepsPerFrame = 64;
-        ok(fwCreateWorld(context, &def, &world));
+        : HostedWorld(backend,
+                      worldDef(FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT, 40)),
+          sheet(width, 0.3f) {
+        if (!world) return;
         FwBurnableMeshDef board = fwDefaultBurnableMeshDef();
         board.flags |= flags;
         const FwMeshDef meshDef = sheet.def(64);
         ok(fwWorld_CreateMesh(world, &meshDef, &board.mesh));
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PLYWOOD));
+        FwMaterialDef material = materialOf(FW_MATERIAL_PLYWOOD);
         ok(fwWorld_CreateMaterial(world, &material, &board.materials[0]));
         for (uint32_t i = 0; i < count; ++i) {
             board.transform[12] = float(i) * gap;
@@ -34,31 +29,13 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
             ok(fwWorld_CreateBurnableMesh(world, &board, &ids.back()));
         }
     }
-    ~Boards() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
-    Boards(const Boards&) = delete;
-    Boards& operator=(const Boards&) = delete;
-
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void touch(uint32_t kind, float x, float z, float radius = 0.02f, uint32_t which = 0) {
-        FwIgnitionDef ball = fwDefaultIgnitionDef();
-        ball.kind = kind;
-        ball.object = ids[which];
-        ball.position[0] = x;
-        ball.position[2] = z;
-        ball.radius = radius;
-        uint32_t texels = 0;
-        ok(fwWorld_Ignite(world, &ball, &texels));
-        EXPECT_LT(0u, texels);
+        touches(kind, ids[which], x, 0, z, radius);
     }
     void run(uint32_t steps, float deltaTime = 1.0f / 32) {
         for (uint32_t i = 0; i < steps; ++i) {
             ok(fwWorld_Step(world, deltaTime));
-            std::vector<FwEvent> some(64);
-            some.resize(fwWorld_PollEvents(world, some.data(), 64));
-            for (const FwEvent& event : some) ++heard[event.type];
+            for (const FwEvent& event : poll()) ++heard[event.type];
         }
     }
     Bytes bake(uint32_t which = 0) {
@@ -95,40 +72,27 @@ struct Boards {  // of plywood, side by side; the first of each is the one that 
         }
         return all;
     }
-    FwObjectState state(uint32_t which = 0) {
-        FwObjectState made{};
-        made.structSize = sizeof made;
-        ok(fwWorld_GetObjectState(world, ids[which], &made));
-        return made;
-    }
-    FwWorldStats stats() {
-        FwWorldStats made{};
-        made.structSize = sizeof made;
-        ok(fwWorld_GetStats(world, &made));
-        return made;
-    }
+    FwObjectState state(uint32_t which = 0) { return HostedWorld::state(ids[which]); }
+    FwWorldStats stats() { return getState(fwWorld_GetStats, world); }
     Bytes save() { return saveOf(world); }
     void expectRefused(FwResult expected, FwResult result, const char* says) {
         EXPECT_EQ(expected, result) << says;
         EXPECT_NE(std::string::npos, lastMessage(world).find(says)) << lastMessage(world);
     }
 
-    Host host;
     Sheet sheet;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     std::vector<FwBurnableMeshId> ids;
     std::map<uint32_t, int> heard;
 };
 
-constexpr uint32_t kNever = 0xFFFFFFFFu, kLiveEnd = 0xFFFFFFF0u;  // as ticks of burn maps
+constexpr uint32_t kNever = 0xFFFFFFFFu, kLiveEnd = 0xFFFFFFF0u;  // ticks of burn maps
 
 struct Baked {
     Bytes bytes;
-    std::vector<uint32_t> ticks;  // from the first on; kNever: it did not catch
+    std::vector<uint32_t> ticks;  // from the first step; kNever: the texel does not catch
     uint32_t lit = 0, last = 0;
 };
-// Of a board that burnt for some steps after it was lit at a corner.
+// The burn of a board that was lit at a corner, after `steps` steps.
 Baked bakeBoard(uint32_t steps, uint32_t flags = 0) {
     Boards boards(FW_BACKEND_CPU, 1, flags);
     boards.touch(FW_IGNITE, 0.05f, 0.05f);
@@ -144,9 +108,9 @@ Baked bakeBoard(uint32_t steps, uint32_t flags = 0) {
     }
     return baked;
 }
-constexpr uint32_t kSome = 130, kAll = 700;  // steps: a part of a board has burnt, all of it
+constexpr uint32_t kSome = 130, kAll = 700;  // steps: part of a board has burnt; all of it
 
-TEST(BakedBurn, CatchesWhenItWasBakedToAndRunsNoFront) {
+TEST(BakedBurn, CatchesAtBakedTicksWithoutAFront) {
     for (const uint32_t flags : {0u, uint32_t(FW_BURNABLE_LITE)}) {
         const Baked baked = bakeBoard(kAll, flags);
         Boards boards(FW_BACKEND_CPU, 1, flags);
@@ -176,7 +140,7 @@ TEST(BakedBurn, CatchesWhenItWasBakedToAndRunsNoFront) {
     }
 }
 
-TEST(BakedBurn, BurnsFuelAsASimulatedOneDoes) {
+TEST(BakedBurn, ConsumesFuelLikeASimulatedBurn) {
     Boards simulated(FW_BACKEND_CPU), played(FW_BACKEND_CPU);
     const Baked baked = bakeBoard(kAll);
     simulated.touch(FW_IGNITE, 0.05f, 0.05f);
@@ -188,8 +152,8 @@ TEST(BakedBurn, BurnsFuelAsASimulatedOneDoes) {
     EXPECT_NEAR(simulated.state().energy, played.state().energy, 0.02 * played.state().energy);
 }
 
-// Stopped midway, under the same wind: the front takes over where the burn would have gone.
-TEST(BakedBurn, GoesLiveWhereItWas) {
+// Interrupted halfway under the same wind, the front continues where the burn would have gone.
+TEST(BakedBurn, GoesLiveFromItsCurrentState) {
     const Baked baked = bakeBoard(kAll, FW_BURNABLE_LITE);
     Boards boards(FW_BACKEND_CPU, 1, FW_BURNABLE_LITE);
     boards.play(boards.give(baked.bytes));
@@ -206,7 +170,7 @@ TEST(BakedBurn, GoesLiveWhereItWas) {
         }
 }
 
-TEST(BakedBurn, PlaysFasterAndSlower) {
+TEST(BakedBurn, FollowsThePace) {
     const Baked baked = bakeBoard(kSome);
     for (const float speed : {0.5f, 3.0f}) {
         Boards boards(FW_BACKEND_CPU);
@@ -225,7 +189,7 @@ TEST(BakedBurn, PlaysFasterAndSlower) {
     }
 }
 
-TEST(BakedBurn, GoesOnBurningWhereItEnds) {
+TEST(BakedBurn, ContinuesLiveWhenTheBakedBurnEnds) {
     const Baked some = bakeBoard(kSome);
     ASSERT_LT(some.lit, some.ticks.size() / 2);
     Boards boards(FW_BACKEND_CPU);
@@ -235,7 +199,7 @@ TEST(BakedBurn, GoesOnBurningWhereItEnds) {
     EXPECT_GT(boards.state().ignited, some.lit * 2);
 }
 
-TEST(BakedBurn, ArrivalsAreTheBurns) {
+TEST(BakedBurn, PredictsBakedArrivals) {
     const Baked baked = bakeBoard(kAll);
     Boards boards(FW_BACKEND_CPU);
     boards.play(boards.give(baked.bytes));
@@ -244,14 +208,14 @@ TEST(BakedBurn, ArrivalsAreTheBurns) {
     const auto ask = [&] {
         FwQueryId query{};
         boards.ok(fwWorld_RequestArrival(boards.world, boards.ids[0], there, &query));
-        FwArrivalState told{};
-        told.structSize = sizeof told;
-        come(boards.world, [&] { return fwWorld_FetchArrival(boards.world, query, &told); });
-        return told;
+        FwArrivalState arrival{};
+        arrival.structSize = sizeof arrival;
+        come(boards.world, [&] { return fwWorld_FetchArrival(boards.world, query, &arrival); });
+        return arrival;
     };
-    const FwArrivalState told = ask();
-    EXPECT_EQ(uint32_t(FW_ARRIVAL_AHEAD), told.kind);
-    const auto steps = uint32_t(double(told.seconds) * 32);
+    const FwArrivalState arrival = ask();
+    EXPECT_EQ(uint32_t(FW_ARRIVAL_AHEAD), arrival.kind);
+    const auto steps = uint32_t(double(arrival.seconds) * 32);
     ASSERT_GT(steps, 32u);
     const auto kindOf = [&] {
         FwQueryId query{};
@@ -271,7 +235,7 @@ TEST(BakedBurn, ArrivalsAreTheBurns) {
 struct Disturbance {
     const char* name;
     void (*does)(Boards&);
-    uint32_t steps;  // within which it is live
+    uint32_t steps;  // steps within which it goes live
     bool disturbs = true;
 };
 void turnBy(Boards& boards, float angle, float x) {
@@ -293,7 +257,7 @@ const Disturbance kDisturbances[] = {
     {"turn", [](Boards& b) { turnBy(b, 1.2f, 0); }, 64},
     {"call", [](Boards& b) { b.ok(fwWorld_StopBurn(b.world, b.ids[0])); }, 2},
     {"others' heat",
-     [](Boards& b) {  // one burns close below
+     [](Boards& b) {  // another object burns close below
          const float at[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, -0.1f, 0, 1};
          b.ok(fwWorld_SetTransform(b.world, b.ids[1], at));
          FwIgnitionDef ball = fwDefaultIgnitionDef();
@@ -307,7 +271,7 @@ const Disturbance kDisturbances[] = {
     {"a move", [](Boards& b) { turnBy(b, 0, 0.1f); }, 64, false},
 };
 
-TEST(BakedBurn, WhoeverDisturbsItMakesItLive) {
+TEST(BakedBurn, GoesLiveWhenDisturbed) {
     const Baked baked = bakeBoard(kAll);
     for (const Disturbance& one : kDisturbances) {
         Boards boards(FW_BACKEND_CPU, 2);
@@ -327,8 +291,8 @@ TEST(BakedBurn, WhoeverDisturbsItMakesItLive) {
     }
 }
 
-// The same commands on both backends, at other rates of frames: one hash at all moments.
-TEST(BakedBurn, BothBackendsPlayAndGoLiveAlike) {
+// The same commands on both backends at different frame rates give equal hashes at every step.
+TEST(BakedBurn, BothBackendsAgree) {
     const Baked baked = bakeBoard(kAll);
     for (const Disturbance& one : kDisturbances) {
         Boards cpu(FW_BACKEND_CPU, 2), device(FW_BACKEND_VULKAN, 2);
@@ -348,7 +312,7 @@ TEST(BakedBurn, BothBackendsPlayAndGoLiveAlike) {
     }
 }
 
-TEST(BakedBurn, SavesOfOneThatPlaysGoOn) {
+TEST(BakedBurn, ContinuesFromASave) {
     const Baked baked = bakeBoard(kAll);
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
         Boards first(FW_BACKEND_CPU, 2), other(backend, 2);
@@ -374,7 +338,7 @@ TEST(BakedBurn, SavesOfOneThatPlaysGoOn) {
     }
 }
 
-TEST(BakedBurn, LogsHaveIt) {
+TEST(BakedBurn, IsRecordedInCommandLogs) {
     const Baked baked = bakeBoard(kAll);
     Boards first(FW_BACKEND_CPU, 2), other(FW_BACKEND_CPU, 2);
     first.ok(fwWorld_StartLog(first.world));
@@ -399,7 +363,7 @@ TEST(BakedBurn, LogsHaveIt) {
     EXPECT_EQ(0u, other.state(1).plays);
 }
 
-TEST(BakedBurn, RefusesWhatIsNone) {
+TEST(BakedBurn, RefusesInvalidData) {
     const Baked baked = bakeBoard(kSome);
     Boards boards(FW_BACKEND_CPU);
     FwBurnId burn{};
@@ -450,8 +414,8 @@ TEST(BakedBurn, RefusesWhatIsNone) {
     boards.expectRefused(FW_ERROR_STALE_ID, play(burn, 0, 1), "already destroyed");
 }
 
-// With a right checksum: it is a burn, or refused with a message; what it is plays.
-TEST(BakedBurn, DamagedOnesNeverCrash) {
+// With a valid checksum, damaged data either plays or is refused with a message.
+TEST(BakedBurn, DamagedDataNeverCrashes) {
     const Baked baked = bakeBoard(kSome);
     Boards boards(FW_BACKEND_CPU);
     uint32_t taken = 0, refused = 0, random = 1;
@@ -481,7 +445,7 @@ TEST(BakedBurn, DamagedOnesNeverCrash) {
     EXPECT_GT(refused, 20u);
 }
 
-// Played boards against simulated ones, in processor time of the cpu backend.
+// Processor time of played boards over that of simulated ones, on the cpu backend.
 double ratioOf(uint32_t flags) {
     const Baked baked = bakeBoard(kAll, flags);
     double least[2] = {1e9, 1e9};

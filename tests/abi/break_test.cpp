@@ -1,6 +1,5 @@
-// FW_EVENT_STRUCTURE_BROKE: boards that burn through in the middle lose what stood on it, sheets
-// what hung on it, and what is gone of a whole is told once; on both backends alike, and through
-// saves.
+// FW_EVENT_STRUCTURE_BROKE: a board that burns through in the middle loses what it supported, a
+// sheet what hung from it. Each lost area is reported once, on both backends and across saves.
 #include "abi/busy_world.h"
 
 namespace fw::test::break_test {
@@ -11,18 +10,14 @@ using namespace host;
 constexpr float kWide = 0.4f, kHigh = 0.8f;
 constexpr int kRows = 16;
 
-// A board that stands upright on its short side, of stone but for two bands that burn: at a
-// quarter of its height and at three.
-struct Board {
+// A board that stands on its short side, of stone except for two combustible bands at a quarter and
+// three quarters of its height.
+struct Board : HostedWorld {
     explicit Board(uint32_t backend, uint32_t flags = 0, float share = 0, float area = 0.01f,
                    bool pinned = false,
-                   uint32_t cutOut = 0)  // rows that its picture cuts out, bits
-        : sheet(kWide, kHigh, kRows) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.paceFactor = 10;
-        ok(fwCreateWorld(context, &def, &world));
+                   uint32_t cutOut = 0)  // bits: rows that its picture cuts out
+        : HostedWorld(backend, pacedDef(10)), sheet(kWide, kHigh, kRows) {
+        if (!world) return;
         for (size_t i = 1; i < sheet.uvs.size() && cutOut != 0; i += 2)
             sheet.uvs[i] *= kWide / kHigh;
         FwMeshDef meshDef = sheet.def(64);
@@ -56,22 +51,8 @@ struct Board {
         }
         id = addBurnable(world, meshDef, FW_MATERIAL_PAPER, made);
     }
-    ~Board() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
-    Board(const Board&) = delete;
-    Board& operator=(const Board&) = delete;
-
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void light(int row, float x = kWide / 2, float radius = 0.52f * kWide) {
-        FwIgnitionDef ball = fwDefaultIgnitionDef();
-        ball.position[0] = x;
-        ball.position[1] = (float(row) + 0.5f) * kHigh / kRows;
-        ball.radius = radius;
-        uint32_t texels = 0;
-        ok(fwWorld_Ignite(world, &ball, &texels));
-        EXPECT_LT(0u, texels);
+        ignite({}, x, (float(row) + 0.5f) * kHigh / kRows, 0, radius);
     }
     void run(double seconds, float deltaTime = 1.0f / 32) {
         for (double t = 0; t < seconds - 1e-9; t += double(deltaTime)) {
@@ -90,10 +71,7 @@ struct Board {
         }
     }
 
-    Host host;
     Sheet sheet;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     FwBurnableMeshId id{};
     std::vector<FwEvent> broke;
     struct Heard {
@@ -106,9 +84,9 @@ struct Board {
 };
 
 constexpr float kRowArea = kWide * kHigh / kRows;
-constexpr double kBurns = 20;  // s that a band needs, and some more
+constexpr double kBurns = 20;  // s: one band burns through, with a margin
 
-TEST(AbiBreak, WhatStoodOnItFallsOnce) {
+TEST(AbiBreak, ReportsWhatABurntBandSupportedOnce) {
     for (const uint32_t flags : {0u, uint32_t(FW_BURNABLE_LITE)}) {
         Board board(FW_BACKEND_CPU, flags);
         board.light(11, kWide / 2, 0.02f);
@@ -121,7 +99,7 @@ TEST(AbiBreak, WhatStoodOnItFallsOnce) {
         EXPECT_NEAR(4 * kRowArea, top.value, 0.3f * kRowArea);
         EXPECT_NEAR(14 * kHigh / kRows, top.position[1], 0.03f);
         EXPECT_NEAR(kWide / 2, top.position[0], 0.02f);
-        board.light(4, kWide / 2, 0.02f);  // what stood between follows, without the top
+        board.light(4, kWide / 2, 0.02f);  // the part between the bands follows, without the top
         board.run(kBurns);
         ASSERT_EQ(2u, board.broke.size());
         EXPECT_NEAR(6 * kRowArea, board.broke[1].value, 0.5f * kRowArea);
@@ -138,7 +116,7 @@ TEST(AbiBreak, SheetsHangFromTheirPins) {
     EXPECT_NEAR(5.5f * kHigh / kRows, sheet.broke[0].position[1], 0.04f);
 }
 
-TEST(AbiBreak, TellsWhatIsAskedAlone) {
+TEST(AbiBreak, ReportsOnlyRequestedKinds) {
     Board none(FW_BACKEND_CPU, 0, 0, 0), large(FW_BACKEND_CPU, 0, 0, 5 * kRowArea),
         whole(FW_BACKEND_CPU, FW_BURNABLE_NO_HOLES), share(FW_BACKEND_CPU, 0, 0.09f, 0);
     for (Board* board : {&none, &large, &whole, &share}) {
@@ -148,7 +126,7 @@ TEST(AbiBreak, TellsWhatIsAskedAlone) {
     EXPECT_TRUE(none.broke.empty());
     EXPECT_TRUE(large.broke.empty());
     EXPECT_TRUE(whole.broke.empty());
-    EXPECT_TRUE(share.broke.empty());  // 6 % are gone
+    EXPECT_TRUE(share.broke.empty());  // 6 % is lost
     for (Board* board : {&none, &large, &whole, &share}) {
         board->light(4);
         board->run(kBurns);
@@ -162,10 +140,10 @@ TEST(AbiBreak, TellsWhatIsAskedAlone) {
     EXPECT_NEAR(kHigh / 2, share.broke[0].position[1], 1e-5f);
 }
 
-// A band that is cut out bears nothing, is no part of the whole, and parts the board in two.
-TEST(AbiBreak, CutOutsHoldNothingAndDoNotCount) {
+// A band that is cut out bears nothing, does not count as area, and splits the board in two.
+TEST(AbiBreak, CutOutsNeitherSupportNorCount) {
     Board part(FW_BACKEND_CPU, 0, 0, 0.01f, false, 3u << 7),
-        share(FW_BACKEND_CPU, 0, 0.07f, 0, false, 63u << 5);  // a tenth is more
+        share(FW_BACKEND_CPU, 0, 0.07f, 0, false, 63u << 5);  // more than a tenth
     for (Board* board : {&part, &share}) {
         board->light(4, kWide / 2, 0.02f);
         board->run(kBurns);
@@ -177,8 +155,8 @@ TEST(AbiBreak, CutOutsHoldNothingAndDoNotCount) {
     EXPECT_LT(share.broke[0].value, kRowArea);
 }
 
-// Of the same frames, and on from a save as if it had not been loaded.
-TEST(AbiBreak, BothBackendsTellTheSame) {
+// With equal frames; a loaded save continues as the original does.
+TEST(AbiBreak, BothBackendsAgree) {
     Board cpu(FW_BACKEND_CPU, 0, 0.09f), device(FW_BACKEND_VULKAN, 0, 0.09f);
     if (!device.world) GTEST_SKIP() << "there is no such backend here";
     Bytes save;
@@ -192,7 +170,7 @@ TEST(AbiBreak, BothBackendsTellTheSame) {
         else
             (void)saveOf(device.world);
         board->run(kBurns);
-        for (int i = 0; i < 4; ++i) {  // what is on its way
+        for (int i = 0; i < 4; ++i) {  // pending
             board->ok(fwWorld_Step(board->world, 0));
             board->poll();
         }
@@ -207,21 +185,21 @@ TEST(AbiBreak, BothBackendsTellTheSame) {
     Board loaded(FW_BACKEND_CPU, 0, 0.09f);
     loaded.ok(fwWorld_Load(loaded.world, save.data(), save.size()));
     loaded.run(kBurns);
-    ASSERT_EQ(2u, loaded.broke.size());  // not the top again
+    ASSERT_EQ(2u, loaded.broke.size());  // the top is not reported again
     for (size_t i = 0; i < 2; ++i) {
         EXPECT_EQ(cpu.broke[i + 1].tag, loaded.broke[i].tag);
         EXPECT_EQ(cpu.broke[i + 1].value, loaded.broke[i].value);
     }
-    // And back in time, what was told comes again.
+    // After going back in time, events are reported again.
     cpu.broke.clear();
     cpu.ok(fwWorld_Load(cpu.world, save.data(), save.size()));
     cpu.run(kBurns);
     EXPECT_EQ(2u, cpu.broke.size());
 }
 
-// Whenever a save is made, and whoever loads it: each event comes once, at the step at which it
-// comes without; what was not polled yet, at once.
-TEST(AbiBreak, WhatIsDueComesAtItsStepThroughSaves) {
+// At whatever frame a save is made and wherever it is loaded, each event comes once, at its
+// original step. Events that were not polled come at once.
+TEST(AbiBreak, PendingEventsKeepTheirStepAcrossSaves) {
     Board straight(FW_BACKEND_CPU, 0, 0.09f);
     const auto begin = [](Board& board) {
         board.light(11, kWide / 2, 0.02f);
@@ -230,17 +208,17 @@ TEST(AbiBreak, WhatIsDueComesAtItsStepThroughSaves) {
     begin(straight);
     straight.run(kBurns);
     ASSERT_LE(3u, straight.broke.size());
-    ASSERT_LE(5u, straight.heard.size());  // it caught, and burnt out
-    uint32_t told = 0;                     // the step of the first break
+    ASSERT_LE(5u, straight.heard.size());  // it caught and burnt out
+    uint32_t firstBreak = 0;               // step of the first break
     for (const Board::Heard& one : straight.heard)
-        if (told == 0 && one.type == FW_EVENT_STRUCTURE_BROKE) told = one.step;
-    ASSERT_LT(20u, told);
-    // Behind the step: 15 before, so that it was looked at again since; 2 before; of its very
-    // frame.
+        if (firstBreak == 0 && one.type == FW_EVENT_STRUCTURE_BROKE) firstBreak = one.step;
+    ASSERT_LT(20u, firstBreak);
+    // The save is made 15 steps before the break (checked again since), 2 steps before, and in its
+    // very frame.
     for (const uint32_t before : {15u, 2u, 0u}) {
         Board saver(FW_BACKEND_CPU, 0, 0.09f), loader(FW_BACKEND_CPU, 0, 0.09f);
         begin(saver);
-        saver.run((told - before - 1) / 32.0);
+        saver.run((firstBreak - before - 1) / 32.0);
         saver.ok(fwWorld_RequestSave(saver.world));
         saver.ok(fwWorld_Step(saver.world, 1.0f / 32));
         ++saver.steps;
@@ -249,7 +227,7 @@ TEST(AbiBreak, WhatIsDueComesAtItsStepThroughSaves) {
         saver.ok(fwWorld_FetchSave(saver.world, nullptr, &size));
         Bytes save(size);
         saver.ok(fwWorld_FetchSave(saver.world, save.data(), &size));
-        for (const bool polled : {false, true}) {  // what is in a save stays in it
+        for (const bool polled : {false, true}) {  // a loaded save stays loadable
             loader.ok(fwWorld_Load(loader.world, save.data(), save.size()));
             if (!polled) {
                 EXPECT_EQ(save, saveOf(loader.world));
@@ -267,8 +245,8 @@ TEST(AbiBreak, WhatIsDueComesAtItsStepThroughSaves) {
     }
 }
 
-// Who asks for something else hears of nothing that was gone before.
-TEST(AbiBreak, OfSavesWhoseHostAskedOtherwiseWhatIsGoneIsTold) {
+// A loading host that asks for another kind hears nothing of areas lost before.
+TEST(AbiBreak, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
     Board asks(FW_BACKEND_CPU, 0, 0.09f), none(FW_BACKEND_CPU, 0, 0, 0),
         other(FW_BACKEND_CPU, 0, 0.02f);
     asks.light(11);
@@ -281,11 +259,11 @@ TEST(AbiBreak, OfSavesWhoseHostAskedOtherwiseWhatIsGoneIsTold) {
         board->run(kBurns);
     }
     EXPECT_TRUE(none.broke.empty());
-    ASSERT_EQ(1u, other.broke.size());  // neither the top nor its share, of 6 %
+    ASSERT_EQ(1u, other.broke.size());  // neither the top nor its 6 %
     EXPECT_EQ(uint32_t(FW_BREAK_PART), other.broke[0].tag);
 }
 
-TEST(AbiBreak, NamesWhatIsWrong) {
+TEST(AbiBreak, RefusesBadValuesByName) {
     SheetWorld w(evenMaterial(0.02f, 5));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     EXPECT_EQ(0, def.breakShare);

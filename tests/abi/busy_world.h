@@ -1,5 +1,4 @@
-// A world in which much goes on at once, by a script of its own: what tests of saves and of
-// networks burn.
+// A scripted world in which every feature runs at once, for the tests of saves and networks.
 #pragma once
 #include "abi/abi_support.h"
 
@@ -8,28 +7,7 @@
 
 namespace host {
 
-using Bytes = std::vector<unsigned char>;
-
-// Fetches what was asked for: with a device an answer comes with a later frame, be it of no time.
-template <class Fetch>
-void come(FwWorld* world, Fetch fetch) {
-    FwResult result = fetch();
-    for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-        EXPECT_EQ(FW_OK, fwWorld_Step(world, 0)) << lastMessage(world);
-        result = fetch();
-    }
-    EXPECT_EQ(FW_OK, result) << lastMessage(world);
-}
-inline Bytes saveOf(FwWorld* world) {
-    EXPECT_EQ(FW_OK, fwWorld_RequestSave(world)) << lastMessage(world);
-    uint64_t size = 0;
-    come(world, [&] { return fwWorld_FetchSave(world, nullptr, &size); });
-    Bytes bytes(size);
-    EXPECT_EQ(FW_OK, fwWorld_FetchSave(world, bytes.data(), &size)) << lastMessage(world);
-    return bytes;
-}
-
-// The sum that a save's header has, so that what is behind it is looked at.
+// Writes the checksum of a save's header again, so that its content is checked.
 inline void signSave(Bytes& bytes) {
     uint64_t hash = 1469598103934665603ull;
     size_t at = 24;
@@ -45,22 +23,7 @@ inline void signSave(Bytes& bytes) {
     std::memcpy(&bytes[16], &hash, 8);
 }
 
-// Of every texel of some objects and what it holds, and of the tick.
-template <class Ids>
-uint64_t hashOf(FwWorld* world, const Ids& ids) {
-    uint64_t all = 0;
-    for (const FwBurnableMeshId id : ids)
-        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id)) << lastMessage(world);
-    for (const FwBurnableMeshId id : ids) {
-        uint64_t one = 0, tick = 0;
-        come(world,
-             [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &one, &tick); });
-        all = all * 31 + one + tick;
-    }
-    return all;
-}
-
-// Turned about y by `turn` rad, at a place in m.
+// Pose: turned about y by `turn` rad, at (x, y, z) m.
 inline void poseAt(float (&at)[16], float x, float y, float z, float turn) {
     std::fill(std::begin(at), std::end(at), 0.0f);
     at[0] = at[10] = std::cos(turn);
@@ -70,23 +33,15 @@ inline void poseAt(float (&at)[16], float x, float y, float z, float turn) {
     at[12] = x, at[13] = y, at[14] = z;
 }
 
-// Much goes on at once in it: boxes and boards of several materials that light each other, wind
-// that turns, has gusts and a grid, water, a flamethrower, a fire that stands there, a field that
-// wets, a wall, a shield of cells and of an object, a tag. exact: its places are whole parts of a
-// metre, and nothing burns or is wet by what floats decide, so that a world of the same whose
-// origin is elsewhere burns alike.
-class BusyWorld {
+// Boxes and boards of several materials light each other. Gusts, a wind grid, water, a flamethrower
+// and a fixed fire act on them, and a wetting field, a wall, occluders of both kinds and a tag.
+// `exact`: all places are whole parts of a metre and no burn depends on float results, so a world
+// with another origin burns identically.
+class BusyWorld : public HostedWorld {
  public:
     explicit BusyWorld(uint32_t backend, float pace = 12, uint32_t things = 10, bool exact = false)
-        : exact_(exact) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.flags = FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
-        def.paceFactor = pace;
-        def.seed = 5;
-        def.maxBurningTiles = 250;
-        ok(fwCreateWorld(context, &def, &world));
+        : HostedWorld(backend, busyDef(pace)), exact_(exact) {
+        if (!world) return;
         for (uint32_t i = 0; i < things; ++i) add(i);
         FwFireEmitterDef jetDef = fwDefaultFireEmitterDef();
         jetDef.flags = exact ? 0u : FW_EMITTER_JET | FW_EMITTER_IGNITES;
@@ -121,14 +76,16 @@ class BusyWorld {
         const FwRoomDef closet = closetOf(0);
         ok(fwWorld_CreateRoom(world, &closet, &room));
     }
-    BusyWorld(const BusyWorld&) = delete;
-    BusyWorld& operator=(const BusyWorld&) = delete;
-    ~BusyWorld() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
+    static FwWorldDef busyDef(float pace) {
+        FwWorldDef def =
+            worldDef(FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS, pace,
+                     fwDefaultWorldDef().maxStepsPerFrame);
+        def.seed = 5;
+        def.maxBurningTiles = 250;
+        return def;
     }
 
-    // What happens in a frame follows from its number alone. Rates of frames vary.
+    // The commands of a frame depend only on its number. Frame rates vary.
     void run(uint32_t from, uint32_t to) {
         for (uint32_t frame = from; frame < to; ++frame) {
             act(frame);
@@ -145,7 +102,7 @@ class BusyWorld {
         ok(fwWorld_GetOrigin(world, origin));
         return result;
     }
-    // All that the host places goes along.
+    // The host's own places move too.
     void shift(float x, float y, float z) {
         const float by[3] = {x, y, z};
         float applied[3] = {};
@@ -160,18 +117,10 @@ class BusyWorld {
     }
     uint32_t burning() {  // objects that caught
         uint32_t caught = 0;
-        for (const FwBurnableMeshId id : ids) {
-            FwObjectState state{};
-            state.structSize = sizeof state;
-            ok(fwWorld_GetObjectState(world, id, &state));
-            caught += state.ignited > 0 ? 1 : 0;
-        }
+        for (const FwBurnableMeshId id : ids) caught += state(id).ignited > 0 ? 1 : 0;
         return caught;
     }
 
-    Host host;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     std::vector<FwBurnableMeshId> ids;
     FwFireEmitterId jet{};
     FwVolumetricFireId fire{};
@@ -184,7 +133,6 @@ class BusyWorld {
  private:
     bool exact_ = false;
 
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     static void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
     void putAt(float* to, float x, float y, float z) const {
         const float at[3] = {x, y, z};
@@ -206,7 +154,7 @@ class BusyWorld {
         fan.speed = 3 + float(frame % 4);
         return fan;
     }
-    // Around some of the things, with little air; its door opens and shuts.
+    // A room around some of the objects with little air; its door opens and shuts.
     FwRoomDef closetOf(uint32_t frame) const {
         FwRoomDef closet = fwDefaultRoomDef();
         putAt(closet.position, 0.7f, 0.1f, 0.3f);
@@ -222,24 +170,15 @@ class BusyWorld {
                                             FW_MATERIAL_COTTON, FW_MATERIAL_PINE,
                                             FW_MATERIAL_DRY_LEAF};
         const Sheet sheet(0.5f, 0.35f, 2);
-        const FwMeshDef meshDef = [&] {
-            FwMeshDef made = sheet.def(64);
-            made.noiseAmplitude = 0.15f;
-            return made;
-        }();
+        FwMeshDef meshDef = sheet.def(64);
+        meshDef.noiseAmplitude = 0.15f;
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-        ok(fwWorld_CreateMesh(world, &meshDef, &def.mesh));
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, kPresets[i % 5]));
-        ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
         if (i == 4) def.flags |= FW_BURNABLE_LITE;
         place(def.transform, float(i % 5) * 0.45f, 0.12f * float(i % 3), float(i / 5) * 0.4f,
               0.2f * float(i));
-        FwBurnableMeshId id{};
-        ok(fwWorld_CreateBurnableMesh(world, &def, &id));
-        ids.push_back(id);
+        ids.push_back(addBurnable(world, meshDef, kPresets[i % 5], def));
     }
-    // Over all of the things; later some of its points blow otherwise.
+    // A wind grid over everything; later some of its points change.
     void blowGrid(uint32_t frame) {
         FwWindGridDef grid = fwDefaultWindGridDef();
         grid.counts[0] = 4;
@@ -252,7 +191,7 @@ class BusyWorld {
         grid.velocities = velocities;
         ok(fwWorld_SetWindGrid(world, &grid));
     }
-    // A post where none of the things is, a hill below some, and two of the things themselves.
+    // Heat occluders: a post away from the objects, a hill below some, and two of the objects.
     void shield(uint32_t frame) {
         FwHeatShieldDef cells = fwDefaultHeatShieldDef();
         putAt(cells.origin, -0.5f, -0.6f, -0.5f);

@@ -1,14 +1,15 @@
-// Cut-outs: the alpha of a picture says where the objects that show it are. Public headers only.
+// Cut-outs: the alpha of a picture says where an object exists. Includes public headers only.
 #include "abi/abi_support.h"
 
 namespace {
 
+using host::created;
 using host::lastMessage;
 using host::SheetWorld;
 
-constexpr uint32_t kNeverLit = 0xfffffff0u;  // from here on: texels without an ignition tick
+constexpr uint32_t kNeverLit = 0xfffffff0u;  // greater ticks: never lit
 
-// 64 x 64 pixels; `there` is asked by column.
+// 64 x 64 pixels; `there` takes a column.
 template <class There>
 FwImageId stripes(FwWorld* world, float alphaCutoff, There&& there) {
     std::vector<uint32_t> pixels;
@@ -19,18 +20,16 @@ FwImageId stripes(FwWorld* world, float alphaCutoff, There&& there) {
     def.width = def.height = 64;
     def.pixels = pixels.data();
     def.alphaCutoff = alphaCutoff;
-    FwImageId id{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateImage(world, &def, &id)) << lastMessage(world);
-    return id;
+    return created(fwWorld_CreateImage, world, def);
 }
 
 struct Burnt {
-    int gone = 0, left = 0, right = 0;  // burnt texels where there is none, and on either side
+    int gone = 0, left = 0, right = 0;  // burnt texels in the gap, left and right of it
     int leftAll = 0, rightAll = 0;
     float fraction = 0;
 };
 
-// A sheet of 1 m is lit at its left end, with a gap from x = 0.4375 to 0.5625 m.
+// Lights a 1 m sheet at its left end. The picture has a gap from x = 0.4375 to 0.5625 m.
 Burnt burn(float alphaCutoff) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
@@ -64,7 +63,7 @@ Burnt burn(float alphaCutoff) {
     return result;
 }
 
-TEST(AbiCutOut, FireStopsWhereThePictureIsNot) {
+TEST(AbiCutOut, FireStopsAtTransparentTexels) {
     const Burnt whole = burn(0);
     EXPECT_EQ(whole.leftAll, whole.left);
     EXPECT_EQ(whole.rightAll, whole.right);
@@ -75,10 +74,10 @@ TEST(AbiCutOut, FireStopsWhereThePictureIsNot) {
     EXPECT_EQ(cut.leftAll, cut.left);
     EXPECT_EQ(0, cut.gone);
     EXPECT_EQ(0, cut.right);
-    EXPECT_NEAR(0.5, cut.fraction, 0.02) << "half of what is there";
+    EXPECT_NEAR(0.5, cut.fraction, 0.02) << "half of the opaque area";
 }
 
-TEST(AbiCutOut, AMatchWhereThePictureIsNotLightsNothing) {
+TEST(AbiCutOut, IgnitingATransparentTexelLightsNothing) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = w.mesh;
@@ -98,8 +97,8 @@ TEST(AbiCutOut, AMatchWhereThePictureIsNotLightsNothing) {
     EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels)) << lastMessage(w.world);
 }
 
-TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsThere) {
-    // Lines one pixel wide: every texel has one of them.
+TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsOpaque) {
+    // Lines one pixel wide: each texel holds one of them.
     SheetWorld w(host::evenMaterial(0.05f, 5), 1.0f, 0.25f, 16);
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = w.mesh;
@@ -112,7 +111,7 @@ TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsThere) {
     EXPECT_NEAR(1, w.state().burntFraction, 1e-3);
 }
 
-TEST(AbiCutOut, RefusesACutOffBeyondItsRange) {
+TEST(AbiCutOut, RefusesACutoffOutOfRange) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const uint32_t pixels[4] = {};
     FwImageDef def = fwDefaultImageDef();

@@ -1,4 +1,4 @@
-// Threads other than the one that steps may destroy later, and read what a step left.
+// Other threads than the stepping one may destroy objects later and read the results of a step.
 #include "abi/abi_support.h"
 
 #include "flamewright/flamewright.hpp"
@@ -9,6 +9,7 @@
 
 namespace {
 
+using host::created;
 using host::Host;
 using host::lastMessage;
 using host::SheetWorld;
@@ -20,7 +21,7 @@ FwObjectState stateOf(FwWorld* world, FwBurnableMeshId id, FwResult want = FW_OK
     return state;
 }
 
-TEST(Deferred, WorldIsDestroyedOnceItsFrameIsComplete) {
+TEST(Deferred, DestroysTheWorldWhenItsFrameCompletes) {
     Host host;
     FwContext* context = host::createCpuContext(host);
     const FwWorldDef def = fwDefaultWorldDef();
@@ -34,7 +35,7 @@ TEST(Deferred, WorldIsDestroyedOnceItsFrameIsComplete) {
     EXPECT_LT(oneWorld, host.bytes) << "its last frame may still run";
     EXPECT_EQ(0u, fwContext_Collect(context, 3));
     EXPECT_LE(host.bytes, oneWorld + 4096) << "the world is gone";
-    // Asked again, the later call counts; a world that is destroyed at once waits for nothing.
+    // The last call counts; a world that is destroyed at once waits for nothing.
     ASSERT_EQ(FW_OK, fwWorld_DestroyAfterFrame(first, 5));
     ASSERT_EQ(FW_OK, fwWorld_DestroyAfterFrame(first, 9));
     EXPECT_EQ(1u, fwContext_Collect(context, 8));
@@ -42,16 +43,16 @@ TEST(Deferred, WorldIsDestroyedOnceItsFrameIsComplete) {
     EXPECT_EQ(0u, fwContext_Collect(context, 8));
     ASSERT_EQ(FW_OK, fwCreateWorld(context, &def, &first));
     ASSERT_EQ(FW_OK, fwWorld_DestroyAfterFrame(first, UINT64_MAX));
-    fwDestroyContext(context);  // with what still waits
+    fwDestroyContext(context);  // with a deferred destroy pending
     EXPECT_EQ(0, host.blocks);
 }
 
-TEST(Deferred, ObjectsGoBeforeTheNextStepInAnyOrder) {
+TEST(Deferred, DestroysObjectsBeforeTheNextStepInAnyOrder) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const FwBurnableMeshId other = w.add(8);
     ASSERT_EQ(FW_OK, fw::destroyLater(w.world, w.mesh));  // both objects still use it
     ASSERT_EQ(FW_OK, fw::destroyLater(w.world, w.object));
-    EXPECT_EQ(FW_OK, fwWorld_SetHidden(w.world, w.object, 0)) << "nothing is gone yet";
+    EXPECT_EQ(FW_OK, fwWorld_SetHidden(w.world, w.object, 0)) << "nothing is destroyed yet";
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0));
     (void)stateOf(w.world, w.object, FW_ERROR_STALE_ID);
     FwMeshInfo info{};
@@ -60,10 +61,9 @@ TEST(Deferred, ObjectsGoBeforeTheNextStepInAnyOrder) {
     ASSERT_EQ(FW_OK, fw::destroyLater(w.world, other));
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_GetMeshInfo(w.world, w.mesh, &info));
-    // Whose id is stale by then is in the log, and stops nothing.
+    // A stale id is reported in the log and stops nothing.
     const FwMaterialDef materialDef = fwDefaultMaterialDef();
-    FwMaterialId extra{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &materialDef, &extra));
+    const FwMaterialId extra = created(fwWorld_CreateMaterial, w.world, materialDef);
     const size_t warnings = w.host.warnings.size();
     ASSERT_EQ(FW_OK, fw::destroyLater(w.world, w.mesh));
     ASSERT_EQ(FW_OK, fw::destroyLater(w.world, extra));
@@ -73,47 +73,37 @@ TEST(Deferred, ObjectsGoBeforeTheNextStepInAnyOrder) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, extra));
 }
 
-TEST(Deferred, EveryKindOfObjectGoes) {
+TEST(Deferred, DestroysEveryKindOfObject) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const std::vector<float> texels(2 * 8 * 8, 0.5f);
     FwFireProfileDef profileDef = fwDefaultFireProfileDef();
     profileDef.width = profileDef.height = 8;
     profileDef.texels = texels.data();
-    FwFireProfileId profile{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateFireProfile(w.world, &profileDef, &profile));
+    const FwFireProfileId profile = created(fwWorld_CreateFireProfile, w.world, profileDef);
     FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
     fireDef.profile = profile;
-    FwVolumetricFireId fire{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateVolumetricFire(w.world, &fireDef, &fire));
+    const FwVolumetricFireId fire = created(fwWorld_CreateVolumetricFire, w.world, fireDef);
     const FwFireEmitterDef emitterDef = fwDefaultFireEmitterDef();
-    FwFireEmitterId emitter{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(w.world, &emitterDef, &emitter));
+    const FwFireEmitterId emitter = created(fwWorld_CreateFireEmitter, w.world, emitterDef);
     const FwParticleFieldDef fieldDef = fwDefaultParticleFieldDef();
-    FwParticleFieldId field{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateParticleField(w.world, &fieldDef, &field));
+    const FwParticleFieldId field = created(fwWorld_CreateParticleField, w.world, fieldDef);
     const FwWindZoneDef zoneDef = fwDefaultWindZoneDef();
-    FwWindZoneId zone{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateWindZone(w.world, &zoneDef, &zone));
+    const FwWindZoneId zone = created(fwWorld_CreateWindZone, w.world, zoneDef);
     const FwRoomDef roomDef = fwDefaultRoomDef();
-    FwRoomId room{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateRoom(w.world, &roomDef, &room));
+    const FwRoomId room = created(fwWorld_CreateRoom, w.world, roomDef);
     const FwBlockerDef blockerDef = fwDefaultBlockerDef();
-    FwBlockerId blocker{};
-    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(w.world, &blockerDef, &blocker));
+    const FwBlockerId blocker = created(fwWorld_AddBlocker, w.world, blockerDef);
     const FwFireColliderDef colliderDef = fwDefaultFireColliderDef();
-    FwFireColliderId collider{};
-    ASSERT_EQ(FW_OK, fwWorld_AddFireCollider(w.world, &colliderDef, &collider));
+    const FwFireColliderId collider = created(fwWorld_AddFireCollider, w.world, colliderDef);
     const uint32_t pixels[4] = {};
     FwImageDef imageDef = fwDefaultImageDef();
     imageDef.width = imageDef.height = 2;
     imageDef.pixels = pixels;
-    FwImageId image{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateImage(w.world, &imageDef, &image));
+    const FwImageId image = created(fwWorld_CreateImage, w.world, imageDef);
     FwBurnableMeshDef shows = fwDefaultBurnableMeshDef();
     shows.mesh = w.mesh;
     shows.baseColor = image;
-    FwBurnableMeshId object{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &shows, &object));
+    const FwBurnableMeshId object = created(fwWorld_CreateBurnableMesh, w.world, shows);
 
     const auto later = [&](auto id) {
         EXPECT_EQ(FW_OK, fw::destroyLater(w.world, id)) << lastMessage(w.world);
@@ -144,7 +134,7 @@ TEST(Deferred, EveryKindOfObjectGoes) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, w.materialId));
 }
 
-TEST(Deferred, RefusesWhatIsNoObject) {
+TEST(Deferred, RefusesInvalidIds) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const FwObjectRef kind{99, 1, 1, 0}, reserved{FW_OBJECT_MESH, 1, 1, 7},
         null{FW_OBJECT_MESH, 0, 0, 0};
@@ -155,7 +145,7 @@ TEST(Deferred, RefusesWhatIsNoObject) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyLater(w.world, nullptr));
 }
 
-TEST(Snapshot, HasStatesAndLightsOfTheLastStep) {
+TEST(Snapshot, HoldsStatesAndLightsOfTheLastStep) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const FwBurnableMeshId calm = w.add(8), gone = w.add(9);
     FwObjectState read{};
@@ -179,12 +169,12 @@ TEST(Snapshot, HasStatesAndLightsOfTheLastStep) {
     ASSERT_EQ(count, fwWorld_GetLights(w.world, direct.data(), uint32_t(direct.size())));
     EXPECT_EQ(0, std::memcmp(lights.data(), direct.data(), count * sizeof(FwLight)));
 
-    // New and destroyed objects are seen with the next step.
+    // Created and destroyed objects appear with the next step.
     const FwBurnableMeshId fresh = w.add(10);
     EXPECT_EQ(FW_NOT_READY, fwWorld_ReadObjectState(w.world, fresh, &read));
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, gone));
     EXPECT_EQ(FW_OK, fwWorld_ReadObjectState(w.world, gone, &read));
-    const FwBurnableMeshId again = w.add(11);  // in its slot
+    const FwBurnableMeshId again = w.add(11);  // takes the same slot
     EXPECT_EQ(gone.index1, again.index1);
     EXPECT_EQ(FW_NOT_READY, fwWorld_ReadObjectState(w.world, again, &read));
     w.run(0.25);

@@ -1,4 +1,4 @@
-// Defs: defaults, older and newer hosts, numbers that cannot be used.
+// Defs: defaults, older and newer hosts, invalid numbers.
 #include "abi/abi_support.h"
 
 #include <cstddef>
@@ -15,10 +15,10 @@ using host::lastMessage;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST(AbiC, EveryFunctionTakesNothingWithoutACrash) {
+TEST(AbiC, EveryFunctionAcceptsNull) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
-    EXPECT_EQ(158, calls);  // every function of the three headers
+    EXPECT_EQ(158, calls);  // all functions of the three headers
 }
 
 TEST(AbiC, VersionAndNames) {
@@ -70,7 +70,7 @@ const DefCase kDefs[] = {
     {"composite", FW_DEF_VULKAN_COMPOSITE, sizeof(FwVulkanComposite)},
 };
 
-TEST(AbiInitDef, NeverWritesPastStructSizeAndZeroesWhatItDoesNotKnow) {
+TEST(AbiInitDef, WritesNothingPastStructSizeAndZeroesUnknownFields) {
     for (const DefCase& def : kDefs) {
         std::vector<unsigned char> whole(def.size);
         fwInitDef(def.type, whole.data(), def.size);
@@ -96,13 +96,14 @@ TEST(AbiInitDef, NeverWritesPastStructSizeAndZeroesWhatItDoesNotKnow) {
     EXPECT_EQ(0xCD, unknown[32]);
 }
 
-// Runs `create` with the def at every size an older host may have had, and with newer ones.
+// Calls `create` with the def at every size of an older host, and with larger sizes.
 template <class Def>
 void checkSizes(const char* name, Def whole, const std::function<FwResult(const Def*)>& create,
                 const std::function<std::string()>& message) {
-    // Older: whatever is cut off takes its default, which always works in a world.
+    // Older hosts: the missing fields take their defaults, which always work in a world.
     for (uint32_t size = 8; size < sizeof(Def); size += uint32_t(alignof(Def))) {
-        std::vector<unsigned char> bytes(sizeof(Def) + 64, 0xCD);  // a page of someone else's
+        std::vector<unsigned char> bytes(sizeof(Def) + 64,
+                                         0xCD);  // memory that must stay untouched
         std::memcpy(bytes.data(), &whole, size);
         std::memcpy(bytes.data(), &size, 4);
         const FwResult result = create(reinterpret_cast<const Def*>(bytes.data()));
@@ -130,7 +131,7 @@ void checkSizes(const char* name, Def whole, const std::function<FwResult(const 
     }
 }
 
-TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
+TEST(AbiSizes, ServesOlderHostsAndRefusesUnknownFields) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     const auto worldMessage = [&] { return lastMessage(w.world); };
     const auto contextMessage = [&] { return lastMessage(w.context); };
@@ -147,10 +148,10 @@ TEST(AbiSizes, OlderAndNewerHostsAreServedOrRefused) {
             uint32_t size = 0, backend = 0;
             std::memcpy(&size, def, 4);
             if (size > 8 && size <= offsetof(FwContextDef, backend)) return FW_OK;
-            if (size == 8) return FW_OK;  // that host could not choose the cpu backend
+            if (size == 8) return FW_OK;  // such a host could not choose the cpu backend
             (void)backend;
             FwContext* context = nullptr;
-            // A half-given set of callbacks is refused, as it is from a new host.
+            // An incomplete set of callbacks is refused, also from an older host.
             const FwResult result = fwCreateContext(def, &context, nullptr);
             fwDestroyContext(context);
             return result;
@@ -318,13 +319,13 @@ TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialDef def;
     std::memset(&def, 0xCD, sizeof def);
-    fwInitDef(FW_DEF_MATERIAL, &def, offsetof(FwMaterialDef, baseColor));  // last year's size
+    fwInitDef(FW_DEF_MATERIAL, &def, offsetof(FwMaterialDef, baseColor));  // size of an older host
     EXPECT_EQ(0xCD, reinterpret_cast<unsigned char*>(&def.baseColor)[0]);
     FwMaterialId id{};
     EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &id)) << lastMessage(w.world);
 }
 
-TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
+TEST(AbiSizes, InfosNeverWritePastTheirSize) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     for (uint32_t size = 8; size <= sizeof(FwMeshInfo) + 32; size += 4) {
         std::vector<unsigned char> bytes(size + 16, 0xCD);
@@ -342,9 +343,7 @@ TEST(AbiSizes, InfosFillAnySizeAndNeverMore) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("FwMeshInfo::structSize is 0"));
 }
 
-// ---- numbers ----------------------------------------------------------------------------------
-
-// Sets one float of a good def to bad values; each must be refused, naming the field.
+// Sets one float of a valid def to bad values. Each value must be refused with the field's name.
 template <class Def>
 void refuseFloat(const Def& good, float Def::*field, const char* name,
                  const std::function<FwResult(const Def*)>& create,

@@ -1,6 +1,6 @@
-// The library's own device is lost at one Vulkan call after another: each time the host is told so,
-// once and for all, everything is freed, and the fire goes on from the last mirror, bit by bit.
-// FLAMEWRIGHT_LOSE_EVERY=1 in the environment: at every call.
+// Loses the library's own device at one Vulkan call after another. The host hears of it once,
+// everything is freed, and the fire continues bit by bit from the last mirror.
+// FLAMEWRIGHT_LOSE_EVERY=1 in the environment tests every call.
 #include "support/loss_scene.h"
 #include "support/sanitized.h"
 #include "support/views.h"
@@ -14,7 +14,8 @@ namespace {
 
 using namespace host;
 
-// Stands in for the loader from before anyone asks for one: dlopen finds by name what is there.
+// Replaces the Vulkan loader before its first use: dlopen finds by name the library that is already
+// loaded.
 const struct Loader {
     LosingVulkan* vulkan = nullptr;
     void (*drop)() = nullptr;
@@ -36,14 +37,14 @@ FwResult takePicture(FwWorld* world) {
     return fwWorld_RenderOffscreen(world, &shot);
 }
 
-// A life of a context, until a call of it fails.
+// One run of a context until a Vulkan call fails.
 struct Life {
     Host host;
     LossScene scene;
     FwContext* context = nullptr;
     FwResult result = FW_OK;
-    bool made = false;   // the context
-    int64_t frames = 0;  // calls until the first
+    bool made = false;   // the context exists
+    int64_t frames = 0;  // Vulkan calls before the first frame
 
     Life() {
         scene.picture = takePicture;
@@ -63,14 +64,14 @@ struct Life {
     ~Life() {
         fwDestroyContext(context);
         EXPECT_EQ(0, host.blocks);
-        EXPECT_EQ(0, loader.vulkan->live) << "objects of the device are left";
+        EXPECT_EQ(0, loader.vulkan->live) << "objects of the device leak";
     }
 };
 
-// Calls; a sanitized life takes four times as long.
+// Calls between two losses; a sanitized run takes four times as long.
 constexpr int64_t kApart = fw::test::rounds(40, 80);
 
-TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
+TEST(DeviceLoss, IsSurvivedAtEveryCallOfAnOwnDevice) {
     if (!*FW_TEST_LOSING_LOADER) GTEST_SKIP() << "there is no libvulkan.so.1";
     ASSERT_TRUE(loader.vulkan && loader.vulkan->real) << "no loader between";
     LosingVulkan& vulkan = *loader.vulkan;
@@ -91,7 +92,7 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
     }
     const std::vector<int64_t> losses =
         chooseLosses(vulkan, frames, calls, mirroredAt, kApart, true);
-    std::map<uint32_t, uint32_t> mirrors;  // by frame, how often
+    std::map<uint32_t, uint32_t> mirrors;  // mirrors by frame
     std::vector<Bytes> recovered;
     for (const int64_t call : losses) {
         SCOPED_TRACE("lost at call " + std::to_string(call) + ", " + vulkan.nameOf(call));
@@ -101,9 +102,9 @@ TEST(DeviceLoss, AtEveryCallOfAnOwnDevice) {
         {
             Life life;
             ASSERT_TRUE(vulkan.lost) << "the call did not come";
-            EXPECT_TRUE(host::tellsOfLoss(life.result, vulkan.nameOf(call)))
+            EXPECT_TRUE(host::reportsLoss(life.result, vulkan.nameOf(call)))
                 << fwResultName(life.result) << ": " << life.host.lastError;
-            if (life.scene.world) {  // it stays lost, and gives what it has
+            if (life.scene.world) {  // the device stays lost, and the world returns what it has
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(life.scene.world, 0.1f));
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, takePicture(life.scene.world));
                 EXPECT_EQ(FW_OK, life.scene.takeSave()) << host::lastMessage(life.scene.world);

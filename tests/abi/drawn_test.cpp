@@ -1,5 +1,5 @@
-// What a host sees of its objects, on a device of the library's own: pictures by material slot,
-// both sides of open meshes, and what objects of one mesh share. Skips aloud without a device.
+// Pictures of objects on the library's own device: images by material slot, both sides of open
+// meshes, buffers shared by objects of one mesh. Skips with a message if there is no device.
 #include "abi/abi_support.h"
 
 #include <cstdlib>
@@ -7,77 +7,42 @@
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::Host;
 using host::lastMessage;
+using host::materialOf;
 
 struct Color {
     int r, g, b;
 };
 
-// A world on a device of its own; none where there is no Vulkan.
-struct DrawnWorld {
-    Host host;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
-
-    explicit DrawnWorld(const FwWorldDef& worldDef = fwDefaultWorldDef()) {
-        FwContextDef def = fwDefaultContextDef();
-        def.callbacks = host.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&def, &context, &error) != FW_OK) {
-            EXPECT_EQ(FW_ERROR_UNSUPPORTED_DEVICE, error.result) << error.message;
-            if (std::getenv("FLAMEWRIGHT_REQUIRE_GPU")) ADD_FAILURE() << error.message;
-            return;
-        }
-        EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world)) << lastMessage(context);
-    }
-    DrawnWorld(const DrawnWorld&) = delete;
-    DrawnWorld& operator=(const DrawnWorld&) = delete;
-    ~DrawnWorld() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
+// A world on its own device; null without Vulkan.
+struct DrawnWorld : host::HostedWorld {
+    explicit DrawnWorld(const FwWorldDef& worldDef = fwDefaultWorldDef())
+        : HostedWorld(FW_BACKEND_VULKAN, worldDef) {}
 
     FwMaterialId material(uint32_t preset) {
-        FwMaterialDef def = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, preset));
-        FwMaterialId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &def, &id));
-        return id;
+        FwMaterialDef def = materialOf(preset);
+        return created(fwWorld_CreateMaterial, world, def);
     }
     FwImageId image(uint32_t pixel) {
         const uint32_t pixels[4] = {pixel, pixel, pixel, pixel};
         FwImageDef def = fwDefaultImageDef();
         def.width = def.height = 2;
         def.pixels = pixels;
-        FwImageId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateImage(world, &def, &id)) << lastMessage(world);
-        return id;
+        return created(fwWorld_CreateImage, world, def);
     }
-    // 64 x 32 pixels straight down on a sheet of 1 x 0.5 m, or up at it from below.
+    // 64 x 32 pixels that look straight down on a sheet of 1 x 0.5 m, or up at it from below.
     std::vector<Color> look(bool below = false) {
         FwOffscreenDef def = fwDefaultOffscreenDef();
         def.width = 64;
         def.height = 32;
         FwView& view = def.view;
-        // Object x to the right; z down the picture from above, up it from below.
+        // Object x points right. z points down in the picture from above and up from below.
         const float side = below ? -1.0f : 1.0f;
-        const float placed[16] = {1,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  0,
-                                  side,
-                                  0,
-                                  0,
-                                  -side,
-                                  0,
-                                  0,
-                                  -0.5f,
-                                  side * 0.25f,
-                                  -side * (below ? -2.0f : 2.0f) * side,
-                                  1};
+        const float placed[16] = {1, 0, 0, 0, 0, 0, side, 0, 0, -side, 0, 0, -0.5f, side * 0.25f,
+                                  0, 1};
         std::copy_n(placed, 16, view.view);
         view.view[14] = -2;
         std::fill_n(view.projection, 16, 0.0f);
@@ -111,7 +76,7 @@ bool green(const Color& c) { return 2 * c.g > 3 * c.r && c.g > 2 * c.b && c.g > 
 bool wooden(const Color& c) { return c.r > c.g && c.g > c.b && c.b > 20; }
 bool blue(const Color& c) { return c.b > 2 * c.r && c.b > 2 * c.g && c.b > 60; }
 
-TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
+TEST(AbiDrawn, EveryMaterialSlotShowsItsImage) {
     DRAWN_WORLD_OR_SKIP(w);
     const host::Sheet sheet(1.0f, 0.5f, 4);
     FwMeshDef mesh = sheet.def(32);
@@ -127,28 +92,27 @@ TEST(AbiDrawn, EveryMaterialSlotHasItsPicture) {
     def.baseColors[0] = first;
     def.baseColors[2] = other;
     def.baseColors[3] = first;
-    FwBurnableMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     std::vector<Color> picture = w.look();
     EXPECT_EQ(15 * 32, count(picture, 0, 15, red));
-    EXPECT_EQ(14 * 32, count(picture, 17, 31, blue)) << "baseColor where a slot has none";
+    EXPECT_EQ(14 * 32, count(picture, 17, 31, blue)) << "baseColor where a slot has no image";
     EXPECT_EQ(14 * 32, count(picture, 33, 47, green));
     EXPECT_EQ(15 * 32, count(picture, 49, 64, red));
-    // A picture that goes leaves its slots to their material's own colour.
+    // A destroyed image leaves its slots to the material's own colour.
     ASSERT_EQ(FW_OK, fwWorld_DestroyImage(w.world, first));
     picture = w.look();
     EXPECT_EQ(0, count(picture, 0, 15, red));
     EXPECT_EQ(15 * 32, count(picture, 0, 15, wooden));
     EXPECT_EQ(14 * 32, count(picture, 33, 47, green));
-    // An id that is gone is refused and changes nothing.
+    // A stale id is refused and changes nothing.
     FwBurnableMeshId none{};
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &none));
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
 }
 
-// The sheet in a picture of discs, 8 pixels apart, that are there by their alpha; share of the
-// 64 x 32 pixels in which the sheet is drawn.
+// Share of the 64 x 32 pixels in which the sheet is drawn. Its picture has discs 8 pixels apart
+// that are opaque by their alpha.
 double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = false) {
     std::vector<uint32_t> pixels;
     for (int y = 0; y < 256; ++y)
@@ -167,13 +131,12 @@ double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = fal
     EXPECT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
     def.materials[0] = w.material(FW_MATERIAL_PINE);
     def.flags = FW_BURNABLE_TWO_SIDED;
-    FwBurnableMeshId id{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     const std::vector<Color> picture = w.look(below);
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
     const int drawn = count(picture, 0, 64, [](const Color& c) { return c.r + c.g + c.b > 15; });
-    // Where there is a colour it is the picture's: nothing of what lies around comes through.
+    // Where a pixel has a colour, it is the picture's: no colour bleeds in from around it.
     if (alphaCutoff > 0) {
         EXPECT_EQ(drawn, count(picture, 0, 64,
                                [](const Color& c) { return c.r > 2 * c.g && c.r > 2 * c.b; }));
@@ -181,10 +144,10 @@ double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = fal
     return drawn / (64.0 * 32);
 }
 
-TEST(AbiDrawn, CutOutsAreDrawnWhereTheirAlphaIsAboveTheCutOff) {
+TEST(AbiDrawn, CutOutsAreDrawnWhereAlphaExceedsTheCutoff) {
     DRAWN_WORLD_OR_SKIP(w);
     EXPECT_EQ(1, shareDrawn(w, 0, 12)) << "alpha is ignored";
-    // Four pixels of the picture to one of the screen: mips keep the share of what is there.
+    // Four pixels of the picture per pixel of the screen: mips keep the covered share.
     for (const int radius : {4, 8, 12, 15}) {
         const double share = 3.14159 * radius * radius / (32.0 * 32.0);
         EXPECT_NEAR(share, shareDrawn(w, 0.5f, radius), 0.06) << radius;
@@ -192,8 +155,8 @@ TEST(AbiDrawn, CutOutsAreDrawnWhereTheirAlphaIsAboveTheCutOff) {
     }
 }
 
-// Frames skip what nothing happened to; whatever is done to it then is known when it burns.
-TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
+// Frames skip idle objects; changes made meanwhile apply when the object burns.
+TEST(AbiDrawn, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -203,13 +166,12 @@ TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
     ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
     def.materials[0] = w.material(FW_MATERIAL_PAPER);
     def.baseColor = w.image(0xFF00FF00u);
-    def.flags = 0;  // what is refined along its border never rests
-    FwBurnableMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    def.flags = 0;  // objects with refined borders never sleep
+    FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     const auto wait = [&](int frames) {
         for (int i = 0; i < frames; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     };
-    // Where its flames shine from, on average, once it burns at `x`; -1: nowhere.
+    // Mean position of its flames' light when it is lit at `x`; -1: no light.
     const auto lit = [&](float x) {
         FwIgnitionDef fire = fwDefaultIgnitionDef();
         fire.position[0] = x;
@@ -232,7 +194,7 @@ TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
     wait(5);
     EXPECT_EQ(0, count(w.look(), 0, 64, green));
     EXPECT_NEAR(lit(5.2f), 5.2f, 0.4f);
-    // Another one in its slot, which fire has not reached.
+    // Another object in its slot, which fire has not reached.
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
     wait(5);
     def.transform[12] = 0;
@@ -242,7 +204,7 @@ TEST(AbiDrawn, WhatRestedBurnsWhereItWasPut) {
     EXPECT_NEAR(lit(0.2f), 0.2f, 0.4f);
 }
 
-TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
+TEST(AbiDrawn, BothSidesOfAnOpenMeshShowOneBurnMap) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -252,8 +214,7 @@ TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
     ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
     def.flags = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES;
     for (FwMaterialId& id : def.materials) id = w.material(FW_MATERIAL_PINE);
-    FwBurnableMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    (void)created(fwWorld_CreateBurnableMesh, w.world, def);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     const auto light = [](const Color& c) { return c.r + c.g + c.b > 45; };
     const auto sum = [](const std::vector<Color>& picture) {
@@ -264,13 +225,13 @@ TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
     const std::vector<Color> above = w.look(), below = w.look(true);
     EXPECT_EQ(64 * 32, count(above, 0, 64, light));
     EXPECT_EQ(64 * 32, count(below, 0, 64, light));
-    EXPECT_GT(sum(above), 5 * sum(below) / 4) << "the sun is above";
+    EXPECT_GT(sum(above), 5 * sum(below) / 4) << "the sun shines from above";
     FwIgnitionDef match = fwDefaultIgnitionDef();
     match.position[0] = match.position[2] = 0.25f;
     match.radius = 0.1f;
     ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, nullptr));
     for (int i = 0; i < 30; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
-    // From below x runs as from above: the same half has burnt.
+    // From below, x runs as from above: the same half has burnt.
     const std::vector<Color> burnt = w.look(), under = w.look(true);
     const auto changed = [&](const std::vector<Color>& now, const std::vector<Color>& then, int x0,
                              int x1) {
@@ -284,10 +245,10 @@ TEST(AbiDrawn, BothSidesOfAnOpenMeshBurnFromOneMap) {
         return many;
     };
     EXPECT_GT(changed(burnt, above, 4, 28), 150);
-    EXPECT_GT(changed(under, below, 4, 28), 150) << "and its other side";
+    EXPECT_GT(changed(under, below, 4, 28), 150) << "and the other side";
 }
 
-// A strip that its host bends into a half pipe while it burns.
+// Bends a strip into a half pipe while it burns.
 void bend(const host::Sheet& sheet, float turn, float lift, std::vector<float>& out) {
     out.resize(sheet.positions.size());
     for (size_t i = 0; i < out.size(); i += 3) {
@@ -299,7 +260,7 @@ void bend(const host::Sheet& sheet, float turn, float lift, std::vector<float>& 
     }
 }
 
-TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
+TEST(AbiDrawn, SkinnedStripsBurnAtTheirCurrentPlace) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 10;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -309,14 +270,13 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
     def.flags = FW_BURNABLE_SKINNED | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES;
     for (FwMaterialId& id : def.materials) id = w.material(FW_MATERIAL_PINE);
-    FwBurnableMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f));
     const auto lit = [](const Color& c) { return c.r + c.g + c.b > 30; };
-    EXPECT_EQ(64 * 32, count(w.look(), 0, 64, lit)) << "at rest";
+    EXPECT_EQ(64 * 32, count(w.look(), 0, 64, lit)) << "in the rest pose";
     std::vector<float> places;
     const auto count3 = uint32_t(sheet.positions.size() / 3);
-    bend(sheet, 3.14159f, 0.5f, places);  // a half circle 0.64 m wide, half a metre up
+    bend(sheet, 3.14159f, 0.5f, places);  // a half circle 0.64 m wide, 0.5 m up
     ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), nullptr, count3))
         << lastMessage(w.world);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 0.0f));
@@ -324,14 +284,14 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     EXPECT_EQ(0, count(picture, 0, 10, lit));
     EXPECT_EQ(0, count(picture, 54, 64, lit));
     EXPECT_EQ(36 * 32, count(picture, 14, 50, lit));
-    // Its floor faces the sun, its walls turn away from it: normals follow the triangles.
+    // The floor faces the sun and the walls turn away: normals follow the triangles.
     const auto sum = [&](int x0, int x1) {
         int all = 0;
         count(picture, x0, x1, [&](const Color& c) { return all += c.r + c.g + c.b, true; });
         return all / (x1 - x0);
     };
     EXPECT_GT(sum(30, 34), sum(47, 51) * 6 / 5);
-    // Lit where it is, not where it was; the light stands there too.
+    // The match lights the bent strip, not its rest pose; the light is there too.
     FwIgnitionDef match = fwDefaultIgnitionDef();
     match.object = id;
     match.position[0] = 0.5f;
@@ -339,7 +299,7 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     match.radius = 0.1f;
     uint32_t texels = 1;
     ASSERT_EQ(FW_NOTHING_THERE, fwWorld_Ignite(w.world, &match, &texels));
-    EXPECT_EQ(0u, texels) << "nothing is at the place of its rest";
+    EXPECT_EQ(0u, texels) << "nothing is at its rest pose";
     match.position[1] = 0.5f;
     ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels));
     EXPECT_GT(texels, 60u);
@@ -351,7 +311,7 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
         EXPECT_GT(lights[i].position[1], 0.4f) << i;
         EXPECT_LT(lights[i].position[1], 1.2f) << i;
     }
-    // The host's own normals: all of them up, and the walls are as bright as the floor.
+    // With the host's normals, which all point up, the walls are as bright as the floor.
     std::vector<float> up(places.size(), 0.0f);
     for (size_t i = 1; i < up.size(); i += 3) up[i] = 2;
     ASSERT_EQ(FW_OK, fwWorld_SetVertexPositions(w.world, id, places.data(), up.data(), count3));
@@ -366,8 +326,9 @@ TEST(AbiDrawn, SkinnedStripsBurnWhereTheyAre) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, id));
 }
 
-// What a fire leaves of a sheet of paper: nothing; without damage all, without holes a charred one.
-TEST(AbiDrawn, WithoutDamageNothingIsSeenOfAFireThatWas) {
+// A burnt sheet of paper leaves nothing. Without damage all of it stays, without holes a charred
+// sheet.
+TEST(AbiDrawn, WithoutDamageABurntSheetLooksNew) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     worldDef.maxLights = 0;
@@ -377,7 +338,7 @@ TEST(AbiDrawn, WithoutDamageNothingIsSeenOfAFireThatWas) {
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &mesh, &def.mesh)) << lastMessage(w.world);
     for (FwMaterialId& id : def.materials) id = w.material(FW_MATERIAL_PAPER);
-    FwPin pin{};  // all of a sheet, so that it shows where it always was
+    FwPin pin{};  // the whole sheet, so that it never moves
     pin.radius = 2;
     def.pins = &pin;
     const struct {
@@ -424,9 +385,7 @@ TEST(AbiDrawn, WithoutDamageNothingIsSeenOfAFireThatWas) {
         } else {
             EXPECT_EQ(0, changed) << i;
         }
-        FwObjectState state{};
-        state.structSize = sizeof state;
-        ASSERT_EQ(FW_OK, fwWorld_GetObjectState(w.world, ids[i], &state));
+        const FwObjectState state = getState(fwWorld_GetObjectState, w.world, ids[i]);
         if (i == 0) first = state;
         EXPECT_EQ(first.ignited, state.ignited) << "the fire is the same";
         EXPECT_LT(300u, state.ignited);
@@ -441,7 +400,7 @@ TEST(AbiDrawn, WithoutDamageNothingIsSeenOfAFireThatWas) {
     }
 }
 
-TEST(AbiSkin, FireDoesNotKnowOfIt) {
+TEST(AbiSkin, DoesNotChangeTheBurn) {
     uint64_t hashes[2] = {};
     for (const bool skinned : {false, true}) {
         host::SheetWorld w(host::evenMaterial(0.05f, 10), 1.0f, 0.5f, 64);
@@ -463,7 +422,7 @@ TEST(AbiSkin, FireDoesNotKnowOfIt) {
         }
         hashes[skinned] = w.hash();
         if (!skinned) continue;
-        // Answers are of where it is: two metres up.
+        // Queries use the skinned pose, two metres up.
         const FwPointState point = w.point(0.3f, 2.0f, 0.25f);
         EXPECT_EQ(uint32_t(FW_POINT_BURNING), point.kind);
         EXPECT_NEAR(2.0f, point.position[1], 1e-3f);
@@ -477,9 +436,9 @@ TEST(AbiSkin, FireDoesNotKnowOfIt) {
     EXPECT_NE(std::string::npos, lastMessage(plain.world).find("without FW_BURNABLE_SKINNED"));
 }
 
-// What objects of one mesh share costs once: with more objects only their own planes grow, each by
-// the same.
-TEST(AbiDrawn, ObjectsOfAMeshShareItsPlanes) {
+// Objects of one mesh share its buffers: each further object costs only its own, all the same
+// amount.
+TEST(AbiDrawn, ObjectsOfAMeshShareItsBuffers) {
     DRAWN_WORLD_OR_SKIP(w);
     const host::Sheet sheet(1.0f, 0.5f, 4);
     const FwMeshDef mesh = sheet.def(64);
@@ -495,9 +454,7 @@ TEST(AbiDrawn, ObjectsOfAMeshShareItsPlanes) {
     };
     const auto add = [&](int objects) {
         for (int i = 0; i < objects; ++i) {
-            FwBurnableMeshId id{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id))
-                << lastMessage(w.world);
+            (void)created(fwWorld_CreateBurnableMesh, w.world, def);
             def.transform[13] += 1;
         }
     };
@@ -505,9 +462,7 @@ TEST(AbiDrawn, ObjectsOfAMeshShareItsPlanes) {
     const auto one = report();
     add(8);
     const auto nine = report();
-    FwMeshInfo info{};
-    info.structSize = sizeof info;
-    ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w.world, def.mesh, &info));
+    const FwMeshInfo info = getState(fwWorld_GetMeshInfo, w.world, def.mesh);
     const uint64_t texels = uint64_t(info.mapWidth) * info.mapHeight;
     for (const char* shared :
          {"texels", "normals", "tiles", "slowness", "links", "readers", "vertices", "indices"}) {

@@ -1,6 +1,6 @@
-/* The public headers in plain C, and every function of them called with nothing: none may crash,
- * all that return a result must refuse. Returns how many functions refused wrongly; the number of
- * calls made goes to *calls. */
+/* Includes the public headers in plain C and calls every function with null. None may crash; all
+ * that return a result must refuse. Returns the number of functions that refused wrongly; *calls
+ * receives the number of calls. */
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
 #include "flamewright/flamewright_vulkan.h"
@@ -192,7 +192,7 @@ int fwTestCallEverything(int* calls) {
     REFUSES(fwDebug_GetTexelPositions(NULL, mesh, NULL, NULL, 0, NULL));
     REFUSES(fwDebug_GetUnwrap(NULL, mesh, NULL, 0, NULL));
 
-    /* Every inline default, in C. */
+    /* Every inline default function, in C. */
     wrong += fwDefaultContextDef().abiVersion == FW_ABI_VERSION ? 0 : 1;
     wrong += fwDefaultWorldDef().structSize == sizeof(FwWorldDef) ? 0 : 1;
     wrong += fwDefaultMaterialDef().structSize == sizeof(FwMaterialDef) ? 0 : 1;

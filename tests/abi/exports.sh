@@ -1,6 +1,6 @@
 #!/bin/bash
-# Checks what the shared library shows and needs: it exports the functions that the public headers
-# declare and no others, and needs only the C and C++ runtimes. Never the Vulkan loader.
+# Checks the shared library's symbols: it exports exactly the functions of the public headers, and
+# needs only the C and C++ runtimes, never the Vulkan loader.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 library="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/plugin/libflamewright.so"

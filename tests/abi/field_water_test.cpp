@@ -1,13 +1,15 @@
-// Water of particle fields on what burns, on the cpu backend: it wets what it touches, puts it out,
-// and does so at times of the world's own.
+// Water of particle fields on the cpu backend: it wets what it touches and puts it out, at ticks
+// independent of the frame rate.
 #include "abi/panels.h"
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::lastMessage;
 using host::Panels;
 
-// A panel of wood, 2 m wide and 1 m high, stands across z; water falls along it.
+// A wooden panel of 2 x 1 m stands across z; water falls along it.
 struct Fountain : Panels {
     Fountain() : Panels(fwDefaultWorldDef(), 60) {}
     FwBurnableMeshId panel(float x, bool heat = true) {
@@ -28,23 +30,18 @@ struct Fountain : Panels {
         made.size[1] = 1.4f;
         made.sourceSize = 1;
         made.width = made.height = 32;
-        FwParticleFieldId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateParticleField(world, &made, &id)) << lastMessage(world);
-        return id;
+        return created(fwWorld_CreateParticleField, world, made);
     }
     FwPointState at(size_t i, float x, float y) {
         FwQueryId query{};
         const float there[3] = {x, y, 0};
         EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world, ids[i], there, &query));
-        FwPointState point{};
-        point.structSize = sizeof point;
-        EXPECT_EQ(FW_OK, fwWorld_FetchPoint(world, query, &point));
-        return point;
+        return getState(fwWorld_FetchPoint, world, query);
     }
     uint32_t burning(size_t i) { return state(ids[i]).burning; }
 };
 
-TEST(FieldWater, PutsOutWhatItFallsOnAndNothingElse) {
+TEST(FieldWater, ExtinguishesOnlyWhatItHits) {
     Fountain w;
     w.panel(0);
     w.panel(6);
@@ -60,8 +57,8 @@ TEST(FieldWater, PutsOutWhatItFallsOnAndNothingElse) {
     EXPECT_EQ(0, w.at(1, 6.5f, 0.5f).water);
 }
 
-// What is wet does not catch; without the flag water is for the eye.
-TEST(FieldWater, WhatItWetsDoesNotCatch) {
+// Wet surfaces do not catch. Without the flag the water is cosmetic.
+TEST(FieldWater, WetSurfacesDoNotCatch) {
     for (const bool heat : {true, false}) {
         for (const bool wets : {true, false}) {
             Fountain w;
@@ -75,8 +72,7 @@ TEST(FieldWater, WhatItWetsDoesNotCatch) {
     }
 }
 
-// The cells that wet are stepped at fixed ticks, whatever the frames are.
-TEST(FieldWater, WetsTheSameAtEveryRateOfFrames) {
+TEST(FieldWater, WettingIsIndependentOfTheFrameRate) {
     std::vector<uint64_t> hashes;
     for (const float dt : {1 / 64.0f, 1 / 32.0f, 1 / 16.0f, 1 / 8.0f}) {
         Fountain w;

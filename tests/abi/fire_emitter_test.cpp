@@ -1,5 +1,5 @@
-// Fire emitters through the C ABI on the cpu backend: what they say of themselves, what they may
-// not be, and that a frame of theirs asks for no memory.
+// Fire emitters through the C ABI on the cpu backend: state, refusals, and frames without
+// allocations.
 #include "abi/fire_world.h"
 #include "abi/panels.h"
 
@@ -10,21 +10,18 @@
 
 namespace {
 
+using host::created;
 using host::FireWorld;
+using host::getState;
 using host::lastMessage;
 using ::testing::HasSubstr;
 
 FwFireEmitterId makeEmitter(FireWorld& w, const FwFireEmitterDef& def) {
-    FwFireEmitterId id{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(w.world, &def, &id)) << lastMessage(w.world);
-    return id;
+    return created(fwWorld_CreateFireEmitter, w.world, def);
 }
 
 FwFireEmitterState stateOf(FireWorld& w, FwFireEmitterId id) {
-    FwFireEmitterState state{};
-    state.structSize = sizeof state;
-    EXPECT_EQ(FW_OK, fwWorld_GetFireEmitterState(w.world, id, &state)) << lastMessage(w.world);
-    return state;
+    return getState(fwWorld_GetFireEmitterState, w.world, id);
 }
 
 TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
@@ -44,7 +41,7 @@ TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
     ASSERT_EQ(1u, fwWorld_GetLights(w.world, lights, 4));
     EXPECT_EQ(0x40000000u, lights[0].id & 0xC0000000u);
     EXPECT_EQ(60000, lights[0].power);
-    // 30 % of it leaves as light and heat.
+    // 30 % of the power leaves as radiation.
     EXPECT_NEAR(lights[0].intensity, 60000 * 0.3f / 12.566f, 400);
     ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterHidden(w.world, id, 1));
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4));
@@ -57,7 +54,7 @@ TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4));
 }
 
-TEST(AbiFireEmitter, RefusesWhatItCannotBe) {
+TEST(AbiFireEmitter, RefusesInvalidDefs) {
     FireWorld w;
     FwFireEmitterId id{};
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
@@ -97,8 +94,8 @@ TEST(AbiFireEmitter, RefusesWhatItCannotBe) {
     EXPECT_THAT(lastMessage(w.world), HasSubstr("Fire emitter 1"));
 }
 
-// What burns feeds it: nothing, then more the more burns, and nothing again.
-TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
+// The burning area feeds it: nothing at first, more as more burns, nothing in the end.
+TEST(AbiFireEmitter, OnAMeshFollowsTheBurningArea) {
     host::Panels panels(fwDefaultWorldDef(), 6);
     const FwBurnableMeshId sheet = panels.add(0, 0, 0), other = panels.add(3, 0, 0);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
@@ -108,15 +105,11 @@ TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
     def.rate = 400;
     def.life = 0.5f;
     def.smoke = 0;
-    FwFireEmitterId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(panels.world, &def, &id));
+    const FwFireEmitterId id = created(fwWorld_CreateFireEmitter, panels.world, def);
     const auto alive = [&] {
-        FwFireEmitterState state{};
-        state.structSize = sizeof state;
-        EXPECT_EQ(FW_OK, fwWorld_GetFireEmitterState(panels.world, id, &state));
-        return state.particles;
+        return getState(fwWorld_GetFireEmitterState, panels.world, id).particles;
     };
-    panels.ignite(other, 3.2f, 0, 0.1f);  // not its own
+    panels.ignite(other, 3.2f, 0, 0.1f);  // not the emitter's object
     panels.run(1);
     EXPECT_EQ(0u, alive());
     panels.ignite(sheet, 0.2f, 0, 0.1f);
@@ -127,7 +120,7 @@ TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
     EXPECT_GT(alive(), 2 * few);
     FwLight lights[8];
     for (uint32_t i = 0, n = fwWorld_GetLights(panels.world, lights, 8); i < n; ++i)
-        EXPECT_NE(0x40000000u, lights[i].id & 0xC0000000u);  // the mesh's own shine
+        EXPECT_NE(0x40000000u, lights[i].id & 0xC0000000u);  // a light of the mesh's own
     panels.run(30);
     EXPECT_EQ(0u, alive());
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(panels.world, sheet));
@@ -135,7 +128,7 @@ TEST(AbiFireEmitter, OnAMeshIsFedByWhatBurnsThere) {
     EXPECT_EQ(0u, alive());
 }
 
-TEST(AbiFireEmitter, RoomOfOneThatIsGoneIsGivenAgain) {
+TEST(AbiFireEmitter, ReusesSlotsOfDestroyedEmitters) {
     FireWorld w;
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     def.maxParticles = 4096;
@@ -149,7 +142,7 @@ TEST(AbiFireEmitter, RoomOfOneThatIsGoneIsGivenAgain) {
     (void)makeEmitter(w, def);
     def.maxParticles = 1;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &more));
-    // As many emitters as there may be, and not one more.
+    // Up to the limit and not one more.
     for (const FwFireEmitterId id : {ids[0], ids[2], ids[3]})
         ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(w.world, id));
     for (int i = 0; i < 255; ++i) (void)makeEmitter(w, def);
@@ -157,7 +150,7 @@ TEST(AbiFireEmitter, RoomOfOneThatIsGoneIsGivenAgain) {
     EXPECT_THAT(lastMessage(w.world), HasSubstr("256 fire emitters are there; the limit is 256."));
 }
 
-TEST(AbiFireEmitter, AFrameAsksForNoMemory) {
+TEST(AbiFireEmitter, FramesAllocateNothing) {
     FireWorld w;
     std::vector<FwFireEmitterId> ids;
     FwFireEmitterDef def = fwDefaultFireEmitterDef();

@@ -1,5 +1,5 @@
-// What volumetric fires and a game do to each other, through the C ABI on the cpu backend:
-// colliders, scripts, profiles, questions, pushes, neighbours, and what they light.
+// Volumetric fires and a game, on the cpu backend: colliders, scripts, profiles, queries, pushes,
+// neighbours, and ignition of objects.
 #include "abi/fire_world.h"
 
 #include <gmock/gmock.h>
@@ -9,26 +9,23 @@
 
 namespace {
 
+using host::created;
 using host::FireWorld;
+using host::getState;
 using host::lastMessage;
 using host::presetDef;
 using ::testing::HasSubstr;
 
 FwFireColliderId add(FireWorld& w, const FwFireColliderDef& def) {
-    FwFireColliderId id{};
-    EXPECT_EQ(FW_OK, fwWorld_AddFireCollider(w.world, &def, &id)) << lastMessage(w.world);
-    return id;
+    return created(fwWorld_AddFireCollider, w.world, def);
 }
 
 FwFireAnswer ask(FireWorld& w, float x, float y, float z) {
     const float point[3] = {x, y, z};
-    FwFireAnswer answer{};
-    answer.structSize = sizeof answer;
-    EXPECT_EQ(FW_OK, fwWorld_AskVolumetricFires(w.world, point, &answer)) << lastMessage(w.world);
-    return answer;
+    return getState(fwWorld_AskVolumetricFires, w.world, point);
 }
 
-// What a fire touches of each kind, all of them with their lowest point 0.4 m above its base.
+// One collider of each kind, each with its lowest point 0.4 m above the base.
 struct Shape {
     const char* name;
     FwFireColliderDef def;
@@ -38,13 +35,13 @@ float ceilingDistance(void*, const float point[3], float normal[3]) {
     normal[1] = -1;
     return 0.4f - point[1];
 }
-// The same ceiling as a camera 0.2 m over the ground and 2 m before the fire sees it.
+// The same ceiling as seen by a camera 0.2 m above the ground, 2 m in front of the fire.
 FwFireColliderDef ceilingSeen() {
     constexpr uint32_t kColumns = 64, kRows = 48;
     static const std::vector<float> depths = [] {
         std::vector<float> all;
         for (uint32_t row = 0; row < kRows; ++row) {
-            const float y = 1 - (float(row) + 0.5f) / kRows * 2;  // up per m ahead
+            const float y = 1 - (float(row) + 0.5f) / kRows * 2;  // m up per m ahead
             all.insert(all.end(), kColumns, y > 0 ? 1 - 0.01f * y / 0.2f : 1.0f);
         }
         return all;
@@ -103,11 +100,11 @@ TEST(AbiFireInteraction, FlamesGoAroundColliders) {
         EXPECT_GT(state.contactPower, 1.0f) << shape.name;
         EXPECT_LE(state.contactPower, state.power) << shape.name;
         EXPECT_NEAR(state.contact[1], 0.4f, 0.2f) << shape.name;
-        // Around a ball it may be as high again, but it has gone aside.
+        // Around a ball the tip may regain its height, but it has moved aside.
         const float aside = std::hypot(state.tip[0], state.tip[2]);
         EXPECT_TRUE(aside > 0.1f || state.tip[1] < 0.45f)
             << shape.name << ": " << aside << " m aside, " << state.tip[1] << " m high";
-        // Out of the way, it forgets.
+        // Without the collider it recovers.
         EXPECT_EQ(FW_OK, fwWorld_RemoveFireCollider(w.world, id));
         w.run(2);
         EXPECT_EQ(0.0f, w.state(fire).contactPower) << shape.name;
@@ -115,8 +112,8 @@ TEST(AbiFireInteraction, FlamesGoAroundColliders) {
     }
 }
 
-TEST(AbiFireInteraction, GroundThatRisesAndBlockersCollideToo) {
-    // A hillside east of the fire, wind onto it: the flame climbs it.
+TEST(AbiFireInteraction, CollidesWithHeightfieldsAndBlockers) {
+    // A slope east of the fire with wind onto it: the flame climbs it.
     std::vector<float> heights;
     for (int z = 0; z < 9; ++z)
         for (int x = 0; x < 9; ++x) heights.push_back(std::max(0.0f, float(x - 4)));
@@ -134,13 +131,13 @@ TEST(AbiFireInteraction, GroundThatRisesAndBlockersCollideToo) {
     flat.run(2);
     hill.run(2);
     EXPECT_GT(hill.state(b).tip[1], flat.state(a).tip[1] + 0.05f);
-    float most = 0;  // it slides along, and touches now and then
+    float most = 0;  // it slides along and touches now and then
     for (int k = 0; k < 64; ++k) {
         hill.run(1.0f / 32);
         most = std::max(most, hill.state(b).contactPower);
     }
     EXPECT_GT(most, 0.0f);
-    def.heights = nullptr;  // moved, with the heights it has
+    def.heights = nullptr;  // moved; keeps its heights
     def.position[0] = 20;
     EXPECT_EQ(FW_OK, fwWorld_SetFireCollider(hill.world, id, &def)) << lastMessage(hill.world);
     hill.run(2);
@@ -155,8 +152,7 @@ TEST(AbiFireInteraction, GroundThatRisesAndBlockersCollideToo) {
     std::copy_n(turned, 16, blocker.transform);
     blocker.halfSize[0] = 0.1f;
     blocker.halfSize[1] = blocker.halfSize[2] = 2;
-    FwBlockerId wall{};
-    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(w.world, &blocker, &wall));
+    const FwBlockerId wall = created(fwWorld_AddBlocker, w.world, blocker);
     FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId under = w.make(fire);
     fire.flags = FW_FIRE_NO_COLLISION;
@@ -171,8 +167,9 @@ TEST(AbiFireInteraction, GroundThatRisesAndBlockersCollideToo) {
     EXPECT_EQ(0.0f, w.state(through).contactPower);
 }
 
-// A picture of a wall bends flames and nothing else, and a new one every frame needs no memory.
-TEST(AbiFireInteraction, APictureOfDepthIsForFlamesAlone) {
+// A depth image of a wall bends flames and does nothing else. A new one each frame allocates
+// nothing.
+TEST(AbiFireInteraction, DepthCollidersAffectFlamesOnly) {
     FireWorld w;
     const FwVolumetricFireId fire = w.make(fwDefaultVolumetricFireDef());
     w.run(1);
@@ -184,13 +181,13 @@ TEST(AbiFireInteraction, APictureOfDepthIsForFlamesAlone) {
     def.halfSize[0] = 0.02f;
     def.halfSize[1] = def.halfSize[2] = 5;
     const FwFireColliderId wall = add(w, def);
-    EXPECT_LT(ask(w, 1.6f, 0.3f, 0).heatFlux, 0.9f * heat) << "it would not be noticed";
+    EXPECT_LT(ask(w, 1.6f, 0.3f, 0).heatFlux, 0.9f * heat) << "the wall must make a difference";
     EXPECT_EQ(FW_OK, fwWorld_RemoveFireCollider(w.world, wall));
     def = ceilingSeen();
     const FwFireColliderId seen = add(w, def);
     const float above = 1.5f;
     const float there = ask(w, 0, above, 0).heatFlux;
-    EXPECT_GT(there, 10.0f) << "radiation passes what is only seen";
+    EXPECT_GT(there, 10.0f) << "a depth collider does not block radiation";
     const int64_t before = w.host.allocations;
     for (int k = 0; k < 16; ++k) {
         def.view[14] = -2 - 0.01f * float(k);
@@ -201,7 +198,7 @@ TEST(AbiFireInteraction, APictureOfDepthIsForFlamesAlone) {
     EXPECT_GT(w.state(fire).contactPower, 0.0f);
 }
 
-TEST(AbiFireInteraction, CollidersAreChecked) {
+TEST(AbiFireInteraction, RefusesInvalidColliders) {
     FireWorld w;
     FwFireColliderId id{};
     const auto refused = [&](const FwFireColliderDef& def, const char* text) {
@@ -257,7 +254,7 @@ TEST(AbiFireInteraction, CollidersAreChecked) {
     refused(def, "64 fire colliders");
 }
 
-TEST(AbiFireInteraction, FollowsAScriptAndComesBack) {
+TEST(AbiFireInteraction, FollowsAScriptAndReturns) {
     FireWorld w;
     FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
     fire.position[0] = 5;
@@ -265,7 +262,7 @@ TEST(AbiFireInteraction, FollowsAScriptAndComesBack) {
     const FwVolumetricFireId id = w.make(fire);
     w.run(1);
     EXPECT_NEAR(w.state(id).tip[0], 5, 0.15f);
-    // To the east in its first second, to the west in the next.
+    // To the east in the first second, to the west in the next.
     std::vector<FwFirePoint> points;
     for (const float side : {1.0f, -1.0f, 1.0f})
         for (int i = 0; i < 3; ++i) points.push_back({{side * 0.6f * float(i), 0.2f, 0}, 0.2f});
@@ -282,10 +279,10 @@ TEST(AbiFireInteraction, FollowsAScriptAndComesBack) {
     EXPECT_NEAR(w.state(id).tip[0], 5 - 1.2f, 0.15f);
     w.run(1);
     EXPECT_NEAR(w.state(id).tip[0], 5 + 1.2f, 0.15f);
-    EXPECT_NEAR(w.state(id).height, 1.2f, 0.05f) << "as high as the line is long";
+    EXPECT_NEAR(w.state(id).height, 1.2f, 0.05f) << "as high as its path is long";
     w.run(1);
     EXPECT_NEAR(w.state(id).tip[0], 5 - 1.2f, 0.15f) << "it loops";
-    // Half of it: between its own motion and the script.
+    // Half weight: between its own motion and the script.
     track.weight = 0.5f;
     ASSERT_EQ(FW_OK, fwWorld_SetVolumetricFireTrack(w.world, id, &track));
     w.run(2);
@@ -294,7 +291,7 @@ TEST(AbiFireInteraction, FollowsAScriptAndComesBack) {
     ASSERT_EQ(FW_OK, fwWorld_SetVolumetricFireTrack(w.world, id, nullptr));
     const float from = w.state(id).tip[0];
     w.run(1.0f / 32);
-    EXPECT_NEAR(w.state(id).tip[0], from, 0.1f) << "no leap";
+    EXPECT_NEAR(w.state(id).tip[0], from, 0.1f) << "no jump";
     w.run(3);
     EXPECT_NEAR(w.state(id).tip[0], 5, 0.15f);
     const auto refused = [&](const FwFireTrackDef& def, const char* text) {
@@ -319,9 +316,9 @@ TEST(AbiFireInteraction, FollowsAScriptAndComesBack) {
     refused(track, "time of key 1 is 1");
 }
 
-TEST(AbiFireInteraction, BurnsWithTheHostsProfile) {
+TEST(AbiFireInteraction, UsesTheHostsProfile) {
     FireWorld w;
-    std::vector<float> texels;  // nothing burns but in the lower half
+    std::vector<float> texels;  // emits in the lower half only
     for (int y = 0; y < 16; ++y)
         for (int x = 0; x < 8; ++x) {
             texels.push_back(1500);
@@ -394,7 +391,7 @@ TEST(AbiFireInteraction, BurnsWithTheHostsProfile) {
     refused(def, FW_ERROR_INVALID_ARGUMENT, "23 fire profiles");
 }
 
-TEST(AbiFireInteraction, AnswersWhatItDoesToAPoint) {
+TEST(AbiFireInteraction, ReportsHeatAtAPoint) {
     FireWorld w;
     EXPECT_EQ(293.0f, ask(w, 0, 0, 0).temperature);
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
@@ -417,7 +414,7 @@ TEST(AbiFireInteraction, AnswersWhatItDoesToAPoint) {
     EXPECT_GT(beside.heatFlux, 800.0f) << "a metre from 60 kW: some 1.5 kW/m^2";
     EXPECT_LT(beside.heatFlux, 4000.0f);
     EXPECT_LT(far.heatFlux, 1.0f);
-    // Two fires warm more than one.
+    // Two fires give more heat than one.
     def.position[0] = 2;
     (void)w.make(def);
     w.run(1);
@@ -447,8 +444,8 @@ float ridgeDistance(void*, const float point[3], float normal[3]) {  // a slab a
     return std::abs(point[0] - 0.7f) - 0.06f;
 }
 
-// What radiates does not pass what stands between.
-TEST(AbiFireInteraction, WallsShadeHeat) {
+// A wall blocks radiation.
+TEST(AbiFireInteraction, WallsBlockRadiation) {
     FireWorld w;
     (void)w.make(fwDefaultVolumetricFireDef());
     w.run(1);
@@ -467,14 +464,14 @@ TEST(AbiFireInteraction, WallsShadeHeat) {
     FwFireColliderDef def = fwDefaultFireColliderDef();
     def.position[0] = 0.7f;
     def.radius = 0.02f;
-    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "it lies on the ground";
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "the collider lies on the ground";
     def.position[1] = 0.3f;
     def.radius = 0.28f;
     EXPECT_LT(shaded(def), 0.3f) << "sphere";
     def.position[0] = 1.2f;
     EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "a body does not shade itself";
     def.position[0] = 0.0f;
-    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "nor does what stands in the fire";
+    EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "a body in the fire does not block it";
     def.kind = FW_COLLIDER_CAPSULE;
     def.radius = 0.1f;
     def.position[0] = def.end[0] = 0.7f;
@@ -516,19 +513,16 @@ TEST(AbiFireInteraction, WallsShadeHeat) {
     blocker.transform[12] = 0.7f;
     blocker.halfSize[0] = 0.05f;
     blocker.halfSize[1] = blocker.halfSize[2] = 2;
-    FwBlockerId wall{};
-    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(w.world, &blocker, &wall));
+    const FwBlockerId wall = created(fwWorld_AddBlocker, w.world, blocker);
     EXPECT_LT(ask(w, 1.2f, 0.3f, 0).heatFlux, 0.01f * open);
     const float centre[3] = {1.2f, 0.3f, 0};
-    FwFirePush push{};
-    push.structSize = sizeof push;
-    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFirePush(w.world, centre, 0.1f, &push));
+    const FwFirePush push = getState(fwWorld_GetVolumetricFirePush, w.world, centre, 0.1f);
     EXPECT_LT(push.ignitionPower, 0.01f * open * 0.0314f);
     ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(w.world, wall));
     EXPECT_FLOAT_EQ(ask(w, 1.2f, 0.3f, 0).heatFlux, open);
 }
 
-// Gas comes to a ceiling in puffs; what it gives there is told without them.
+// Gas reaches a ceiling in puffs; the reported contact power is averaged over them.
 TEST(AbiFireInteraction, ContactPowerIsSteady) {
     FireWorld w;
     FwFireColliderDef def = fwDefaultFireColliderDef();
@@ -574,8 +568,8 @@ TEST(AbiFireInteraction, NeighboursLeanTogetherAndGrowTaller) {
     EXPECT_GT(close.state(b[0]).height, 1.1f * apart.state(a[0]).height);
 }
 
-// Power that wavers does not tear a wide fire into other pieces; what dies down does so in place.
-TEST(AbiFireInteraction, WideWeakFiresAreManyAndSeldomOthers) {
+// Varying power does not split a wide fire differently; a weakening fire dies down in place.
+TEST(AbiFireInteraction, WideWeakFiresKeepTheirPieces) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.diameter = 2;
@@ -602,7 +596,7 @@ TEST(AbiFireInteraction, WideWeakFiresAreManyAndSeldomOthers) {
     EXPECT_NEAR(w.state(id).power, 4000, 40);
 }
 
-// A sheet of something that burns, and a fire under it.
+// A combustible sheet with a fire below it.
 struct Kindling {
     host::SheetWorld sheets;
     FwVolumetricFireId fire{};
@@ -629,13 +623,13 @@ struct Kindling {
     }
 };
 
-TEST(AbiFireInteraction, LightsWhatItTouchesForLongEnough) {
+TEST(AbiFireInteraction, IgnitesObjectsAfterEnoughContactTime) {
     Kindling never(0), far(FW_FIRE_IGNITES, 3), near(FW_FIRE_IGNITES);
     for (Kindling* k : {&never, &far, &near}) k->sheets.run(6);
     EXPECT_EQ(0u, never.sheets.state().ignited);
     EXPECT_EQ(0u, far.sheets.state().ignited);
     EXPECT_GT(near.sheets.state().ignited, 0u);
-    // Not at once, sooner where the world is faster, and not while it passes by.
+    // Not at once; sooner in a faster world; not while it passes by.
     Kindling slow(FW_FIRE_IGNITES), fast(FW_FIRE_IGNITES, 0.3f, 20), passing(FW_FIRE_IGNITES);
     slow.sheets.run(0.2);
     EXPECT_EQ(0u, slow.sheets.state().ignited);
@@ -648,7 +642,7 @@ TEST(AbiFireInteraction, LightsWhatItTouchesForLongEnough) {
         passing.sheets.run(1.0 / 32);
     }
     EXPECT_EQ(0u, passing.sheets.state().ignited);
-    // A cold one does nothing; wind may blow it to something.
+    // A fire that is out lights nothing; wind may blow it onto an object.
     Kindling out(FW_FIRE_IGNITES);
     EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(out.sheets.world, out.fire, 0));
     out.sheets.run(4);
@@ -663,7 +657,7 @@ TEST(AbiFireInteraction, LightsWhatItTouchesForLongEnough) {
     EXPECT_GT(blown.sheets.state().ignited, 0u);
 }
 
-TEST(AbiFireInteraction, WhatItLightsIsTheSameEveryTime) {
+TEST(AbiFireInteraction, IgnitionIsDeterministic) {
     uint64_t hashes[2] = {};
     for (uint64_t& hash : hashes) {
         Kindling k(FW_FIRE_IGNITES, 0.3f, 5);

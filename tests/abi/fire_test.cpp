@@ -1,4 +1,4 @@
-// What a game sees of a fire: events, states, points, tags, dousing, time. On the cpu backend.
+// Fire as a game sees it, on the cpu backend: events, states, points, tags, extinguishing, time.
 #include "abi/abi_support.h"
 #include "support/sanitized.h"
 
@@ -6,7 +6,10 @@
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::lastMessage;
+using host::materialOf;
 using host::SheetWorld;
 
 constexpr float kRate = 0.02f;  // m/s
@@ -19,7 +22,7 @@ const FwEvent* find(const std::vector<FwEvent>& events, uint32_t type) {
 
 TEST(AbiFire, APlankBurnsFromEndToEnd) {
     SheetWorld w(host::evenMaterial(kRate, 4));
-    // A line across one end, so that the front is straight.
+    // Lights a line across one end so that the front is straight.
     const float tagAt[3] = {0.8f, 0, 0.125f};
     ASSERT_EQ(FW_OK, fwWorld_TagPoint(w.world, w.object, tagAt, 42));
     uint32_t texels = 0;
@@ -48,7 +51,7 @@ TEST(AbiFire, APlankBurnsFromEndToEnd) {
     const FwEvent* reached = find(events, FW_EVENT_TAG_REACHED);
     ASSERT_NE(nullptr, reached);
     EXPECT_EQ(42u, reached->tag);
-    // The line's far edge is 0.045 m from the end, texels are 1/64 m.
+    // The lit line ends 0.045 m from the end; texels are 1/64 m.
     const double expected = (double(reached->position[0]) - 0.045 + 0.5 / 64) / double(kRate);
     EXPECT_NEAR(expected, double(reached->value), 0.03 * expected);
     EXPECT_EQ(1, std::count_if(events.begin(), events.end(), [](const FwEvent& event) {
@@ -68,7 +71,7 @@ TEST(AbiFire, APlankBurnsFromEndToEnd) {
     EXPECT_EQ(uint32_t(FW_POINT_BURNT), w.point(0.5f, 0, 0.1f).kind);
 }
 
-TEST(AbiFire, PointQueriesTellTheStateOfTheNearestTexel) {
+TEST(AbiFire, PointQueriesReportTheNearestTexel) {
     SheetWorld w(host::evenMaterial(kRate, 100));
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.5f, 0, 0.1f).kind);
     EXPECT_GT(0.0f, w.point(0.5f, 0, 0.1f).age);
@@ -89,7 +92,7 @@ TEST(AbiFire, PointQueriesTellTheStateOfTheNearestTexel) {
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.9f, 0, 0.125f).kind);
 }
 
-TEST(AbiFire, DousingPutsItOutAndSaysSo) {
+TEST(AbiFire, ExtinguishingReportsAnEvent) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f);
     w.run(3.0);
@@ -104,7 +107,7 @@ TEST(AbiFire, DousingPutsItOutAndSaysSo) {
     EXPECT_EQ(nullptr, find(events, FW_EVENT_BURNT_OUT));
     EXPECT_EQ(0u, w.state().burning);
     EXPECT_EQ(uint32_t(FW_POINT_EXTINGUISHED), w.point(0.5f, 0, 0.125f).kind);
-    // Dried and lit again: it is a new fire with events of its own.
+    // Dried and lit again, it is a new fire with its own events.
     w.ball(FW_DRY, 0.5f, 0, 0.125f, 0.6f);
     w.run(1.0);
     EXPECT_EQ(nullptr, find(w.events(), FW_EVENT_IGNITED));
@@ -118,16 +121,16 @@ TEST(AbiFire, DousingPutsItOutAndSaysSo) {
     EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_CALL), find(last, FW_EVENT_EXTINGUISHED)->tag);
 }
 
-TEST(AbiFire, IgnitionReachesOnlyWhatTheBallTouches) {
+TEST(AbiFire, IgnitesOnlyTexelsInsideTheBall) {
     SheetWorld w(host::evenMaterial(kRate, 10));
     EXPECT_EQ(0u, w.ball(FW_IGNITE, 0.5f, 1.0f, 0.1f, 0.5f));  // half a metre above
     EXPECT_EQ(0u, w.ball(FW_IGNITE, 5.0f, 0.0f, 0.1f, 0.5f));  // beside
-    EXPECT_EQ(1u, w.ball(FW_IGNITE, 0.5f, 0.0f, 0.1f, 0.0f));  // no radius: the nearest
+    EXPECT_EQ(1u, w.ball(FW_IGNITE, 0.5f, 0.0f, 0.1f, 0.0f));  // radius 0: the nearest texel
     const uint32_t centred = w.ball(FW_IGNITE, 0.5f, 0.0f, 0.125f, 0.1f);
     EXPECT_NEAR(3.14159 * 0.1 * 0.1 * 64 * 64, double(centred), 12);
     const uint32_t lifted = w.ball(FW_IGNITE, 0.5f, 0.08f, 0.125f, 0.1f);
     EXPECT_NEAR(3.14159 * 0.06 * 0.06 * 64 * 64, double(lifted), 10);
-    // Null object: whatever is there.
+    // Null object: any object there.
     const FwBurnableMeshId second = w.add(8);
     float far[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 0, 1};
     ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, second, far));
@@ -160,8 +163,8 @@ TEST(AbiFire, AScaledObjectBurnsInWorldMetres) {
     EXPECT_NEAR(expected, double(reached->value), 0.03 * expected);
 }
 
-// A sheet stretched fourfold along one axis, mirrored and turned: from its middle fire goes as far
-// along the one as along the other, in world metres.
+// A sheet stretched fourfold along one axis, mirrored and turned: fire covers equal world distances
+// along both axes.
 TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
     SheetWorld w(host::evenMaterial(kRate, 1000), 0.25f, 1.0f, 256);
     for (const bool mirrored : {false, true}) {
@@ -169,12 +172,11 @@ TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
         def.mesh = w.mesh;
         def.materials[0] = w.materialId;
-        // Object x becomes world -z, or z where mirrored; y world y; z world x.
+        // Object x becomes world -z (z if mirrored); object y becomes world y.
         const float long_ = mirrored ? 4.0f : -4.0f;
         const float placed[16] = {0, 0, long_, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0, 0, 1};
         std::copy_n(placed, 16, def.transform);
-        FwBurnableMeshId id{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+        FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
         std::swap(w.object, id);
         const float z = mirrored ? 0.5f : -0.5f;
         EXPECT_NEAR(3.14159 * 0.05 * 0.05 * 256 * 64, double(w.ball(FW_IGNITE, 0.5f, 0, z, 0.05f)),
@@ -193,7 +195,7 @@ TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
         }
         const FwObjectState state = w.state();
         EXPECT_NEAR(3.14159 * 0.35 * 0.35, double(state.burningArea), 0.02);
-        // The other hand is refused, another ratio only stretches what is asked and drawn.
+        // A change of handedness is refused. Another ratio changes only queries and pictures.
         float moved[16];
         std::copy_n(placed, 16, moved);
         moved[2] = -moved[2];
@@ -208,7 +210,7 @@ TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
     }
 }
 
-TEST(AbiFire, ShapesOfAMeshAreSharedAndGoWithTheirLastUser) {
+TEST(AbiFire, ShapesAreSharedAndFreedWithTheirLastUser) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = w.mesh;
@@ -217,19 +219,14 @@ TEST(AbiFire, ShapesOfAMeshAreSharedAndGoWithTheirLastUser) {
     FwWorldStats stats{};
     stats.structSize = sizeof stats;
     FwBurnableMeshId ids[3] = {};
-    const auto bytes = [&] {
-        FwContextInfo info{};
-        info.structSize = sizeof info;
-        EXPECT_EQ(FW_OK, fwContext_GetInfo(w.context, &info));
-        return info.cpuMemoryUsed;
-    };
+    const auto bytes = [&] { return getState(fwContext_GetInfo, w.context).cpuMemoryUsed; };
     const uint64_t none = bytes();
     ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[0])) << lastMessage(w.world);
     const uint64_t one = bytes();
-    def.transform[5] = def.transform[10] = -1;  // turned, the same shape
+    def.transform[5] = def.transform[10] = -1;  // turned; the same shape
     ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &ids[1]));
     const uint64_t two = bytes();
-    EXPECT_LT(2 * (two - one), one - none) << "the shape is there";
+    EXPECT_LT(2 * (two - one), one - none) << "the shape is shared";
     ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
     EXPECT_EQ(1u, stats.meshes);
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));
@@ -270,7 +267,7 @@ TEST(AbiFire, WindDrivesTheFrontDownwind) {
     w.run(6.0);
     EXPECT_EQ(uint32_t(FW_POINT_BURNING), w.point(0.4f + 0.16f, 0, 0.25f).kind);
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.4f - 0.12f, 0, 0.25f).kind);
-    // It turns: after a while the other side is the head.
+    // The wind turns; later the other side is the head.
     const float back[3] = {-2, 0, 0};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(w.world, back));
     w.run(10.0);
@@ -286,7 +283,7 @@ TEST(AbiFire, GravityFollowsAPoseAtTheNextLatch) {
     SheetWorld w(material, 1.0f, 0.25f);
     w.ball(FW_IGNITE, 0.3f, 0, 0.125f, 0.03f);
     w.run(2.0);
-    // Object x becomes world y: from now on the far end is up.
+    // Object x becomes world y: the far end is up.
     const float upright[16] = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, w.object, upright));
     w.run(6.0);
@@ -294,15 +291,13 @@ TEST(AbiFire, GravityFollowsAPoseAtTheNextLatch) {
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0, 0.3f - 0.15f, 0.125f).kind);
 }
 
-TEST(AbiFire, BarriersOfTheMultiplierHold) {
+TEST(AbiFire, FireDoesNotCrossAZeroSpreadMultiplier) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     std::vector<uint8_t> multiplier(64 * 16, 128);
     for (int y = 0; y < 16; ++y)
         for (int x = 30; x < 34; ++x) multiplier[size_t(y * 64 + x)] = 0;
-    FwMeshInfo info{};
-    info.structSize = sizeof info;
-    ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w.world, w.mesh, &info));
-    // The map is as wide as the atlas, whichever way the chart lies: paint over rest positions.
+    const FwMeshInfo info = getState(fwWorld_GetMeshInfo, w.world, w.mesh);
+    // The map is as wide as the atlas whatever the chart's direction: paint by rest position.
     std::vector<float> positions(size_t(info.mapWidth) * info.mapHeight * 3);
     uint64_t count = 0;
     ASSERT_EQ(FW_OK, fwDebug_GetTexelPositions(w.world, w.mesh, positions.data(), nullptr,
@@ -316,8 +311,7 @@ TEST(AbiFire, BarriersOfTheMultiplierHold) {
     def.multiplier = multiplier.data();
     def.multiplierWidth = info.mapWidth;
     def.multiplierHeight = info.mapHeight;
-    FwBurnableMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id)) << lastMessage(w.world);
+    FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
     w.object = id;
     w.ball(FW_IGNITE, 0.1f, 0, 0.125f, 0.03f);
     w.run(60.0);
@@ -328,8 +322,7 @@ TEST(AbiFire, BarriersOfTheMultiplierHold) {
 }
 
 TEST(AbiFire, NonCombustibleDoesNotBurnAndRaisesNothing) {
-    FwMaterialDef stone = fwDefaultMaterialDef();
-    ASSERT_EQ(FW_OK, fwInitMaterialPreset(&stone, FW_MATERIAL_NONCOMBUSTIBLE));
+    FwMaterialDef stone = materialOf(FW_MATERIAL_NONCOMBUSTIBLE);
     SheetWorld w(stone);
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.05f));
     w.run(3.0);
@@ -338,8 +331,6 @@ TEST(AbiFire, NonCombustibleDoesNotBurnAndRaisesNothing) {
     EXPECT_TRUE(w.events().empty());
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwInitMaterialPreset(&stone, FW_MATERIAL_PRESET_COUNT));
 }
-
-// ---- time -------------------------------------------------------------------------------------
 
 uint64_t hashAfter(float deltaTime, double seconds) {
     FwMaterialDef material = host::evenMaterial(kRate, 6);
@@ -355,7 +346,7 @@ uint64_t hashAfter(float deltaTime, double seconds) {
     w.ball(FW_IGNITE, 0.8f, 0, 0.2f, 0.03f, 2.3f);
     w.ball(FW_WET, 0.5f, 0, 0.1f, 0.1f, 3.1f);
     w.ball(FW_DRY, 0.5f, 0, 0.1f, 0.2f, 5.7f);
-    // Whatever the rate: the same number of steps.
+    // Every frame rate runs the same number of steps.
     const uint64_t wanted = uint64_t(seconds * 32);
     uint64_t ran = 0;
     FwWorldStats stats{};
@@ -372,7 +363,7 @@ uint64_t hashAfter(float deltaTime, double seconds) {
     return hash;
 }
 
-TEST(AbiTime, TheFrameRateDoesNotMatter) {
+TEST(AbiTime, BurnIsIndependentOfTheFrameRate) {
     const uint64_t golden = hashAfter(1.0f / 60, 12);
     EXPECT_EQ(golden, hashAfter(1.0f / 120, 12));
     EXPECT_EQ(golden, hashAfter(1.0f / 7, 12));
@@ -380,19 +371,17 @@ TEST(AbiTime, TheFrameRateDoesNotMatter) {
     EXPECT_NE(golden, hashAfter(1.0f / 60, 11));
 }
 
-TEST(AbiTime, NoDriftOverAnHourOfFrames) {
+TEST(AbiTime, DoesNotDriftOverAnHour) {
     SheetWorld w(host::evenMaterial(kRate, 4));
     for (int i = 0; i < 60 * 3600; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 60));
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
-    const double exact = double(60 * 3600) * double(1.0f / 60);  // the host's own float
+    const FwWorldStats stats = getState(fwWorld_GetStats, w.world);
+    const double exact = double(60 * 3600) * double(1.0f / 60);  // the host's own float rounding
     EXPECT_NEAR(exact, double(stats.tick) / 4096, 1.01 / 32);
-    EXPECT_EQ(0u, stats.steps);  // nothing burnt: nothing ran
+    EXPECT_EQ(0u, stats.steps);  // nothing burns, so no step runs
     EXPECT_EQ(0u, stats.droppedSteps);
 }
 
-TEST(AbiTime, TooMuchTimeIsDroppedAndTold) {
+TEST(AbiTime, DropsExcessTimeAndReportsIt) {
     FwWorldDef def = fwDefaultWorldDef();
     def.maxStepsPerFrame = 4;
     SheetWorld w(host::evenMaterial(kRate, 4), 1.0f, 0.25f, 64, def);
@@ -401,14 +390,12 @@ TEST(AbiTime, TooMuchTimeIsDroppedAndTold) {
     ASSERT_EQ(1u, events.size());
     EXPECT_EQ(uint32_t(FW_EVENT_TIME_DROPPED), events[0].type);
     EXPECT_FLOAT_EQ(28.0f / 32, events[0].value);
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    const FwWorldStats stats = getState(fwWorld_GetStats, w.world);
     EXPECT_EQ(28u, stats.droppedSteps);
     EXPECT_EQ(4u * 128, stats.tick);
 }
 
-TEST(AbiTime, TwelveDaysAreTheLimitAndItSaysSo) {
+TEST(AbiTime, RefusesTimeBeyondTwelveDays) {
     if (fw::test::kSanitized) {
         GTEST_SKIP() << "thirty million idle steps take too long under a sanitizer";
     }
@@ -417,25 +404,23 @@ TEST(AbiTime, TwelveDaysAreTheLimitAndItSaysSo) {
     SheetWorld w(host::evenMaterial(kRate, 4), 0.25f, 0.25f, 32, def);
     constexpr int kSeconds = 1048560;
     for (int s = 0; s < kSeconds - 2; s += 2) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 2));
-    // A fire that reaches the end stays what it is.
+    // A fire that reaches the end keeps its state.
     w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.05f);
     ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1));
-    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.5f));  // there is room for one second of it
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.5f));  // room for one second
+    const FwWorldStats stats = getState(fwWorld_GetStats, w.world);
     EXPECT_EQ(uint64_t(kSeconds) * 4096, stats.tick);
     EXPECT_EQ(uint32_t(FW_POINT_BURNING), w.point(0.1f, 0, 0.1f).kind);
     EXPECT_EQ(1u, w.host.warnings.size());
     const uint64_t burnt = w.hash();
-    w.ball(FW_IGNITE, 0.2f, 0, 0.2f, 0.02f);  // for a time that does not come
+    w.ball(FW_IGNITE, 0.2f, 0, 0.2f, 0.02f);  // due after the end of time
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, 1));
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("1048560 s")) << lastMessage(w.world);
     EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0));
     EXPECT_EQ(burnt, w.hash());
 }
 
-TEST(AbiTime, DelayedEventsWaitForTheirTime) {
+TEST(AbiTime, DelayedCommandsRunAtTheirTime) {
     SheetWorld w(host::evenMaterial(kRate, 100));
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f, 1.5f);
     w.run(1.4);
@@ -448,12 +433,10 @@ TEST(AbiTime, DelayedEventsWaitForTheirTime) {
     EXPECT_NEAR(0.5f, w.point(0.5f, 0, 0.125f).age, 0.05f);
 }
 
-TEST(AbiTime, AnIdleWorldSkipsItsSteps) {
+TEST(AbiTime, IdleWorldsSkipSteps) {
     SheetWorld w(host::evenMaterial(0.2f, 0.5f), 0.25f, 0.25f, 32);
     w.run(3.0);
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    FwWorldStats stats = getState(fwWorld_GetStats, w.world);
     EXPECT_EQ(0u, stats.steps);
     w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.05f);
     w.run(26.0);  // burns out and cools down
@@ -468,7 +451,7 @@ TEST(AbiTime, AnIdleWorldSkipsItsSteps) {
     EXPECT_EQ(0u, stats.burningTiles);
 }
 
-TEST(AbiEvents, TheOldestAreDroppedWhenNobodyPolls) {
+TEST(AbiEvents, DropsTheOldestWhenNotPolled) {
     FwWorldDef def = fwDefaultWorldDef();
     def.maxStepsPerFrame = 1;
     SheetWorld w(host::evenMaterial(kRate, 4), 0.1f, 0.1f, 64, def);
@@ -480,7 +463,7 @@ TEST(AbiEvents, TheOldestAreDroppedWhenNobodyPolls) {
     EXPECT_EQ(0u, fwWorld_PollEvents(w.world, nullptr, 0));
 }
 
-TEST(AbiEvents, LimitsOfOpenQueriesAndTags) {
+TEST(AbiEvents, LimitsOpenQueriesAndTags) {
     SheetWorld w(host::evenMaterial(kRate, 4));
     const float point[3] = {0.5f, 0, 0.1f};
     FwQueryId query{};
@@ -498,7 +481,7 @@ TEST(AbiEvents, LimitsOfOpenQueriesAndTags) {
     EXPECT_LT(4000u, events.size());
 }
 
-TEST(AbiLights, AFireIsALightWithAnIdThatStays) {
+TEST(AbiLights, LightsOfAFireKeepTheirIds) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     FwLight lights[64];
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 64));

@@ -1,5 +1,5 @@
-// The first frame after a load looks as the frame after the save did: burning meshes show flames
-// and shine, emitters have their particles, volumetric fires stand where they stood.
+// The first frame after a load looks like the frame after the save: flames and light of meshes,
+// particles of emitters, shapes of volumetric fires.
 #include "abi/busy_world.h"
 
 #include <cmath>
@@ -9,19 +9,15 @@ namespace {
 
 using namespace host;
 
-// A board of wood that burns, an emitter that shows its flames, one by itself, a volumetric fire.
-class Camp {
- public:
-    explicit Camp(uint32_t backend) : sheet_(0.6f, 0.4f, 4) {
-        context_ = createContext(host_, backend);
-        if (!context_) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.paceFactor = 8;
-        ok(fwCreateWorld(context_, &def, &world));
+// A burning wooden board, an emitter that shows its flames, a free emitter, a volumetric fire.
+struct Camp : HostedWorld {
+    explicit Camp(uint32_t backend) : HostedWorld(backend, pacedDef(8)) {
+        if (!world) return;
+        const Sheet sheet(0.6f, 0.4f, 4);
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
         const float upright[16] = {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0, 0, 0, 0, 1};
         std::copy_n(upright, 16, made.transform);
-        board = addBurnable(world, sheet_.def(64), fwDefaultMaterialDef(), made);
+        board = addBurnable(world, sheet.def(64), fwDefaultMaterialDef(), made);
         FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
         emitter.position[0] = -2;
         ok(fwWorld_CreateFireEmitter(world, &emitter, &camp));
@@ -32,13 +28,6 @@ class Camp {
         FwVolumetricFireDef fireDef = fwDefaultVolumetricFireDef();
         ok(fwWorld_CreateVolumetricFire(world, &fireDef, &fire));
     }
-    Camp(const Camp&) = delete;
-    Camp& operator=(const Camp&) = delete;
-    ~Camp() {
-        fwDestroyContext(context_);
-        EXPECT_EQ(0, host_.blocks);
-    }
-
     void burn() {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         ball.position[0] = 0.3f;
@@ -52,18 +41,12 @@ class Camp {
     }
     void step() { ok(fwWorld_Step(world, 1.0f / 60)); }
     FwFireEmitterState emitterState(FwFireEmitterId id) {
-        FwFireEmitterState state{};
-        state.structSize = sizeof state;
-        ok(fwWorld_GetFireEmitterState(world, id, &state));
-        return state;
+        return getState(fwWorld_GetFireEmitterState, world, id);
     }
     FwVolumetricFireState fireState() {
-        FwVolumetricFireState state{};
-        state.structSize = sizeof state;
-        ok(fwWorld_GetVolumetricFireState(world, fire, &state));
-        return state;
+        return getState(fwWorld_GetVolumetricFireState, world, fire);
     }
-    double meshPower() {  // W that burning meshes shine with
+    double meshPower() {  // W radiated by burning meshes
         FwLight lights[64];
         double power = 0;
         const uint32_t count = fwWorld_GetLights(world, lights, 64);
@@ -71,7 +54,7 @@ class Camp {
             if (lights[i].id < 1u << 30) power += double(lights[i].power);
         return power;
     }
-    uint32_t quads() {  // that a picture shows
+    uint32_t quads() {  // shown in a picture
         std::vector<uint32_t> pixels(160 * 90);
         FwOffscreenDef picture = fwDefaultOffscreenDef();
         picture.width = 160;
@@ -83,22 +66,12 @@ class Camp {
         std::copy_n(view, 16, picture.view.view);
         std::copy_n(projection, 16, picture.view.projection);
         ok(fwWorld_RenderOffscreen(world, &picture));
-        FwWorldStats stats{};
-        stats.structSize = sizeof stats;
-        ok(fwWorld_GetStats(world, &stats));
-        return stats.flames;
+        return getState(fwWorld_GetStats, world).flames;
     }
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
 
-    FwWorld* world = nullptr;
     FwBurnableMeshId board{};
     FwFireEmitterId camp{}, flames{};
     FwVolumetricFireId fire{};
-
- private:
-    Host host_;
-    Sheet sheet_;
-    FwContext* context_ = nullptr;
 };
 
 void looksAsItDid(uint32_t backend) {
@@ -138,11 +111,11 @@ void looksAsItDid(uint32_t backend) {
         }
     }
 }
-TEST(FirstFrame, LooksAsItDidAtTheSave) { looksAsItDid(FW_BACKEND_CPU); }
-TEST(FirstFrame, LooksAsItDidAtTheSaveOnADevice) { looksAsItDid(FW_BACKEND_VULKAN); }
+TEST(FirstFrame, MatchesTheFrameAfterTheSave) { looksAsItDid(FW_BACKEND_CPU); }
+TEST(FirstFrame, MatchesTheFrameAfterTheSaveOnADevice) { looksAsItDid(FW_BACKEND_VULKAN); }
 
-// FwWorldStats::flames, where the library makes the pictures.
-TEST(FirstFrame, StatsCountTheQuadsOfAPicture) {
+// FwWorldStats::flames on a backend that draws.
+TEST(FirstFrame, StatsCountTheQuadsOfThePicture) {
     Camp w(FW_BACKEND_VULKAN);
     if (!w.world) GTEST_SKIP() << "there is no such backend here";
     w.step();
@@ -160,14 +133,14 @@ TEST(FirstFrame, StatsCountTheQuadsOfAPicture) {
     EXPECT_EQ(0u, w.quads()) << "nothing burns any more";
 }
 
-// Every figure of FwWorldStats is there on every backend, but for what only drawing has.
-TEST(FirstFrame, NoFigureOfTheStatsIsLeftOut) {
+// Every backend fills every figure of FwWorldStats except those of drawing.
+TEST(FirstFrame, EveryFigureOfTheStatsIsFilled) {
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
         Camp w(backend);
         if (!w.world) continue;
         w.burn();
         if (backend == FW_BACKEND_VULKAN) (void)w.quads();
-        w.ok(fwWorld_Step(w.world, 10));  // more than a frame may have
+        w.ok(fwWorld_Step(w.world, 10));  // longer than a frame may be
         FwWorldStats stats{};
         stats.structSize = sizeof stats;
         w.ok(fwWorld_GetStats(w.world, &stats));

@@ -1,5 +1,4 @@
-// Flipbooks through the C ABI on the cpu backend: what is refused and in which words, who uses
-// them.
+// Flipbooks through the C ABI on the cpu backend: refusals and users.
 #include "abi/fire_world.h"
 
 #include <gmock/gmock.h>
@@ -9,6 +8,7 @@
 
 namespace {
 
+using host::created;
 using host::FireWorld;
 using host::lastMessage;
 using ::testing::HasSubstr;
@@ -16,12 +16,10 @@ using ::testing::HasSubstr;
 FwFlipbookId make(FireWorld& w, uint32_t preset) {
     FwFlipbookDef def = fwDefaultFlipbookDef();
     def.preset = preset;
-    FwFlipbookId id{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateFlipbook(w.world, &def, &id)) << lastMessage(w.world);
-    return id;
+    return created(fwWorld_CreateFlipbook, w.world, def);
 }
 
-TEST(AbiFlipbook, RefusesWhatIsNone) {
+TEST(AbiFlipbook, RefusesInvalidData) {
     FireWorld w;
     FwFlipbookId id{};
     FwFlipbookDef def = fwDefaultFlipbookDef();
@@ -50,7 +48,7 @@ TEST(AbiFlipbook, RefusesWhatIsNone) {
     refuses(FW_ERROR_INVALID_ARGUMENT, "32 flipbooks are there; the limit is 32.");
 }
 
-TEST(AbiFlipbook, StaysWhileSomethingShowsIt) {
+TEST(AbiFlipbook, LivesWhileInUse) {
     FireWorld w;
     const FwFlipbookId fire = make(w, FW_FLIPBOOK_FLAME), smoke = make(w, FW_FLIPBOOK_HAZE);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();

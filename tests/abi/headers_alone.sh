@@ -28,7 +28,7 @@ check() {
     esac
 }
 
-# in_its_source FILE: whether the first that the source beside it includes is this header.
+# in_its_source FILE: true if the source beside it includes this header first.
 in_its_source() {
     local file=$1 source=${1%.h}.cpp
     [[ -f $source ]] && [[ $(grep -m 1 '^#include' "$source") == "#include \"${file#"$root"/runtime/}\"" ]]

@@ -1,6 +1,7 @@
-// Walls between a fire and what it would light: from what the host says of them, and from burnable
-// meshes, which shield no longer where they have burnt away. On the cpu backend; the device's is in
-// tests/gpu/exchange_equality_test.cpp, saves, logs and networks have one in busy_world.h.
+// Heat occlusion between a fire and its targets: occluders of the host and burnable meshes, which
+// stop occluding where they have burnt away. On the cpu backend;
+// tests/gpu/exchange_equality_test.cpp covers the device, busy_world.h covers saves, logs and
+// networks.
 #include "abi/panels.h"
 
 #include <cmath>
@@ -10,8 +11,8 @@ namespace {
 
 using namespace host;
 
-// A fierce fire of 0.4 x 0.2 m at the origin, and paper 0.3 m beside it. Between them, at
-// x = 0.55, there may be a wall of 2 x 1 m that takes no heat and gives none.
+// A fierce fire of 0.4 x 0.2 m at the origin and paper 0.3 m beside it. An inert wall of 2 x 1 m
+// may stand between them at x = 0.55.
 struct Kiln : Panels {
     Kiln() : Panels(worldDef(FW_WORLD_RADIATION), 600.0f) {
         FwMaterialDef hot = evenMaterial(0.0005f, 600.0f);
@@ -19,8 +20,7 @@ struct Kiln : Panels {
         hot.burningFlux = 0.3f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &hot, &material));
         add(0, 0, 0);
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material));
         FwBurnableMeshDef board = upright(0.7f, 0, 0, 1, 0);
         board.flags = FW_BURNABLE_TWO_SIDED;
@@ -30,7 +30,7 @@ struct Kiln : Panels {
         slow.burningFlux = 0.0001f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &slow, &material));
     }
-    // Its x goes up, its normal along the world's x, but for a turn about what is up.
+    // Object x points up, its normal along world x, then turned about the vertical.
     FwBurnableMeshDef upright(float x, float y, float z, float scale, float turn) const {
         FwBurnableMeshDef made = def(x, y, z);
         const float c = scale * std::cos(turn), s = scale * std::sin(turn);
@@ -77,13 +77,13 @@ bool kilnCatches(const std::function<void(Kiln&)>& walls) {
     return kiln.caught();
 }
 
-TEST(AbiHeatShield, ABurnableWallShields) {
+TEST(AbiHeatShield, ABurnableWallOccludes) {
     EXPECT_TRUE(kilnCatches([](Kiln&) {}));
-    EXPECT_TRUE(kilnCatches([](Kiln& k) { k.wall(); }));  // in no shield
+    EXPECT_TRUE(kilnCatches([](Kiln& k) { k.wall(); }));  // not an occluder
     EXPECT_FALSE(kilnCatches([](Kiln& k) { k.bake({k.wall()}); }));
     EXPECT_FALSE(kilnCatches([](Kiln& k) { k.bake({k.wall(0.55f, 0.5f)}); }));
     EXPECT_TRUE(kilnCatches([](Kiln& k) { k.bake({k.wall(1.3f)}); }));  // behind the paper
-    // All that is there: the wall, and the two that do not shade themselves.
+    // All objects: the wall and the two that do not occlude themselves.
     const auto all = [](bool walled) {
         return [walled](Kiln& k) {
             if (walled) k.wall();
@@ -96,7 +96,7 @@ TEST(AbiHeatShield, ABurnableWallShields) {
     EXPECT_TRUE(kilnCatches(all(false)));
 }
 
-TEST(AbiHeatShield, WhatHasBurntAwayLetsPass) {
+TEST(AbiHeatShield, BurntPartsStopOccluding) {
     const auto burnt = [](float height, float radius, double seconds) {
         return [=](Kiln& k) {
             const FwBurnableMeshId wall = k.wall();
@@ -110,13 +110,13 @@ TEST(AbiHeatShield, WhatHasBurntAwayLetsPass) {
     EXPECT_FALSE(kilnCatches(burnt(1.4f, 0.1f, 200)));  // its top
 }
 
-TEST(AbiHeatShield, FollowsWhatMovedWithTheNextCall) {
+TEST(AbiHeatShield, FollowsMovedObjectsAfterTheNextCall) {
     Kiln kiln;
     const FwBurnableMeshId wall = kiln.wall();
     kiln.bake({wall});
     const FwBurnableMeshDef away = kiln.upright(1.3f, -0.5f, -0.4f, 5, 0);
     ASSERT_EQ(FW_OK, fwWorld_SetTransform(kiln.world, wall, away.transform));
-    EXPECT_FALSE(kiln.caught());  // still where it was
+    EXPECT_FALSE(kiln.caught());  // still at its old place
     kiln.bake({wall});
     kiln.run(20);
     EXPECT_LT(0u, kiln.lit(1));
@@ -126,16 +126,16 @@ TEST(AbiHeatShield, FollowsWhatMovedWithTheNextCall) {
     other.bake({gone});
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(other.world, gone));
     other.ids.pop_back();
-    EXPECT_TRUE(other.caught());  // what is destroyed stands in no way
+    EXPECT_TRUE(other.caught());  // a destroyed wall does not occlude
     Kiln none;
     none.bake({none.wall()});
     ASSERT_EQ(FW_OK, fwWorld_SetHeatShield(none.world, nullptr));
     EXPECT_TRUE(none.caught());
 }
 
-TEST(AbiHeatShield, TheHostsWallsShield) {
+TEST(AbiHeatShield, HostOccludersOcclude) {
     static uint32_t asked = 0;
-    const auto plane = [](float x) {  // no thickness at all, and a slant
+    const auto plane = [](float x) {  // no thickness, and slanted
         return [x](Kiln& k) {
             FwHeatShieldDef def = Kiln::cells();
             float at = x;
@@ -149,7 +149,7 @@ TEST(AbiHeatShield, TheHostsWallsShield) {
         };
     };
     EXPECT_FALSE(kilnCatches(plane(0.55f)));
-    EXPECT_EQ(40u * 60 * 40, asked);  // within the call, and never again
+    EXPECT_EQ(40u * 60 * 40, asked);  // during the call, never later
     EXPECT_TRUE(kilnCatches(plane(1.25f)));
     const auto bytes = [](uint32_t x, uint32_t except) {
         return [=](Kiln& k) {
@@ -166,8 +166,8 @@ TEST(AbiHeatShield, TheHostsWallsShield) {
     EXPECT_TRUE(kilnCatches(bytes(21, 5)));  // a slot from z = 0 to 0.2
 }
 
-// Jets end at the host's cells, and who asks how hot it is stands in their shade.
-TEST(AbiHeatShield, JetsAndQuestionsHeedIt) {
+// Jets end at the host's cells, and heat queries behind them are in shade.
+TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
     for (const bool walled : {false, true}) {
         Kiln kiln;
         FwHeatShieldDef def = Kiln::cells();
@@ -183,13 +183,10 @@ TEST(AbiHeatShield, JetsAndQuestionsHeedIt) {
         jet.direction[0] = 1;
         jet.direction[1] = 0;
         jet.power = 2000;
-        FwFireEmitterId id{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(kiln.world, &jet, &id));
+        const FwFireEmitterId id = created(fwWorld_CreateFireEmitter, kiln.world, jet);
         kiln.run(3);
         EXPECT_EQ(!walled, kiln.lit(1) > 0);
-        FwFireEmitterState state{};
-        state.structSize = sizeof state;
-        ASSERT_EQ(FW_OK, fwWorld_GetFireEmitterState(kiln.world, id, &state));
+        const FwFireEmitterState state = getState(fwWorld_GetFireEmitterState, kiln.world, id);
         if (walled) {
             EXPECT_NEAR(1.0f, state.freeWay, 0.06f);  // from -0.45 to 0.55 m
         }
@@ -210,7 +207,7 @@ TEST(AbiHeatShield, JetsAndQuestionsHeedIt) {
     EXPECT_LT(shaded, 0.2f * open);
 }
 
-TEST(AbiHeatShield, SaysWhatIsWrong) {
+TEST(AbiHeatShield, RefusesBadValuesByName) {
     Kiln kiln;
     const auto refused = [&](const std::function<void(FwHeatShieldDef&)>& change,
                              const std::string& says) {

@@ -1,5 +1,5 @@
-// Heat, char and water through the C ABI, on the cpu and on a device of our own: P10, P12, P13, and
-// what FW_BURNABLE_LITE leaves out. Without a device the second half skips aloud.
+// Heat, char and water through the C ABI, on the cpu and on the library's own device, and the
+// features that FW_BURNABLE_LITE omits. Without a device the second half skips with a message.
 #include "abi/abi_support.h"
 
 #include <array>
@@ -8,19 +8,17 @@
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::lastMessage;
+using host::materialOf;
 
-// A sheet of 0.1 m, wholly lit when asked.
+// A sheet of 0.1 m; `all` acts on the whole of it.
 class AbiHeat : public ::testing::TestWithParam<uint32_t> {
  protected:
     void SetUp() override {
-        FwContextDef def = fwDefaultContextDef();
-        def.backend = GetParam();
-        def.callbacks = host_.callbacks();
-        FwErrorInfo error{};
-        if (fwCreateContext(&def, &context_, &error) == FW_OK) return;
-        if (std::getenv("FLAMEWRIGHT_REQUIRE_GPU")) ADD_FAILURE() << error.message;
-        GTEST_SKIP() << "no Vulkan device";
+        context_ = host::createContext(host_, GetParam());
+        if (!context_) GTEST_SKIP() << "no Vulkan device";
     }
     void TearDown() override {
         fwDestroyContext(context_);
@@ -32,12 +30,9 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         def.paceFactor = pace;
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_)) << lastMessage(context_);
         const host::Sheet sheet(0.1f, 0.1f);
-        const FwMeshDef meshDef = sheet.def(64);
-        FwMeshId mesh{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world_, &meshDef, &mesh)) << lastMessage(world_);
+        const FwMeshId mesh = created(fwWorld_CreateMesh, world_, sheet.def(64));
         mesh_ = mesh;
-        FwMaterialId id{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world_, &material, &id)) << lastMessage(world_);
+        const FwMaterialId id = created(fwWorld_CreateMaterial, world_, material);
         FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
         object.mesh = mesh;
         object.materials[0] = id;
@@ -63,15 +58,10 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world_, object_, position, &query));
         FwPointState made{};
         made.structSize = sizeof made;
-        FwResult result = FW_NOT_READY;
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
-            result = fwWorld_FetchPoint(world_, query, &made);
-        }
-        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        host::come(world_, [&] { return fwWorld_FetchPoint(world_, query, &made); });
         return made;
     }
-    // Positions of the map's real texels; in `beside` the numbers of the others.
+    // Positions of the map's covered texels; `beside` receives the indices of the others.
     std::vector<std::array<float, 3>> texels(std::vector<uint32_t>* beside = nullptr) {
         uint64_t count = 0;
         EXPECT_EQ(FW_OK, fwDebug_GetTexelPositions(world_, mesh_, nullptr, nullptr, 0, &count));
@@ -88,37 +78,20 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         }
         return real;
     }
-    // Over states, heat and water of all of the map.
+    // Hashes states, heat and water of the whole map.
     uint64_t mapHash() {
         uint64_t hash = 0;
         EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world_, object_));
-        FwResult result = FW_NOT_READY;
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            EXPECT_EQ(FW_OK, fwWorld_Step(world_, 0));
-            result = fwDebug_FetchBurnMap(world_, object_, nullptr, 0, nullptr, &hash, nullptr);
-        }
-        EXPECT_EQ(FW_OK, result) << lastMessage(world_);
+        host::come(world_, [&] {
+            return fwDebug_FetchBurnMap(world_, object_, nullptr, 0, nullptr, &hash, nullptr);
+        });
         return hash;
     }
-    FwObjectState state() {
-        FwObjectState made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world_, object_, &made));
-        return made;
-    }
-    FwEnergyBook book() {
-        FwEnergyBook made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetEnergyBook(world_, &made)) << lastMessage(world_);
-        return made;
-    }
-    FwWorldStats stats() {
-        FwWorldStats made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetStats(world_, &made));
-        return made;
-    }
-    // FwExtinguishCause of the last end of a fire since the last call; 0: it burnt out; kNoEnd.
+    FwObjectState state() { return getState(fwWorld_GetObjectState, world_, object_); }
+    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world_); }
+    FwWorldStats stats() { return getState(fwWorld_GetStats, world_); }
+    // FwExtinguishCause of the last end of a fire since the last call; 0: burnt out; kNoEnd: none
+    // ended.
     static constexpr uint32_t kNoEnd = 77;
     uint32_t endedBy() {
         uint32_t last = kNoEnd;
@@ -128,11 +101,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
                 last = events[i].tag;
         return last;
     }
-    static FwMaterialDef preset(uint32_t which) {
-        FwMaterialDef def = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&def, which));
-        return def;
-    }
+    static FwMaterialDef preset(uint32_t which) { return materialOf(which); }
 
     host::Host host_;
     FwContext* context_ = nullptr;
@@ -141,12 +110,13 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
     FwBurnableMeshId object_{};
 };
 
-TEST_P(AbiHeat, P10_CharDepthOfAnHour) {
-    const float limits[2][2] = {{450, 0.65f}, {660, 0.50f}};  // kg/m^3, mm/min: EN 1995-1-2
+TEST_P(AbiHeat, CharDepthAfterAnHourMatchesEurocode5) {
+    const float limits[2][2] = {{450, 0.65f},
+                                {660, 0.50f}};  // kg/m^3, mm/min: EN 1995-1-2:2004, table 3.1
     for (const auto& [density, rate] : limits) {
         FwMaterialDef wood = preset(FW_MATERIAL_PINE);
         wood.density = density;
-        wood.thickness = rate * 0.06f;  // an hour's worth
+        wood.thickness = rate * 0.06f;  // m, charred in an hour
         wood.burningFlux = rate / 60000 * density;
         make(wood, 60);
         all(FW_IGNITE);
@@ -163,7 +133,7 @@ TEST_P(AbiHeat, P10_CharDepthOfAnHour) {
     }
 }
 
-TEST_P(AbiHeat, P12_TheBookOfEnergyIsExact) {
+TEST_P(AbiHeat, EnergyLedgerIsExact) {
     for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
         const bool pine = which == FW_MATERIAL_PINE;
         make(preset(which), pine ? 20 : 2);
@@ -182,7 +152,7 @@ TEST_P(AbiHeat, P12_TheBookOfEnergyIsExact) {
             EXPECT_LT(0u, units);
             const double book = now.energy * 1048576;
             EXPECT_EQ(std::floor(book), book);
-            EXPECT_EQ(0u, uint64_t(book) % units) << "each unit is worth the same";
+            EXPECT_EQ(0u, uint64_t(book) % units) << "every unit is worth the same";
             EXPECT_NEAR(
                 double(def.heatOfCombustion) * fuel * 0.01 * double(units) / 65535 / now.texels,
                 now.energy, 0.01 * now.energy);
@@ -199,8 +169,8 @@ TEST_P(AbiHeat, P12_TheBookOfEnergyIsExact) {
     }
 }
 
-// What an overlay shows adds up at every moment, and what it says is left is what the texels hold.
-TEST_P(AbiHeat, P12_TheBookOfTheWorldCloses) {
+// The overlay's figures add up at every step, and the unburnt share equals the texels' fuel.
+TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
     for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
         const bool pine = which == FW_MATERIAL_PINE;
         make(preset(which), pine ? 20 : 2);
@@ -237,13 +207,13 @@ TEST_P(AbiHeat, P12_TheBookOfTheWorldCloses) {
     }
 }
 
-// What keeps no fuel per texel keeps a book by what has burnt out: it closes at every moment of a
-// fire that crosses a sheet, never goes back while nothing is put out, and ends with nothing left.
-TEST_P(AbiHeat, P12_TheBookOfALiteObjectCloses) {
+// A LITE object keeps no fuel per texel, so its ledger counts texels that burnt out. It closes at
+// every step, never decreases while nothing is extinguished, and ends with nothing unburnt.
+TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
     make(preset(FW_MATERIAL_PAPER), 4, FW_BURNABLE_LITE);
     const FwEnergyBook whole = book();
     EXPECT_EQ(1u, whole.objects);
-    EXPECT_EQ(0u, whole.fuel % (texels().size() * 65535)) << "as if it were whole";
+    EXPECT_EQ(0u, whole.fuel % (texels().size() * 65535)) << "all texels are unburnt";
     EXPECT_LT(0u, whole.fuel);
     EXPECT_EQ(whole.fuel, whole.unburnt);
     FwIgnitionDef match = fwDefaultIgnitionDef();
@@ -264,13 +234,12 @@ TEST_P(AbiHeat, P12_TheBookOfALiteObjectCloses) {
         unburnt = now.unburnt;
     }
     EXPECT_EQ(0u, unburnt);
-    EXPECT_LT(5, between) << "it goes by and by";
+    EXPECT_LT(5, between) << "it decreases gradually";
     run(1);
     EXPECT_EQ(0.0f, book().power);
 }
 
-// And what is put out has its fuel again.
-TEST_P(AbiHeat, P12_WhatIsPutOutOfALiteObjectIsLeft) {
+TEST_P(AbiHeat, ExtinguishedTexelsOfALiteObjectKeepTheirFuel) {
     make(preset(FW_MATERIAL_PINE), 1, FW_BURNABLE_LITE);
     const FwEnergyBook whole = book();
     all(FW_IGNITE);
@@ -283,7 +252,7 @@ TEST_P(AbiHeat, P12_WhatIsPutOutOfALiteObjectIsLeft) {
     EXPECT_EQ(whole.fuel, book().unburnt);
 }
 
-TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
+TEST_P(AbiHeat, WaterExtinguishesAndMustEvaporateBeforeReignition) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);
     run(3);
@@ -302,7 +271,7 @@ TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
     EXPECT_EQ(0u, state().burning);
     EXPECT_NEAR(before, wet.fuel, 0.1f);
     EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_WATER), endedBy());
-    // Not while it is wet.
+    // Wet texels do not catch.
     all(FW_IGNITE);
     run(1);
     EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
@@ -313,14 +282,14 @@ TEST_P(AbiHeat, P13_WaterPutsOutAndMustGoFirst) {
     all(FW_IGNITE);
     run(1);
     EXPECT_EQ(FW_POINT_BURNING, int(point().kind));
-    EXPECT_GT(wet.fuel, point().fuel) << "on from the fuel it has";
+    EXPECT_GT(wet.fuel, point().fuel) << "it burns its remaining fuel";
     run(6);
-    EXPECT_EQ(FW_POINT_BURNT, int(point().kind)) << "and so it ends earlier than a new one";
+    EXPECT_EQ(FW_POINT_BURNT, int(point().kind)) << "it ends earlier than a new fire";
     run(2);
     EXPECT_EQ(0u, endedBy()) << "it burnt out";
 }
 
-TEST_P(AbiHeat, ALittleWaterBoilsOff) {
+TEST_P(AbiHeat, ALittleWaterEvaporates) {
     make(preset(FW_MATERIAL_PINE), 4);
     all(FW_IGNITE);
     run(20);
@@ -333,11 +302,11 @@ TEST_P(AbiHeat, ALittleWaterBoilsOff) {
     EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
 }
 
-// A steady spray puts wood out where it takes more heat than the flame gives back beyond what a
-// surface loses that is as hot as it must be to flame; with less of it fire goes on.
-TEST_P(AbiHeat, S7_6_ASprayAboveTheCriticalRatePutsOutAndOneBelowDoesNot) {
+// A steady spray extinguishes wood if it takes more heat than the flame's feedback leaves above the
+// losses of a surface at the flaming temperature. A weaker spray does not.
+TEST_P(AbiHeat, SprayAboveTheCriticalRateExtinguishes) {
     constexpr double kSigma = 5.67e-8, kAmbient = 293, kLatent = 2.26e6;
-    constexpr float kPace = 8;  // a spray each second of the burn
+    constexpr float kPace = 8;  // a spray every second of burn time
     const FwMaterialDef wood = preset(FW_MATERIAL_PINE);
     const double dies = double(wood.ignitionTemperature) - 50;
     const double loses =
@@ -348,7 +317,7 @@ TEST_P(AbiHeat, S7_6_ASprayAboveTheCriticalRatePutsOutAndOneBelowDoesNot) {
         all(FW_IGNITE);
         run(20);
         ASSERT_EQ(FW_POINT_BURNING, int(point().kind));
-        double fed = 0, given = 0;  // g/m^2; events take whole ones
+        double fed = 0, given = 0;  // g/m^2; events take whole grams
         for (int i = 0; i < 200 && state().burning > 0; ++i) {
             fed += critical * part * 0.125 * double(kPace);
             all(FW_WET, float(std::floor(fed - given)));
@@ -364,7 +333,7 @@ TEST_P(AbiHeat, S7_6_ASprayAboveTheCriticalRatePutsOutAndOneBelowDoesNot) {
     }
 }
 
-TEST_P(AbiHeat, AirDriesWhatIsWet) {
+TEST_P(AbiHeat, WetSurfacesDryInAir) {
     FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
     make(paper, 100);
     all(FW_WET, 60);
@@ -386,18 +355,18 @@ TEST_P(AbiHeat, AirDriesWhatIsWet) {
     EXPECT_EQ(state().texels, state().ignited);
 }
 
-TEST_P(AbiHeat, TooDampToCatch) {
+TEST_P(AbiHeat, DampSurfacesDoNotCatch) {
     FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
     make(paper, 1, 0, 0.5f);
-    EXPECT_LT(30u, state().texels) << "it could, once dry";
+    EXPECT_LT(30u, state().texels) << "it catches once dry";
     all(FW_IGNITE);
     run(1);
     EXPECT_EQ(0u, state().ignited);
     EXPECT_EQ(FW_POINT_WET, int(point().kind));
 }
 
-// Water there would never dry, and would keep the tiles that it is in from going to sleep.
-TEST_P(AbiHeat, AnEventOfATexelThatNoTriangleCoversChangesNothing) {
+// Water in such a texel would never dry and would keep its tile awake.
+TEST_P(AbiHeat, EventsOfUncoveredTexelsChangeNothing) {
     make(preset(FW_MATERIAL_PAPER), 1);
     std::vector<uint32_t> beside;
     EXPECT_FALSE(texels(&beside).empty());
@@ -413,7 +382,7 @@ TEST_P(AbiHeat, AnEventOfATexelThatNoTriangleCoversChangesNothing) {
     }
 }
 
-TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {
+TEST_P(AbiHeat, GoesOutWithoutHeatFeedback) {
     for (const float feedback : {25000.0f, 4000.0f}) {
         FwMaterialDef wood = preset(FW_MATERIAL_PINE);
         wood.flameFeedback = feedback;
@@ -426,8 +395,8 @@ TEST_P(AbiHeat, StarvedOfItsFlamesHeatAPlankGoesOut) {
     }
 }
 
-// A corner that water put out early does not decide how its last flames ended.
-TEST_P(AbiHeat, WhatBurnsOutAfterACornerWasPutOutIsBurntOut) {
+// A corner extinguished early does not decide the cause reported for the last flames.
+TEST_P(AbiHeat, ReportsTheCauseOfTheLastFlames) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);
     run(2);
@@ -440,7 +409,7 @@ TEST_P(AbiHeat, WhatBurnsOutAfterACornerWasPutOutIsBurntOut) {
     EXPECT_EQ(0u, endedBy());
 }
 
-TEST_P(AbiHeat, LiteBurnsByItsTimeAlone) {
+TEST_P(AbiHeat, LiteObjectsBurnForTheirBurnTime) {
     make(preset(FW_MATERIAL_PAPER), 1, FW_BURNABLE_LITE);
     all(FW_IGNITE);
     run(3.5);
@@ -454,7 +423,7 @@ TEST_P(AbiHeat, LiteBurnsByItsTimeAlone) {
     EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
 }
 
-TEST_P(AbiHeat, WaterIsChecked) {
+TEST_P(AbiHeat, RefusesInvalidWater) {
     make(preset(FW_MATERIAL_PAPER), 1);
     FwIgnitionDef def = fwDefaultIgnitionDef();
     def.kind = FW_WET;

@@ -1,11 +1,11 @@
 #!/bin/bash
-# Checks the layering: which room may include which, who may name Vulkan, what no file may hold, and
-# whether each names the headers that it uses.
-# Before it trusts itself it breaks every rule once in a tree of its own and must notice each.
+# Checks the layering: which folder may include which, which files may name Vulkan, forbidden text, and
+# that each file includes the headers that it uses. A self-test first breaks every rule once in a
+# temporary tree and must notice each.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)
 
-# room | what its quoted includes with a folder may start with
+# folder | allowed first parts of its quoted includes
 rules='
 runtime/core|core/|flamewright/flamewright.h
 runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
@@ -58,7 +58,7 @@ check_tree() {
                 if [[ $include == *..* ]]; then
                     echo "$file includes \"$include\": no include climbs out of its folder"
                 elif [[ $include == */* ]] && ! grep -E -q "^(${allowed//./\\.})" <<<"$include"; then
-                    # A path inside the file's own room, seen from its own folder, is fine too.
+                    # A path relative to the file's own folder is allowed too.
                     [[ -f $(dirname "$file")/$include ]] ||
                         echo "$file includes \"$include\": $room may include only $allowed"
                 fi
@@ -74,12 +74,12 @@ check_tree() {
             sed 's/$/   <- names Vulkan outside gpu\/vk, gpu\/passes and the edge/' || true
     done
 
-    # The library is safe to load many times in one process: nothing global that changes.
+    # No mutable globals: the library may be loaded several times in one process.
     for room in runtime plugin/src; do
         sources "$tree/$room" | code_lines | grep -E '\bthread_local\b|\bdynamic_cast\b|\btypeid\b' |
             sed 's/$/   <- not in the library/' || true
     done
-    # The library's files name what they use of the standard library.
+    # The library's files include the standard headers that they use.
     for room in runtime plugin/src plugin/include shaders/shared; do sources "$tree/$room"; done >"$listed"
     awk -v list="$listed" -v roots="$tree/runtime:$tree/shaders:$tree/plugin/include:$tree/plugin/src" \
         -f "$root/tests/abi/named_headers.awk"

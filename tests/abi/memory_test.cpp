@@ -1,12 +1,12 @@
-// Memory: the host's allocator says no, once at every place in turn and then for good. Nothing
-// crashes, nothing leaks, what failed changed nothing, and what was there still works.
+// Memory: the host's allocator fails at each allocation in turn, once or for good. Nothing crashes
+// or leaks, failed calls change nothing, and existing objects still work.
 #include "abi/abi_support.h"
 
 namespace {
 
 using host::Host;
 
-// What a game does, on a world whose every call may fail. Returns the results in order.
+// One game session in which every call may fail. Returns the results in order.
 struct Session {
     Host host;
     FwContext* context = nullptr;
@@ -23,7 +23,7 @@ struct Session {
         return result;
     }
 
-    // Every step needs what came before; those that cannot run are left out.
+    // Steps depend on earlier ones; those that cannot run are skipped.
     void run() {
         FwContextDef contextDef = fwDefaultContextDef();
         contextDef.backend = FW_BACKEND_CPU;
@@ -85,7 +85,7 @@ struct Session {
         (void)fwContext_GetMemoryReport(context, nullptr, 0);
     }
 
-    // Volumetric ones, with a profile, a collider and a script.
+    // Volumetric fires with a profile, a collider and a script.
     void fires() {
         const std::vector<float> texels(2 * 8 * 8, 0.5f);
         FwFireProfileDef profileDef = fwDefaultFireProfileDef();
@@ -132,7 +132,7 @@ struct Session {
         retry([&] { return fwWorld_PaintParticleField(world, field, nullptr, walls.data()); });
     }
 
-    // A call that memory failed once works the second time.
+    // Repeats a call that failed for memory; the second call must succeed.
     template <class Call>
     void retry(const Call& call) {
         if (note(call()) == FW_OK) return;
@@ -141,7 +141,7 @@ struct Session {
         }
     }
 
-    // The map's hash once all of `run` is through, or 0.
+    // The map's hash once all of `run` has succeeded; 0 before.
     uint64_t finish() {
         uint64_t hash = 0;
         if (world && object.index1) {
@@ -157,7 +157,7 @@ struct Session {
     }
 };
 
-TEST(AbiMemory, OneRefusalAtEveryAllocationInTurn) {
+TEST(AbiMemory, SurvivesOneFailureAtEveryAllocation) {
     uint64_t golden = 0;
     int64_t allocations = 0;
     {
@@ -188,14 +188,14 @@ TEST(AbiMemory, OneRefusalAtEveryAllocationInTurn) {
             EXPECT_NE(std::string::npos, session.host.lastError.find("Memory is exhausted"))
                 << session.host.lastError;
         }
-        // As if it had not happened.
+        // The result must equal a session without failures.
         EXPECT_EQ(golden, session.finish());
         if (HasFailure()) break;
     }
     EXPECT_LT(uint32_t(allocations) * 9 / 10, refused);
 }
 
-TEST(AbiMemory, NothingLeftFromAnAllocationOn) {
+TEST(AbiMemory, SurvivesPermanentFailureFromEveryAllocation) {
     int64_t allocations = 0;
     {
         Session session;
@@ -219,9 +219,10 @@ TEST(AbiMemory, NothingLeftFromAnAllocationOn) {
     }
 }
 
-TEST(AbiMemory, AWarmedUpFrameAllocatesNothing) {
+TEST(AbiMemory, WarmFramesAllocateNothing) {
     ::host::SheetWorld w(::host::evenMaterial(0.02f, 5));
-    FwBurnableMeshDef asked = fwDefaultBurnableMeshDef();  // what breaks is looked for on it
+    FwBurnableMeshDef asked =
+        fwDefaultBurnableMeshDef();  // FW_EVENT_STRUCTURE_BROKE is checked on it
     asked.mesh = w.mesh;
     asked.materials[0] = w.materialId;
     asked.breakArea = 1e-3f;
@@ -237,9 +238,10 @@ TEST(AbiMemory, AWarmedUpFrameAllocatesNothing) {
     EXPECT_EQ(before, w.host.allocations);
 }
 
-// Sheets in a row that touch, of which each in turn lies on its neighbour, so that another pair has
-// many contacts each time: memory is that of all at a time, not of the most that each ever had.
-TEST(AbiMemory, ContactsThatComeAndGoLeaveNothing) {
+// A row of touching sheets, of which each in turn lies on its neighbour, so that each time another
+// pair has many contacts. Memory must follow the sum at one time, not the sum of each pair's
+// maximum.
+TEST(AbiMemory, PastContactsHoldNoMemory) {
     Host host;
     FwContext* context = ::host::createCpuContext(host);
     FwWorldDef worldDef = fwDefaultWorldDef();
@@ -280,7 +282,7 @@ TEST(AbiMemory, ContactsThatComeAndGoLeaveNothing) {
         place(i, 0.51f * float(i), 0);
         steps();
         last = host.bytes;
-        if (i == 2) first = last;  // there is a place for each length of a list by now
+        if (i == 2) first = last;  // by now every list length has been seen
     }
     EXPECT_LT(flat, first);
     EXPECT_EQ(first, last);

@@ -3,11 +3,13 @@
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::Host;
 using host::lastMessage;
 using host::SheetWorld;
 
-TEST(AbiObjects, StaleIdsAreRefusedInPlainWords) {
+TEST(AbiObjects, RefusesStaleIds) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialId id{};
     const FwMaterialDef def = fwDefaultMaterialDef();
@@ -18,7 +20,7 @@ TEST(AbiObjects, StaleIdsAreRefusedInPlainWords) {
         "Material 2 (generation 1) is already destroyed; the slot is at generation 2.\n"
         " - While calling fwWorld_DestroyMaterial.",
         lastMessage(w.world));
-    EXPECT_EQ(w.host.lastError, lastMessage(w.world));  // the log hears the same
+    EXPECT_EQ(w.host.lastError, lastMessage(w.world));  // the log callback gets the same text
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, FwMaterialId{}));
     EXPECT_EQ("Material id is null.\n - While calling fwWorld_DestroyMaterial.",
               lastMessage(w.world));
@@ -27,9 +29,8 @@ TEST(AbiObjects, StaleIdsAreRefusedInPlainWords) {
         "Material 77 does not exist; there are 2 slots.\n"
         " - While calling fwWorld_DestroyMaterial.",
         lastMessage(w.world));
-    // The slot is used again, and the old id still is not it.
-    FwMaterialId again{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &again));
+    // The slot is reused and the old id stays invalid.
+    const FwMaterialId again = created(fwWorld_CreateMaterial, w.world, def);
     EXPECT_EQ(id.index1, again.index1);
     EXPECT_NE(id.generation, again.generation);
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, id));
@@ -71,7 +72,7 @@ TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     FwBurnableMeshId made{1, 1};
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &made));
-    EXPECT_EQ(0u, made.index1);  // an id is null after a failure
+    EXPECT_EQ(0u, made.index1);  // a failed call returns a null id
     def.mesh = w.mesh;
     def.materials[3] = FwMaterialId{50, 1};
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &made));
@@ -80,7 +81,7 @@ TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &made));
 }
 
-TEST(AbiObjects, QueriesEndWithTheirObjectAndFreeTheirSlots) {
+TEST(AbiObjects, QueriesEndWithTheirObject) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const float point[3] = {};
     FwQueryId query{};
@@ -133,7 +134,7 @@ TEST(AbiObjects, EveryRequestCanBeCancelled) {
     }
     ASSERT_EQ(FW_OK, fwWorld_RequestSave(w.world));
     w.run(0.1);
-    EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, nullptr, &size)) << "the next one comes";
+    EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, nullptr, &size)) << "the next one arrives";
 
     for (const uint32_t tag : {3u, 4u})
         ASSERT_EQ(FW_OK, fwWorld_TagPoint(w.world, w.object, point, tag));
@@ -147,7 +148,7 @@ TEST(AbiObjects, EveryRequestCanBeCancelled) {
     EXPECT_EQ(1u << 4, reached);
 }
 
-TEST(AbiObjects, AMeshInUseStays) {
+TEST(AbiObjects, RefusesToDestroyAMeshInUse) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyMesh(w.world, w.mesh));
     EXPECT_EQ(
@@ -158,7 +159,7 @@ TEST(AbiObjects, AMeshInUseStays) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(w.world, w.mesh)) << lastMessage(w.world);
 }
 
-TEST(AbiObjects, UsersKeepACopyOfADestroyedMaterial) {
+TEST(AbiObjects, ObjectsKeepACopyOfADestroyedMaterial) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_OK, fwWorld_DestroyMaterial(w.world, w.materialId));
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.03f));
@@ -166,7 +167,7 @@ TEST(AbiObjects, UsersKeepACopyOfADestroyedMaterial) {
     EXPECT_LT(0u, w.state().burning);
 }
 
-TEST(AbiObjects, ImagesAreCheckedAndMayGoBeforeTheirUsers) {
+TEST(AbiObjects, ImagesAreValidatedAndMayBeDestroyedBeforeTheirUsers) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const std::vector<uint32_t> pixels(16, 0xFF808080u);
     FwImageDef def = fwDefaultImageDef();
@@ -186,16 +187,14 @@ TEST(AbiObjects, ImagesAreCheckedAndMayGoBeforeTheirUsers) {
     FwBurnableMeshDef object = fwDefaultBurnableMeshDef();
     object.mesh = w.mesh;
     object.baseColor = id;
-    FwBurnableMeshId user{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &object, &user));
+    const FwBurnableMeshId user = created(fwWorld_CreateBurnableMesh, w.world, object);
     EXPECT_EQ(FW_OK, fwWorld_DestroyImage(w.world, id));
-    FwImageId other{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateImage(w.world, &def, &other));
+    (void)created(fwWorld_CreateImage, w.world, def);
     EXPECT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, user));
     w.run(0.1);
 }
 
-TEST(AbiObjects, CreationRefusesWhatItCannotServe) {
+TEST(AbiObjects, CreationRefusesUnsupportedDefs) {
     Host host;
     FwContext* context = reinterpret_cast<FwContext*>(&host);
     FwErrorInfo error{};
@@ -226,7 +225,7 @@ TEST(AbiObjects, CreationRefusesWhatItCannotServe) {
     FwVulkanHost vulkan = fwDefaultVulkanHost();
     def.vulkan = &vulkan;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateContext(&def, &context, &error));
-    def.backend = FW_BACKEND_VULKAN;  // lent, but nothing is in it
+    def.backend = FW_BACKEND_VULKAN;  // a host device without content
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateContext(&def, &context, &error));
     EXPECT_NE(nullptr, std::strstr(error.message, "getInstanceProcAddr is null"));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateContext(&def, nullptr, &error));
@@ -234,7 +233,7 @@ TEST(AbiObjects, CreationRefusesWhatItCannotServe) {
     EXPECT_EQ(0, host.blocks);
 }
 
-TEST(AbiObjects, CallsOfAnotherBackendAreRefused) {
+TEST(AbiObjects, RefusesCallsOfAnotherBackend) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwVulkanFrame frame = fwDefaultVulkanFrame();
     const FwView view = fwDefaultView();
@@ -258,7 +257,7 @@ TEST(AbiObjects, CallsOfAnotherBackendAreRefused) {
     EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f)) << lastMessage(w.world);
 }
 
-TEST(AbiObjects, LastMessageTellsTheLengthItNeeds) {
+TEST(AbiObjects, LastMessageReportsItsLength) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(0u, fwWorld_GetLastMessage(w.world, nullptr, 0));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetWind(w.world, nullptr));
@@ -273,7 +272,7 @@ TEST(AbiObjects, LastMessageTellsTheLengthItNeeds) {
             EXPECT_EQ(whole.substr(0, capacity - 1), text);
         }
     }
-    // A success leaves the message; a context has its own.
+    // A success keeps the message; a context has its own.
     const float calm[3] = {};
     EXPECT_EQ(FW_OK, fwWorld_SetWind(w.world, calm));
     EXPECT_EQ(whole, lastMessage(w.world));
@@ -299,7 +298,7 @@ TEST(AbiObjects, TwoContextsShareNothing) {
     a.run(0.1);
 }
 
-TEST(AbiObjects, DefsMayBeOverwrittenAfterTheCall) {
+TEST(AbiObjects, DefsAreCopiedByTheCall) {
     SheetWorld w(host::evenMaterial(0.02f, 5), 0.5f, 0.25f, 64);
     uint64_t hashes[2] = {};
     for (int round = 0; round < 2; ++round) {
@@ -309,22 +308,20 @@ TEST(AbiObjects, DefsMayBeOverwrittenAfterTheCall) {
         FwMeshId meshId{};
         ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, mesh.get(), &meshId));
         FwMaterialDef material = host::evenMaterial(0.02f, 5);
-        FwMaterialId materialId{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &material, &materialId));
+        const FwMaterialId materialId = created(fwWorld_CreateMaterial, w.world, material);
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
         def.mesh = meshId;
         def.materials[0] = materialId;
         def.multiplier = multiplier.data();
         def.multiplierWidth = def.multiplierHeight = 8;
-        FwBurnableMeshId id{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &id));
+        const FwBurnableMeshId id = created(fwWorld_CreateBurnableMesh, w.world, def);
         FwIgnitionDef ignition = fwDefaultIgnitionDef();
         ignition.object = id;
         ignition.position[0] = 0.25f;
         ignition.position[2] = 0.12f;
         ignition.radius = 0.03f;
         ASSERT_EQ(FW_OK, fwWorld_Ignite(w.world, &ignition, nullptr));
-        if (round == 1) {  // everything the host gave is gone or poisoned
+        if (round == 1) {  // everything the host passed is freed or overwritten
             std::memset(mesh.get(), 0xCD, sizeof(FwMeshDef));
             std::fill(sheet->positions.begin(), sheet->positions.end(), 1e30f);
             std::fill(sheet->indices.begin(), sheet->indices.end(), 0xCDCDCDCDu);
@@ -357,9 +354,7 @@ TEST(AbiObjects, DefsMayBeOverwrittenAfterTheCall) {
 
 TEST(AbiObjects, InfoAndReports) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
-    FwContextInfo info{};
-    info.structSize = sizeof info;
-    ASSERT_EQ(FW_OK, fwContext_GetInfo(w.context, &info));
+    const FwContextInfo info = getState(fwContext_GetInfo, w.context);
     EXPECT_EQ(uint32_t(FW_BACKEND_CPU), info.backend);
     EXPECT_EQ(0u, info.apiVersion);
     EXPECT_LT(0u, info.cpuMemoryUsed);
@@ -368,23 +363,19 @@ TEST(AbiObjects, InfoAndReports) {
     EXPECT_EQ(FW_OK, fwContext_Prepare(w.context));
     FwMemoryRow rows[64];
     EXPECT_GE(64u, fwContext_GetMemoryReport(w.context, rows, 64));
-    FwMeshInfo mesh{};
-    mesh.structSize = sizeof mesh;
-    ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w.world, w.mesh, &mesh));
+    const FwMeshInfo mesh = getState(fwWorld_GetMeshInfo, w.world, w.mesh);
     EXPECT_NEAR(0.25f, mesh.area, 0.001f);
     EXPECT_NEAR(0.25f, mesh.texelArea, 0.0025f);
     EXPECT_EQ(0u, mesh.mapWidth % 8);
     EXPECT_EQ(2u, mesh.triangles);
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    ASSERT_EQ(FW_OK, fwWorld_GetStats(w.world, &stats));
+    const FwWorldStats stats = getState(fwWorld_GetStats, w.world);
     EXPECT_EQ(1u, stats.objects);
     EXPECT_EQ(1u, stats.meshes);
     EXPECT_EQ(1u, stats.materials);
     EXPECT_EQ(mesh.texels, stats.texels);
 }
 
-TEST(AbiObjects, CookedMeshesAreTheSameMesh) {
+TEST(AbiObjects, CookedMeshesEqualTheirSource) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwMeshDef def = w.sheet.def(64);
     uint64_t size = 0;
@@ -398,8 +389,7 @@ TEST(AbiObjects, CookedMeshesAreTheSameMesh) {
     FwMeshDef cooked = fwDefaultMeshDef();
     cooked.cooked = bytes.data();
     cooked.cookedSize = size;
-    FwMeshId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w.world, &cooked, &id)) << lastMessage(w.world);
+    FwMeshId id = created(fwWorld_CreateMesh, w.world, cooked);
     FwMeshInfo a{}, b{};
     a.structSize = b.structSize = sizeof a;
     ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w.world, w.mesh, &a));

@@ -1,16 +1,18 @@
-// A context with its own Vulkan device, through the C ABI alone: the same fire as on the cpu, and
-// pictures without a host. Needs a device; skips aloud without one (FLAMEWRIGHT_REQUIRE_GPU:
-// fails).
+// A context with its own Vulkan device through the C ABI: the same burn as on the cpu, and pictures
+// without a host. Skips with a message without a device; with FLAMEWRIGHT_REQUIRE_GPU it fails.
 #include "abi/abi_support.h"
 
 #include <cstdlib>
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::Host;
 using host::lastMessage;
+using host::materialOf;
 
-// Null, and the test skipped or failed, where there is no Vulkan.
+// Null without Vulkan; the test is then skipped or failed.
 FwContext* createOwnDevice(Host& host) {
     FwContextDef def = fwDefaultContextDef();
     def.callbacks = host.callbacks();
@@ -27,15 +29,15 @@ FwContext* createOwnDevice(Host& host) {
     FwContext* name = createOwnDevice(host); \
     if (!name) GTEST_SKIP() << "no Vulkan device"
 
-struct Story {
+struct DeviceSession {
     uint64_t hash = 0, tick = 0, steps = 0;
     std::vector<FwEvent> events;
     FwPointState point{};
 };
 
-// The same story on any backend: gusts, a pose, water, a second object that comes and goes.
-Story tell(FwContext* context) {
-    Story run;
+// One session for any backend: gusts, a pose, water, a second object that is created and destroyed.
+DeviceSession play(FwContext* context) {
+    DeviceSession run;
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 4;
     FwWorld* world = nullptr;
@@ -44,12 +46,9 @@ Story tell(FwContext* context) {
     const host::Sheet sheet(0.8f, 0.4f, 3);
     FwMeshDef meshDef = sheet.def(64);
     meshDef.noiseAmplitude = 0.15f;
-    FwMeshId mesh{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh)) << lastMessage(world);
-    FwMaterialDef paper = fwDefaultMaterialDef();
-    EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
-    FwMaterialId material{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material));
+    const FwMeshId mesh = created(fwWorld_CreateMesh, world, meshDef);
+    FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
+    const FwMaterialId material = created(fwWorld_CreateMaterial, world, paper);
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = mesh;
     def.materials[0] = material;
@@ -101,9 +100,7 @@ Story tell(FwContext* context) {
     }
     EXPECT_EQ(FW_OK, map);
     EXPECT_EQ(FW_OK, answer);
-    FwWorldStats stats{};
-    stats.structSize = sizeof stats;
-    EXPECT_EQ(FW_OK, fwWorld_GetStats(world, &stats));
+    const FwWorldStats stats = getState(fwWorld_GetStats, world);
     run.steps = stats.steps;
     run.events.resize(64);
     run.events.resize(fwWorld_PollEvents(world, run.events.data(), 64));
@@ -111,11 +108,11 @@ Story tell(FwContext* context) {
     return run;
 }
 
-TEST(AbiOwnDevice, BurnsAsTheCpuDoes) {
+TEST(AbiOwnDevice, BurnsLikeTheCpu) {
     Host gpu, cpu;
     OWN_DEVICE_OR_SKIP(context, gpu);
     FwContext* reference = host::createCpuContext(cpu);
-    const Story a = tell(context), b = tell(reference);
+    const DeviceSession a = play(context), b = play(reference);
     EXPECT_EQ(b.hash, a.hash);
     EXPECT_EQ(b.tick, a.tick);
     EXPECT_EQ(120u * 128, a.tick);
@@ -134,7 +131,7 @@ TEST(AbiOwnDevice, BurnsAsTheCpuDoes) {
     EXPECT_EQ(0, gpu.bytes);
 }
 
-// The lights of a young fire after eight steps, none of them with a picture.
+// The lights of a young fire after eight steps, without a picture.
 std::vector<FwLight> lightsOf(FwContext* context) {
     FwWorld* world = nullptr;
     const FwWorldDef worldDef = fwDefaultWorldDef();
@@ -153,14 +150,14 @@ std::vector<FwLight> lightsOf(FwContext* context) {
     return lights;
 }
 
-TEST(AbiOwnDevice, LightsComeWithoutAPictureAndAreTheCpus) {
+TEST(AbiOwnDevice, LightsWithoutAPictureMatchTheCpu) {
     Host gpu, cpu;
     OWN_DEVICE_OR_SKIP(context, gpu);
     FwContext* reference = host::createCpuContext(cpu);
     const std::vector<FwLight> a = lightsOf(context), b = lightsOf(reference);
     ASSERT_FALSE(a.empty());
     ASSERT_FALSE(b.empty());
-    // Both make lights of their own cells; the whole is the same but for flicker, at most 22 %.
+    // Each backend clusters its own lights: the sums agree but for flicker, at most 22 %.
     double power[2] = {}, intensity[2] = {};
     for (int side = 0; side < 2; ++side)
         for (const FwLight& light : side == 0 ? a : b) {
@@ -180,12 +177,10 @@ TEST(AbiOwnDevice, LightsComeWithoutAPictureAndAreTheCpus) {
     EXPECT_EQ(0, gpu.blocks);
 }
 
-TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
+TEST(AbiOwnDevice, RefusesHostDeviceCallsAndInvalidPictures) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
-    FwContextInfo info{};
-    info.structSize = sizeof info;
-    ASSERT_EQ(FW_OK, fwContext_GetInfo(context, &info));
+    const FwContextInfo info = getState(fwContext_GetInfo, context);
     EXPECT_EQ(uint32_t(FW_BACKEND_VULKAN), info.backend);
     EXPECT_EQ(1u, info.ownDevice);
     EXPECT_LT(0u, std::strlen(info.deviceName));
@@ -245,22 +240,19 @@ TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
     def.background[0] = 0;
     ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(world, &def)) << lastMessage(world);
     EXPECT_EQ(0xFF000000u, pixels[0]);
-    // A picture's passes are timed like a frame's.
+    // The passes of a picture are timed like those of a frame.
     FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
-    FwFireEmitterId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(world, &emitter, &id));
+    (void)created(fwWorld_CreateFireEmitter, world, emitter);
     ASSERT_EQ(FW_OK, fwWorld_Step(world, 0.1f));
     ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(world, &def));
-    FwContextInfo capable{};
-    capable.structSize = sizeof capable;
-    ASSERT_EQ(FW_OK, fwContext_GetInfo(context, &capable));
+    const FwContextInfo capable = getState(fwContext_GetInfo, context);
     FwPassTime times[64];
     const uint32_t count = std::min(fwDebug_GetPassTimes(world, times, 64), 64u);
     bool sorted = false;
     for (uint32_t i = 0; i < count; ++i)
         sorted |= std::string(times[i].name) == "flame sort" && times[i].milliseconds > 0;
     EXPECT_EQ(capable.gpuTimers != 0, sorted);
-    // Lost: nothing runs any more, and everything is freed all the same.
+    // After a loss nothing runs, and everything is still freed.
     fwContext_NotifyDeviceLost(context);
     EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(world, 0.1f));
     EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_RenderOffscreen(world, &def));
@@ -268,9 +260,8 @@ TEST(AbiOwnDevice, RefusesWhatBelongsToALentOneAndBadPictures) {
     EXPECT_EQ(0, host.blocks);
 }
 
-// One refusal at every allocation of a world's life on a device in turn; each call works the
-// second time.
-TEST(AbiOwnDevice, MemoryRefusedAtEveryAllocationOfAWorld) {
+// One failure at every allocation of a world's life on a device; the second call must succeed.
+TEST(AbiOwnDevice, SurvivesOneFailureAtEveryAllocation) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
     ASSERT_EQ(FW_OK, fwContext_Prepare(context)) << lastMessage(context);
@@ -312,9 +303,7 @@ TEST(AbiOwnDevice, MemoryRefusedAtEveryAllocationOfAWorld) {
         ignition.radius = 0.05f;
         twice([&] { return fwWorld_Ignite(world, &ignition, nullptr); });
         for (int i = 0; i < 6; ++i) twice([&] { return fwWorld_Step(world, 1.0f / 32); });
-        FwObjectState state{};
-        state.structSize = sizeof state;
-        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world, object, &state));
+        const FwObjectState state = getState(fwWorld_GetObjectState, world, object);
         EXPECT_LT(0u, state.ignited) << "at " << failAt;
         host.failAt = -1;
         fwDestroyWorld(world);
@@ -322,7 +311,7 @@ TEST(AbiOwnDevice, MemoryRefusedAtEveryAllocationOfAWorld) {
             EXPECT_EQ(blocks, host.blocks) << "at " << failAt;
         }
     };
-    session(-1);  // the context's own lists find their room
+    session(-1);  // lets the context's own lists grow first
     const int64_t first = host.allocations;
     session(-1);
     const int64_t allocations = host.allocations - first;
@@ -332,7 +321,7 @@ TEST(AbiOwnDevice, MemoryRefusedAtEveryAllocationOfAWorld) {
     EXPECT_EQ(0, host.blocks);
 }
 
-TEST(AbiOwnDevice, ABudgetTooSmallIsSaidSo) {
+TEST(AbiOwnDevice, RefusesATooSmallBudget) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
     fwDestroyContext(context);
@@ -341,7 +330,7 @@ TEST(AbiOwnDevice, ABudgetTooSmallIsSaidSo) {
     def.gpuMemoryBudget = 4096;
     FwErrorInfo error{};
     const FwResult result = fwCreateContext(&def, &context, &error);
-    if (result == FW_OK) {  // the first world needs more than that
+    if (result == FW_OK) {  // the first world needs more
         FwWorld* world = nullptr;
         const FwWorldDef worldDef = fwDefaultWorldDef();
         EXPECT_EQ(FW_ERROR_OUT_OF_MEMORY, fwCreateWorld(context, &worldDef, &world));

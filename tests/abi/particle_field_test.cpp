@@ -1,5 +1,5 @@
-// Particle fields through the C ABI on the cpu backend: they count, rise, fall, stop at walls, step
-// at times of their own, and say what they are and may not be.
+// Particle fields through the C ABI on the cpu backend: counts, motion, walls, fixed ticks,
+// refusals.
 #include "abi/fire_world.h"
 
 #include <gmock/gmock.h>
@@ -9,21 +9,19 @@
 
 namespace {
 
+using host::created;
 using host::FireWorld;
+using host::getState;
 using host::lastMessage;
 using ::testing::HasSubstr;
 
 struct FieldWorld : FireWorld {
     using FireWorld::FireWorld;
     FwParticleFieldId add(const FwParticleFieldDef& def) {
-        FwParticleFieldId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateParticleField(world, &def, &id)) << lastMessage(world);
-        return id;
+        return created(fwWorld_CreateParticleField, world, def);
     }
     FwParticleFieldState of(FwParticleFieldId id) {
-        FwParticleFieldState state{};
-        state.structSize = sizeof state;
-        EXPECT_EQ(FW_OK, fwWorld_GetParticleFieldState(world, id, &state)) << lastMessage(world);
+        const FwParticleFieldState state = getState(fwWorld_GetParticleFieldState, world, id);
         EXPECT_EQ(state.emitted, state.inside + state.dead + state.out);
         return state;
     }
@@ -59,7 +57,7 @@ TEST(AbiParticleField, PresetsCountTheirParticles) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwInitFieldPreset(&def, FW_FIELD_PRESET_COUNT));
 }
 
-// Frames of any length, the same steps at the same ticks.
+// Frames of any length run the same steps at the same ticks.
 TEST(AbiParticleField, StepsDependOnTicksAlone) {
     FwParticleFieldState ends[2];
     for (int way = 0; way < 2; ++way) {
@@ -79,7 +77,7 @@ TEST(AbiParticleField, StepsDependOnTicksAlone) {
     EXPECT_EQ(ends[0].out, ends[1].out);
 }
 
-TEST(AbiParticleField, AsPublishedMakesTenStepsASecond) {
+TEST(AbiParticleField, ReferenceFieldRunsTenStepsASecond) {
     FieldWorld w;
     FwParticleFieldDef def = presetOf(FW_FIELD_FIRE);
     def.flags = FW_FIELD_AS_PUBLISHED;
@@ -88,15 +86,15 @@ TEST(AbiParticleField, AsPublishedMakesTenStepsASecond) {
     EXPECT_EQ(30u, w.of(id).steps);
 }
 
-TEST(AbiParticleField, SourcesWindAndWalls) {
+TEST(AbiParticleField, FollowsSourcesWindAndWalls) {
     FieldWorld still, windy(8);
     FwParticleFieldDef def = presetOf(FW_FIELD_SMOKE);
     def.seed = 9;
     const FwParticleFieldId a = still.add(def), b = windy.add(def);
     still.run(4);
     windy.run(4);
-    EXPECT_GT(windy.of(b).out, still.of(a).out + 1000) << "it is blown over the border";
-    // Turned by a quarter, the same wind blows past it.
+    EXPECT_GT(windy.of(b).out, still.of(a).out + 1000) << "blown over the border";
+    // Turned by a quarter, the same wind misses the opening.
     def.rotation[1] = def.rotation[3] = std::sqrt(0.5f);
     const FwParticleFieldId turned = windy.add(def);
     windy.run(4);
@@ -107,7 +105,7 @@ TEST(AbiParticleField, SourcesWindAndWalls) {
     still.run(1);
     EXPECT_EQ(emitted, still.of(a).emitted);
 
-    // Painted: as many from a source of half the strength.
+    // Half the source strength emits the same count.
     def = presetOf(FW_FIELD_SMOKE);
     def.source = FW_FIELD_SOURCE_PAINTED;
     const FwParticleFieldId painted = still.add(def);
@@ -123,14 +121,14 @@ TEST(AbiParticleField, SourcesWindAndWalls) {
     EXPECT_EQ(FW_OK, fwWorld_PaintParticleField(still.world, painted, paint.data(), nullptr));
     still.run(1);
     EXPECT_NEAR(double(still.of(painted).emitted - full), 0.5 * double(full), 0.02 * double(full));
-    // Walls all over it: nothing is left.
+    // Walls everywhere: no particle is left.
     std::fill(walls.begin(), walls.end(), uint8_t(1));
     EXPECT_EQ(FW_OK, fwWorld_PaintParticleField(still.world, painted, nullptr, walls.data()));
     still.run(0.1f);
     EXPECT_EQ(0u, still.of(painted).inside);
     EXPECT_EQ(still.of(painted).emitted, still.of(painted).dead);
 
-    // A disc in a box.
+    // A disc source in a box.
     def = presetOf(FW_FIELD_SMOKE);
     def.source = FW_FIELD_SOURCE_DISC;
     def.open = 0;
@@ -140,7 +138,7 @@ TEST(AbiParticleField, SourcesWindAndWalls) {
     EXPECT_GT(still.of(boxed).inside, 1000u);
 }
 
-TEST(AbiParticleField, WhatCannotBeIsNamed) {
+TEST(AbiParticleField, RefusesInvalidDefsByName) {
     FieldWorld w;
     const auto said = [&](const FwParticleFieldDef& def) {
         FwParticleFieldId id{};
@@ -171,7 +169,7 @@ TEST(AbiParticleField, WhatCannotBeIsNamed) {
     EXPECT_THAT(lastMessage(w.world), HasSubstr("Particle field 1"));
 }
 
-TEST(AbiParticleField, AtMost256) {
+TEST(AbiParticleField, AllowsAtMost256) {
     FieldWorld w;
     FwParticleFieldDef def = fwDefaultParticleFieldDef();
     def.width = def.height = 32;
@@ -184,7 +182,7 @@ TEST(AbiParticleField, AtMost256) {
     EXPECT_GT(w.of(ids[255]).emitted, 0u);
     EXPECT_EQ(FW_OK, fwWorld_DestroyParticleField(w.world, ids[7]));
     EXPECT_EQ(FW_OK, fwWorld_CreateParticleField(w.world, &def, &more));
-    EXPECT_EQ(0u, w.of(more).emitted) << "it is not the one that was there";
+    EXPECT_EQ(0u, w.of(more).emitted) << "it is a new field";
     w.run(0.1f);
     EXPECT_LT(w.of(more).emitted, w.of(ids[255]).emitted);
 }

@@ -1,6 +1,6 @@
-// Sessions of a host drawn by a seed: what each frame does is known before any world runs, so that
-// several worlds can live through the same. Things have names, which are numbers; what is created
-// and destroyed can be done apart from all else, as a host does that builds a world to load into.
+// Sessions of a host drawn from a seed. The commands of each frame are known before any world runs,
+// so several worlds can run the same session. Objects are named by numbers. Creation and
+// destruction can run apart from the rest, as in a host that builds a world to load into.
 #pragma once
 #include "abi/busy_world.h"
 
@@ -11,7 +11,7 @@ namespace host {
 
 struct Act {
     enum Kind : uint32_t {
-        // Calls that build a world.
+        // Commands that build a world.
         makeObject,
         dropObject,
         makeZone,
@@ -27,7 +27,7 @@ struct Act {
         makeField,
         dropField,
         lastOfBuilding = dropField,
-        // State that a save holds.
+        // Commands whose effects a save holds.
         ignite,
         moveObject,
         wind,
@@ -52,7 +52,7 @@ struct Act {
         shift,
         kinds
     };
-    // Of makeObject: what a scripted game has; less: one of a random session's.
+    // Kinds of makeObject in a scripted game; smaller numbers are those of a random session.
     static constexpr uint32_t house = 4096, figure = 4097;
     Kind kind = ignite;
     uint32_t name = 0, other = 0;
@@ -61,14 +61,14 @@ struct Act {
 
 struct Session {
     FwWorldDef world = fwDefaultWorldDef();
-    bool sees = false;    // the host says what sees what
-    bool played = false;  // it has houses and figures
+    bool sees = false;    // the host answers sight queries
+    bool played = false;  // a scripted game with houses and figures
     std::vector<std::vector<Act>> frames;
     std::vector<float> times;  // s of each frame
-    std::vector<bool> polls;   // after each frame
+    std::vector<bool> polls;   // the host polls after each frame
 };
 
-// A box that stands on y = 0, without a floor, with unique UVs.
+// A box without a floor that stands on y = 0, with unique UVs.
 struct Block {
     std::vector<float> positions, uvs;
     std::vector<uint32_t> indices;
@@ -88,7 +88,7 @@ struct Block {
                 positions.insert(positions.end(), {at[0] - x / 2, at[1], at[2] - z / 2});
                 const float u = k == 1 || k == 2 ? sizes[face][0] : 0.0f;
                 const float v = k >= 2 ? sizes[face][1] : 0.0f;
-                // Side by side in a map of 3 x 2 faces.
+                // Charts of the faces side by side in a 3 x 2 grid.
                 uvs.insert(uvs.end(), {(float(face % 3) * 0.6f * longest + u) / (2 * longest),
                                        (float(face / 3) * 0.6f * longest + v) / (2 * longest)});
             }
@@ -109,7 +109,7 @@ struct Block {
 
 class SessionDraw {
  public:
-    // exact: without jets, fires and fields, which strike what they strike by floats.
+    // exact: without jets, fires and fields, whose hits depend on float results.
     explicit SessionDraw(uint64_t seed, bool exact = false)
         : state_(seed * 0x9E3779B97F4A7C15ull + 1), exact_(exact) {}
 
@@ -167,8 +167,8 @@ class SessionDraw {
         alive.erase(alive.begin() + at);
         return name;
     }
-    // Close together, so that things touch; seldom at the limits of space. In whole parts of a
-    // metre, so that a host whose origin is elsewhere has the same places.
+    // Close together so that objects touch, seldom at the limits of space. In whole parts of a
+    // metre, so a world with another origin has the same places.
     void place(float* at, bool far = true) {
         at[0] = 0.3125f * float(below(5)) + (once(3) ? between(0, 0.2f) : 0.0f);
         at[1] = once(3) ? between(-0.2f, 0.4f) : 0.0f;
@@ -270,7 +270,7 @@ class SessionDraw {
             carry.other = any(objects_);
             carries_ = true;
         } else if (kind >= 50) {
-            // Some go back, and some add up.
+            // Some shifts go back, and some add up.
             const float side = once(4) ? -1.0f : 1.0f;
             if (side > 0)
                 for (float& metres : shift_)
@@ -329,13 +329,13 @@ class SessionDraw {
     uint64_t state_;
     bool exact_ = false;
     uint32_t names_ = 0;
-    bool carries_ = false;  // who gives a burn stays until the step that takes it
-    float shift_[3] = {};   // m, the last one
+    bool carries_ = false;  // the object that gives a burn stays until the step that applies it
+    float shift_[3] = {};   // m, the last shift
     std::vector<Act>* now_ = nullptr;
     std::vector<uint32_t> objects_, zones_, rooms_, blockers_, fires_, jets_, fields_;
 };
 
-// A world that lives through a session, or through what of it builds a world.
+// A world that runs a session, or the part of it that builds a world.
 class SessionWorld {
  public:
     SessionWorld(FwContext* context, const Session& given, const Bytes& burn = {})
@@ -363,14 +363,14 @@ class SessionWorld {
         (void)fwWorld_ShiftOrigin(world, by, nullptr);
         ok(fwWorld_GetOrigin(world, origin));
     }
-    // Another life than the session's, so that nothing is as it was when it was made.
+    // Runs other commands than the session, so that nothing is as it was at creation.
     void liveOtherwise(uint32_t frames) {
         const float wind[3] = {3, 1, -2};
         ok(fwWorld_SetWind(world, wind));
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         ball.radius = 3;
         ok(fwWorld_Ignite(world, &ball, nullptr));
-        ball.delay = 40;  // still waits when it loads
+        ball.delay = 40;  // still pending when it loads
         ok(fwWorld_Ignite(world, &ball, nullptr));
         for (uint32_t i = 0; i < frames; ++i) {
             for (const auto& [name, id] : objects) {
@@ -385,24 +385,24 @@ class SessionWorld {
             if (i == 2) shift(100, -20, 3);
         }
     }
-    // Of every texel and what it holds, and of the tick.
+    // Hashes every texel, its heat and the tick.
     uint64_t hash() {
         std::vector<FwBurnableMeshId> ids;
         for (const auto& [name, id] : objects) ids.push_back(id);
         return hashOf(world, ids);
     }
     struct Place {
-        double at[3];  // m from the origin as it was when the world was made
+        double at[3];  // m from the origin at creation
     };
-    // Events since the last poll, without what depends on the frame's number. places: get theirs,
-    // which then are not in the words.
+    // Events since the last poll in words, without what depends on the frame number. `places`
+    // receives their places, which are then left out of the words.
     std::vector<std::string> poll(std::vector<Place>* places = nullptr) {
         std::vector<std::string> reported;
         FwEvent events[64];
         for (uint32_t count; (count = fwWorld_PollEvents(world, events, 64)) != 0;)
             for (uint32_t i = 0; i < count; ++i) {
                 const FwEvent& e = events[i];
-                // Events of destroyed objects are in no save.
+                // No save holds events of destroyed objects.
                 if (e.object.index1 != 0 && nameOf(e.object) == 0) continue;
                 char text[200], where[100] = "";
                 if (places && e.type != FW_EVENT_TIME_DROPPED)
@@ -418,12 +418,10 @@ class SessionWorld {
             }
         return reported;
     }
-    // The world's state as a host reads it, in words.
+    // The state that a host reads, in words.
     std::string figures() {
         char text[400];
-        FwWorldStats s{};
-        s.structSize = sizeof s;
-        ok(fwWorld_GetStats(world, &s));
+        const FwWorldStats s = getState(fwWorld_GetStats, world);
         std::snprintf(text, sizeof text,
                       "steps %llu tick %llu front %u burning %u of %u objects hot %u late %u "
                       "dropped %u\n",
@@ -431,18 +429,14 @@ class SessionWorld {
                       static_cast<unsigned long long>(s.tick), s.frontTiles, s.burningTiles,
                       s.burningObjects, s.hotTiles, s.lateClamps, s.droppedSteps);
         std::string all = text;
-        FwEnergyBook b{};
-        b.structSize = sizeof b;
-        ok(fwWorld_GetEnergyBook(world, &b));
+        const FwEnergyBook b = getState(fwWorld_GetEnergyBook, world);
         std::snprintf(text, sizeof text, "fuel %llu left %llu radiated %llu power %.9g\n",
                       static_cast<unsigned long long>(b.fuel),
                       static_cast<unsigned long long>(b.unburnt),
                       static_cast<unsigned long long>(b.radiated), double(b.power));
         all += text;
         for (const auto& [name, id] : objects) {
-            FwObjectState o{};
-            o.structSize = sizeof o;
-            ok(fwWorld_GetObjectState(world, id, &o));
+            const FwObjectState o = getState(fwWorld_GetObjectState, world, id);
             std::snprintf(text, sizeof text,
                           "object %u: ignited %u burning %u front %u power %.9g energy %.17g "
                           "plays %u\n",
@@ -451,16 +445,14 @@ class SessionWorld {
             all += text;
         }
         for (const auto& [name, id] : rooms) {
-            FwRoomState r{};
-            r.structSize = sizeof r;
-            ok(fwWorld_GetRoomState(world, id, &r));
+            const FwRoomState r = getState(fwWorld_GetRoomState, world, id);
             std::snprintf(text, sizeof text, "room %u: oxygen %.9g strength %.9g\n", name,
                           double(r.oxygen), double(r.strength));
             all += text;
         }
         return all;
     }
-    // And the places of the host's go with the origin.
+    // The host's places move with the origin of the save.
     FwResult load(const Bytes& bytes) {
         const FwResult result = fwWorld_Load(world, bytes.data(), bytes.size());
         ok(fwWorld_GetOrigin(world, origin));
@@ -498,7 +490,7 @@ class SessionWorld {
         }
         makeMaterials();
     }
-    // Houses have heat, and say what of them breaks; figures are light, and end black.
+    // Houses have heat and report lost parts; figures are LITE and end charred.
     void makePlayed(uint32_t kind, FwBurnableMeshDef& def) const {
         const bool isHouse = kind == Act::house;
         def.mesh = blocks_[isHouse ? 0 : 1];
@@ -515,22 +507,20 @@ class SessionWorld {
         static const uint32_t presets[3] = {FW_MATERIAL_PAPER, FW_MATERIAL_COTTON,
                                             FW_MATERIAL_PLYWOOD};
         for (int i = 0; i < 3; ++i) {
-            FwMaterialDef material = fwDefaultMaterialDef();
-            ok(fwInitMaterialPreset(&material, presets[i]));
+            FwMaterialDef material = materialOf(presets[i]);
             ok(fwWorld_CreateMaterial(world, &material, &materials_[i]));
-            FwMaterialDef thatch = fwDefaultMaterialDef();
-            ok(fwInitMaterialPreset(&thatch, FW_MATERIAL_THATCH));
+            FwMaterialDef thatch = materialOf(FW_MATERIAL_THATCH);
             thatch.spreadRate *= 2;
             thatch.burnTime *= 1.7f;
             if (session.played) ok(fwWorld_CreateMaterial(world, &thatch, &thatch_));
         }
     }
     void moveByOrigin(float* place) const {
-        // The limits of space are where they were.
+        // The limits of space are relative to the first origin.
         for (int i = 0; i < 3; ++i)
             if (std::abs(place[i]) < 1e5f) place[i] = float(double(place[i]) + origin[i]);
     }
-    // A session's places are those of a world whose origin never moved.
+    // A session's places are relative to the first origin.
     Act here(Act act) const {
         switch (act.kind) {
             case Act::makeObject:
@@ -587,7 +577,7 @@ class SessionWorld {
         for (float& half : def.halfSize) half = 0.7f;
         def.volume = 0.4f;
         def.vent = act.name % 2 ? 0.05f : 0.0f;
-        if (session.played) def.volume = 6, def.vent = 2;  // whose houses burn for long
+        if (session.played) def.volume = 6, def.vent = 2;  // houses burn for long
         return def;
     }
     void doOne(const Act& act) {
@@ -750,7 +740,8 @@ class SessionWorld {
                 return ok(fwWorld_SetHeatShield(world, &def));
             }
             case Act::tag:
-                (void)fwWorld_TagPoint(world, objects[act.name], n, act.other);  // too far: none
+                (void)fwWorld_TagPoint(world, objects[act.name], n,
+                                       act.other);  // too far: tags nothing
                 return;
             case Act::play:  // refused on another mesh
                 if (burn_.index1 != 0)
@@ -758,10 +749,10 @@ class SessionWorld {
                 return;
             case Act::stopPlay:
                 return ok(fwWorld_StopBurn(world, objects[act.name]));
-            case Act::carry:  // refused where the two are not alike
+            case Act::carry:  // refused if the two differ in shape
                 (void)fwWorld_TransferBurn(world, objects[act.name], objects[act.other]);
                 return;
-            case Act::shift:  // refused where something is at the limits of space
+            case Act::shift:  // refused if an object is at the limits of space
                 return shift(double(n[0]), double(n[1]), double(n[2]));
             case Act::kinds:
                 break;

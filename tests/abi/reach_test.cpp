@@ -1,5 +1,5 @@
-// Fire that goes through the air: radiation, plumes, embers, walls between and what the host says
-// is seen. On the cpu backend.
+// Fire through the air on the cpu backend: radiation, plumes, embers, walls between, and the host's
+// sight answers.
 #include "abi/panels.h"
 
 #include <algorithm>
@@ -17,14 +17,13 @@ struct Hearth : Panels {
         hot.burningFlux = 0.1f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &hot, &material));
         add(0, 0, 0);
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material));
     }
     FwBurnableMeshDef paper(float x, float y, float z, bool upright) const {
         FwBurnableMeshDef made = def(x, y, z);
         made.flags = FW_BURNABLE_TWO_SIDED;
-        if (upright) {  // its x goes up, its normal along the world's x
+        if (upright) {  // object x points up, its normal along world x
             made.transform[0] = 0;
             made.transform[1] = 1;
             made.transform[4] = -1;
@@ -38,7 +37,7 @@ struct Hearth : Panels {
     }
 };
 
-TEST(AbiSpread, RadiationLightsWhatItShinesOn) {
+TEST(AbiSpread, RadiationIgnitesExposedObjects) {
     const auto caught = [](uint32_t flags, float x, const FwBlockerDef* wall, double seconds) {
         Hearth p(worldDef(flags));
         p.add(p.paper(x, 0, 0, true));
@@ -69,7 +68,7 @@ TEST(AbiSpread, RadiationLightsWhatItShinesOn) {
     EXPECT_TRUE(caught(FW_WORLD_RADIATION, 0.5f, &wall, 20));
 }
 
-// Two boards of 0.4 x 0.2 m, upright, face to face 10 cm apart: the first burns all over, fiercely.
+// Two upright boards of 0.4 x 0.2 m, face to face 10 cm apart. The first burns fiercely all over.
 struct TwoBoards : Panels {
     static constexpr double kPower = 4e6, kGap = 0.1;  // W/m^2, m
     TwoBoards(const FwWorldDef& def, const FwMaterialDef& receiver) : Panels(def, 600.0f, 256) {
@@ -83,7 +82,7 @@ struct TwoBoards : Panels {
         second.flags = FW_BURNABLE_TWO_SIDED;
         add(second);
     }
-    FwBurnableMeshDef upright(float x) const {  // its x goes up, its normal along the world's x
+    FwBurnableMeshDef upright(float x) const {  // object x points up, its normal along world x
         FwBurnableMeshDef made = def(x, 0, 0);
         made.transform[0] = made.transform[5] = 0;
         made.transform[1] = 1;
@@ -94,14 +93,15 @@ struct TwoBoards : Panels {
         for (float y = 0.02f; y < 0.4f; y += 0.06f)
             for (float z = 0.02f; z < 0.2f; z += 0.06f) ignite(ids[0], 0, y, z, 0.04f);
     }
-    // s until the second caught; 0: it did not.
+    // s until the second board caught; 0 if it did not.
     double caught(double seconds) {
         light();
         run(seconds);
         const FwEvent* spread = event(FW_EVENT_SPREAD_TO);
         return spread ? double(spread->value) : 0.0;
     }
-    // W/m^2 on the second board, where it is most: flames of its two halves as rows of four points.
+    // W/m^2 at the most exposed point of the second board; each half's flames are a row of four
+    // points.
     static double formula() {
         constexpr double kPi = 3.14159265358979;
         const double watts = kPower * 0.04, diameter = std::sqrt(4 * 0.04 / kPi);
@@ -128,12 +128,12 @@ FwMaterialDef receiverOf(float thickness, bool thick) {
     def.density = 1300;
     def.specificHeat = 2000;
     def.conductivity = 0.85f;
-    def.ignitionTemperature = 450;  // so low that losses are small beside what comes in
+    def.ignitionTemperature = 450;  // K, so low that losses are small against the input
     def.autoIgnitionTemperature = 800;
     return def;
 }
 
-TEST(AbiSpread, S7_6_TwoBoardsTenCentimetresApart) {
+TEST(AbiSpread, IgnitionTimeOfFacingBoardsMatchesTheFluxFormula) {
     const double flux = 0.9 * TwoBoards::formula();  // absorbed
     for (const bool thick : {false, true}) {
         const FwMaterialDef def = receiverOf(thick ? 0.05f : 0.0019f, thick);
@@ -151,7 +151,7 @@ TEST(AbiSpread, S7_6_TwoBoardsTenCentimetresApart) {
     }
 }
 
-TEST(AbiSpread, S7_6_TwoBoardsAndAWallBetween) {
+TEST(AbiSpread, AWallBetweenBoardsPreventsIgnition) {
     FwBlockerDef wall = fwDefaultBlockerDef();
     wall.transform[12] = 0.05f;
     wall.halfSize[0] = 0.01f;
@@ -173,9 +173,9 @@ TEST(AbiSpread, S7_6_TwoBoardsAndAWallBetween) {
     }
 }
 
-// A wall of four boxes around a window: through it the second board is lit, past it none is.
-TEST(AbiSpread, S7_6_TwoBoardsAndAHoleInTheWall) {
-    for (const float beside : {0.0f, 3.0f}) {  // m that the window is aside
+// A window in a wall of four boxes: a board behind it is lit, a board beside it is not.
+TEST(AbiSpread, AHoleInTheWallLetsRadiationThrough) {
+    for (const float beside : {0.0f, 3.0f}) {  // m from the board to the window, sideways
         TwoBoards p(worldDef(FW_WORLD_RADIATION), receiverOf(0.0018f, false));
         const auto wall = [&](float y, float z, float high, float wide) {
             FwBlockerDef box = fwDefaultBlockerDef();
@@ -185,8 +185,7 @@ TEST(AbiSpread, S7_6_TwoBoardsAndAHoleInTheWall) {
             box.halfSize[0] = 0.01f;
             box.halfSize[1] = high;
             box.halfSize[2] = wide;
-            FwBlockerId id{};
-            EXPECT_EQ(FW_OK, fwWorld_AddBlocker(p.world, &box, &id)) << lastMessage(p.world);
+            (void)created(fwWorld_AddBlocker, p.world, box);
         };
         wall(-5, 0, 5.2f, 20);  // up to 0.2 m
         wall(6, 0, 5, 20);      // from 1 m
@@ -199,7 +198,7 @@ TEST(AbiSpread, S7_6_TwoBoardsAndAHoleInTheWall) {
     }
 }
 
-TEST(AbiSpread, APlumeLightsWhatIsAbove) {
+TEST(AbiSpread, PlumesIgniteObjectsAbove) {
     for (const uint32_t flags : {uint32_t(FW_WORLD_PLUME), uint32_t(FW_WORLD_CONTACT)}) {
         for (const float height : {1.0f, -1.0f}) {
             Hearth p(worldDef(flags));
@@ -211,7 +210,7 @@ TEST(AbiSpread, APlumeLightsWhatIsAbove) {
     }
 }
 
-TEST(AbiSpread, TheHostSaysWhatIsSeen) {
+TEST(AbiSpread, RespectsTheHostsSightAnswers) {
     for (const float seen : {0.0f, 1.0f}) {
         FwWorldDef def = worldDef(FW_WORLD_RADIATION);
         float part = seen;
@@ -228,8 +227,8 @@ TEST(AbiSpread, TheHostSaysWhatIsSeen) {
     }
 }
 
-TEST(AbiSpread, WhatWasReceivedIsTakenBackWithTheFlag) {
-    // Switched off before it is hot enough, it cools and never catches.
+TEST(AbiSpread, ClearingTheFlagStopsReceivedHeat) {
+    // Switched off before it is hot enough, the object cools and never catches.
     for (const bool off : {false, true}) {
         Hearth p(worldDef(FW_WORLD_RADIATION));
         p.add(p.paper(0.5f, 0, 0, true));
@@ -244,7 +243,7 @@ TEST(AbiSpread, WhatWasReceivedIsTakenBackWithTheFlag) {
     }
 }
 
-// A strong fire upwind of what an ember may light.
+// A strong fire upwind of an object that embers may ignite.
 void makeEmbers(Panels& p) {
     p.add(0, 0, 0);
     for (int i = 0; i < 12; ++i)
@@ -253,7 +252,7 @@ void makeEmbers(Panels& p) {
         for (float z = 0.02f; z < 0.2f; z += 0.06f) p.ignite(p.ids[0], x, 0, z, 0.04f);
 }
 
-TEST(AbiSpread, EmbersLightWhatLiesDownwind) {
+TEST(AbiSpread, EmbersIgniteObjectsDownwind) {
     FwWorldDef def = worldDef(FW_WORLD_EMBERS);
     def.paceFactor = 30;
     def.wind[0] = 3;
@@ -296,8 +295,7 @@ TEST(AbiSpread, EmbersLightWhatLiesDownwind) {
     wall.transform[12] = 0.7f;
     wall.halfSize[0] = 0.05f;
     wall.halfSize[1] = wall.halfSize[2] = 30;
-    FwBlockerId id{};
-    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(walled->world, &wall, &id)) << lastMessage(walled->world);
+    const FwBlockerId id = created(fwWorld_AddBlocker, walled->world, wall);
     EXPECT_EQ(0u, burns(*walled));
     ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(walled->world, id));
     walled->run(20);

@@ -28,10 +28,10 @@ host() {
 #include <flamewright/flamewright.h>
 #include <flamewright/flamewright_vulkan.h>
 void hear(const FwEvent* event);
-void host(const FwVulkanHost lent, const FwWorldDef worldDef, const FwVulkanTargetDef targetDef,
+void host(const FwVulkanHost hostDevice, const FwWorldDef worldDef, const FwVulkanTargetDef targetDef,
           const FwMeshDef meshDef, FwBurnableMeshDef burnableDef, const FwIgnitionDef match,
           const FwVulkanFrame frame, const FwView view, const VkViewport viewport);
-void host(const FwVulkanHost lent, const FwWorldDef worldDef, const FwVulkanTargetDef targetDef,
+void host(const FwVulkanHost hostDevice, const FwWorldDef worldDef, const FwVulkanTargetDef targetDef,
           const FwMeshDef meshDef, FwBurnableMeshDef burnableDef, const FwIgnitionDef match,
           const FwVulkanFrame frame, const FwView view, const VkViewport viewport) {
     FwContext* context;

@@ -1,5 +1,5 @@
-// Rooms through the C ABI: fire that uses up its air weakens and goes out, a door brings it back,
-// both backends agree to the bit, and what is refused.
+// Rooms through the C ABI: fire that uses up the oxygen goes out, and a door brings it back. Both
+// backends agree bit for bit, and bad values are refused.
 #include "abi/busy_world.h"
 
 #include <algorithm>
@@ -8,27 +8,18 @@ namespace {
 
 using namespace host;
 
-// m^3 of oxygen that a J takes, and what room lets fire have that many before it weakens.
+// m^3 of oxygen per J.
 constexpr double kTakes = 1 / (13.1e6 * 1.330);
 float volumeFor(double joules) { return float(joules * kTakes / (0.2095 - 0.15)); }
 
-// A sheet of paper on which fire runs, and how much there is in it.
-struct Paper {
-    explicit Paper(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER) : sheet(0.6f, 0.6f) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.maxStepsPerFrame = 64;
-        EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
+// A sheet of burning paper and its fuel.
+struct Paper : HostedWorld {
+    explicit Paper(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER)
+        : HostedWorld(backend, worldDef(fwDefaultWorldDef().flags)), sheet(0.6f, 0.6f) {
+        if (!world) return;
         id = addBurnable(world, sheet.def(48), preset);
         fuel = double(book().fuel) / 1048576;
     }
-    ~Paper() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
-    Paper(const Paper&) = delete;
-    Paper& operator=(const Paper&) = delete;
 
     FwRoomDef roomOf(double joules, float vent = 0) const {
         FwRoomDef def = fwDefaultRoomDef();
@@ -36,81 +27,42 @@ struct Paper {
         def.vent = vent;
         return def;
     }
-    FwRoomId put(const FwRoomDef& def) {
-        FwRoomId made{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateRoom(world, &def, &made)) << lastMessage(world);
-        return made;
-    }
-    void light(float radius) {
-        FwIgnitionDef ball = fwDefaultIgnitionDef();
-        ball.position[0] = ball.position[2] = 0.3f;
-        ball.radius = radius;
-        uint32_t texels = 0;
-        EXPECT_EQ(FW_OK, fwWorld_Ignite(world, &ball, &texels)) << lastMessage(world);
-        EXPECT_LT(0u, texels);
-    }
+    FwRoomId put(const FwRoomDef& def) { return created(fwWorld_CreateRoom, world, def); }
+    void light(float radius) { ignite({}, 0.3f, 0, 0.3f, radius); }
     void run(double seconds) {
         for (double t = 0; t < seconds - 1e-9; t += 0.125) {
             ASSERT_EQ(FW_OK, fwWorld_Step(world, 0.125f)) << lastMessage(world);
-            FwEvent some[32];
-            events.insert(events.end(), some, some + fwWorld_PollEvents(world, some, 32));
+            const std::vector<FwEvent> some = poll();
+            events.insert(events.end(), some.begin(), some.end());
         }
     }
-    FwEnergyBook book() {
-        FwEnergyBook made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetEnergyBook(world, &made)) << lastMessage(world);
-        return made;
-    }
+    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world); }
     double released() {  // J
         const FwEnergyBook now = book();
         return double(now.radiated + now.convected) / 1048576;
     }
-    FwRoomState air(FwRoomId room) {
-        FwRoomState made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetRoomState(world, room, &made)) << lastMessage(world);
-        return made;
-    }
-    uint32_t burning() {
-        FwObjectState made{};
-        made.structSize = sizeof made;
-        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world, id, &made)) << lastMessage(world);
-        return made.burning;
-    }
+    FwRoomState air(FwRoomId room) { return getState(fwWorld_GetRoomState, world, room); }
+    uint32_t burning() { return state(id).burning; }
     bool heard(uint32_t type) const {
         return std::any_of(events.begin(), events.end(),
                            [&](const FwEvent& event) { return event.type == type; });
     }
-    // FwExtinguishCause of the last time that it went out; 0: it did not.
+    // FwExtinguishCause of the last time that it went out; 0 if it did not.
     uint32_t cause() const {
         uint32_t last = 0;
         for (const FwEvent& event : events)
             if (event.type == FW_EVENT_EXTINGUISHED) last = event.tag;
         return last;
     }
-    uint64_t hash() {
-        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, id)) << lastMessage(world);
-        uint64_t made = 0;
-        FwResult result = FW_NOT_READY;
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            EXPECT_EQ(FW_OK, fwWorld_Step(world, 0)) << lastMessage(world);
-            result = fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &made, nullptr);
-        }
-        EXPECT_EQ(FW_OK, result) << lastMessage(world);
-        return made;
-    }
+    uint64_t hash() { return HostedWorld::hash(id); }
 
-    Host host;
     Sheet sheet;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     FwBurnableMeshId id{};
     double fuel = 0;  // J
     std::vector<FwEvent> events;
 };
 
-TEST(AbiRoom, FireUsesUpItsAirAndGoesOut) {
+TEST(AbiRoom, FireUsesUpTheOxygenAndGoesOut) {
     Paper free(FW_BACKEND_CPU), large(FW_BACKEND_CPU), shut(FW_BACKEND_CPU);
     const FwRoomId hall = large.put(large.roomOf(20 * large.fuel));
     const FwRoomId closet = shut.put(shut.roomOf(0.3 * shut.fuel));
@@ -119,15 +71,15 @@ TEST(AbiRoom, FireUsesUpItsAirAndGoesOut) {
         paper->run(180);
         EXPECT_EQ(0u, paper->burning());
     }
-    EXPECT_EQ(free.hash(), large.hash());  // air enough is as air without end
+    EXPECT_EQ(free.hash(), large.hash());  // a large room equals no room
     EXPECT_TRUE(free.heard(FW_EVENT_BURNT_OUT));
     EXPECT_NEAR(free.fuel, free.released(), 0.001 * free.fuel);
-    // What the room lost is what the fire took.
+    // The room loses the oxygen that the fire consumes.
     const double part = large.released() * kTakes / double(large.roomOf(20 * large.fuel).volume);
     EXPECT_NEAR(0.2095 - part, double(large.air(hall).oxygen), 2e-5);
     EXPECT_EQ(1.0f, large.air(hall).strength);
     EXPECT_EQ(1u, large.air(hall).objects);
-    // Of the closet's, that which it had down to 15 %, and some more while it weakened.
+    // In the closet: the oxygen down to 15 %, and some more while the fire weakened.
     EXPECT_TRUE(shut.heard(FW_EVENT_EXTINGUISHED));
     EXPECT_FALSE(shut.heard(FW_EVENT_BURNT_OUT));
     EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_AIR), shut.cause());
@@ -139,11 +91,11 @@ TEST(AbiRoom, FireUsesUpItsAirAndGoesOut) {
     EXPECT_EQ(0.0f, shut.air(closet).power);
 }
 
-// In air that lets it flame weakly wood gives too little heat back to itself.
-TEST(AbiRoom, WoodInLittleAirGoesOutWithFuelLeft) {
+// Wood in thin air feeds too little heat back to itself.
+TEST(AbiRoom, WoodInThinAirGoesOutWithFuelLeft) {
     Paper wood(FW_BACKEND_CPU, FW_MATERIAL_PINE);
     FwRoomDef def = wood.roomOf(100 * wood.fuel);
-    def.oxygen = 0.126f;  // a fifth of its strength
+    def.oxygen = 0.126f;  // a fifth of the flame's strength
     (void)wood.put(def);
     wood.light(0.15f);
     wood.run(300);
@@ -152,8 +104,7 @@ TEST(AbiRoom, WoodInLittleAirGoesOutWithFuelLeft) {
     EXPECT_FALSE(wood.heard(FW_EVENT_BURNT_OUT));
 }
 
-// A door that opens on a dying fire brings it back.
-TEST(AbiRoom, ADoorBringsItBack) {
+TEST(AbiRoom, OpeningADoorRevivesADyingFire) {
     Paper shut(FW_BACKEND_CPU), opened(FW_BACKEND_CPU);
     FwRoomId rooms[2] = {};
     Paper* papers[] = {&shut, &opened};
@@ -183,7 +134,7 @@ TEST(AbiRoom, ADoorBringsItBack) {
     EXPECT_EQ(1.0f, opened.air(rooms[1]).strength);
 }
 
-TEST(AbiRoom, InertGasPutsOutAndWhoLeavesBurnsOn) {
+TEST(AbiRoom, InertGasExtinguishesOnlyInsideTheRoom) {
     Paper flooded(FW_BACKEND_CPU), carried(FW_BACKEND_CPU);
     FwRoomDef def = flooded.roomOf(100 * flooded.fuel);
     const FwRoomId room = flooded.put(def), other = carried.put(def);
@@ -208,14 +159,14 @@ TEST(AbiRoom, InertGasPutsOutAndWhoLeavesBurnsOn) {
     EXPECT_NEAR(0.1f, flooded.air(room).oxygen, 1e-5f);
     EXPECT_EQ(0.0f, flooded.air(room).strength);
     EXPECT_LT(0u, carried.burning());
-    // Without a room there is air again, and what it holds lights as ever.
+    // Outside the room there is air again, and the object ignites as usual.
     ASSERT_EQ(FW_OK, fwWorld_DestroyRoom(flooded.world, room));
     flooded.light(0.05f);
     flooded.run(2);
     EXPECT_LT(0u, flooded.burning());
 }
 
-// To the bit, also through doors, gas, moves and a save that is loaded on the other backend.
+// Bit for bit, also through doors, gas, moves and a save loaded on the other backend.
 TEST(AbiRoom, BothBackendsAgree) {
     uint64_t hashes[2][6] = {};
     float oxygen[2][6] = {};
@@ -248,7 +199,7 @@ TEST(AbiRoom, BothBackendsAgree) {
                 ASSERT_EQ(FW_OK, fwWorld_FetchSave(paper.world, nullptr, &size));
                 save.resize(size);
                 ASSERT_EQ(FW_OK, fwWorld_FetchSave(paper.world, save.data(), &size));
-            } else {  // the cpu's past instead of its own
+            } else {  // the cpu's past in place of its own
                 ASSERT_EQ(FW_OK, fwWorld_Load(paper.world, save.data(), save.size()))
                     << lastMessage(paper.world);
                 EXPECT_EQ(oxygen[0][1], paper.air(room).oxygen);
@@ -262,10 +213,10 @@ TEST(AbiRoom, BothBackendsAgree) {
     }
 }
 
-// The power at which it does, once, at the same step on both backends, and not again where a save
-// of it is loaded.
-TEST(AbiRoom, FlashesOverWhenItsFiresGiveOffEnough) {
-    float told[2] = {};
+// The power at which a room flashes over: once, at the same step on both backends, and not again
+// after a load.
+TEST(AbiRoom, FlashesOverOnceAtTheFlashOverPower) {
+    float reported[2] = {};
     std::vector<unsigned char> save;
     const uint32_t backends[] = {FW_BACKEND_CPU, FW_BACKEND_VULKAN};
     const auto flashes = [](const Paper& paper) {
@@ -278,13 +229,13 @@ TEST(AbiRoom, FlashesOverWhenItsFiresGiveOffEnough) {
         if (!paper.world) GTEST_SKIP() << "there is no such backend here";
         FwRoomDef def = paper.roomOf(20 * paper.fuel);
         def.position[0] = def.position[2] = 0.3f;
-        (void)large.put(def);  // of the same air, and of larger walls
+        (void)large.put(def);  // the same air and larger walls
         for (float& half : def.halfSize) half = 0.2f;
         const FwRoomId room = paper.put(def);
         const float needed = paper.air(room).flashOverPower;
         EXPECT_NEAR(7800 * 24 * 0.04, double(needed), 100);
         FwRoomState state{};
-        state.structSize = offsetof(FwRoomState, flashOverPower);  // an older host's
+        state.structSize = offsetof(FwRoomState, flashOverPower);  // the struct of an older host
         EXPECT_EQ(FW_OK, fwWorld_GetRoomState(paper.world, room, &state));
         EXPECT_EQ(0u, state.flashedOver);
         paper.light(0.03f);
@@ -300,7 +251,7 @@ TEST(AbiRoom, FlashesOverWhenItsFiresGiveOffEnough) {
         EXPECT_LT(before, 1.5 * double(needed));
         if (b == 0)
             save = saveOf(paper.world);
-        else {  // on the other backend, where it is told no more
+        else {  // on the other backend, where it is not reported again
             Paper loaded(backends[1]);
             const FwRoomId same = loaded.put(def);
             ASSERT_EQ(FW_OK, fwWorld_Load(loaded.world, save.data(), save.size()))
@@ -320,15 +271,15 @@ TEST(AbiRoom, FlashesOverWhenItsFiresGiveOffEnough) {
         EXPECT_EQ(0u, event.object.index1);
         EXPECT_EQ(0.3f, event.position[0]);
         EXPECT_GT(event.value, 1);
-        told[b] = event.value;
+        reported[b] = event.value;
         large.run(200);
         EXPECT_FALSE(large.heard(FW_EVENT_FLASHED_OVER));
     }
-    EXPECT_EQ(told[0], told[1]);
+    EXPECT_EQ(reported[0], reported[1]);
 }
 
-// However long nothing burns: rooms whose air still comes back go on, and one at rest costs none.
-TEST(AbiRoom, AirComesBackWhileNothingBurns) {
+// While nothing burns, rooms still recover their air, and recovered rooms cost nothing.
+TEST(AbiRoom, AirRecoversWhileNothingBurns) {
     Paper steady(FW_BACKEND_CPU), coarse(FW_BACKEND_CPU);
     FwRoomDef def = steady.roomOf(steady.fuel, 0.01f);
     def.oxygen = 0.05f;
@@ -340,7 +291,7 @@ TEST(AbiRoom, AirComesBackWhileNothingBurns) {
     EXPECT_LT(steady.air(rooms[0]).oxygen, 0.2094f);
 }
 
-TEST(AbiRoom, NamesWhatIsWrong) {
+TEST(AbiRoom, RefusesBadValuesByName) {
     Paper paper(FW_BACKEND_CPU);
     FwRoomDef def = fwDefaultRoomDef();
     EXPECT_EQ(0.2095f, def.oxygen);
@@ -358,7 +309,7 @@ TEST(AbiRoom, NamesWhatIsWrong) {
     FwRoomId more{};
     for (int i = 1; i < 64; ++i)
         ASSERT_EQ(FW_OK, fwWorld_CreateRoom(paper.world, &def, &more)) << lastMessage(paper.world);
-    EXPECT_EQ(0u, paper.air(more).objects);  // they are in the one made first
+    EXPECT_EQ(0u, paper.air(more).objects);  // the objects belong to the room created first
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateRoom(paper.world, &def, &more));
     EXPECT_EQ("64 rooms are there; the limit is 64.\n - While calling fwWorld_CreateRoom.",
               lastMessage(paper.world));

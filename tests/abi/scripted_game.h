@@ -1,7 +1,7 @@
-// A tower defence game as its fire library sees it, by a scripted player: figures walk along a road
-// past houses, and are born again in the places of those before; jets, embers and water are aimed
-// at them, fans turn, houses flash over and break, one of them changes its level of detail, and the
-// origin follows the camera. A frame's acts follow from its number alone.
+// A tower defence game played by a script. Figures walk along a road past houses and respawn in the
+// slots of fallen ones. Jets, embers and water aim at them, fans turn, houses flash over and break.
+// One house changes its level of detail, and the origin follows the camera. The commands of a frame
+// depend only on its number.
 #pragma once
 #include "abi/random_session.h"
 
@@ -19,7 +19,7 @@ class ScriptedGame {
 
  private:
     static constexpr uint32_t kHouses = 3, kFigures = 5, kPlots = 3;
-    static constexpr float kAway = -300;  // m below the ground: out of the world's way
+    static constexpr float kAway = -300;  // m below the ground: outside the game
     struct Place {
         float x, y, z;
     };
@@ -39,7 +39,7 @@ class ScriptedGame {
         made_.polls.assign(kFrames, true);
         for (uint32_t frame = 0; frame < kFrames; ++frame)
             made_.times.push_back(frame % 37 == 36   ? 0.0f  // the game is paused
-                                  : frame % 23 == 22 ? 0.2f  // and a slow frame
+                                  : frame % 23 == 22 ? 0.2f  // a slow frame
                                   : frame % 7 == 3   ? 1.0f / 60
                                                      : 1.0f / 16);
     }
@@ -61,14 +61,14 @@ class ScriptedGame {
         made.numbers[4] = delay;
         made.numbers[5] = water;
     }
-    // Along the road, bobbing; those that have fallen lie.
+    // Position along the road, bobbing; fallen figures lie.
     [[nodiscard]] Place walks(uint32_t slot) const {
         if (now_ < born_[slot] || born_[slot] == 0) return {float(slot), kAway, 0};
         const float age = std::min(float(now_ - born_[slot]), 90.0f);
         return {-2.5f + 0.0625f * age, age < 90 ? 0.0625f * float(now_ % 3) : 0.0f,
                 0.25f * float(slot % 2)};
     }
-    // The figure that is nearest to a plot.
+    // The figure nearest to a plot.
     [[nodiscard]] Place target(uint32_t plot) const {
         Place best = walks(0);
         for (uint32_t slot = 1; slot < kFigures; ++slot) {
@@ -114,7 +114,7 @@ class ScriptedGame {
         change();
     }
     void moveFigures() {
-        if (now_ % 16 == 4) {  // another one in the place of one before
+        if (now_ % 16 == 4) {  // a new figure in the slot of a fallen one
             const uint32_t slot = now_ / 16 % kFigures;
             act(Act::dropObject, figures_[slot]);
             born_[slot] = now_;
@@ -152,7 +152,7 @@ class ScriptedGame {
         const uint32_t slot = now_ / 16 % kFigures;
         if (now_ % 20 == 9) ball(FW_IGNITE, walks(slot), 0.3f, 0.7f);  // an ember lands
         const Place house = kHouseAt[now_ / 12 % kHouses];
-        if (now_ % 40 == 14)  // of its roof falls
+        if (now_ % 40 == 14)  // a part of its roof falls
             ball(FW_IGNITE, {house.x + 0.4f, house.y + 0.25f, house.z + 0.4f}, 0.2f, 0);
         if (now_ > 120 && now_ % 12 == 7)
             ball(FW_WET, {house.x, house.y + 0.75f, house.z}, 0.5f, 0, 120);
@@ -179,19 +179,20 @@ class ScriptedGame {
             const Place at = kHouseAt[1];
             act(Act::setRoom, rooms_[1], {at.x + 0.0625f, at.y + 0.5f, at.z});
         }
-        // The camera goes far away, and comes back. At 104 a figure is at a limit: that is refused.
+        // The camera goes far away and comes back. At frame 104 a figure is at a limit, so the
+        // shift is refused.
         if (now_ == 45 || now_ == 46 || now_ == 104 || now_ == 185)
             act(Act::shift, 0, {2048, -16, float(now_) * 8});
         if (now_ == 84 || now_ == 215) act(Act::shift, 0, {-2048, 16, -360});
     }
     void change() {
-        if (now_ == 145) {  // another level of detail of a house that burns
+        if (now_ == 145) {  // another level of detail of a burning house
             const uint32_t fine = make(Act::makeObject, kHouseAt[1], Act::house);
             act(Act::carry, houses_[1]).other = fine;
             coarse_ = std::exchange(houses_[1], fine);
         }
         if (now_ == 147) act(Act::dropObject, coarse_);
-        if (now_ == 170) {  // a house is built again
+        if (now_ == 170) {  // a house is rebuilt
             act(Act::dropObject, houses_[0]);
             act(Act::dropRoom, rooms_[0]);
             houses_[0] = make(Act::makeObject, kHouseAt[0], Act::house);

@@ -1,6 +1,6 @@
-// Random sessions, and a scripted game. A save of every frame loads into a new world and into a
-// used one, which then go on as the original does: in state, figures, events and the bytes of later
-// saves. Both backends tell the same of a session, and so does a world whose origin moves.
+// Random sessions and a scripted game. The save of every frame loads into a new and a used world,
+// which continue like the original in state, figures, events and later saves. Both backends agree
+// on a session, and a world whose origin moves agrees too.
 #include "abi/scripted_game.h"
 
 #include <algorithm>
@@ -9,13 +9,13 @@ namespace {
 
 using namespace host;
 
-struct Kept {  // of a frame
+struct Kept {  // results of one frame
     Bytes save;
     std::vector<std::string> reported;
     std::string figures;
 };
 
-// A frame as all of them live it: the save is of its end.
+// Runs one frame; the save is of its end.
 Kept live(SessionWorld& w, uint32_t frame) {
     Kept kept;
     w.act(frame);
@@ -36,7 +36,7 @@ size_t differsAt(const Bytes& a, const Bytes& b) {
     return at;
 }
 
-// Goes on from the save of `frame`; false where it does otherwise than the original.
+// Continues from the save of `frame`; false if the result differs from the original.
 bool goesOn(SessionWorld& w, const std::vector<Kept>& original, uint32_t frame, uint32_t frames,
             const char* which) {
     EXPECT_EQ(FW_OK, w.load(original[frame].save))
@@ -64,9 +64,9 @@ bool goesOn(SessionWorld& w, const std::vector<Kept>& original, uint32_t frame, 
 
 // How far loaded worlds are followed.
 struct Following {
-    uint32_t frames = 9;        // of each save
-    uint32_t usedEvery = 4;     // so many saves one is loaded into a used world, too
-    uint32_t wholeEvery = ~0u;  // and so many one is followed to the session's end
+    uint32_t frames = 9;        // frames after each save
+    uint32_t usedEvery = 4;     // every such save is also loaded into a used world
+    uint32_t wholeEvery = ~0u;  // every such save is followed to the end of the session
 };
 
 void savesOfEveryFrame(FwContext* context, const Session& session, const Bytes& burn,
@@ -98,7 +98,7 @@ void savesOfEveryFrame(FwContext* context, const Session& session, const Bytes& 
 }
 
 class SavedSession : public ::testing::TestWithParam<uint64_t> {};
-TEST_P(SavedSession, GoesOnAlikeFromEveryFrame) {
+TEST_P(SavedSession, ContinuesIdenticallyFromEveryFrame) {
     Host host;
     FwContext* context = createCpuContext(host);
     savesOfEveryFrame(context, SessionDraw(GetParam()).draw(56), burnOfSession(context), {});
@@ -107,7 +107,7 @@ TEST_P(SavedSession, GoesOnAlikeFromEveryFrame) {
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, SavedSession, ::testing::Range<uint64_t>(1, 9));
 
-TEST(SavedGame, GoesOnAlikeFromEveryFrame) {
+TEST(SavedGame, ContinuesIdenticallyFromEveryFrame) {
     Host host;
     FwContext* context = createCpuContext(host);
     Following following;
@@ -117,7 +117,7 @@ TEST(SavedGame, GoesOnAlikeFromEveryFrame) {
     savesOfEveryFrame(context, ScriptedGame::play(), {}, following, &reported);
     fwDestroyContext(context);
     EXPECT_EQ(0, host.blocks);
-    // It is a game in which much happens.
+    // The game must raise many types of events.
     for (const uint32_t type :
          {FW_EVENT_IGNITED, FW_EVENT_BURNT_OUT, FW_EVENT_EXTINGUISHED, FW_EVENT_TAG_REACHED,
           FW_EVENT_SPREAD_TO, FW_EVENT_SPOT_FIRE, FW_EVENT_STRUCTURE_BROKE})
@@ -128,7 +128,7 @@ TEST(SavedGame, GoesOnAlikeFromEveryFrame) {
             << "no event of type " << type;
 }
 
-// ---- two boxes that touch, of which the first burns ---------------------------------------------
+// ---- two touching boxes, of which the first burns
 
 class TouchingSheets {
  public:
@@ -140,8 +140,7 @@ class TouchingSheets {
         const Sheet sheet(0.3f, 0.3f);
         const FwMeshDef meshDef = sheet.def(64);
         EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh_));
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        EXPECT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &paper, &material_));
         for (int i = 0; i < 2; ++i) ids[i] = make(i);
     }
@@ -170,12 +169,7 @@ class TouchingSheets {
         ids[1] = make(1);
     }
     FwResult load(const Bytes& bytes) { return fwWorld_Load(world, bytes.data(), bytes.size()); }
-    uint32_t ignited(int i) {
-        FwObjectState state{};
-        state.structSize = sizeof state;
-        EXPECT_EQ(FW_OK, fwWorld_GetObjectState(world, ids[i], &state));
-        return state.ignited;
-    }
+    uint32_t ignited(int i) { return getState(fwWorld_GetObjectState, world, ids[i]).ignited; }
 
     FwWorld* world = nullptr;
     FwBurnableMeshId ids[2] = {};
@@ -186,9 +180,7 @@ class TouchingSheets {
         def.mesh = mesh_;
         def.materials[0] = material_;
         def.transform[12] = kApart * float(i);
-        FwBurnableMeshId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &id)) << lastMessage(world);
-        return id;
+        return created(fwWorld_CreateBurnableMesh, world, def);
     }
     FwMeshId mesh_{};
     FwMaterialId material_{};
@@ -197,7 +189,7 @@ class TouchingSheets {
     static constexpr float kApart = 0.301f;
 };
 
-// Until both burn; compared in every save.
+// Compares every save until both burn.
 void expectAlike(TouchingSheets& a, TouchingSheets& b, int steps) {
     for (int i = 0; i < steps; ++i) {
         a.step(1);
@@ -223,7 +215,7 @@ TEST(Save, LoadsAfterATouchingObjectWasDestroyed) {
     fwDestroyContext(context);
 }
 
-TEST(Save, ATouchingPairThatIsPartedBurnsAlikeAfterALoad) {
+TEST(Save, ASeparatedPairBurnsAlikeAfterALoad) {
     Host host;
     FwContext* context = createCpuContext(host);
     for (const int away : {1, 3, 4, 8}) {
@@ -241,7 +233,7 @@ TEST(Save, ATouchingPairThatIsPartedBurnsAlikeAfterALoad) {
     fwDestroyContext(context);
 }
 
-TEST(Save, AnObjectInTheSlotOfATouchingOneBurnsAlikeAfterALoad) {
+TEST(Save, AReusedSlotOfATouchingObjectBurnsAlikeAfterALoad) {
     Host host;
     FwContext* context = createCpuContext(host);
     for (const int before : {4, 6, 11}) {
@@ -256,8 +248,8 @@ TEST(Save, AnObjectInTheSlotOfATouchingOneBurnsAlikeAfterALoad) {
     fwDestroyContext(context);
 }
 
-// The save is of the frame whose readback says so: the event is in it, and the tag is not.
-TEST(Save, ATagIsReportedOnceWhateverFrameIsSaved) {
+// The save is of the frame whose readback reports it: the event is in the save, the tag is not.
+TEST(Save, ATagIsReportedOnceWhicheverFrameIsSaved) {
     Host host;
     FwContext* context = createCpuContext(host);
     for (int frame = 1; frame < 40; ++frame) {
@@ -283,7 +275,7 @@ TEST(Save, ATagIsReportedOnceWhateverFrameIsSaved) {
     fwDestroyContext(context);
 }
 
-TEST(Save, OfAnOlderVersionIsRefusedByItsNumber) {
+TEST(Save, RefusesAnOlderVersionByItsNumber) {
     Host host;
     FwContext* context = createCpuContext(host);
     {
@@ -298,9 +290,9 @@ TEST(Save, OfAnOlderVersionIsRefusedByItsNumber) {
     fwDestroyContext(context);
 }
 
-// ---- backends -----------------------------------------------------------------------------------
+// ---- backends
 
-// Until all readbacks are here.
+// Until all readbacks have arrived.
 void settle(SessionWorld& w) {
     for (int i = 0; i < 6; ++i) EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0)) << lastMessage(w.world);
 }
@@ -313,9 +305,9 @@ bool drops(const Session& session, uint32_t frame) {
                        });
 }
 
-// A device tells of frames some frames later. What is reported of them, figures and saves are alike
-// once all of them are here; things are moved and dropped only then, as the places of events are
-// those at which things are when they are reported.
+// A device reports frames some frames later. Events, figures and saves agree once all readbacks
+// have arrived. Objects move and drop only then, because event places are those at the time of the
+// report.
 void backendsAgree(uint64_t seed, uint32_t frames) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Host hosts[2];
@@ -369,10 +361,10 @@ void backendsAgree(uint64_t seed, uint32_t frames) {
 }
 
 class AgreedSession : public ::testing::TestWithParam<uint64_t> {};
-TEST_P(AgreedSession, IsAlikeOnBothBackends) { backendsAgree(GetParam(), 48); }
+TEST_P(AgreedSession, AgreesOnBothBackends) { backendsAgree(GetParam(), 48); }
 INSTANTIATE_TEST_SUITE_P(Seeds, AgreedSession, ::testing::Range<uint64_t>(101, 104));
 
-// ---- a world whose origin moves -----------------------------------------------------------------
+// ---- a world whose origin moves
 
 struct Reported {
     std::vector<std::string> words;
@@ -387,8 +379,8 @@ void expectAlike(const Reported& still, const Reported& shifted) {
                 << "of event " << i << ": " << still.words[i];
 }
 
-// Places of the second are those of the first from its origin, and all else is the same. Its save,
-// loaded and moved back, is the first one's.
+// Places in the second world are those of the first relative to its origin; everything else is
+// equal. Its save, loaded and moved back, equals the first world's.
 void shiftsChangeNothingElse(uint32_t backend, uint64_t seed, uint32_t frames) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     Host host;
@@ -448,12 +440,12 @@ void shiftsChangeNothingElse(uint32_t backend, uint64_t seed, uint32_t frames) {
 }
 
 class ShiftedSession : public ::testing::TestWithParam<uint64_t> {};
-TEST_P(ShiftedSession, IsAlikeButForItsOrigin) {
+TEST_P(ShiftedSession, DiffersOnlyByItsOrigin) {
     shiftsChangeNothingElse(FW_BACKEND_CPU, GetParam(), 64);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSession, ::testing::Range<uint64_t>(201, 205));
 class ShiftedSessionOnADevice : public ::testing::TestWithParam<uint64_t> {};
-TEST_P(ShiftedSessionOnADevice, IsAlikeButForItsOrigin) {
+TEST_P(ShiftedSessionOnADevice, DiffersOnlyByItsOrigin) {
     shiftsChangeNothingElse(FW_BACKEND_VULKAN, GetParam(), 40);
 }
 INSTANTIATE_TEST_SUITE_P(Seeds, ShiftedSessionOnADevice, ::testing::Values(201u, 203u));

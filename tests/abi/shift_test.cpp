@@ -1,4 +1,4 @@
-// fwWorld_ShiftOrigin: a world whose origin moves burns and looks as one whose does not.
+// fwWorld_ShiftOrigin: a world whose origin moves burns and looks like one whose origin stays.
 #include "abi/net_session.h"
 
 #include <gmock/gmock.h>
@@ -8,22 +8,17 @@ namespace {
 using namespace host;
 using ::testing::HasSubstr;
 
-// Jets and other things that floats decide are in ordinary worlds alone.
+// Jets and other features that depend on float results are only in worlds that are not exact.
 struct ShiftedWorld : BusyWorld {
     enum Kind { exact, ordinary };
     explicit ShiftedWorld(uint32_t backend, Kind kind = exact)
         : BusyWorld(backend, 12, 10, kind == exact) {}
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void go(uint32_t frames) {
         run(frame, frame + frames);
         frame += frames;
     }
-    std::vector<FwEvent> events() {
-        std::vector<FwEvent> all(256);
-        all.resize(fwWorld_PollEvents(world, all.data(), 256));
-        return all;
-    }
-    // All together: their power, and its middle.
+    std::vector<FwEvent> events() { return poll(); }
+    // Sum of all lights: power and mean position.
     FwLight light() {
         FwLight lights[16] = {}, all{};
         const uint32_t count = fwWorld_GetLights(world, lights, 16);
@@ -37,31 +32,13 @@ struct ShiftedWorld : BusyWorld {
         return all;
     }
     FwVolumetricFireState fireState() {
-        FwVolumetricFireState state{};
-        state.structSize = sizeof state;
-        ok(fwWorld_GetVolumetricFireState(world, fire, &state));
-        return state;
+        return getState(fwWorld_GetVolumetricFireState, world, fire);
     }
-    FwFireEmitterState emitterState() {
-        FwFireEmitterState state{};
-        state.structSize = sizeof state;
-        ok(fwWorld_GetFireEmitterState(world, jet, &state));
-        return state;
-    }
-    uint64_t tick() {
-        FwWorldStats stats{};
-        stats.structSize = sizeof stats;
-        ok(fwWorld_GetStats(world, &stats));
-        return stats.tick;
-    }
+    FwFireEmitterState emitterState() { return getState(fwWorld_GetFireEmitterState, world, jet); }
+    uint64_t tick() { return getState(fwWorld_GetStats, world).tick; }
     uint32_t ignited() {  // texels of all objects
         uint32_t all = 0;
-        for (const FwBurnableMeshId id : ids) {
-            FwObjectState state{};
-            state.structSize = sizeof state;
-            ok(fwWorld_GetObjectState(world, id, &state));
-            all += state.ignited;
-        }
+        for (const FwBurnableMeshId id : ids) all += state(id).ignited;
         return all;
     }
     uint32_t frame = 0;
@@ -77,13 +54,14 @@ void burnsOnAlike(uint32_t backend, uint32_t frames) {
         stays.go(frames / 4);
         moves.go(frames / 4);
         if (part == 1) moves.shift(777, 0, -20000);
-        if (part == 2) {  // several in one frame, of which one goes back
+        if (part == 2) {  // several shifts in one frame, one of them back
             moves.shift(0, -30, 0);
             moves.shift(5, 60, 1);
             moves.shift(-5, -30, -1);
         }
         ASSERT_EQ(stays.hash(), moves.hash()) << part;
-        // Which of two that are as near a cluster joins is a matter of floats: all together.
+        // Float rounding decides which of two equally near clusters a light joins, so sums are
+        // compared.
         const FwLight here = stays.light(), there = moves.light();
         EXPECT_NEAR(double(here.power), double(there.power), 0.001 * double(here.power));
         for (int k = 0; k < 3 && part == 0; ++k)
@@ -102,13 +80,13 @@ void burnsOnAlike(uint32_t backend, uint32_t frames) {
         EXPECT_EQ(a[i].value, b[i].value);
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(double(a[i].position[k]) + moves.origin[k], double(b[i].position[k]), 0.04)
-                << "events that wait move too";
+                << "pending events move too";
     }
 }
-TEST(ShiftOrigin, BurnsOnAsIfNothingHadMoved) { burnsOnAlike(FW_BACKEND_CPU, 240); }
-TEST(ShiftOrigin, BurnsOnAsIfNothingHadMovedOnADevice) { burnsOnAlike(FW_BACKEND_VULKAN, 120); }
+TEST(ShiftOrigin, DoesNotChangeTheBurn) { burnsOnAlike(FW_BACKEND_CPU, 240); }
+TEST(ShiftOrigin, DoesNotChangeTheBurnOnADevice) { burnsOnAlike(FW_BACKEND_VULKAN, 120); }
 
-// Jets, fires that ignite and fields that wet strike the same, but for the last digits of floats.
+// Hits of jets, igniting fires and wetting fields agree but for float rounding.
 void strikesAlike(uint32_t backend, uint32_t frames) {
     ShiftedWorld stays(backend, ShiftedWorld::ordinary), moves(backend, ShiftedWorld::ordinary);
     if (!there(stays)) GTEST_SKIP() << "there is no such backend here";
@@ -123,11 +101,11 @@ void strikesAlike(uint32_t backend, uint32_t frames) {
     EXPECT_NEAR(double(stays.ignited()), double(moves.ignited()), 0.02 * stays.ignited());
     EXPECT_GT(stays.ignited(), 100u);
 }
-TEST(ShiftOrigin, JetsAndWaterStrikeTheSame) { strikesAlike(FW_BACKEND_CPU, 120); }
-TEST(ShiftOrigin, JetsAndWaterStrikeTheSameOnADevice) { strikesAlike(FW_BACKEND_VULKAN, 60); }
+TEST(ShiftOrigin, JetsAndWaterHitTheSamePlaces) { strikesAlike(FW_BACKEND_CPU, 120); }
+TEST(ShiftOrigin, JetsAndWaterHitTheSamePlacesOnADevice) { strikesAlike(FW_BACKEND_VULKAN, 60); }
 
-// A volumetric fire and an emitter go on as they were, to the frame.
-TEST(ShiftOrigin, FiresAndEmittersLoseNothing) {
+// A volumetric fire and an emitter continue in the next frame.
+TEST(ShiftOrigin, FiresAndEmittersKeepTheirState) {
     ShiftedWorld w(FW_BACKEND_CPU);
     w.go(120);
     const FwVolumetricFireState before = w.fireState();
@@ -145,8 +123,8 @@ TEST(ShiftOrigin, FiresAndEmittersLoseNothing) {
     EXPECT_NEAR(double(particles.lightPosition[0]) + 2000, double(now.lightPosition[0]), 0.05);
 }
 
-// Saves know where the origin was; who loads one is there again.
-TEST(ShiftOrigin, SavesAndTimelinesGoBackToTheirOrigin) {
+// Saves hold the origin; loading restores it.
+TEST(ShiftOrigin, SavesAndTimelinesRestoreTheirOrigin) {
     ShiftedWorld w(FW_BACKEND_CPU);
     FwTimelineDef timeline = fwDefaultTimelineDef();
     timeline.interval = 0.5f;
@@ -180,7 +158,7 @@ TEST(ShiftOrigin, SavesAndTimelinesGoBackToTheirOrigin) {
     EXPECT_EQ(0.0, other.origin[0]);
 }
 
-// The save of a frame is of that frame's origin, and who loads it may go elsewhere at once.
+// A save holds the origin of its frame; the loading world may shift at once.
 void savedAndShiftedInOneFrame(uint32_t backend) {
     ShiftedWorld w(backend), other(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
@@ -188,7 +166,7 @@ void savedAndShiftedInOneFrame(uint32_t backend) {
     w.shift(64, 0, 0);
     w.ok(fwWorld_RequestSave(w.world));
     w.go(1);
-    w.shift(4096, 0, -8);  // the save may be on its way
+    w.shift(4096, 0, -8);  // the save may be pending
     uint64_t size = 0;
     come(w.world, [&] { return fwWorld_FetchSave(w.world, nullptr, &size); });
     Bytes bytes(size);
@@ -208,14 +186,14 @@ void savedAndShiftedInOneFrame(uint32_t backend) {
         for (int k = 0; k < 3; ++k)
             EXPECT_NEAR(double(a[i].position[k]) - w.origin[k], double(b[i].position[k]), 0.01);
 }
-TEST(ShiftOrigin, ASaveIsOfItsOwnFramesOrigin) { savedAndShiftedInOneFrame(FW_BACKEND_CPU); }
-TEST(ShiftOrigin, ASaveIsOfItsOwnFramesOriginOnADevice) {
+TEST(ShiftOrigin, ASaveHoldsTheOriginOfItsFrame) { savedAndShiftedInOneFrame(FW_BACKEND_CPU); }
+TEST(ShiftOrigin, ASaveHoldsTheOriginOfItsFrameOnADevice) {
     savedAndShiftedInOneFrame(FW_BACKEND_VULKAN);
 }
 
-// Traces of an object, a jet or its stream may be beyond the limits of space by then: the
-// world is saved and loaded all the same.
-TEST(ShiftOrigin, AWorldIsSavedWhoseThingsWereElsewhereJustNow) {
+// Old positions of an object, a jet or its stream may then lie beyond the limits of space. The
+// world saves and loads all the same.
+TEST(ShiftOrigin, SavesWithOldPositionsBeyondTheLimits) {
     ShiftedWorld w(FW_BACKEND_CPU, ShiftedWorld::ordinary);
     ShiftedWorld fresh(FW_BACKEND_CPU, ShiftedWorld::ordinary);
     w.go(30);
@@ -250,8 +228,8 @@ TEST(ShiftOrigin, AWorldIsSavedWhoseThingsWereElsewhereJustNow) {
     EXPECT_TRUE(w.save() == fresh.save());
 }
 
-// A host's answers about sight stay: it is not asked again, and what it would say now is not used.
-TEST(ShiftOrigin, KeepsWhatTheHostSaidOfSight) {
+// A host's sight answers stay valid: it is not asked again, and a changed answer is not used.
+TEST(ShiftOrigin, KeepsTheHostsSightAnswers) {
     struct Asked {
         int times = 0;
         float answer = 0.5f;
@@ -269,8 +247,7 @@ TEST(ShiftOrigin, KeepsWhatTheHostSaidOfSight) {
         def.paceFactor = 10;
         def.visibility = Asked::sees;
         def.visibilityData = &asked;
-        FwMaterialDef paper = fwDefaultMaterialDef();
-        ASSERT_EQ(FW_OK, fwInitMaterialPreset(&paper, FW_MATERIAL_PAPER));
+        FwMaterialDef paper = materialOf(FW_MATERIAL_PAPER);
         SheetWorld w(paper, 0.5f, 0.25f, 64, def);
         const FwBurnableMeshId second = w.add(8);
         FwBurnableMeshDef at = fwDefaultBurnableMeshDef();
@@ -292,7 +269,7 @@ TEST(ShiftOrigin, KeepsWhatTheHostSaidOfSight) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// A burning object, another that comes next to it after the shift, and water on it.
+// A burning object, another that moves next to it after the shift, and water on it.
 void meetsWhatComes(uint32_t backend) {
     ShiftedWorld stays(backend), moves(backend);
     if (!there(stays)) GTEST_SKIP() << "there is no such backend here";
@@ -304,7 +281,7 @@ void meetsWhatComes(uint32_t backend) {
         w->ok(fwWorld_SetTransform(w->world, far, at));
         w->go(6);
         if (w == &moves) w->shift(131, -2, -77);
-        const float next[3] = {0.4375f, 0.0625f, 0.140625f};  // to one that burns
+        const float next[3] = {0.4375f, 0.0625f, 0.140625f};  // next to a burning object
         for (int i = 0; i < 3; ++i) at[12 + i] = float(double(next[i]) + w->origin[i]);
         w->ok(fwWorld_SetTransform(w->world, far, at));
         FwIgnitionDef water = fwDefaultIgnitionDef();
@@ -320,14 +297,12 @@ void meetsWhatComes(uint32_t backend) {
     FwObjectState state{};
     state.structSize = sizeof state;
     stays.ok(fwWorld_GetObjectState(stays.world, stays.ids.back(), &state));
-    EXPECT_GT(state.ignited, 0u) << "what came next to the fire caught";
+    EXPECT_GT(state.ignited, 0u) << "the object next to the fire caught";
 }
-TEST(ShiftOrigin, WhatIsMovedNextToAFireAfterwardsCatches) { meetsWhatComes(FW_BACKEND_CPU); }
-TEST(ShiftOrigin, WhatIsMovedNextToAFireAfterwardsCatchesOnADevice) {
-    meetsWhatComes(FW_BACKEND_VULKAN);
-}
+TEST(ShiftOrigin, AnObjectMovedNextToAFireCatches) { meetsWhatComes(FW_BACKEND_CPU); }
+TEST(ShiftOrigin, AnObjectMovedNextToAFireCatchesOnADevice) { meetsWhatComes(FW_BACKEND_VULKAN); }
 
-// Points that were asked for are answered where they are by then.
+// Pending point queries are answered at the new places.
 void answersWhereItIs(uint32_t backend) {
     ShiftedWorld w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
@@ -343,14 +318,14 @@ void answersWhereItIs(uint32_t backend) {
     EXPECT_NEAR(1000.3, double(state.position[0]), 0.1);
     EXPECT_NEAR(2.1, double(state.position[2]), 0.1);
 }
-TEST(ShiftOrigin, QueriesOnTheirWayAreAnsweredInTheNewPlaces) {
+TEST(ShiftOrigin, PendingQueriesAnswerInTheNewPlaces) {
     answersWhereItIs(FW_BACKEND_CPU);
     answersWhereItIs(FW_BACKEND_VULKAN);
 }
 
-// Packets hold the server's places: clients go along, at the step at which it moved, and one that
-// comes later is where the server is.
-TEST(ShiftOrigin, ClientsGoAlongWithTheirServer) {
+// Packets hold the server's places. Clients shift at the step of the server's shift, and a late
+// client joins at the server's origin.
+TEST(ShiftOrigin, ClientsFollowTheirServer) {
     using Session = NetSession<ShiftedWorld>;
     Session session(std::make_unique<ShiftedWorld>(FW_BACKEND_CPU, ShiftedWorld::ordinary));
     ShiftedWorld& server = *session.server;
@@ -383,8 +358,8 @@ TEST(ShiftOrigin, ClientsGoAlongWithTheirServer) {
     EXPECT_GE(server.burning(), 2u);
 }
 
-// From one end of space to the other: no place of the loading world overflows on the way.
-TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
+// From one end of space to the other: no place of the loading world overflows in between.
+TEST(ShiftOrigin, LoadsASaveWithADistantOrigin) {
     ShiftedWorld w(FW_BACKEND_CPU);
     w.shift(512, 0, 64);
     w.go(40);
@@ -402,7 +377,7 @@ TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
     other.ok(fwWorld_GetOrigin(other.world, now));
     EXPECT_EQ(1e9, now[0]);
     EXPECT_EQ(w.hash(), other.hash());
-    // Things that the host places are where the save has them.
+    // Objects that the host places are where the save has them.
     std::copy_n(w.origin, 3, other.origin);
     other.frame = w.frame;
     w.go(20);
@@ -410,8 +385,7 @@ TEST(ShiftOrigin, LoadsASaveWhoseOriginIsFarOff) {
     EXPECT_EQ(w.hash(), other.hash());
 }
 
-// A log with a shift in it plays.
-TEST(ShiftOrigin, IsInLogs) {
+TEST(ShiftOrigin, IsRecordedInCommandLogs) {
     ShiftedWorld w(FW_BACKEND_CPU), other(FW_BACKEND_CPU);
     const Bytes start = w.save();
     w.ok(fwWorld_StartLog(w.world));
@@ -435,7 +409,7 @@ TEST(ShiftOrigin, IsInLogs) {
     EXPECT_EQ(w.hash(), other.hash());
 }
 
-TEST(ShiftOrigin, NamesWhatWouldLieTooFar) {
+TEST(ShiftOrigin, RefusesObjectsBeyondTheLimitsByName) {
     ShiftedWorld w(FW_BACKEND_CPU);
     const float far[3] = {999999, 0, 0}, bad[3] = {0, NAN, 0}, further[3] = {3e6f, 0, 0};
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_ShiftOrigin(w.world, nullptr, nullptr));

@@ -1,5 +1,5 @@
-// Fire from object to object on the cpu backend: contacts and the limits of spread hold, and
-// neither the frame rate nor the order of anything matters.
+// Fire from object to object on the cpu backend: contacts and the limits of spread hold,
+// independent of frame rate and processing order.
 #include "abi/panels.h"
 
 #include <algorithm>
@@ -9,13 +9,13 @@ namespace {
 
 using namespace host;
 
-// A row of panels, a centimetre between them, lit at its start.
+// A row of panels one centimetre apart, lit at its start.
 void makeRow(Panels& p, int count) {
     for (int i = 0; i < count; ++i) p.add(float(i) * 0.41f, 0, 0);
     p.ignite(p.ids[0], 0.01f, 0, 0.1f);
 }
 
-TEST(AbiSpread, ContactIsTheOnlyWayAcrossAGap) {
+TEST(AbiSpread, ContactAloneCrossesAGap) {
     for (const uint32_t flags :
          {0u, uint32_t(FW_WORLD_RADIATION), uint32_t(FW_WORLD_PLUME), uint32_t(FW_WORLD_CONTACT)}) {
         Panels p(worldDef(flags));
@@ -23,7 +23,7 @@ TEST(AbiSpread, ContactIsTheOnlyWayAcrossAGap) {
         p.run(24);
         EXPECT_EQ(flags == FW_WORLD_CONTACT ? 2u : 1u, p.alight()) << flags;
         if (flags != FW_WORLD_CONTACT) continue;
-        // 0.39 m at 0.02 m/s, then a centimetre as an ordinary link and at 0.05 m/s.
+        // 0.39 m at 0.02 m/s, then one centimetre as an ordinary link and at 0.05 m/s.
         const FwEvent* spread = p.event(FW_EVENT_SPREAD_TO);
         ASSERT_NE(nullptr, spread);
         EXPECT_NEAR(0.39 / 0.02 + 0.01 / 0.02 + 0.01 / 0.05, double(spread->value), 1.0);
@@ -39,7 +39,7 @@ TEST(AbiSpread, ContactIsTheOnlyWayAcrossAGap) {
     }
 }
 
-// Two sheets of one mesh, side by side.
+// Two sheets of one mesh side by side.
 FwMeshId makePair(Panels& p, float gap) {
     Sheet both(0.4f, 0.2f);
     const Sheet one = both;
@@ -50,13 +50,10 @@ FwMeshId makePair(Panels& p, float gap) {
         both.uvs.insert(both.uvs.end(), {one.uvs[2 * i], one.uvs[2 * i + 1] + 1});
     }
     for (const uint32_t index : one.indices) both.indices.push_back(index + 4);
-    const FwMeshDef def = both.def(64);
-    FwMeshId mesh{};
-    EXPECT_EQ(FW_OK, fwWorld_CreateMesh(p.world, &def, &mesh)) << lastMessage(p.world);
-    return mesh;
+    return created(fwWorld_CreateMesh, p.world, both.def(64));
 }
 
-// s until fire is there; < 0: never.
+// s until fire arrives; < 0 if it never does.
 double arrivalAt(Panels& p, float x) {
     const float point[3] = {x, 0, 0.1f};
     FwQueryId query{};
@@ -73,7 +70,7 @@ double arrivalAt(Panels& p, float x) {
 TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
     for (const uint32_t flags : {0u, uint32_t(FW_WORLD_CONTACT)})
         for (const float gap : {0.002f, 0.01f, 0.06f}) {
-            // NO_SPREAD is about others, and no jump of it may fail.
+            // NO_SPREAD concerns other objects only; with TTL 1 every jump must succeed.
             FwWorldDef world = worldDef(flags);
             world.spreadChance = 0;
             Panels p(world);
@@ -84,7 +81,7 @@ TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
             p.ignite(p.ids[0], 0, 0, 0.1f);
             p.run(1);
             const bool crosses = flags != 0 && gap < 0.05f;
-            const double told = arrivalAt(p, 0.6f);
+            const double arrival = arrivalAt(p, 0.6f);
             const uint32_t all = p.state(p.ids[0]).texels;
             p.run(16);
             EXPECT_GT(all / 2, p.lit(0));
@@ -92,23 +89,23 @@ TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
             EXPECT_NEAR(crosses ? all : all / 2, p.lit(0), crosses ? 0 : all / 40) << flags << gap;
             EXPECT_EQ(0u, p.heard(FW_EVENT_SPREAD_TO));
             if (!crosses) {
-                EXPECT_GT(0, told);
+                EXPECT_GT(0, arrival);
                 continue;
             }
-            // As far as it is, a texel less, and an eighth of a second at the gap.
-            EXPECT_NEAR((0.6 + double(gap)) / 0.02 - 1, told, 1.2) << gap;
-            EXPECT_NEAR(told - 40, arrivalAt(p, 0.6f), 0.04) << gap;
+            // Expected: the distance less a texel, plus an eighth of a second at the gap.
+            EXPECT_NEAR((0.6 + double(gap)) / 0.02 - 1, arrival, 1.2) << gap;
+            EXPECT_NEAR(arrival - 40, arrivalAt(p, 0.6f), 0.04) << gap;
         }
 }
 
-TEST(AbiSpread, AGapThatIsTooWideIsNotCrossed) {
+TEST(AbiSpread, DoesNotCrossAWideGap) {
     Panels p(worldDef(FW_WORLD_CONTACT));
     p.add(0, 0, 0);
     p.add(0.46f, 0, 0);
     p.ignite(p.ids[0], 0.39f, 0, 0.1f);
     p.run(20);
     EXPECT_EQ(1u, p.alight());
-    // Moved near, it catches: a contact begins when they meet.
+    // A contact begins when the objects meet.
     Panels q(worldDef(FW_WORLD_CONTACT));
     q.add(0, 0, 0);
     q.add(0.9f, 0, 0);
@@ -123,7 +120,7 @@ TEST(AbiSpread, AGapThatIsTooWideIsNotCrossed) {
     EXPECT_EQ(2u, q.alight());
 }
 
-TEST(AbiSpread, FlagsChangeWhileItRuns) {
+TEST(AbiSpread, FlagsMayChangeWhileRunning) {
     Panels p(worldDef(0));
     makeRow(p, 2);
     p.run(22);
@@ -136,7 +133,7 @@ TEST(AbiSpread, FlagsChangeWhileItRuns) {
               lastMessage(p.world));
 }
 
-TEST(AbiSpread, ChanceHopsAndNoSpreadHold) {
+TEST(AbiSpread, RespectsProbabilityHopsAndNoSpread) {
     FwWorldDef never = worldDef(FW_WORLD_CONTACT);
     never.spreadChance = 0;
     Panels p(never);
@@ -162,7 +159,7 @@ TEST(AbiSpread, ChanceHopsAndNoSpreadHold) {
     q.run(60);
     EXPECT_EQ(2u, q.alight());
 
-    // Half of many pairs, and another half under another seed.
+    // About half of many pairs, and another half with another seed.
     uint32_t both[2] = {};
     uint64_t which[2] = {};
     for (uint32_t seed = 0; seed < 2; ++seed) {
@@ -199,7 +196,7 @@ TEST(AbiSpread, TimeToLiveStopsAFront) {
     EXPECT_EQ(then, p.lit(0));
     // 3 s at 0.02 m/s: half a disc of 6 cm and the ball.
     EXPECT_NEAR(0.5 * 3.14159 * 0.08 * 0.08 * 64 * 64, then, 25);
-    // Of one object, while another goes on.
+    // The limit is per object; another object burns on.
     Panels q(worldDef(0));
     FwBurnableMeshDef brief = q.def(0, 0, 0);
     brief.timeToLive = 2;
@@ -225,11 +222,9 @@ TEST(AbiSpread, BurningTilesAreCapped) {
         uint32_t before = 0, soon = 0;
         for (int i = 0; i < 40 * 32; ++i) {
             p.run(1.0 / 32);
-            FwWorldStats stats{};
-            stats.structSize = sizeof stats;
-            ASSERT_EQ(FW_OK, fwWorld_GetStats(p.world, &stats));
+            const FwWorldStats stats = getState(fwWorld_GetStats, p.world);
             most = std::max(most, stats.burningTiles);
-            // Once full, no more until some went out.
+            // Once the cap is reached, no tile is added until some went out.
             if (before >= 2) {
                 EXPECT_LE(stats.burningTiles, before);
                 reached = true;
@@ -247,7 +242,7 @@ TEST(AbiSpread, BurningTilesAreCapped) {
     }
 }
 
-TEST(AbiSpread, BlockersAreCheckedAndCounted) {
+TEST(AbiSpread, ValidatesAndCountsBlockers) {
     Panels p(worldDef(0));
     FwBlockerDef def = fwDefaultBlockerDef();
     EXPECT_EQ(0.5f, def.halfSize[1]);
@@ -281,8 +276,8 @@ TEST(AbiSpread, BlockersAreCheckedAndCounted) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateBurnableMesh(p.world, &object, &made));
 }
 
-// The same inputs at the same ticks, however time is cut into frames and lists are shuffled.
-uint64_t mixedStory(float deltaTime, uint32_t switches) {
+// The same commands at the same ticks, however time is split into frames and lists are shuffled.
+uint64_t mixedSession(float deltaTime, uint32_t switches) {
     FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS);
     def.paceFactor = 10;
     def.wind[0] = 2;
@@ -296,7 +291,7 @@ uint64_t mixedStory(float deltaTime, uint32_t switches) {
     const FwBurnableMeshDef first = p.def(0, 0, 0);
     EXPECT_EQ(FW_OK, fwWorld_SetTransform(p.world, p.ids[0], first.transform));
     p.ignite(p.ids[0], 0.2f, 0, 0.1f);
-    for (int turn = 0; turn < 40; ++turn) {  // a second each
+    for (int turn = 0; turn < 40; ++turn) {  // one second per turn
         const FwBurnableMeshDef there =
             p.def(float(random() % 300) / 100, 0.02f, float(random() % 100) / 100);
         EXPECT_EQ(FW_OK, fwWorld_SetTransform(p.world, p.ids[1 + random() % 29], there.transform));
@@ -308,12 +303,12 @@ uint64_t mixedStory(float deltaTime, uint32_t switches) {
     return p.hash();
 }
 
-TEST(AbiSpread, FrameRateAndOrderDoNotMatter) {
-    const uint64_t hash = mixedStory(1.0f / 32, 0);
-    EXPECT_EQ(hash, mixedStory(0.25f, 0));
-    EXPECT_EQ(hash, mixedStory(1.0f / 64, 0));
-    EXPECT_EQ(hash, mixedStory(1.0f, FW_DEBUG_SHUFFLE));
-    EXPECT_EQ(hash, mixedStory(1.0f / 32, FW_DEBUG_NEVER_IDLE));
+TEST(AbiSpread, IsIndependentOfFrameRateAndOrder) {
+    const uint64_t hash = mixedSession(1.0f / 32, 0);
+    EXPECT_EQ(hash, mixedSession(0.25f, 0));
+    EXPECT_EQ(hash, mixedSession(1.0f / 64, 0));
+    EXPECT_EQ(hash, mixedSession(1.0f, FW_DEBUG_SHUFFLE));
+    EXPECT_EQ(hash, mixedSession(1.0f / 32, FW_DEBUG_NEVER_IDLE));
 }
 
 }  // namespace

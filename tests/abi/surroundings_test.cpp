@@ -1,4 +1,4 @@
-// What a game's characters ask about fire, of all its kinds.
+// Queries of a game's characters about every kind of fire.
 #include "abi/fire_world.h"
 #include "abi/panels.h"
 
@@ -19,7 +19,7 @@ FwSurroundings ask(FwWorld* world, float x, float y, float z) {
     return at;
 }
 
-TEST(AbiSurroundings, WhereNothingBurnsAllIsWell) {
+TEST(AbiSurroundings, AreSafeWhereNothingBurns) {
     FireWorld w;
     const FwSurroundings at = ask(w.world, 1, 2, 3);
     EXPECT_EQ(0, at.heatFlux);
@@ -30,7 +30,7 @@ TEST(AbiSurroundings, WhereNothingBurnsAllIsWell) {
     EXPECT_EQ(0u, at.nearestLight);
 }
 
-TEST(AbiSurroundings, AFlameIsHotByItselfAndItsSmokeHides) {
+TEST(AbiSurroundings, ReportTheHeatAndSmokeOfAFire) {
     FireWorld w;
     (void)w.make(presetDef(FW_FIRE_HOUSE));
     w.run(1);
@@ -51,8 +51,8 @@ TEST(AbiSurroundings, AFlameIsHotByItselfAndItsSmokeHides) {
     EXPECT_EQ(1, clear);
 }
 
-// Sheets that burn; the light that the answer names is one that the host has.
-TEST(AbiSurroundings, WhatBurnsOnAMeshIsAFire) {
+// Burning sheets; the light named by the answer is one that the host has.
+TEST(AbiSurroundings, IncludeBurningMeshes) {
     host::Panels panels(fwDefaultWorldDef(), 100);
     const FwBurnableMeshId sheet = panels.add(0, 0, 0);
     EXPECT_EQ(FLT_MAX, ask(panels.world, 0, 0.5f, 0).nearest);
@@ -68,7 +68,7 @@ TEST(AbiSurroundings, WhatBurnsOnAMeshIsAFire) {
     EXPECT_LT(ask(panels.world, 0.2f, -1, 0.1f).temperature, 294) << "heat rises";
 }
 
-TEST(AbiSurroundings, AMaskShowsWhereToWalk) {
+TEST(AbiSurroundings, FillAWalkabilityMask) {
     FireWorld w;
     (void)w.make(presetDef(FW_FIRE_BONFIRE));
     w.run(1);
@@ -82,7 +82,7 @@ TEST(AbiSurroundings, AMaskShowsWhereToWalk) {
     EXPECT_EQ(uint8_t(std::min(127 * at.danger, 255.0f)), mask[8 * 17 + 11]);
 }
 
-TEST(AbiSurroundings, RefusesWhatCannotBeAsked) {
+TEST(AbiSurroundings, RefuseInvalidQueries) {
     FireWorld w;
     const float nowhere[3] = {NAN, 0, 0}, here[3] = {0, 0, 0};
     FwSurroundings at{};

@@ -1,4 +1,4 @@
-// fwWorld_TransferBurn: a burn goes on on another mesh of the same shape.
+// fwWorld_TransferBurn: a burn continues on another mesh of the same shape.
 #include "abi/busy_world.h"
 
 #include <gmock/gmock.h>
@@ -10,19 +10,15 @@ namespace {
 using namespace host;
 using ::testing::HasSubstr;
 
-// A fine and a coarse board of the same shape, the coarse one from other triangles.
-struct Boards {
+// A fine and a coarse board of the same shape; the coarse one has other triangles.
+struct Boards : HostedWorld {
     explicit Boards(uint32_t backend, uint32_t preset = FW_MATERIAL_PAPER, uint32_t flags = 0)
-        : fine(0.6f, 0.4f, 6), coarse(0.6f, 0.4f, 1) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = fwDefaultWorldDef();
-        def.paceFactor = preset == FW_MATERIAL_PAPER ? 1.0f : 10.0f;
-        ok(fwCreateWorld(context, &def, &world));
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, preset));
-        FwMaterialId materialId{};
-        ok(fwWorld_CreateMaterial(world, &material, &materialId));
+        : HostedWorld(backend, pacedDef(preset == FW_MATERIAL_PAPER ? 1.0f : 10.0f)),
+          fine(0.6f, 0.4f, 6),
+          coarse(0.6f, 0.4f, 1) {
+        if (!world) return;
+        FwMaterialDef material = materialOf(preset);
+        const FwMaterialId materialId = created(fwWorld_CreateMaterial, world, material);
         for (const bool isFine : {true, false}) {
             FwMeshDef meshDef = (isFine ? fine : coarse).def(isFine ? 96.0f : 40.0f);
             FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
@@ -32,63 +28,28 @@ struct Boards {
             ok(fwWorld_CreateBurnableMesh(world, &made, isFine ? &from : &to));
         }
     }
-    Boards(const Boards&) = delete;
-    Boards& operator=(const Boards&) = delete;
-    ~Boards() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
-    void ok(FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(world); }
     void ball(uint32_t kind, FwBurnableMeshId id, float x, float z, float radius) {
-        FwIgnitionDef def = fwDefaultIgnitionDef();
-        def.kind = kind;
-        def.object = id;
-        def.position[0] = x;
-        def.position[2] = z;
-        def.radius = radius;
-        ok(fwWorld_Ignite(world, &def, nullptr));
+        FwResult result{};
+        touch(kind, id, x, 0, z, radius, 0, &result);
+        ok(result);
     }
     void run(float seconds) {
         for (float t = 0; t < seconds - 1e-6f; t += 1.0f / 32) ok(fwWorld_Step(world, 1.0f / 32));
     }
-    FwObjectState state(FwBurnableMeshId id) {
-        FwObjectState made{};
-        made.structSize = sizeof made;
-        ok(fwWorld_GetObjectState(world, id, &made));
-        return made;
-    }
     FwPointState point(FwBurnableMeshId id, float x, float z) {
-        const float place[3] = {x, 0, z};
-        FwQueryId query{};
-        ok(fwWorld_RequestPoint(world, id, place, &query));
-        FwPointState made{};
-        made.structSize = sizeof made;
-        come(world, [&] { return fwWorld_FetchPoint(world, query, &made); });
-        return made;
+        return HostedWorld::point(id, x, 0, z);
     }
-    FwEnergyBook book() {
-        FwEnergyBook made{};
-        made.structSize = sizeof made;
-        ok(fwWorld_GetEnergyBook(world, &made));
-        return made;
-    }
+    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world); }
     uint64_t hash(FwBurnableMeshId id) {
-        ok(fwDebug_RequestBurnMap(world, id));
-        uint64_t made = 0, tick = 0;
-        come(world,
-             [&] { return fwDebug_FetchBurnMap(world, id, nullptr, 0, nullptr, &made, &tick); });
-        return made + tick;
+        uint64_t tick = 0;
+        return HostedWorld::hash(id, &tick) + tick;
     }
 
-    Host host;
     Sheet fine, coarse;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     FwBurnableMeshId from{}, to{};
 };
 
-// The share that burnt, what burns, what is left of the fuel and what is wet are as they were; and
-// the fire goes on from there.
+// Burnt share, burning texels, remaining fuel and water stay, and the fire spreads from there.
 void goesOn(uint32_t preset, uint32_t flags, float before) {
     Boards w(FW_BACKEND_CPU, preset, flags);
     w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
@@ -115,18 +76,21 @@ void goesOn(uint32_t preset, uint32_t flags, float before) {
         const double share = double(all.radiated + all.convected) / (0.5 * double(all.fuel));
         EXPECT_NEAR(share, double(left.radiated + left.convected) / double(left.fuel), 0.02);
         EXPECT_EQ(left.fuel, left.unburnt + left.radiated + left.convected);
-        EXPECT_LT(now.power, 2 * was.power + 1) << "what it was given is no power of its own";
+        EXPECT_LT(now.power, 2 * was.power + 1)
+            << "transferred fuel is not counted as released power";
     }
     w.run(2);
     EXPECT_GT(w.state(w.to).ignited, now.ignited) << "the front moves on";
     const uint32_t count = fwWorld_PollEvents(w.world, events, 64);
     for (uint32_t i = 0; i < count; ++i) EXPECT_NE(uint32_t(FW_EVENT_IGNITED), events[i].type);
 }
-TEST(TransferBurn, PaperGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PAPER, 0, 8); }
-TEST(TransferBurn, WoodGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PINE, 0, 20); }
-TEST(TransferBurn, LiteGoesOnOnTheOtherMesh) { goesOn(FW_MATERIAL_PAPER, FW_BURNABLE_LITE, 8); }
+TEST(TransferBurn, ContinuesPaperOnTheOtherMesh) { goesOn(FW_MATERIAL_PAPER, 0, 8); }
+TEST(TransferBurn, ContinuesWoodOnTheOtherMesh) { goesOn(FW_MATERIAL_PINE, 0, 20); }
+TEST(TransferBurn, ContinuesALiteObjectOnTheOtherMesh) {
+    goesOn(FW_MATERIAL_PAPER, FW_BURNABLE_LITE, 8);
+}
 
-// Bit by bit the same on every backend, in saves taken before its step, and in logs.
+// Equal bit for bit on every backend, in saves taken before its step, and in logs.
 TEST(TransferBurn, BothBackendsAgree) {
     uint64_t hashes[2] = {};
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
@@ -136,14 +100,14 @@ TEST(TransferBurn, BothBackendsAgree) {
         w.ball(FW_WET, w.from, 0.5f, 0.2f, 0.06f);
         w.run(6);
         w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
-        w.ball(FW_IGNITE, w.to, 0.55f, 0.05f, 0.03f);  // waits until the burn is there
+        w.ball(FW_IGNITE, w.to, 0.55f, 0.05f, 0.03f);  // waits until the transfer is applied
         w.run(3);
         hashes[backend == FW_BACKEND_VULKAN] = w.hash(w.to) * 31 + w.hash(w.from);
     }
     EXPECT_EQ(hashes[1], hashes[0]);
 }
 
-TEST(TransferBurn, IsInSavesAndLogs) {
+TEST(TransferBurn, IsRecordedInSavesAndCommandLogs) {
     Boards w(FW_BACKEND_CPU), loaded(FW_BACKEND_CPU), played(FW_BACKEND_CPU);
     w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
     w.run(5);
@@ -158,7 +122,8 @@ TEST(TransferBurn, IsInSavesAndLogs) {
     w.ok(fwWorld_FetchLog(w.world, log.data(), &size));
     loaded.ok(fwWorld_Load(loaded.world, start.data(), start.size()));
     loaded.ok(fwWorld_TransferBurn(loaded.world, loaded.from, loaded.to));
-    const Bytes between = saveOf(loaded.world);  // by frames of no time: its step is still to come
+    const Bytes between =
+        saveOf(loaded.world);  // saved with deltaTime 0: the step is still to come
     Boards after(FW_BACKEND_CPU);
     after.ok(fwWorld_Load(after.world, between.data(), between.size()));
     after.run(2);
@@ -176,9 +141,9 @@ TEST(TransferBurn, IsInSavesAndLogs) {
     EXPECT_EQ(end, played.hash(played.to));
 }
 
-// A save whose numbers were bent, with a right checksum: each texel that waits for a burn, and
-// where that comes from, is checked before anything is read through it.
-TEST(TransferBurn, LoadsNoBurnThatCannotBeCarried) {
+// A damaged save with a valid checksum: every texel that waits for a transfer and its source are
+// checked before use.
+TEST(TransferBurn, RefusesSavesWithInvalidTransfers) {
     Boards w(FW_BACKEND_CPU);
     const FwMeshDef meshDef = w.fine.def(96);
     FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
@@ -190,8 +155,8 @@ TEST(TransferBurn, LoadsNoBurnThatCannotBeCarried) {
     w.run(2);
     w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
     const Bytes bytes = saveOf(w.world);
-    // The words of its first event: object, texel, kind, tick, texel of the other object.
-    constexpr uint32_t kCarry = 8;  // and slot + 1 above bit 8
+    // Words of its first event: object, texel, kind, tick, texel of the other object.
+    constexpr uint32_t kCarry = 8;  // the slot + 1 is above bit 8
     const auto word = [&](size_t at) {
         uint32_t value = 0;
         std::memcpy(&value, &bytes[at], 4);
@@ -209,16 +174,16 @@ TEST(TransferBurn, LoadsNoBurnThatCannotBeCarried) {
             << field << " " << value;
     };
     refused(4, 0xFFFFFFFFu);       // all texels
-    refused(8, kCarry);            // of no object
-    refused(8, kCarry | 2u << 8);  // of itself
-    refused(8, kCarry | 3u << 8);  // of one that has no heat
-    refused(8, kCarry | 4u << 8);  // of one that is not there
+    refused(8, kCarry);            // no source object
+    refused(8, kCarry | 2u << 8);  // itself as the source
+    refused(8, kCarry | 3u << 8);  // an object without heat as the source
+    refused(8, kCarry | 4u << 8);  // a missing object as the source
     refused(12, 3u * 4096);        // later than the next step
-    refused(16, 0xFFFFFFF0u);      // from no texel
+    refused(16, 0xFFFFFFF0u);      // no source texel
     EXPECT_EQ(FW_OK, fwWorld_Load(w.world, bytes.data(), bytes.size())) << lastMessage(w.world);
 }
 
-TEST(TransferBurn, NamesWhatCannotBe) {
+TEST(TransferBurn, RefusesImpossibleTransfersByName) {
     Boards w(FW_BACKEND_CPU);
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_TransferBurn(w.world, w.from, w.from));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_TransferBurn(w.world, w.from, FwBurnableMeshId{}));

@@ -1,7 +1,6 @@
-// The unit of a world: the same session in metres and in another unit burns bit by bit alike, and
-// every length that the host gives or gets differs by the unit alone. The headers say which numbers
-// there are; a number that is in neither list below, or a length that the session leaves out,
-// fails.
+// The unit of a world. One session in metres and in another unit burns bit for bit the same. Every
+// length that the host gives or gets differs by the unit only. The headers list the numbers: one
+// that is in neither list below, or a length that the session omits, fails.
 #include "abi/busy_world.h"
 #include "flamewright/flamewright.hpp"
 
@@ -23,12 +22,13 @@ namespace {
 
 using host::Bytes;
 using host::lastMessage;
+using host::materialOf;
 using testing::HasSubstr;
 using Names = std::set<std::string>;
 
-// ---- which numbers of the ABI are lengths or speeds ---------------------------------------------
+// ---- lengths and speeds of the ABI
 
-struct Owner {  // a struct or a function, and numbers of it
+struct Owner {  // a struct or a function, and some of its numbers
     const char *name, *numbers;
 };
 
@@ -164,7 +164,7 @@ std::string replaced(const std::string& text, const char* pattern, const char* b
     return std::regex_replace(text, std::regex(pattern), by);
 }
 
-// "Struct::field" and "function::argument" of each float and double that a header declares.
+// "Struct::field" and "function::argument" of every float and double that a header declares.
 void readNumbers(const std::string& path, Names& all) {
     std::ifstream file(path);
     ASSERT_TRUE(file) << path;
@@ -212,7 +212,7 @@ Names difference(const Names& a, const Names& b) {
     return left;
 }
 
-TEST(WorldUnit, EveryNumberOfTheHeadersIsKnownAsALengthOrNot) {
+TEST(WorldUnit, EveryNumberOfTheHeadersIsClassified) {
     Names declared;
     for (const char* header : {"flamewright.h", "flamewright_vulkan.h", "flamewright_debug.h"})
         readNumbers(std::string(FW_TEST_SOURCE_DIR "/../plugin/include/flamewright/") + header,
@@ -222,11 +222,11 @@ TEST(WorldUnit, EveryNumberOfTheHeadersIsKnownAsALengthOrNot) {
     Names known = namesOf(std::begin(kOthers), std::end(kOthers));
     for (const std::string& name : lengths)
         EXPECT_TRUE(known.insert(name).second) << name << " is in both lists";
-    EXPECT_EQ(Names{}, difference(declared, known)) << "say of these whether they are lengths";
-    EXPECT_EQ(Names{}, difference(known, declared)) << "the headers have these no more";
+    EXPECT_EQ(Names{}, difference(declared, known)) << "classify these as lengths or not";
+    EXPECT_EQ(Names{}, difference(known, declared)) << "these are not in the headers";
 }
 
-// ---- one session in two units -------------------------------------------------------------------
+// ---- one session in two units
 
 struct Got {
     std::string name;
@@ -234,10 +234,10 @@ struct Got {
     bool length = false;
 };
 
-// Numbers of few bits in metres, so that they are the same metres in centimetres.
+// Numbers of few bits in metres, so that they convert exactly to centimetres.
 class Session {
  public:
-    // `wrong`: a number of which it gives as many times too much.
+    // `wrong` names a number that the session gives too large by `factor`.
     Session(uint32_t backend, float metersPerUnit, std::string wrong = {})
         : unit(metersPerUnit),
           per(float(std::round(1 / double(metersPerUnit)))),
@@ -265,7 +265,7 @@ class Session {
         EXPECT_EQ(0, host_.blocks);
     }
 
-    // As long as it gets what `twin` got (null: to the end), and nothing is refused.
+    // Runs while its results equal those of `twin` (null: to the end) and nothing is refused.
     void run(int frames, const Session* twin = nullptr) {
         for (int frame = 0; frame < frames && !refused_; ++frame) {
             act(frame);
@@ -274,8 +274,8 @@ class Session {
             if (twin && differs(*twin)) return;
         }
     }
-    // The first number that it got otherwise than `metres`, lengths times as many units as a metre
-    // has; empty: there is none.
+    // The first result that differs from `metres` (lengths scaled by the unit); empty if there is
+    // none.
     [[nodiscard]] std::string difference(const Session& metres) const {
         if (refused_) return "a refusal";
         for (size_t i = 0; i < std::min(got.size(), metres.got.size()); ++i) {
@@ -308,10 +308,10 @@ class Session {
         return pixels;
     }
 
-    const float unit, per;  // m in a unit; units in a metre
+    const float unit, per;  // m per unit; units per m
     FwContext* context = nullptr;
     FwWorld* world = nullptr;
-    Names given, asked;  // numbers that it gave; and that it got
+    Names given, asked;  // names of numbers given and received
     std::vector<Got> got;
 
  private:
@@ -321,7 +321,7 @@ class Session {
         else
             ASSERT_LE(FW_OK, result) << lastMessage(world);
     }
-    // The factor on metres, where `name` takes them.
+    // Units per metre where `name` is a length, else 1; times the factor of a wrong number.
     float units(const char* name) {
         given.insert(name);
         return name == wrong_ ? per * per : per;
@@ -331,12 +331,12 @@ class Session {
     void give(const char* name, float (&out)[N], const std::array<float, N>& metres) {
         for (size_t i = 0; i < N; ++i) out[i] = give(name, metres[i]);
     }
-    // To the world from an object space of `space` units in a metre.
+    // World transform of an object space of `space` units per metre.
     void transform(const char* name, float (&out)[16], float x, float y, float z, float space) {
         for (int i = 0; i < 16; ++i) out[i] = i == 15 ? 1 : i % 5 == 0 ? per / space : 0.0f;
         out[12] = give(name, x), out[13] = give(name, y), out[14] = give(name, z);
     }
-    // 4 m before the middle, to the side and above; left-handed view, so that w is the way.
+    // 4 m in front of the middle, beside and above; left-handed view, so that w is the distance.
     void camera(const char* viewName, float (&view)[16], const char* projectionName,
                 float (&projection)[16]) {
         for (int i = 0; i < 16; ++i) view[i] = projection[i] = 0;
@@ -370,7 +370,7 @@ class Session {
         const float inWorld = units(name);
         return space == per ? inWorld : space;
     }
-    FwMeshId createMesh(float space) {  // in an object space of so many units in a metre
+    FwMeshId createMesh(float space) {  // object space of `space` units per metre
         host::Sheet sheet(0.5f, 0.375f, 2);
         std::vector<float> details(sheet.uvs.size());
         for (size_t i = 0; i < details.size(); ++i)
@@ -389,8 +389,7 @@ class Session {
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
         def.mesh = mesh;
         def.flags = flags;
-        FwMaterialDef material = fwDefaultMaterialDef();
-        ok(fwInitMaterialPreset(&material, FW_MATERIAL_PLYWOOD));
+        FwMaterialDef material = materialOf(FW_MATERIAL_PLYWOOD);
         ok(fwWorld_CreateMaterial(world, &material, &def.materials[0]));
         transform("FwBurnableMeshDef::transform", def.transform, x, 0.125f, z, space);
         def.ground = give("FwBurnableMeshDef::ground", -16777216);
@@ -507,7 +506,7 @@ class Session {
         def.depths = depths.data();
         camera("FwFireColliderDef::view", def.view, "FwFireColliderDef::projection",
                def.projection);
-        // Along x instead, so that wind drives a flame into what it shows at x = 3.4 m.
+        // Along x, so that wind drives a flame into the visible wall at x = 3.4 m.
         def.view[0] = def.view[10] = 0;
         def.view[2] = 1, def.view[8] = -1;
         def.view[12] = give("FwFireColliderDef::view", 1);
@@ -617,7 +616,7 @@ class Session {
             shift_ = 8;
         }
     }
-    // A place of the session, wherever the origin is.
+    // A place of the session, independent of the origin.
     std::array<float, 3> at(const char* name, float x, float y, float z) {
         return {give(name, x + shift_), y * per, (z - 8 * shift_) * per};
     }
@@ -730,7 +729,7 @@ class Session {
         ok(fwWorld_GetOrigin(world, origin));
         for (const double value : origin) get("fwWorld_GetOrigin::origin", value);
     }
-    // In the mesh's own unit: that of an asset in metres are metres in both worlds.
+    // In the mesh's own unit: an asset in metres reports metres in both worlds.
     void askMeshes() {
         auto of = info<FwMeshInfo>();
         ok(fwWorld_GetMeshInfo(world, mesh_, &of));
@@ -754,7 +753,7 @@ class Session {
 
     host::Host host_;
     FwMeshId mesh_{}, metric_{};
-    std::vector<float> positions_;  // of the mesh in metres, which is made last
+    std::vector<float> positions_;  // of the mesh in metres, which is created last
     std::vector<FwBurnableMeshId> objects_;
     FwBlockerId wall_{};
     FwVolumetricFireId fires_[4] = {};
@@ -766,11 +765,11 @@ class Session {
     bool refused_ = false;
 };
 
-TEST(WorldUnit, ASessionInAnotherUnitBurnsAlikeBitByBit) {
+TEST(WorldUnit, ASessionInAnotherUnitBurnsIdentically) {
     Session metres(FW_BACKEND_CPU, 1);
     metres.run(72);
     const Bytes save = host::saveOf(metres.world), log = metres.log();
-    Names idle = metres.asked;  // of which it got nothing but zero, which is the same in any unit
+    Names idle = metres.asked;  // got only zeros, which are equal in every unit
     for (const Got& one : metres.got)
         if (one.value != 0 && std::abs(one.value) != double(FLT_MAX)) idle.erase(one.name);
     EXPECT_EQ(Names{}, idle);
@@ -780,20 +779,19 @@ TEST(WorldUnit, ASessionInAnotherUnitBurnsAlikeBitByBit) {
         EXPECT_EQ("", units.difference(metres)) << unit << " m in a unit";
         EXPECT_EQ(metres.got.size(), units.got.size());
         EXPECT_EQ(save, host::saveOf(units.world)) << "saves are in metres";
-        EXPECT_EQ(log, units.log()) << "and so is what logs and networks send";
+        EXPECT_EQ(log, units.log()) << "logs and packets are in metres";
         EXPECT_EQ(FW_OK, fwWorld_Load(units.world, save.data(), save.size()))
             << lastMessage(units.world);
         Names took = units.given;
         took.insert(units.asked.begin(), units.asked.end());
         took.insert({"FwView::view", "FwView::projection"});  // the picture below
         EXPECT_EQ(Names{}, difference(namesOf(std::begin(kLengths), std::end(kLengths)), took))
-            << "the session leaves these lengths out";
+            << "the session omits these lengths";
     }
 }
 
-// The session above proves something of a length only if it goes otherwise where that length is
-// wrong.
-TEST(WorldUnit, TheSessionNoticesEachLengthThatIsInAnotherUnit) {
+// The session above tests a length only if a wrong value changes its results.
+TEST(WorldUnit, TheSessionDetectsEachUnconvertedLength) {
     Session metres(FW_BACKEND_CPU, 1);
     metres.run(24);
     for (const std::string& name : metres.given) {
@@ -803,7 +801,7 @@ TEST(WorldUnit, TheSessionNoticesEachLengthThatIsInAnotherUnit) {
     }
 }
 
-TEST(WorldUnit, ASessionInAnotherUnitLooksAlike) {
+TEST(WorldUnit, ASessionInAnotherUnitLooksTheSame) {
     Session metres(FW_BACKEND_VULKAN, 1), units(FW_BACKEND_VULKAN, 0.01f);
     if (!metres.world) GTEST_SKIP() << "there is no Vulkan device here";
     for (Session* one : {&metres, &units})
@@ -820,7 +818,7 @@ TEST(WorldUnit, ASessionInAnotherUnitLooksAlike) {
     EXPECT_LE(differ, int(a.size() / 1000)) << "most " << most;
 }
 
-// ---- what the unit is ---------------------------------------------------------------------------
+// ---- the unit itself
 
 class UnitWorld {
  public:
@@ -838,7 +836,7 @@ class UnitWorld {
     FwResult result = FW_OK;
 };
 
-TEST(WorldUnit, IsTheMetreUnlessTheHostSaysOtherwise) {
+TEST(WorldUnit, DefaultsToTheMetre) {
     EXPECT_EQ(1.0f, fwDefaultWorldDef().metersPerUnit);
     for (const float unit : {0.0f, 1.0f}) {
         UnitWorld w(unit);
@@ -854,10 +852,10 @@ TEST(WorldUnit, IsTheMetreUnlessTheHostSaysOtherwise) {
     }
 }
 
-TEST(WorldUnit, LimitsInMessagesAreInIt) {
+TEST(WorldUnit, MessagesStateLimitsInTheUnit) {
     UnitWorld w(0.01f);
     ASSERT_EQ(FW_OK, w.result);
-    FwRoomDef room = fwDefaultRoomDef();  // 2 m, which here are 2 cm
+    FwRoomDef room = fwDefaultRoomDef();  // 2 units, which are 2 cm here
     FwRoomId id{};
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateRoom(w.world, &room, &id));
     EXPECT_THAT(lastMessage(w.world),
@@ -878,7 +876,7 @@ TEST(WorldUnit, LimitsInMessagesAreInIt) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateWorld(w.context, &windy, &none));
     EXPECT_THAT(lastMessage(w.context),
                 HasSubstr("FwWorldDef::wind[0] is 13000; the limits are [-12000, 12000]."));
-    // A mesh speaks its own.
+    // A mesh may have its own unit.
     const host::Sheet dot(0.00001f, 0.00001f);
     FwMeshDef meshDef = dot.def(64);
     FwMeshId mesh{};
@@ -907,12 +905,13 @@ TEST(WorldUnit, DefaultsAndPresetsAreConverted) {
     EXPECT_EQ(1, wall.transform[0]);
     FwMeshDef mesh = fwDefaultMeshDef(), same = mesh;
     ASSERT_EQ(FW_OK, fwWorld_ConvertDef(w.world, FW_DEF_MESH, &mesh));
-    EXPECT_EQ(0, std::memcmp(&mesh, &same, sizeof mesh)) << "its defaults hold in every unit";
+    EXPECT_EQ(0, std::memcmp(&mesh, &same, sizeof mesh))
+        << "its defaults are the same in every unit";
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_ConvertDef(w.world, 4711, &mesh));
     EXPECT_THAT(lastMessage(w.world), HasSubstr("defType is 4711"));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_ConvertDef(w.world, FW_DEF_ROOM, nullptr));
 
-    // An older host's shorter struct: what it leaves out is the default's metres.
+    // An older host's shorter struct: missing fields take the default in metres.
     FwFireEmitterDef old = fwDefaultFireEmitterDef();
     old.structSize = offsetof(FwFireEmitterDef, behind);
     old.flags = FW_EMITTER_JET;
@@ -932,7 +931,7 @@ TEST(WorldUnit, DefaultsAndPresetsAreConverted) {
                     fw::preset(feet, FW_FIRE_HOUSE).diameter);
 }
 
-TEST(WorldUnit, CookedMeshesHoldMetresAndServeWorldsOfEveryUnit) {
+TEST(WorldUnit, CookedMeshesHoldMetresAndLoadInEveryUnit) {
     UnitWorld cm(0.01f), metres(1);
     host::Sheet sheet(0.5f, 0.375f, 2);
     FwMeshDef def = sheet.def(64);
@@ -961,7 +960,7 @@ TEST(WorldUnit, CookedMeshesHoldMetresAndServeWorldsOfEveryUnit) {
         ASSERT_EQ(FW_OK, fwWorld_GetMeshInfo(w->world, id, &info));
         EXPECT_EQ(w == &cm ? 50.0f : 0.5f, info.boundsHigh[0]);
         EXPECT_FLOAT_EQ(0.1875f, info.area);
-        // A slot that is used again has the unit of its new mesh.
+        // A reused slot has the unit of its new mesh.
         ASSERT_EQ(FW_OK, fwWorld_DestroyMesh(w->world, id));
         cooked.metersPerUnit = 0.25f;
         ASSERT_EQ(FW_OK, fwWorld_CreateMesh(w->world, &cooked, &id));
@@ -975,7 +974,7 @@ TEST(WorldUnit, CookedMeshesHoldMetresAndServeWorldsOfEveryUnit) {
     }
 }
 
-// ---- projections of other clip spaces -----------------------------------------------------------
+// ---- projections of other clip spaces
 
 using Matrix = std::array<float, 16>;
 
@@ -986,7 +985,7 @@ std::array<double, 4> times(const Matrix& m, const std::array<double, 4>& v) {
     return out;
 }
 
-// As glFrustum makes it, and as an orthographic camera has it: y up, depth -1 to 1.
+// As glFrustum builds it, and an orthographic one: y up, depth -1 to 1.
 Matrix openGlProjection(bool orthographic) {
     Matrix m{};
     const float near = 0.5f, far = 100;
@@ -1000,7 +999,7 @@ Matrix openGlProjection(bool orthographic) {
     return m;
 }
 
-TEST(ClipSpace, OpenGlProjectionsBecomeVulkans) {
+TEST(ClipSpace, ConvertsOpenGlProjections) {
     for (const bool orthographic : {false, true}) {
         const Matrix gl = openGlProjection(orthographic);
         const Matrix converted = fw::convertedProjection(gl, FW_CLIP_OPENGL);
@@ -1022,15 +1021,15 @@ TEST(ClipSpace, OpenGlProjectionsBecomeVulkans) {
     }
 }
 
-TEST(ClipSpace, EachDifferenceIsConvertedByItself) {
+TEST(ClipSpace, ConvertsEachDifferenceIndependently) {
     const Matrix gl = openGlProjection(false);
     EXPECT_EQ(gl, fw::convertedProjection(gl, 0));
     const Matrix flipped = fw::convertedProjection(gl, FW_CLIP_Y_UP);
     Matrix expected = gl;
     for (const size_t i : {1u, 5u, 9u, 13u}) expected[i] = -expected[i];
     EXPECT_EQ(expected, flipped);
-    EXPECT_EQ(gl, fw::convertedProjection(flipped, FW_CLIP_Y_UP)) << "twice is nothing";
-    // A camera that is reversed and infinite in Vulkan's depth stays as it is but for y.
+    EXPECT_EQ(gl, fw::convertedProjection(flipped, FW_CLIP_Y_UP)) << "converting twice restores it";
+    // A reversed, infinite camera with Vulkan's depth changes only in y.
     Matrix infinite{};
     infinite[0] = 1, infinite[5] = 1, infinite[11] = -1, infinite[14] = 0.1f;
     const auto at = times(fw::convertedProjection(infinite, FW_CLIP_Y_UP), {0, 1, -0.1, 1});

@@ -1,5 +1,4 @@
-// Volumetric fires through the C ABI on the cpu backend: what they are asked for, what they say of
-// themselves, and what they may not be.
+// Volumetric fires through the C ABI on the cpu backend: state, motion, light, refusals.
 #include "abi/fire_world.h"
 
 #include <gmock/gmock.h>
@@ -10,7 +9,9 @@
 
 namespace {
 
+using host::created;
 using host::FireWorld;
+using host::getState;
 using host::lastMessage;
 using host::presetDef;
 using ::testing::HasSubstr;
@@ -39,8 +40,9 @@ TEST(AbiVolumetricFire, PresetsAreNamedAndBurn) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwInitFirePreset(&def, FW_FIRE_PRESET_COUNT));
 }
 
-// Heskestad: 0.235 Q^0.4 - 1.02 D; Cetegen and Ahmed: 1.5 / sqrt(D).
-TEST(AbiVolumetricFire, IsAsHighAndPulsesAsPublished) {
+// Flame height: Heskestad (1984), 0.235 Q^0.4 - 1.02 D. Pulsation: Cetegen and Ahmed (1993), 1.5 /
+// sqrt(D).
+TEST(AbiVolumetricFire, HeightAndPulsationMatchTheCorrelations) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.power = 1690;
@@ -51,7 +53,7 @@ TEST(AbiVolumetricFire, IsAsHighAndPulsesAsPublished) {
     EXPECT_NEAR(state.height, 2.96f, 0.03f);
     EXPECT_NEAR(state.pulseRate, 1.186f, 0.01f);
     EXPECT_EQ(1u, state.flames);
-    def.power = 3;  // wide and weak: many small ones
+    def.power = 3;  // wide and weak: many small flames
     EXPECT_LT(4u, [&] {
         const FwVolumetricFireId weak = w.make(def);
         w.run(0.1f);
@@ -59,7 +61,7 @@ TEST(AbiVolumetricFire, IsAsHighAndPulsesAsPublished) {
     }());
 }
 
-TEST(AbiVolumetricFire, FollowsItsPowerItsPlaceAndTheWind) {
+TEST(AbiVolumetricFire, FollowsPowerPositionAndWind) {
     FireWorld still, windy(4);
     const FwVolumetricFireId a = still.make(fwDefaultVolumetricFireDef());
     const FwVolumetricFireId b = windy.make(fwDefaultVolumetricFireDef());
@@ -69,11 +71,11 @@ TEST(AbiVolumetricFire, FollowsItsPowerItsPlaceAndTheWind) {
     EXPECT_GT(windy.state(b).tip[0], 0.2f);
     EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(still.world, a, 0));
     still.run(0.1f);
-    EXPECT_GT(still.state(a).power, 20.0f) << "it follows, it does not jump";
+    EXPECT_GT(still.state(a).power, 20.0f) << "it follows without a jump";
     still.run(6);
     EXPECT_EQ(0u, still.state(a).flames);
     EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePower(still.world, a, 60));
-    // A torch that is carried along trails behind.
+    // A carried torch trails behind.
     float place[3] = {};
     for (int i = 0; i < 32; ++i) {
         place[0] += 2.0f / 32;
@@ -83,8 +85,8 @@ TEST(AbiVolumetricFire, FollowsItsPowerItsPlaceAndTheWind) {
     EXPECT_LT(still.state(a).tip[0], place[0] - 0.1f);
 }
 
-// A floating origin, a portal, a respawn: beyond 100 m/s a fire was put there, it did not fly.
-TEST(AbiVolumetricFire, StandsAtOnceAsItDidWhenPutFarAway) {
+// A floating origin, a portal, a respawn: faster than 100 m/s counts as a teleport.
+TEST(AbiVolumetricFire, KeepsItsShapeWhenTeleported) {
     for (const float way : {5.0f, 50.0f, 1000.0f}) {
         FireWorld stays(2), moves(2);
         FwVolumetricFireDef def = presetDef(FW_FIRE_CAMP);
@@ -106,7 +108,7 @@ TEST(AbiVolumetricFire, StandsAtOnceAsItDidWhenPutFarAway) {
             EXPECT_NEAR(here.lightIntensity, there.lightIntensity, 0.01f * here.lightIntensity);
         }
     }
-    // A fire slower than a teleport trails behind.
+    // Below that speed it trails behind.
     FireWorld flies;
     const FwVolumetricFireId id = flies.make(presetDef(FW_FIRE_CAMP));
     flies.run(2);
@@ -116,8 +118,8 @@ TEST(AbiVolumetricFire, StandsAtOnceAsItDidWhenPutFarAway) {
     EXPECT_GT(flies.state(id).tip[0], near[0] + 0.2f);
 }
 
-// One that burns as other flames than before takes those that die down along.
-TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenPutFarAway) {
+// A fire that changes its flames takes the dying ones along.
+TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenTeleported) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.diameter = 2;
@@ -130,7 +132,7 @@ TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenPutFarAway) {
     const float to[3] = {80, 0, 0};
     ASSERT_EQ(FW_OK, fwWorld_MoveVolumetricFire(w.world, id, to));
     w.run(1.0f / 32);
-    EXPECT_GT(w.state(id).boundsLow[0], to[0] - 5) << "nothing burns where it was";
+    EXPECT_GT(w.state(id).boundsLow[0], to[0] - 5) << "nothing burns at the old place";
 }
 
 TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
@@ -153,7 +155,7 @@ TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePoints(w.world, id, points, 3));
     EXPECT_THAT(lastMessage(w.world), HasSubstr("points[2].radius is -1"));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFirePoints(w.world, id, nullptr, 3));
-    // One place, a loop, a leap: whatever is finite is drawn.
+    // Equal points, a loop, a jump: every finite path is drawn.
     const FwFirePoint odd[4] = {{{0, 0, 0}, 0}, {{0, 0, 0}, 1}, {{9, 0, 0}, 0}, {{0, 0, 0}, 3}};
     EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFirePoints(w.world, id, odd, 4));
     w.run(0.1f);
@@ -185,8 +187,8 @@ TEST(AbiVolumetricFire, IsALight) {
     EXPECT_EQ(1u, fwWorld_GetLights(w.world, lights, 8));
 }
 
-// A host may say at any time as what views show a fire.
-TEST(AbiVolumetricFire, TakesATierAtAnyTime) {
+// The host may set the tier at any time.
+TEST(AbiVolumetricFire, AcceptsATierAtAnyTime) {
     FireWorld w;
     const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
@@ -198,7 +200,7 @@ TEST(AbiVolumetricFire, TakesATierAtAnyTime) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetVolumetricFireTier(w.world, id, FW_FIRE_TIER_AUTO));
 }
 
-// A host lights its first picture, too: what it is told then is what the first frame makes of it.
+// A light before the first frame must match the light that the first frame computes.
 TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
     FwFirePoint line[2] = {{{3, 0, 0}, 0.1f}, {{4, 1, 0}, 0.1f}};
     for (int kind = 0; kind < 5; ++kind) {
@@ -244,8 +246,8 @@ TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4)) << "it was never lit";
 }
 
-// One light each, and no two of them flicker alike.
-TEST(AbiVolumetricFire, LightsFlickerEachByItself) {
+// One light each; no two flicker alike.
+TEST(AbiVolumetricFire, LightsFlickerIndependently) {
     constexpr int kFires = 6, kFrames = 96;
     FireWorld w;
     FwVolumetricFireId ids[kFires];
@@ -277,7 +279,7 @@ TEST(AbiVolumetricFire, LightsFlickerEachByItself) {
     EXPECT_LT(together / (0.5 * kFires * (kFires - 1)), 0.3);
 }
 
-// As many as a world takes, with walls, wind and questions: the heap is left alone.
+// As many as a world allows, with walls, wind and queries: no allocation.
 TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
     FireWorld w;
     FwVolumetricFireDef def = presetDef(FW_FIRE_TORCH);
@@ -291,8 +293,7 @@ TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
     ceiling.kind = FW_COLLIDER_PLANE;
     ceiling.position[1] = 0.4f;
     ceiling.normal[1] = -1;
-    FwFireColliderId collider{};
-    ASSERT_EQ(FW_OK, fwWorld_AddFireCollider(w.world, &ceiling, &collider));
+    (void)created(fwWorld_AddFireCollider, w.world, ceiling);
     w.run(4.0f / 32);
     const int64_t before = w.host.allocations;
     for (int k = 0; k < 16; ++k) {
@@ -303,15 +304,13 @@ TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
         w.run(1.0f / 32);
         FwLight lights[64];
         EXPECT_LE(1u, fwWorld_GetLights(w.world, lights, 64));
-        FwFireAnswer answer{};
-        answer.structSize = sizeof answer;
-        ASSERT_EQ(FW_OK, fwWorld_AskVolumetricFires(w.world, place, &answer));
+        (void)getState(fwWorld_AskVolumetricFires, w.world, place);
     }
     EXPECT_EQ(before, w.host.allocations);
     for (const FwVolumetricFireId id : ids) EXPECT_EQ(1u, w.state(id).flames);
 }
 
-TEST(AbiVolumetricFire, LimitsAreNamed) {
+TEST(AbiVolumetricFire, RefusesValuesBeyondLimitsByName) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     FwVolumetricFireId id{};

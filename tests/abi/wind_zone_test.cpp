@@ -1,5 +1,5 @@
-// Wind zones, the host's grid of wind and gusts through the C ABI: what they do to fire on a sheet
-// and to what embers light, that both backends and all frame rates agree, and what is refused.
+// Wind zones, the host's wind grid and gusts through the C ABI: effect on fire and embers,
+// agreement of backends and frame rates, refusals.
 #include "abi/panels.h"
 
 #include <array>
@@ -10,7 +10,7 @@ namespace {
 
 using namespace host;
 
-FwMaterialDef leaning() {  // as wind has it
+FwMaterialDef leaning() {  // spread follows the wind
     FwMaterialDef def = evenMaterial(0.02f, 6);
     def.windGain = 1;
     def.headGain = 1;
@@ -19,48 +19,26 @@ FwMaterialDef leaning() {  // as wind has it
     return def;
 }
 
-// Sheets of one such material, side by side along z, each lit in its middle.
-struct Meadow {
-    explicit Meadow(uint32_t backend, uint32_t sheets = 3, uint32_t flags = 0) : sheet(1, 0.3f) {
-        context = createContext(host, backend);
-        if (!context) return;
-        FwWorldDef def = worldDef(flags);
-        EXPECT_EQ(FW_OK, fwCreateWorld(context, &def, &world)) << lastMessage(context);
-        const FwMeshDef meshDef = sheet.def(64);
+// Sheets of one wind-driven material, side by side along z, each lit in its middle.
+struct Meadow : HostedWorld {
+    explicit Meadow(uint32_t backend, uint32_t sheets = 3, uint32_t flags = 0)
+        : HostedWorld(backend, worldDef(flags)), sheet(1, 0.3f) {
+        if (!world) return;
         FwBurnableMeshDef made = fwDefaultBurnableMeshDef();
-        EXPECT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &made.mesh)) << lastMessage(world);
-        const FwMaterialDef material = leaning();
-        EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &material, &made.materials[0]));
+        made.mesh = created(fwWorld_CreateMesh, world, sheet.def(64));
+        made.materials[0] = created(fwWorld_CreateMaterial, world, leaning());
         made.flags = FW_BURNABLE_LITE;
         for (uint32_t i = 0; i < sheets; ++i) {
             made.transform[14] = float(i);
-            FwBurnableMeshId id{};
-            EXPECT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &made, &id)) << lastMessage(world);
-            ids.push_back(id);
+            ids.push_back(created(fwWorld_CreateBurnableMesh, world, made));
         }
     }
-    ~Meadow() {
-        fwDestroyContext(context);
-        EXPECT_EQ(0, host.blocks);
-    }
-    Meadow(const Meadow&) = delete;
-    Meadow& operator=(const Meadow&) = delete;
 
     FwWindZoneId blow(const FwWindZoneDef& def) {
-        FwWindZoneId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateWindZone(world, &def, &id)) << lastMessage(world);
-        return id;
+        return created(fwWorld_CreateWindZone, world, def);
     }
     void light() {
-        FwIgnitionDef ball = fwDefaultIgnitionDef();
-        ball.radius = 0.03f;
-        for (size_t i = 0; i < ids.size(); ++i) {
-            const float at[3] = {0.5f, 0, float(i) + 0.15f};
-            std::copy_n(at, 3, ball.position);
-            uint32_t texels = 0;
-            EXPECT_EQ(FW_OK, fwWorld_Ignite(world, &ball, &texels)) << lastMessage(world);
-            EXPECT_LT(0u, texels);
-        }
+        for (size_t i = 0; i < ids.size(); ++i) ignite({}, 0.5f, 0, float(i) + 0.15f, 0.03f);
     }
     void run(int steps, int stepsAFrame = 1) {
         for (int i = 0; i < steps; i += stepsAFrame)
@@ -72,39 +50,13 @@ struct Meadow {
         EXPECT_EQ(FW_OK, fwWorld_GetWindAt(world, point, wind.data())) << lastMessage(world);
         return wind;
     }
-    template <class Fetch>
-    void come(Fetch fetch) {
-        FwResult result = fetch();
-        for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-            run(0);
-            ASSERT_EQ(FW_OK, fwWorld_Step(world, 0)) << lastMessage(world);
-            result = fetch();
-        }
-        ASSERT_EQ(FW_OK, result) << lastMessage(world);
-    }
-    uint64_t hash(size_t i) {
-        EXPECT_EQ(FW_OK, fwDebug_RequestBurnMap(world, ids[i])) << lastMessage(world);
-        uint64_t hash = 0;
-        come([&] {
-            return fwDebug_FetchBurnMap(world, ids[i], nullptr, 0, nullptr, &hash, nullptr);
-        });
-        return hash;
-    }
-    // Has it burnt, x m from the middle of sheet i?
+    uint64_t hash(size_t i) { return HostedWorld::hash(ids[i]); }
+    // True if sheet i has burnt x m from its middle.
     bool burnt(size_t i, float x) {
-        const float at[3] = {0.5f + x, 0, float(i) + 0.15f};
-        FwQueryId query{};
-        EXPECT_EQ(FW_OK, fwWorld_RequestPoint(world, ids[i], at, &query)) << lastMessage(world);
-        FwPointState state{};
-        state.structSize = sizeof state;
-        come([&] { return fwWorld_FetchPoint(world, query, &state); });
-        return state.kind != FW_POINT_UNBURNT;
+        return point(ids[i], 0.5f + x, 0, float(i) + 0.15f).kind != FW_POINT_UNBURNT;
     }
 
-    Host host;
     Sheet sheet;
-    FwContext* context = nullptr;
-    FwWorld* world = nullptr;
     std::vector<FwBurnableMeshId> ids;
 };
 
@@ -120,8 +72,8 @@ FwWindZoneDef fanAt(float z, float speed) {
     return def;
 }
 
-// A fan before the second sheet: its fire runs away from it, and the others' as without.
-TEST(AbiWindZone, AFanDrivesTheFireThatItBlowsOn) {
+// A fan before the second sheet: its fire runs away from the fan, the others burn as without it.
+TEST(AbiWindZone, AFanDrivesOnlyTheFireInItsReach) {
     Meadow still(FW_BACKEND_CPU), blown(FW_BACKEND_CPU);
     (void)blown.blow(fanAt(1.15f, 6));
     for (Meadow* m : {&still, &blown}) {
@@ -136,8 +88,8 @@ TEST(AbiWindZone, AFanDrivesTheFireThatItBlowsOn) {
     EXPECT_FALSE(blown.burnt(1, -0.25f));
 }
 
-// A zone that is everywhere is the world's wind, and shelter is none.
-TEST(AbiWindZone, IsAWindLikeTheWorlds) {
+// A zone over everything equals the world's wind; full shelter equals none.
+TEST(AbiWindZone, EqualsTheWorldsWindEverywhere) {
     Meadow world(FW_BACKEND_CPU), zone(FW_BACKEND_CPU), both(FW_BACKEND_CPU), still(FW_BACKEND_CPU);
     const float wind[3] = {4, 0, 0};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(world.world, wind));
@@ -161,7 +113,6 @@ TEST(AbiWindZone, IsAWindLikeTheWorlds) {
     }
 }
 
-// What turns, stops and goes, on both backends alike.
 TEST(AbiWindZone, BothBackendsAgree) {
     uint64_t hashes[2][3] = {};
     const uint32_t backends[] = {FW_BACKEND_CPU, FW_BACKEND_VULKAN};
@@ -191,7 +142,7 @@ TEST(AbiWindZone, BothBackendsAgree) {
     for (size_t i = 0; i < 3; ++i) EXPECT_EQ(hashes[0][i], hashes[1][i]) << i;
 }
 
-// Embers fly as it blows where their fire is.
+// Embers fly with the wind at their fire.
 TEST(AbiWindZone, CarriesEmbers) {
     uint32_t lit[2] = {};
     for (const bool blows : {false, true}) {
@@ -207,8 +158,7 @@ TEST(AbiWindZone, CarriesEmbers) {
             zone.size[0] = 3;
             zone.speed = 16;
             zone.falloff = 0;
-            FwWindZoneId id{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateWindZone(p.world, &zone, &id));
+            (void)created(fwWorld_CreateWindZone, p.world, zone);
         }
         p.ignite(p.ids[0], 0.2f, 0, 0.1f, 0.3f);
         p.run(20);
@@ -218,7 +168,7 @@ TEST(AbiWindZone, CarriesEmbers) {
     EXPECT_LT(0u, lit[1]);
 }
 
-// 3 x 2 x 4 points over [-1, 1] x [-0.5, 0.5] x [-0.5, 2.5] m, and what blows on them by place.
+// 3 x 2 x 4 points over [-1, 1] x [-0.5, 0.5] x [-0.5, 2.5] m with wind by place.
 struct Grid {
     Grid(void (*blows)(float x, float y, float z, float* wind), uint32_t blend = FW_WIND_REPLACE) {
         def.counts[0] = 3, def.counts[2] = 4;
@@ -242,8 +192,8 @@ void shearing(float x, float y, float z, float* wind) {
     wind[2] = x * y - 1;
 }
 
-// A grid that is the same all over is the world's wind, instead of it or added to it; and it goes.
-TEST(AbiWindGrid, IsAWindLikeTheWorlds) {
+// A uniform grid equals the world's wind, instead of it or added to it, and can be removed.
+TEST(AbiWindGrid, EqualsTheWorldsWindEverywhere) {
     Meadow world(FW_BACKEND_CPU), grid(FW_BACKEND_CPU), both(FW_BACKEND_CPU), gone(FW_BACKEND_CPU),
         still(FW_BACKEND_CPU);
     const float wind[3] = {4, 0, 0}, half[3] = {2, 0, 0};
@@ -267,8 +217,8 @@ TEST(AbiWindGrid, IsAWindLikeTheWorlds) {
     }
 }
 
-// One that turns along z: the fires at its ends run opposite ways.
-TEST(AbiWindGrid, DrivesFireAsItBlowsThere) {
+// The wind turns along z: the fires at its ends run in opposite directions.
+TEST(AbiWindGrid, DrivesFireByTheLocalWind) {
     Meadow m(FW_BACKEND_CPU);
     const Grid turns(turning);
     ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &turns.def)) << lastMessage(m.world);
@@ -294,14 +244,13 @@ TEST(AbiWindGrid, IsTrilinearBetweenItsPoints) {
         for (size_t i = 0; i < 3; ++i) EXPECT_NEAR(expected[i], wind[i], 0.03f) << i;
     }
     for (const float beyond : {-1.002f, 1.002f}) EXPECT_EQ(8, m.windAt(beyond, 0, 0)[2]);
-    // Half of its way inward it is half of it.
+    // Halfway inside the fade the strength is half.
     grid.def.fade = 0.4f;
     ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &grid.def));
     EXPECT_NEAR(0.5f * (8 - 1 + 0.8f * 0.1f), m.windAt(0.8f, 0.1f, 1)[2], 0.03f);
     EXPECT_NEAR(1, m.windAt(0.5f, 0.0f, 1)[0], 0.03f);
 }
 
-// Points that change, gusts that pass, frames of many steps: all the same, on each backend.
 TEST(AbiWindGrid, BackendsAndFrameRatesAgreeInGusts) {
     uint64_t hashes[3][3] = {};
     for (int k = 0; k < 3; ++k) {
@@ -330,7 +279,7 @@ TEST(AbiWindGrid, BackendsAndFrameRatesAgreeInGusts) {
     EXPECT_NE(hashes[0][0], hashes[0][1]);
 }
 
-// A gust comes along with the wind, and on the whole it blows as it would without.
+// A gust drifts with the wind, and the mean wind stays the same.
 TEST(AbiWindGrid, GustsDriftWithTheWind) {
     Meadow m(FW_BACKEND_CPU, 1);
     const float around[3] = {4, 0, 0};
@@ -356,7 +305,7 @@ TEST(AbiWindGrid, GustsDriftWithTheWind) {
     m.run(32);  // 4 m further
     for (int i = 0; i < 40; ++i)
         EXPECT_NEAR(before[size_t(i)], m.windAt(0.5f * float(i) + 4, 0, 0)[0], 0.02f) << i;
-    // As it turns, gusts stay where they are.
+    // When the wind turns, gusts keep their place.
     const float other[3] = {0, 0, 3};
     const std::array<float, 3> here = m.windAt(1, 0, 0);
     ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, other));
@@ -366,7 +315,7 @@ TEST(AbiWindGrid, GustsDriftWithTheWind) {
     EXPECT_EQ(3, m.windAt(1, 0, 0)[2]);
 }
 
-TEST(AbiWindGrid, SaysWhatIsWrong) {
+TEST(AbiWindGrid, RefusesBadValuesByName) {
     Meadow m(FW_BACKEND_CPU, 1);
     const auto expectRefused = [&](FwResult result, const char* says) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, result) << says;
@@ -398,7 +347,7 @@ TEST(AbiWindGrid, SaysWhatIsWrong) {
     expectGrid([](Grid& g) { g.def.blend = 2; }, "FwWindGridDef::blend is 2; the limit is 1.");
     expectGrid([](Grid& g) { g.def.reserved = 1; },
                "FwWindGridDef::flags is 0x0 and reserved is 1; both are zero.");
-    EXPECT_NEAR(4, m.windAt(0, 0, 0)[0], 0.01f);  // as before
+    EXPECT_NEAR(4, m.windAt(0, 0, 0)[0], 0.01f);  // unchanged
     FwGustDef gusts = fwDefaultGustDef();
     gusts.strength = 1.5f;
     expectRefused(fwWorld_SetGusts(m.world, &gusts),
@@ -410,15 +359,14 @@ TEST(AbiWindGrid, SaysWhatIsWrong) {
     expectRefused(fwWorld_SetGusts(m.world, nullptr), "FwGustDef is null.");
 }
 
-TEST(AbiWindZone, SaysWhatBlowsAndWhatIsWrong) {
+TEST(AbiWindZone, ReportsWindAndRefusesBadValues) {
     Panels p(worldDef(0));
     float wind[3] = {-1, -1, -1};
     const float here[3] = {0.5f, 0, 0}, far[3] = {30, 0, 0};
     const float around[3] = {1, 0, 2};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(p.world, around));
     FwWindZoneDef def = fwDefaultWindZoneDef();
-    FwWindZoneId id{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateWindZone(p.world, &def, &id));
+    FwWindZoneId id = created(fwWorld_CreateWindZone, p.world, def);
     ASSERT_EQ(FW_OK, fwWorld_GetWindAt(p.world, here, wind));
     EXPECT_NEAR(6, wind[0], 0.02f);
     EXPECT_EQ(2, wind[2]);
@@ -435,11 +383,10 @@ TEST(AbiWindZone, SaysWhatBlowsAndWhatIsWrong) {
         " - While calling fwWorld_SetWindZone.",
         lastMessage(p.world));
     ASSERT_EQ(FW_OK, fwWorld_GetWindAt(p.world, here, wind));
-    EXPECT_NEAR(6, wind[0], 0.02f);  // as before
+    EXPECT_NEAR(6, wind[0], 0.02f);  // unchanged
     def.speed = 1;
     for (int i = 1; i < 64; ++i) {
-        FwWindZoneId more{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateWindZone(p.world, &def, &more));
+        (void)created(fwWorld_CreateWindZone, p.world, def);
     }
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateWindZone(p.world, &def, &id));
     EXPECT_EQ("64 wind zones are there; the limit is 64.\n - While calling fwWorld_CreateWindZone.",

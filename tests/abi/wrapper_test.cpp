@@ -1,10 +1,10 @@
-// flamewright.hpp as a host uses it: owners close what they own, failures are null with a reason.
+// flamewright.hpp as a host uses it: owners close their objects, failures are null with a reason.
 #include "abi/abi_support.h"
 #include "flamewright/flamewright.hpp"
 
 namespace {
 
-TEST(AbiWrapper, OwnersCloseInOrderAndFailuresSayWhy) {
+TEST(AbiWrapper, ClosesInOrderAndExplainsFailures) {
     host::Host host;
     {
         FwContextDef contextDef = fw::def<FwContextDef>();

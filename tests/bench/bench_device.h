@@ -1,4 +1,4 @@
-// What rows on a device share: a device without validation layers, clocks, medians.
+// Shared by rows on a device: a device without validation layers, clocks, medians.
 #pragma once
 #include <vulkan/vulkan.h>
 
@@ -17,8 +17,8 @@ inline double secondsSince(Clock::time_point start) {
     return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// CPU time of the whole process, which on a software device is the device's: what a step costs
-// however busy the machine is.
+// CPU time of the whole process in s. On a software device it includes the device's work and is
+// independent of the machine's load.
 inline double cpuSeconds() {
     std::timespec t{};
     clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);

@@ -1,6 +1,6 @@
-// Entry point of flamewright_bench: Google Benchmark's own flags, plus --table (Markdown instead of
-// the console's lines) and --json FILE. Repetitions of different rows are interleaved, so that A
-// and B of a comparison see the same machine.
+// Entry point of flamewright_bench: Google Benchmark's flags, and --table (Markdown in place of
+// console lines) and --json FILE. Repetitions of rows are interleaved, so compared rows see the
+// same machine.
 #include <benchmark/benchmark.h>
 
 #include <cstdio>
@@ -13,9 +13,9 @@ namespace {
 
 using Runs = std::vector<benchmark::BenchmarkReporter::Run>;
 
-// A row's name is a contract, "group/case/size": without the settings that Google Benchmark adds.
-// A row's one argument, if any, is its size.
-// The same for a listed name: "group/case/size/iterations:12/manual_time".
+// A row's name "group/case/size" is a contract: without the settings that Google Benchmark adds. A
+// row's single argument, if any, is its size. Also strips a listed name such as
+// "group/case/size/iterations:12/manual_time".
 std::string plainName(std::string name) {
     for (const char* setting : {"/iterations:", "/repeats:", "/min_time:", "/min_warmup_time:",
                                 "/manual_time", "/real_time", "/process_time", "/threads:"}) {

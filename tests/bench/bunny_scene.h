@@ -1,6 +1,5 @@
-// The bunny as one burnable of a world on a device of its own, lit at its side, and pictures of it:
-// what the rows of deform_bench, surface_bench and selfcross_bench have in common. Needs
-// FLAMEWRIGHT_ASSETS.
+// The bunny as one burnable of a world on its own device, lit at its side, and pictures of it.
+// Shared by deform_bench, surface_bench and selfcross_bench. Needs FLAMEWRIGHT_ASSETS.
 #pragma once
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
@@ -30,7 +29,7 @@ struct BunnyScene {
         fwDestroyContext(context);
     }
 
-    // Null: fine. `worldDef` without flames.
+    // Returns null on success. `worldDef` without flames.
     const char* make(const char* file, uint32_t flags, FwWorldDef worldDef) {
         fw::test::Mesh mesh;
         if (!fw::test::loadGlb(file, mesh, error)) return error.c_str();
@@ -82,7 +81,7 @@ struct BunnyScene {
     }
 };
 
-// 1280 x 720, some 30 % of it bunny.
+// 1280 x 720, the bunny covers some 30 % of it.
 struct BunnyPicture {
     static constexpr uint32_t kWidth = 1280, kHeight = 720;
     std::vector<uint8_t> pixels;
@@ -109,7 +108,7 @@ struct BunnyPicture {
     struct Cost {
         double wall = 0, cpu = 0;  // s
     };
-    // A step of `seconds` and a picture, submitted and waited for.
+    // Submits a step of `seconds` and a picture, and waits.
     Cost take(const BunnyScene& scene, bool hidden, float seconds = 0, bool stepCounts = false) {
         fwWorld_SetHidden(scene.world, scene.object, hidden);
         if (!stepCounts) fwWorld_Step(scene.world, seconds);

@@ -1,6 +1,5 @@
-// A host that draws its own solids (none: a grey picture, all of it far away) and has ours laid
-// over them, at 1280 x 720 with a depth that can be read: what rows draw that need kinds of target
-// that an own device does not have.
+// A host with its own solids (none: a distant grey picture) and the library's effects composited
+// over them at 1280 x 720 with readable depth. For target kinds that an own device does not have.
 #pragma once
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
@@ -37,7 +36,7 @@ class CompositeHost {
         }
     }
 
-    // Null, or why there is none.
+    // Returns null, or the reason of failure.
     const char* make(const FwWorldDef& worldDef) {
         if (!device_.fence) return "no device";
         color_ = imageOf(VK_FORMAT_R8G8B8A8_UNORM,
@@ -56,7 +55,7 @@ class CompositeHost {
             return "no world";
         return nullptr;
     }
-    // FW_TARGET_COMPOSITE, and `flags`. Zero: none.
+    // FW_TARGET_COMPOSITE and `flags`. Returns zero on failure.
     FwTargetId target(uint32_t flags) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE | flags;
@@ -84,9 +83,10 @@ class CompositeHost {
     [[nodiscard]] FwWorld* world() const { return world_; }
     [[nodiscard]] FwView& view() { return views_[0]; }
     [[nodiscard]] FwView& second() { return views_[1]; }
-    uint32_t drawnViews = 1, givenViews = 1;  // of the two: drawn one after the other, recorded for
+    uint32_t drawnViews = 1,
+             givenViews = 1;  // of the two views: drawn one after the other; recorded for
 
-    // A frame, `seconds` on: s, by the clock and of all threads. False: it was not drawn.
+    // A frame of `seconds`; costs in s by the clock and of all threads. False if it was not drawn.
     bool frame(FwTargetId target, float seconds, double& wall, double& cpu) {
         const auto start = Clock::now();
         const double before = cpuSeconds();
@@ -107,7 +107,7 @@ class CompositeHost {
         images.flags = FW_COMPOSITE_KEEP;
         images.width = kPicture.width;
         images.height = kPicture.height;
-        const auto lend = [](const BenchImage& image) {
+        const auto describe = [](const BenchImage& image) {
             return FwVulkanImage{image.image,
                                  image.view,
                                  VK_IMAGE_LAYOUT_GENERAL,
@@ -117,8 +117,8 @@ class CompositeHost {
                                  VK_ACCESS_MEMORY_WRITE_BIT,
                                  VK_ACCESS_MEMORY_READ_BIT | VK_ACCESS_MEMORY_WRITE_BIT};
         };
-        images.color = lend(color_);
-        images.depth = lend(depth_);
+        images.color = describe(color_);
+        images.depth = describe(depth_);
         bool drawn = true;
         for (uint32_t i = 0; i < drawnViews; ++i)
             drawn = fwWorld_RecordComposite(world_, &frame, target, &views_[i], &images) == FW_OK &&
@@ -170,7 +170,7 @@ class CompositeHost {
         return {VkImageAspectFlags(depth ? VK_IMAGE_ASPECT_DEPTH_BIT : VK_IMAGE_ASPECT_COLOR_BIT),
                 0, 1, 0, 1};
     }
-    // A grey scene far behind.
+    // A distant grey scene.
     void clear() {
         const VkImageSubresourceRange color = rangeOf(VK_FORMAT_R8G8B8A8_UNORM);
         const VkImageSubresourceRange depth = rangeOf(VK_FORMAT_D32_SFLOAT);

@@ -1,6 +1,6 @@
-// What deformation costs a frame at 60 Hz: the passes' own timers, summed, over the bunny as a
-// solid that recedes, as a sheet, and on the published springs. cpu_ms: of all this process's
-// threads, less that of a world without deformation. Rows need FLAMEWRIGHT_ASSETS.
+// Cost of deformation per frame at 60 Hz: the sum of the passes' timers, for the bunny as a
+// receding solid, as a sheet, and on the reference springs. cpu_ms: all threads of this process
+// less a world without deformation. Needs FLAMEWRIGHT_ASSETS.
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"

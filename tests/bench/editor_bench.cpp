@@ -1,6 +1,6 @@
-// What an artist's hand waits for, without the window: a dab of the brush on a map of 1024^2, a
-// scrub to any time, a scene with a bunny of 31,000 triangles opened with its bake in the cache;
-// and the program from its start to its first frame.
+// Waiting times in the editor without its window: a brush dab on a map of 1024^2, and a scrub to
+// any time. Also opening a scene with a bunny of 31,000 triangles and a cached bake, and program
+// start to first frame.
 #include <benchmark/benchmark.h>
 #include <unistd.h>
 
@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A sheet of one metre under 1024 x 1024 texels.
+// A sheet of one metre with 1024 x 1024 texels.
 fwedit::PaintSurface sheet() {
     constexpr uint32_t side = 1024;
     fwedit::PaintSurface surface;
@@ -31,7 +31,7 @@ fwedit::PaintSurface sheet() {
     return surface;
 }
 
-// One move of a brush of 10 cm across, as a mouse makes sixty of in a second.
+// One move of a brush of 10 cm, of which a mouse makes sixty per second.
 void stroke(benchmark::State& state) {
     const fwedit::PaintSurface surface = sheet();
     fwedit::Stroke brush;
@@ -52,7 +52,7 @@ void stroke(benchmark::State& state) {
 }
 BENCHMARK(stroke)->Name("editor/stroke")->Unit(benchmark::kMillisecond);
 
-// To another time: the share that is lit, for the strip, and the map of burn times.
+// To another time: the lit share for the strip, and the map of burn times.
 void scrub(benchmark::State& state) {
     fwedit::ArrivalField field;
     field.width = field.height = 1024;
@@ -100,7 +100,7 @@ void openBunny(benchmark::State& state) {
 BENCHMARK(openBunny)->Name("editor/open_bunny31k")->Unit(benchmark::kMillisecond)->Iterations(2);
 
 #ifdef FW_BENCH_EDITOR
-// The second time and on: the first has filled the caches. The end of the program is counted too.
+// From the second start on, with warm caches. Includes the end of the program.
 void startEditor(benchmark::State& state) {
     const std::string command =
         "\"" FW_BENCH_EDITOR "\" --headless --once --page welcome >/dev/null 2>&1";

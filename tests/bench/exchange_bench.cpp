@@ -1,6 +1,5 @@
-// Fire from object to object, with all of it on: ten burning objects in a world, without and with a
-// thousand idle ones beside them. A frame is an eighth of a second, so that each holds one
-// exchange; the whole of it counts: the world's own work, recording, submit and wait.
+// All heat-transfer modes: ten burning objects without and with a thousand idle ones. A frame is an
+// eighth of a second and holds one exchange. Counts the world's work, recording, submit and wait.
 #include "bench/bench_device.h"
 
 #include "core/memory.h"
@@ -28,8 +27,7 @@ class WorldBench {
           world(plainWorldDef(flags), backend_, log_, &memory_) {
         context_.prepare();
     }
-    // Boards of 0.5 m that lie flat, in rows 1.5 m apart; the first ten stand apart and burn
-    // slowly.
+    // Flat boards of 0.5 m in rows 1.5 m apart; the first ten stand apart and burn slowly.
     void fill(uint32_t burning, uint32_t idle) {
         const Mesh board = makePlane(0.5, 0.5);
         FwBurnableMeshDef def = plainBurnableDef(world.createMesh(plainMeshDef(board, 192)));
@@ -85,7 +83,7 @@ class WorldBench {
         hostSeconds.clear();
     }
 
-    std::vector<double> seconds, cpu, hostSeconds;  // of each frame; the last: without the device
+    std::vector<double> seconds, cpu, hostSeconds;  // of each frame; the last without the device
 
  private:
     FwVulkanHost host_;
@@ -102,7 +100,7 @@ class WorldBench {
 
 constexpr int kFrames = 60;
 
-// Run in turns, so that their ratio is sound; the first row that runs measures both.
+// Interleaved, so that their ratio is sound; the first row that runs measures both.
 void exchange(benchmark::State& state, uint32_t flags, int which) {
     struct Both {
         std::vector<double> seconds[2], cpu[2], host[2];

@@ -1,7 +1,7 @@
-// What particle fields cost. field/64x64x64: one step of 64 fields of 64 x 64 cells, a third of
-// each preset, after a second of life; wall and cpu_ms of the whole process, by a second of steps
-// at once. field/draw_*: an offscreen picture of a plain ground, and the same with a field over a
-// part of it; `ratio`: its CPU time over that of the ground alone, in turns.
+// Cost of particle fields. field/64x64x64: a step of 64 fields of 64 x 64 cells, a third of each
+// preset, after one second; wall time and cpu_ms of the process, measured over a second of steps.
+// field/draw_*: an offscreen picture of plain ground, and with a field over part of it; `ratio`:
+// its CPU time over that of the ground, interleaved.
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_device.h"
@@ -54,7 +54,7 @@ void stepFields(benchmark::State& state) {
         bytes = field.bytes;
     }
     for (int i = 0; i < 2; ++i) fwWorld_Step(w.world, 1.0f);
-    constexpr double kSteps = 24;  // of a second
+    constexpr double kSteps = 24;  // per second
     double cpu = 0, least = 1e9;
     for (auto _ : state) {
         const fw::test::Clock::time_point start = fw::test::Clock::now();

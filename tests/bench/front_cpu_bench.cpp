@@ -1,7 +1,8 @@
-// The front on the cpu backend, one thread. Rows: front/wide_cpu/1024 (a front 1024 texels wide,
-// about 150 due tiles), front/mapsize_smallfire_cpu/N (one small fire on maps of growing size) and
-// query/eta (a fire in the corner of a 1024 map is run ahead until all of it has burnt; us_tile: a
-// tile of a slice).
+// The front on the cpu backend, one thread.
+// front/wide_cpu/1024: a front 1024 texels wide, about 150 due tiles.
+// front/mapsize_smallfire_cpu/N: one small fire on growing maps.
+// query/eta: a fire in the corner of a 1024 map is predicted until all has burnt; us_tile: a tile
+// of a slice.
 #include "support/front_rig.h"
 
 #include <benchmark/benchmark.h>
@@ -22,7 +23,7 @@ const mesh::BurnDomain& planeDomain(double width, double height) {
     return known.emplace(key, mesh::bake(input, std::pmr::get_default_resource())).first->second;
 }
 
-// One step a time while the fire lives; a new one when it has run its way.
+// One step at a time while the fire lives, then a new fire.
 void steps(benchmark::State& state, const mesh::BurnDomain& d, const FrontRig::Material& material,
            Vec3 drive, uint32_t window, const std::function<bool(Vec3)>& lit, uint32_t warmUp,
            uint32_t most) {

@@ -1,6 +1,6 @@
-// The front on a device: what a step costs when everything runs, when three tiles in a hundred do,
-// when the published kernel runs, and how that grows with maps and objects. Rows that are compared
-// run in turns within one process; the times are those of submit and wait, without the recording.
+// The front on a device: cost of a step with all tiles, with three in a hundred, with the reference
+// kernel, and its growth with maps and objects. Compared rows are interleaved in one process; times
+// are submit and wait without recording.
 #include "bench/bench_device.h"
 
 #include "core/memory.h"
@@ -21,7 +21,7 @@
 namespace fw::test::front_vk_bench {
 namespace {
 
-// A flat map of `side` x `side` texels; all of it real.
+// A flat map of `side` x `side` texels, all covered.
 const mesh::BurnDomain& flatMap(uint32_t side) {
     static std::map<uint32_t, mesh::BurnDomain> maps;
     auto found = maps.find(side);
@@ -33,14 +33,14 @@ const mesh::BurnDomain& flatMap(uint32_t side) {
     return maps.emplace(side, mesh::bake(input, std::pmr::get_default_resource())).first->second;
 }
 
-// Is this pass part of a step of the front? (The others are its looks: predict, reduce.)
+// True for passes of the front's step; predict and reduce are not.
 bool isSimulation(const char* pass) {
     for (const char* name : {"schedule", "gather", "arrival", "arrival_rim", "commit"})
         if (std::strcmp(pass, name) == 0) return true;
     return false;
 }
 
-// A world of its own on the shared device; one step a frame.
+// A world on the shared device; one step per frame.
 class Bench {
  public:
     Bench()
@@ -56,8 +56,7 @@ class Bench {
         backend_.createMesh(slot, domain);
         domains_.push_back(&domain);
     }
-    // rate: texels per second.
-    // `heat`: one record for all materials, or null.
+    // rate: texels/s. `heat`: one record for all materials, or null.
     uint32_t addObject(uint32_t mesh, double rate, uint32_t flags = 0,
                        const gpu::HeatMaterial* heat = nullptr) {
         const mesh::BurnDomain& domain = *domains_[mesh];
@@ -95,7 +94,7 @@ class Bench {
     void ignite(uint32_t object, uint32_t texel) {
         events_.push_back({object, texel, gpu::kEventIgnite, now_ + 1});
     }
-    // Returns the seconds from submit to the end.
+    // Returns the seconds from submit to completion.
     double step(uint32_t switches = 0, bool reduce = false, bool heat = false) {
         std::sort(events_.begin(), events_.end(), [](const auto& a, const auto& b) {
             return a.object != b.object ? a.object < b.object : a.texel < b.texel;
@@ -154,7 +153,7 @@ class Bench {
         simulationMs.clear();
         timedSteps = 0;
     }
-    // Mean milliseconds of each pass of a step, as counters.
+    // Mean milliseconds of each pass per step, as counters.
     void report(benchmark::State& state, const std::string& prefix = "") const {
         for (const auto& [name, milliseconds] : passes)
             state.counters[prefix + name] = milliseconds / std::max(timedSteps, 1u);
@@ -162,11 +161,11 @@ class Bench {
     }
 
     std::map<std::string, double> passes;  // ms since forgetTimes
-    std::vector<double> simulationMs;      // of each step since: the front's passes, no looks
+    std::vector<double> simulationMs;      // of each step since: the front's passes only
     uint32_t timedSteps = 0;
     uint32_t runTiles = 0, frontTiles = 0;
     double recordSeconds = 0;   // of the last step
-    double stepCpuSeconds = 0;  // of the last step, submit to the end, all threads
+    double stepCpuSeconds = 0;  // of the last step, submit to completion, all threads
 
  private:
     FwVulkanHost host_;
@@ -182,7 +181,7 @@ class Bench {
     uint64_t index_ = 0;
 };
 
-// A straight front over the map, so that about `share` of its tiles are due: rows of fires.
+// Rows of fires, so that about `share` of the tiles are due.
 void igniteLines(Bench& bench, uint32_t object, uint32_t side, double share) {
     const uint32_t tiles = side / 8;
     const auto rows = std::max(1u, uint32_t(share * tiles / 2 + 0.5));
@@ -216,8 +215,8 @@ void runSteps(benchmark::State& state, Bench& bench, Kernel kernel, bool heat = 
     bench.report(state);
 }
 
-// One kernel on one map size; three tiles in a hundred burn. The published one has no lists: it
-// costs the same however much burns.
+// One kernel on one map size; three tiles in a hundred burn. The reference kernel has no lists: its
+// cost does not depend on the fire.
 void frontRows(benchmark::State& state, Kernel kernel) {
     const auto side = uint32_t(state.range(0));
     Bench bench;
@@ -226,7 +225,7 @@ void frontRows(benchmark::State& state, Kernel kernel) {
     runSteps(state, bench, kernel);
 }
 
-// One row that holds the ratio: dense over sparse on the same map, in turns.
+// One row with the ratio: dense over sparse on the same map, interleaved.
 void frontRatio(benchmark::State& state) {
     const auto side = uint32_t(state.range(0));
     Bench dense, sparse;
@@ -259,7 +258,7 @@ void frontRatio(benchmark::State& state) {
         100 * tiles / double(a.size()) / (double(side / 8) * (side / 8));
 }
 
-// Thick wood on a map of so many texels a side.
+// Thick wood on a map of `side` texels a side.
 const gpu::HeatMaterial& woodOn(uint32_t side) {
     static std::map<uint32_t, gpu::HeatMaterial> woods;
     const mesh::BurnDomain& domain = flatMap(side);
@@ -278,10 +277,10 @@ void frontWide(benchmark::State& state, bool heat) {
     runSteps(state, bench, kSparse, heat);
 }
 
-// What a step of some case took, step by step, and how long each pass.
+// Times of a case step by step, and of each pass.
 struct Samples {
     std::vector<double> seconds, cpu, record;
-    std::map<std::string, double> passes;  // ms a step
+    std::map<std::string, double> passes;  // ms per step
     void add(Bench& bench, bool reduce, bool heat = false) {
         seconds.push_back(bench.step(0, reduce, heat));
         cpu.push_back(bench.stepCpuSeconds);
@@ -293,13 +292,13 @@ struct Samples {
     }
 };
 
-// Two cases, run in turns within one process so that their ratio is sound. Each has a row of its
-// own: the first row that runs measures both, the other shows its half.
+// Two cases interleaved in one process so that their ratio is sound. Each has a row: the first that
+// runs measures both, the other shows its half.
 struct InTurns {
     static constexpr int kSteps = 60;
     Samples samples[2];
     bool shown[2] = {true, true};
-    // A step in four reduces, and another one heats.
+    // One step in four reduces, and another heats.
     void measure(Bench& a, Bench& b, bool heat) {
         *this = {};
         a.forgetTimes();
@@ -312,7 +311,7 @@ struct InTurns {
         samples[1].finish(b);
         shown[0] = shown[1] = false;
     }
-    // `ratio` says what the second costs over the first.
+    // `ratio`: cost of the second over the first.
     void show(benchmark::State& state, int which) {
         const Samples& own = samples[which];
         size_t i = 0;
@@ -327,7 +326,7 @@ struct InTurns {
     }
 };
 
-// `heat`: all of them have heat planes.
+// `heat`: all of them have heat.
 void burningAndIdle(Bench& bench, uint32_t burning, uint32_t idle, bool heat = false) {
     const gpu::HeatMaterial* wood = heat ? &woodOn(128) : nullptr;
     bench.addMesh(0, flatMap(128));
@@ -338,7 +337,7 @@ void burningAndIdle(Bench& bench, uint32_t burning, uint32_t idle, bool heat = f
     for (int i = 0; i < 20; ++i) bench.step(0, i % 4 == 0, heat && i % 4 == 2);
 }
 
-// Ten burning objects, without and with a thousand idle ones beside them.
+// Ten burning objects, without and with a thousand idle ones.
 void objectsBurning(benchmark::State& state, int which, bool heat) {
     static InTurns both[2];
     InTurns& turns = both[heat];
@@ -351,7 +350,7 @@ void objectsBurning(benchmark::State& state, int which, bool heat) {
     turns.show(state, which);
 }
 
-// One burning object beside so many idle ones; so many burning ones.
+// One burning object beside many idle ones; many burning ones.
 void objectCount(benchmark::State& state, bool burn) {
     const auto count = uint32_t(state.range(0));
     Bench bench;
@@ -386,7 +385,7 @@ void mapSize(benchmark::State& state, int which, bool heat) {
     turns.show(state, which);
 }
 
-// A real mesh in 512^2 texels; a fire in every 64th of its tiles.
+// A real mesh in 512^2 texels; a fire in every 64th tile.
 void frontMesh(benchmark::State& state, const char* name, Kernel kernel) {
     static std::map<std::string, mesh::BurnDomain> domains;
     auto found = domains.find(name);
@@ -414,8 +413,8 @@ void frontMesh(benchmark::State& state, const char* name, Kernel kernel) {
     state.counters["map_tiles"] = domain.tileCount();
 }
 
-// Thick wood on half of a real mesh in 1024^2 texels, all of it flaming; each step a heat step and
-// a reduction, of which a world has one in four.
+// Thick wood on half of a real mesh in 1024^2 texels, all flaming; every step heats and reduces,
+// while a world does so in one of four.
 void heatMesh(benchmark::State& state) {
     Mesh mesh;
     std::string error;
@@ -446,7 +445,7 @@ void heatMesh(benchmark::State& state) {
     state.counters["texels"] = lit;
 }
 
-// CPU time of recording a frame of a world that does not burn.
+// CPU time of recording a frame of a world without fire.
 void recordIdle(benchmark::State& state) {
     Bench bench;
     bench.addMesh(0, flatMap(128));

@@ -1,8 +1,7 @@
-// What a frame of the tower-defence game costs: its fourth wave on the road, the bot's towers at
-// work, every thing of the village a burnable mesh. A frame: a tick of the rules, the world's step
-// of as long, and what the library draws of it at 1280 x 720. Time: of all this process's threads.
-// step_ms: of rules and step alone; rules_us: of the rules and what they tell the world. burning:
-// things on fire, at the end.
+// A frame of the tower-defence game: the fourth wave on the road, the bot's towers working, every
+// object of the village a burnable mesh. A frame is a tick of the rules, a world step of the same
+// time, and the library's picture at 1280 x 720. Time: all threads of this process. step_ms: rules
+// and step; rules_us: rules and their calls into the world; burning: objects on fire at the end.
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_device.h"
@@ -53,15 +52,15 @@ void gameFrame(benchmark::State& bench) {
         const double began = cpuSeconds();
         siege.give(game::botsOrder(siege.state()));
         siege.advance(ticks);
-        const double told = cpuSeconds();
+        const double called = cpuSeconds();
         fwWorld_Step(world, float(ticks) * tower::kTickSeconds);
         const double stepped = cpuSeconds();
         fwWorld_RenderOffscreen(world, &shot);
-        rules += told - began;
+        rules += called - began;
         step += stepped - began;
         return cpuSeconds() - began;
     };
-    // 6 s, so that there is something to burn; pipelines are compiled at first use.
+    // 6 s, until enough burns; pipelines are compiled at first use.
     for (int i = 0; i < 24; ++i) {
         siege.advance(8);
         fwWorld_Step(world, 8 * tower::kTickSeconds);

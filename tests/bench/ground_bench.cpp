@@ -1,6 +1,6 @@
-// What relief costs a host: cobbles and charred logs as sample 11 draws them, 1280 x 720, over
-// two thirds of the picture. Row ground/parallax against ground/bump is the ratio. cpu_ms: of all
-// this process's threads, a frame; draw_ms: less a frame in which nothing is drawn.
+// Cost of relief: cobbles and charred logs as in sample 11 at 1280 x 720, over two thirds of the
+// picture. The ratio is ground/parallax over ground/bump. cpu_ms: all threads per frame; draw_ms:
+// less a frame that draws nothing.
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"

@@ -1,6 +1,6 @@
-// What heat haze costs: a camp fire's column over a 1280 x 720 picture of a host that lends its
-// colour, with haze and without, taken in turns. The time is that of a picture with haze; ratio:
-// its processor time over that of one without.
+// Cost of heat haze: a camp fire's column over a 1280 x 720 picture whose colour the host provides,
+// with and without haze, interleaved. Time: a picture with haze; ratio: its processor time over
+// that without.
 #include <benchmark/benchmark.h>
 
 #include "bench/composite_host.h"
@@ -43,7 +43,8 @@ void drawHaze(benchmark::State& state) {
         with = wall, cpuWith += cpu;
         return true;
     };
-    for (int i = 0; i < 20; ++i) {  // pipelines are compiled at first use, and haze comes slowly
+    for (int i = 0; i < 20;
+         ++i) {  // pipelines are compiled at first use, and haze builds up slowly
         if (both()) continue;
         state.SkipWithError("a frame was not drawn");
         return;

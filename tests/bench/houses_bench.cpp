@@ -1,13 +1,12 @@
-// What a hundred burning low-poly houses cost a frame. Time: of all this process's threads, as a
-// software device draws on them: the step, the passes and the draws of an offscreen picture down
-// the street.
+// Cost per frame of a hundred burning low-poly houses: step, passes and draws of an offscreen
+// picture down the street. Time: all threads of this process, because a software device draws on
+// them.
 //
-// Counters, a frame: step_ms: fire, lists, predictions. draw_ms: every second picture drawn once
-// more, when nothing has moved. refine_ms: what the first one costs beyond that. triangles: refined
-// ones, in the mean; budget: what they may come to; refine_us_per_1000: refine_ms of a thousand of
-// them, by which a time becomes a budget (plugin/docs/integration.md). plain_...: the same street
-// without refinement, in turns; ratio: to that. wall_ms: by the clock. refine_...: of the device's
-// timers.
+// Counters per frame. step_ms: fire, lists, predictions. draw_ms: every second picture drawn again
+// with nothing moved. refine_ms: what the first one costs more. triangles: mean refined triangles;
+// budget: their limit; refine_us_per_1000: refine_ms per thousand, which turns a time into a budget
+// (plugin/docs/integration.md). plain_...: the same street without refinement, interleaved; ratio:
+// to that. wall_ms: by the clock. refine_...: of the device's timers.
 #include "bench/bench_device.h"
 #include "support/houses.h"
 
@@ -49,7 +48,7 @@ struct Street {
             streetView({0, 2.5f, 8 - way}, {2.0f, 1.2f, -4 - way}, float(kWidth) / float(kHeight));
         fwWorld_RenderOffscreen(village.world, &shot);
     }
-    // Null: fine.
+    // Returns null on success.
     const char* make(bool refined) {
         constexpr uint32_t houses = 100;
         const FwContextDef def = fwDefaultContextDef();
@@ -62,7 +61,7 @@ struct Street {
         }
         return village.stats().burningObjects == houses ? nullptr : "not all of them burn";
     }
-    // Of the frame before, if that was drawn once.
+    // Of the previous frame if it was drawn once.
     void notePasses() {
         FwPassTime times[64];
         const uint32_t count = std::min(fwDebug_GetPassTimes(village.world, times, 64), 64u);
@@ -123,8 +122,8 @@ void houses(benchmark::State& state) {
         if (name.starts_with("refine")) state.counters[name] = ms / frames;
 }
 
-// The street with a budget of three fifths of what its frames take: how soon its detail settles,
-// and what is left of time and triangles then. By the device's timers.
+// The street with a budget of three fifths of its frame time: how soon detail settles, and the time
+// and triangles left then. By the device's timers.
 void budget(benchmark::State& state) {
     constexpr int kFree = 40;
     Street street;

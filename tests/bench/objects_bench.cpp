@@ -1,9 +1,8 @@
-// Ten thousand crates in one scene, of which ten burn, on the cpu backend: what a step costs while
-// nothing moves, while one or a thousand of them walk, while crates come and go, when the first
-// match is struck, and when it rains on all of them. Where a row leaves crates elsewhere, the next
-// finds them settled there. Time: of this process's threads. Counters:
-// texels of a crate; burning: crates; slowest_ms: of all steps; bytes of a crate, in every pool of
-// the memory report (objects10k/memory; of a device: objects1k/memory_on_device).
+// Ten thousand crates, ten of them burning, on the cpu backend: cost of a step at rest, while one
+// or a thousand walk, while crates come and go, at the first match, and in rain on all. A row that
+// moves crates leaves them settled for the next. Time: this process's threads. Counters: texels per
+// crate; burning: crates; slowest_ms: of all steps; bytes per crate in every pool of the memory
+// report (objects10k/memory; device: objects1k/memory_on_device).
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
 #include "support/meshes.h"
@@ -43,7 +42,7 @@ struct Square {
     void step(uint32_t count = 1) {
         for (uint32_t i = 0; i < count; ++i) fwWorld_Step(world, kStep);
     }
-    // Null: fine.
+    // Returns null on success.
     const char* make(uint32_t count, uint32_t backend = FW_BACKEND_CPU) {
         FwContextDef contextDef = fwDefaultContextDef();
         contextDef.backend = backend;
@@ -102,7 +101,7 @@ struct Square {
     }
 };
 
-// One scene for all rows of that many crates that leave it as it was.
+// One scene for all rows of that many crates that leave it unchanged.
 Square* lit(uint32_t count, benchmark::State& state) {
     static std::unique_ptr<Square> squares[2];
     std::unique_ptr<Square>& one = squares[count == 10000 ? 0 : 1];
@@ -141,7 +140,7 @@ void steps(benchmark::State& state, uint32_t count, const Moves& moves) {
     if (Square* square = lit(count, state)) run(state, *square, moves);
 }
 
-// m along a row at 1.5 m/s: so many steps out, and back. Four stay in the gap between two crates.
+// m along a row at 1.5 m/s: `way` steps out and back. Four stay in the gap between two crates.
 float shiftOf(uint32_t step, uint32_t way = 4) {
     const uint32_t at = step % (2 * way);
     return 1.5f * kStep * float(std::min(at, 2 * way - at));
@@ -152,8 +151,7 @@ void rest(benchmark::State& state) {
 }
 
 void oneWalks(benchmark::State& state) {
-    // By exchanges of four steps, in which it walks and does not in turns: how much that is of a
-    // step at rest.
+    // Exchange periods of four steps, alternately walking and resting; reports their ratio.
     Square* square = lit(10000, state);
     if (!square) return;
     square->step(8);
@@ -183,9 +181,9 @@ void thousandWalk(benchmark::State& state) {
     });
 }
 
-// The same, but through each other: all of them are about to touch, touch, or part.
+// The same, but through each other: all of them approach, touch, or part.
 void thousandTouch(benchmark::State& state) {
-    Square square;  // of its own: links stay where crates have met
+    Square square;  // its own scene: links remain where crates have met
     const char* why = square.make(10000);
     if (!why) why = square.lightTen();
     if (why) return state.SkipWithError(why);
@@ -248,7 +246,7 @@ void rain(benchmark::State& state) {
     }
 }
 
-// Bytes of each crate, none of which burns, by pool: of all crates less those of one.
+// Bytes per crate by pool, none burning: all crates less one.
 template <uint32_t kBackend, uint32_t kCount>
 void memoryOf(benchmark::State& state) {
     constexpr uint32_t kRows = 256;
@@ -260,7 +258,7 @@ void memoryOf(benchmark::State& state) {
         FwContextInfo info{};
         info.structSize = sizeof info;
         fwContext_GetInfo(square.context, &info);
-        FwMemoryRow all{};  // with what no pool counts
+        FwMemoryRow all{};  // includes bytes in no pool
         std::snprintf(all.name, sizeof all.name, "%s", "cpu memory in all");
         all.bytes = info.cpuMemoryUsed;
         rows.push_back(all);

@@ -1,7 +1,7 @@
-// What particles of fire emitters cost on the own device: moving them (the `particles` pass of a
-// frame without a picture), a picture of them less one where they are hidden, and their order. And
-// what they cost a host that has them drawn at half resolution, beside the same at full.
-// cpu_ms: of all this process's threads, per frame. per_ns: of one particle.
+// Cost of fire-emitter particles on an own device: moving them (the `particles` pass of a frame
+// without a picture), a picture of them less one where they are hidden, and sorting. And the cost
+// at half against full resolution on a host device. cpu_ms: all threads per frame; per_ns: per
+// particle.
 #include <benchmark/benchmark.h>
 
 #include "bench/composite_host.h"
@@ -34,7 +34,7 @@ bool makeSparks(FwWorld* world, uint32_t particles, bool books, FwFireEmitterId&
     def.size1 = 0.5f;
     def.speed = 2;
     def.maxParticles = particles;
-    def.rate = float(particles) * 1.2f;  // all of them live, always
+    def.rate = float(particles) * 1.2f;  // all alive, always
     def.lifeVariance = 0;
     def.smoke = 0.3f;
     const auto open = [&](uint32_t preset, FwFlipbookId& book) {
@@ -82,7 +82,7 @@ class Sparks {
     }
     [[nodiscard]] bool works() const { return works_; }
     void step() { fwWorld_Step(world_, 1.0f / 60); }
-    // s, of wall and of all threads.
+    // s, wall time and all threads.
     void draw(bool hidden, double& wall, double& cpu) {
         fwWorld_SetFireEmitterHidden(world_, emitter_, hidden ? 1 : 0);
         step();
@@ -161,8 +161,8 @@ void sortQuads(benchmark::State& state, uint32_t particles) {
     state.counters["least_ms"] = 1e3 * least;
 }
 
-// One picture of particles that stand still, on a target at half resolution and on one at full by
-// turns, each less a frame at full without them. full_ms: at full. ratio: of processor time.
+// A picture of still particles at half and at full resolution, interleaved, each less a full frame
+// without them. full_ms: at full. ratio: of processor time.
 void drawHalf(benchmark::State& state, uint32_t particles, float away) {
     fw::test::CompositeHost host;
     FwFireEmitterId emitter{};

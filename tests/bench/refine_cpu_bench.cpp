@@ -1,11 +1,10 @@
-// Refinement in the library, one thread: the whole geometry cost of a frame with everything fine
-// (refine_cpu/full: every vertex placed, indices static) and with levels (refine_cpu/adaptive:
-// heat, levels, scan, emission when a level changed, vertices), over two seconds around the moment
-// when 25 % (or 5 %) are lit. Not the cost of drawing: that goes with the triangles, which are
-// counted.
+// Refinement in the library, one thread: geometry cost of a frame at full detail (refine_cpu/full:
+// every vertex placed, indices static) and with levels (refine_cpu/adaptive: heat, levels, scan,
+// emission on change, vertices), over two seconds around the time when 25 % (or 5 %) are lit.
+// Drawing is not included; it follows the counted triangles.
 //
-// Counters of adaptive rows, measured in the same run: ratio = full / adaptive time; ratio_still =
-// a full mesh that leaves still parts alone / adaptive; triangles = full / drawn.
+// Counters of adaptive rows, same run: ratio = full / adaptive time; ratio_still = a full mesh that
+// skips still parts / adaptive; triangles = full / drawn.
 #include "support/refine_scene.h"
 
 #include <benchmark/benchmark.h>
@@ -16,7 +15,7 @@
 namespace fw::test::refine_cpu_bench {
 namespace {
 
-// Of this thread alone: frames are short, and a machine has other things to do.
+// s, of this thread only: frames are short and the machine is shared.
 double threadSeconds() {
     timespec t{};
     clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
@@ -33,7 +32,7 @@ struct Model {
     const char* name;
     double size[3];
     int cells[3];
-    float splitTexels;  // halves every side once (the 10k box: twice); cells of 8 per side follow
+    float splitTexels;  // halves every side once (the 10k box: twice); then cells of 8 per side
 };
 constexpr Model k10k{"10k", {1, 1, 1}, {1, 1, 1}, 48};        // 12 -> 192 coarse, 12,288
 constexpr Model k15k{"15k", {0.4, 1, 1}, {1, 3, 3}, 36};      // 60 -> 240 coarse, 15,360
@@ -55,7 +54,7 @@ const RefineScene& sceneOf(const Model& m) {
     return *scene;
 }
 
-// Everything at its deepest, indices made once.
+// Everything at its deepest level, indices built once.
 struct FullMesh {
     RefinePlayer player;
     explicit FullMesh(const RefineScene& scene) : player(scene) {

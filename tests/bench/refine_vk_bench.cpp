@@ -1,14 +1,13 @@
-// Refinement as it is drawn: the whole geometry cost of a frame of a burning box with everything
-// fine (refine/full: every vertex placed, all triangles drawn, indices static) and with levels
-// (refine/adaptive), frame by frame in turns over two seconds around the moment when 25 % (or 5 %)
-// are lit, or after all has burnt out. Cost: an offscreen picture that looks past the box
-// (refinement's passes, and the surface draw up to its pixels, which are the same for both), less
-// that of a world where the box is hidden and plain. Time: of all this process's threads, as a
-// software device draws on them and a machine has other things to do.
+// Refinement with drawing: geometry cost of a frame of a burning box at full detail (refine/full:
+// every vertex placed, all triangles drawn, indices static) and with levels (refine/adaptive),
+// interleaved frame by frame over two seconds around the time when 25 % (or 5 %) are lit, or after
+// all has burnt. Cost: an offscreen picture that looks past the box (refinement passes and the
+// surface draw without its pixels) less that of a world where the box is hidden and unrefined.
+// Time: all threads of this process, because a software device draws on them.
 //
-// Counters of adaptive rows, of the same run: ratio: full / adaptive; wall: the same by the clock;
-// unlike: mean difference of the two pictures, in thousandths of a level of 255; alone: pixels of
-// 10,000 that only one of them shows. A row whose pictures differ by more than may be is an error.
+// Counters of adaptive rows, same run. ratio: full / adaptive; wall: the same by the clock; unlike:
+// mean difference of the two pictures in 1/1000 of 1/255; alone: pixels of 10,000 that only one of
+// them shows. A row whose pictures differ by more than the limit is an error.
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
 #include "support/refine_scene.h"
@@ -68,7 +67,7 @@ struct World {
         meshDef.mapSize = 2048;
         meshDef.noiseAmplitude = 0;
         FwMaterialDef wood = fwDefaultMaterialDef();
-        wood.spreadRate = 0.02f;  // and burnt through in 4 s
+        wood.spreadRate = 0.02f;  // burns through in 4 s
         wood.windGain = wood.upGain = wood.headGain = wood.ceilingGain = 0;
         wood.burnTime = 4;
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
@@ -96,7 +95,7 @@ struct World {
     }
 };
 
-struct Camera {  // parallel, so that its distance limits no level
+struct Camera {  // orthographic, so that distance limits no level
     FwView view = fwDefaultView();
     explicit Camera(const Model& m, float aside = 0) {
         const glm::vec3 middle(m.size[0] / 2, m.size[1] / 2, m.size[2] / 2);
@@ -129,7 +128,7 @@ double cpuSeconds() {
 
 constexpr int kFrames = 120;
 constexpr uint32_t kSmall = 64, kLarge = 512;  // pixels
-// What refinement may change of a picture. Measured: 9 to 20, and 1 to 3.
+// Limits of picture differences. Measured: 9 to 20, and 1 to 3.
 constexpr double kMostUnlike = 50, kMostAlone = 10;
 
 struct Difference {
@@ -157,7 +156,7 @@ struct Trial {
         for (World& w : worlds) fwDestroyWorld(std::exchange(w.world, nullptr));
         fwDestroyContext(context);
     }
-    // Null: fine.
+    // Returns null on success.
     const char* make(const Model& model, How third = How::adaptive) {
         const FwContextDef def = fwDefaultContextDef();
         FwErrorInfo info{};
@@ -169,9 +168,9 @@ struct Trial {
     }
 };
 
-constexpr float kStep = 0.25f;  // s, of the way to the moment that is measured
+constexpr float kStep = 0.25f;  // s, of the time before the measurement
 
-// When so much of the box is lit; negative: never.
+// Time when this share of the box is lit; negative: never.
 float secondsTo(const Model& model, float lit) {
     Trial trial;
     if (trial.make(model)) return -1;
@@ -182,7 +181,7 @@ float secondsTo(const Model& model, float lit) {
     return -1;
 }
 
-// lit: share of the box; above 1: all of it is, and has burnt out.
+// lit: share of the box; above 1: all of it has burnt out.
 void refine(benchmark::State& state, const Model& model, float lit, How how) {
     const bool adaptive = how != How::full;
     float start = secondsTo(model, std::min(lit, 0.9999f));
@@ -232,7 +231,7 @@ void refine(benchmark::State& state, const Model& model, float lit, How how) {
                 std::fclose(file);
             }
         }
-    // The published scheme shows other triangles, and is not held to this.
+    // The reference refinement shows other triangles and has no such limit.
     if (how == How::adaptive && (difference.unlike > kMostUnlike || difference.alone > kMostAlone))
         state.SkipWithError("the pictures differ by more than refinement may change");
 }

@@ -1,10 +1,9 @@
-// What keeping walls from crossing costs: the bunny as surface_bench has it, deforming. A turn is
-// four frames, each a step of 1/60 s and a picture: hidden; twice with nothing done about crossing,
-// which are apart by noise_pct; and, between those, as the row says. Of the least of process time:
-// surface_ms is undone less hidden, added_ms and added_pct what the row's way adds to that.
-//   none       FW_BURNABLE_RECEDE without bounds on what recedes
-//   product    FW_BURNABLE_RECEDE
-//   published  FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS; undone: what faces the eye alone
+// Cost of keeping walls from intersecting, for the deforming bunny of surface_bench. A turn is four
+// frames, each a step of 1/60 s and a picture: hidden, two without any measure (their difference is
+// noise_pct), and between them one with the row's measure. Of the least process time: surface_ms is
+// without measure less hidden; added_ms and added_pct are the measure's cost.
+// none: FW_BURNABLE_RECEDE without bounds; product: FW_BURNABLE_RECEDE; published:
+// FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS; undone: camera-facing walls only
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"

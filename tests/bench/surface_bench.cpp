@@ -1,6 +1,6 @@
-// What the surface pass costs: the bunny, half burnt, on some 30 % of a 1280 x 720 picture. The
-// time is that of an offscreen picture with it, submitted and waited for, less that of one where it
-// is hidden, taken in turns; no flames. cpu_ms: the same of all this process's threads.
+// Cost of the surface pass: the bunny, half burnt, on some 30 % of a 1280 x 720 picture. Time: an
+// offscreen picture with it, submitted and waited for, less one where it is hidden, interleaved; no
+// flames. cpu_ms: the same for all threads of this process.
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"

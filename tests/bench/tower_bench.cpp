@@ -1,9 +1,8 @@
-// What flamethrowers cost in the tower-defence village: all of its things as burnable meshes, seen
-// from above as the sample sees them, with so many jets along the road that sweep from side to
-// side, 100 particles each. A frame: a sixtieth of a second, and an offscreen picture. Time: of all
-// this process's threads. In turns with it: `ratio`, to the same village where what they lit burns
-// on without them; `ratio_unlit`, to one where nothing burns. step_ms: of the frame before its
-// picture. burning: things on fire, at the end.
+// Cost of flamethrowers in the tower-defence village: all objects burnable, seen as in the sample,
+// with jets along the road that sweep sideways, 100 particles each. A frame is a sixtieth of a
+// second and an offscreen picture. Time: all threads of this process. Interleaved: `ratio` to the
+// same village burning on without jets; `ratio_unlit` to one without fire. step_ms: of the step
+// before the picture; burning: objects on fire at the end.
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_device.h"
@@ -48,14 +47,14 @@ class Scene {
             if (!addThrower((float(i) + 0.5f) / float(throwers), i)) return;
         look();
         works_ = true;
-        for (int i = 0; i < 30; ++i) step(0.1f);  // 3 s: they have something to burn
+        for (int i = 0; i < 30; ++i) step(0.1f);  // 3 s, until enough burns
         for (int i = 0; i < 2; ++i) frame();      // pipelines are compiled at first use
     }
     ~Scene() {
         fwDestroyWorld(world_);
         fwDestroyContext(context_);
     }
-    void rest() {  // its flamethrowers go, its fires stay
+    void rest() {  // stops its flamethrowers, keeps its fires
         for (const Thrower& t : throwers_) fwWorld_DestroyFireEmitter(world_, t.jet);
         throwers_.clear();
     }
@@ -99,7 +98,7 @@ class Scene {
         make(Material::kLeaf, FW_MATERIAL_DRY_LEAF);
         make(Material::kCloth, FW_MATERIAL_COTTON);
     }
-    // The first eight materials; what is beyond is ground and water, which burn no more than stone.
+    // The first eight materials; the others are ground and water, which burn as little as stone.
     bool addModel(const village::Model& model, float texelsPerMetre, FwMeshId& id) {
         if (model.indices.empty()) return true;
         std::vector<float> positions;

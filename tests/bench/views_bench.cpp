@@ -1,7 +1,6 @@
-// The cost of two views in one recording: a camp fire with smoke and a jet in both, each over a
-// 1280 x 720 picture. The time is that of such a frame; twice_one_ms: of two frames with one view;
-// ratio: its processor time over theirs; not_given: the same of a frame that draws both views but
-// is recorded for the first alone.
+// Cost of two views in one recording: a camp fire with smoke and a jet in both, each at 1280 x 720.
+// Time: such a frame; twice_one_ms: two frames with one view; ratio: its processor time over
+// theirs; not_given: a frame that draws both views but is recorded for the first only.
 #include <benchmark/benchmark.h>
 
 #include "bench/composite_host.h"
@@ -36,7 +35,7 @@ void drawViews(benchmark::State& state) {
         return;
     }
     struct Cost {
-        double wall = 0, cpu = 0;  // s, of all
+        double wall = 0, cpu = 0;  // s, of all threads
     };
     Cost one, two, notGiven;
     double last = 0;

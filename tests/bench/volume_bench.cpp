@@ -1,7 +1,7 @@
-// What volumetric flames cost, and of that (least) probe, march and composite, as the device says:
-// the time of an offscreen picture with them, submitted and waited for, less that of one where they
-// are hidden, taken in turns. cpu_ms: the same of all this process's threads. boxed: part of the
-// picture in their bounds, as seen; lit: that they change.
+// Cost of volumetric flames, and the device's times of probe, march and composite (least): an
+// offscreen picture with them, submitted and waited for, less one where they are hidden,
+// interleaved. cpu_ms: the same for all threads of this process. boxed: share of the picture inside
+// their bounds; lit: share that they change.
 #include <benchmark/benchmark.h>
 
 #include "bench/bench_device.h"
@@ -22,7 +22,7 @@ namespace {
 struct Case {
     uint32_t width, height, fires;
     uint32_t flags;                              // FwVolumetricFireFlags
-    float boxed;                                 // part of the picture that one fire's bounds take
+    float boxed;                                 // share of the picture inside one fire's bounds
     uint32_t cell = 2, steps = 64, octaves = 4;  // as FwWorldDef's
     uint32_t preset = FW_FIRE_CAMP;
     uint32_t tier = FW_FIRE_TIER_AUTO;
@@ -78,7 +78,7 @@ class Fires {
         fwWorld_RenderOffscreen(world_, &shot_);
         return {fw::test::secondsSince(start), fw::test::cpuSeconds() - cpu};
     }
-    // ms, of the passes whose names begin so in the last frame that told its times.
+    // ms of the passes with this prefix in the last frame with timings.
     double passes(const char* name) {
         FwPassTime times[64];
         const uint32_t count = fwDebug_GetPassTimes(world_, times, 64);
@@ -96,7 +96,7 @@ class Fires {
     [[nodiscard]] double boxed() const { return boxed_; }
 
  private:
-    // Far enough that the bounds of all take what the case says, seen from the side.
+    // Distance at which all bounds cover the case's share, seen from the side.
     void look() {
         glm::vec3 low(1e9f), high(-1e9f);
         for (const FwVolumetricFireId id : fires_) {
@@ -178,7 +178,7 @@ FW_VOLUME_ROW(samework, "volume/samework/360p", 640, 360, 1, FW_FIRE_NO_SMOKE, 0
 FW_VOLUME_ROW(delivered, "volume/delivered/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f);
 FW_VOLUME_ROW(quarter, "volume/onequarter_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.25f);
 FW_VOLUME_ROW(small, "volume/15percent_screen/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f);
-FW_VOLUME_ROW(hero, "volume/hero/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f, 2, 64, 4,
+FW_VOLUME_ROW(high, "volume/high/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.15f, 2, 64, 4,
               FW_FIRE_CAMP, FW_FIRE_TIER_MARCH_HIGH);
 FW_VOLUME_ROW(steps16, "volume/steps16/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 16);
 FW_VOLUME_ROW(steps24, "volume/steps24/720p", 1280, 720, 1, FW_FIRE_NO_SMOKE, 0.30f, 2, 24);

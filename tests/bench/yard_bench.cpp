@@ -1,6 +1,5 @@
-// A yard of crates by the library as a host has it: what a step of a world costs a server without a
-// GPU, and on a device; what a client of it costs in bytes; and that what does not burn costs
-// nothing.
+// A yard of crates through the C ABI: cost of a step on a server without a GPU and on a device.
+// Also bytes of a network client, and zero cost of objects that do not burn.
 #include "bench/bench_device.h"
 #include "common/yard.h"
 #include "flamewright/flamewright_debug.h"
@@ -16,7 +15,7 @@ namespace {
 
 constexpr float kStep = 1.0f / 32;
 constexpr int kWarm = 160, kSteps = 128;
-constexpr int kIdleSteps = 1024;  // steps differ by more than what is looked for
+constexpr int kIdleSteps = 1024;  // many steps, because they vary by more than the difference
 constexpr uint32_t kExchange =
     FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
 
@@ -99,7 +98,7 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["burning"] = double(bench.burning());
     for (const char* pass : {"heat", "exchange", "exchange shield", "reduce"})
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
-    // What a step does for the eye alone.
+    // ms per step for appearance only.
     double looks = 0;
     for (const char* pass : {"lights", "soot", "support", "predict_anew", "predict_states",
                              "predict_gather", "predict", "predict_rim", "predict_commit"})
@@ -121,8 +120,8 @@ void burning(benchmark::State& state, uint32_t backend, uint32_t crates) {
     }
 }
 
-// What a client of a server with a yard that burns costs, on a way that loses a fifth: bytes a
-// second, both ways, once all are alight. Hosts do nothing then.
+// Bytes per second of a client of a burning yard, in both directions at a loss of a fifth, once all
+// are alight. Hosts issue no commands then.
 void shared(benchmark::State& state, uint32_t crates) {
     try {
         YardBench server(FW_BACKEND_CPU, kExchange, crates, 0);
@@ -185,7 +184,7 @@ void shared(benchmark::State& state, uint32_t crates) {
     }
 }
 
-// A step of each after the other; shows `with`, and what it takes of the processor for `without`'s.
+// Steps both alternately; shows `with`, and its processor time over `without`'s.
 void inTurns(benchmark::State& state, int steps, YardBench& without, YardBench& with) {
     for (int i = 0; i < kWarm + steps; ++i)
         for (YardBench* bench : {&without, &with}) {
@@ -196,7 +195,7 @@ void inTurns(benchmark::State& state, int steps, YardBench& without, YardBench& 
     state.counters["cpu_ratio"] = mean(with.cpu) / mean(without.cpu);
 }
 
-// Ten that burn, with and without a thousand beside them that do not.
+// Ten burn, with and without a thousand idle ones.
 void idle(benchmark::State& state) {
     try {
         YardBench few(FW_BACKEND_VULKAN, 0, 10, 0), many(FW_BACKEND_VULKAN, 0, 10, 1000);
@@ -207,7 +206,7 @@ void idle(benchmark::State& state) {
     }
 }
 
-// Three hundred that burn, with and without a shield.
+// Three hundred burn, with and without occluders.
 void shielded(benchmark::State& state) {
     try {
         YardBench open(FW_BACKEND_VULKAN, kExchange, 300, 0);

@@ -35,8 +35,8 @@ case $name in
     subdirectory)
         launcher=()
         command -v ccache >/dev/null && launcher=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
-        # Each source by itself, so that one that forgot an include of ours fails here; Debug without
-        # what debuggers read, as all of the library is compiled for it.
+        # Compiles each source separately, so that a missing include fails here; Debug without debug
+        # information, because the whole library is compiled.
         build_project "-DFLAMEWRIGHT_SOURCE=$here/../.." -DCMAKE_BUILD_TYPE=Debug \
             -DCMAKE_CXX_FLAGS_DEBUG=-O0 "${launcher[@]}"
         "$work/build/consumer"

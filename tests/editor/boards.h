@@ -1,5 +1,4 @@
-// glTF files of boards in a row, one for each material, with pictures as PNG: what tests of
-// imported colours look at.
+// glTF files of boards in a row, one per material, with PNG images, for tests of imported colours.
 #pragma once
 
 #include <array>
@@ -14,7 +13,7 @@ namespace fwtest {
 
 using Pixel = std::array<uint8_t, 4>;  // sRGB, straight alpha
 
-// RGBA8, not compressed.
+// RGBA8, uncompressed.
 inline std::vector<uint8_t> pngOf(uint32_t width, uint32_t height,
                                   const std::function<Pixel(uint32_t x, uint32_t y)>& pixelAt) {
     std::vector<uint8_t> raw;
@@ -68,15 +67,15 @@ inline std::vector<uint8_t> pngOf(uint32_t width, uint32_t height,
 
 struct BoardMaterial {
     std::array<float, 3> factor{1, 1, 1};
-    std::vector<uint8_t> png;  // empty: no picture
-    std::string more;          // of the material's JSON, with its comma: ",\"alphaMode\":\"MASK\""
+    std::vector<uint8_t> png;  // empty: no image
+    std::string more;  // JSON added to the material, with its comma: ",\"alphaMode\":\"MASK\""
     std::string name;
 };
 
-// Boards of 0.2 x 0.6 m, 0.25 m apart along x, upright, towards +z. `grid`: quads along each side
-// of the last one. `ofNode`: of the node's JSON, with its comma. `leans`: two joints carry each
-// board, the upper of which leans to the left by 40 degrees, in an armature of twice the size.
-// Writes NAME.gltf, NAME.bin and its pictures.
+// Upright boards of 0.2 x 0.6 m, 0.25 m apart along x, facing +z. `grid`: quads along each side of
+// the last one. `ofNode`: JSON added to the node, with its comma. `leans`: two joints carry each
+// board, and the upper one leans left by 40 degrees, in an armature of twice the size. Writes
+// NAME.gltf, NAME.bin and its images.
 inline void writeBoardRow(const std::filesystem::path& folder, const std::string& name,
                           const std::vector<BoardMaterial>& materials, uint32_t grid = 1,
                           const std::string& ofNode = "", bool leans = false) {
@@ -161,7 +160,7 @@ inline void writeBoardRow(const std::filesystem::path& folder, const std::string
                         "}" + material.more + "}";
     }
     std::ofstream file(folder / (name + ".gltf"));
-    // A skin puts its mesh where the joints are: the mesh's own node has no say.
+    // A skinned mesh follows its joints and ignores its own node's transform.
     const std::string ofMesh = leans ? ",\"skin\":0,\"translation\":[7,7,7]" : "";
     const std::string joints = leans ? ",{\"scale\":[2,2,2],\"children\":[2]},{\"children\":[3]},"
                                        "{\"rotation\":[0,0,0.342020,0.939693]}"
@@ -180,7 +179,7 @@ inline std::vector<uint8_t> plainPng(uint8_t r, uint8_t g, uint8_t b, uint8_t al
     return pngOf(8, 8, [=](uint32_t, uint32_t) { return Pixel{r, g, b, alpha}; });
 }
 
-// Nine leaves of 64 x 64 pixels in three rows, green discs; what is not there is black.
+// Nine leaves (green discs) of 64 x 64 pixels in three rows; transparent pixels are black.
 inline std::vector<uint8_t> leavesPng() {
     return pngOf(192, 192, [](uint32_t x, uint32_t y) {
         const float dx = static_cast<float>(x % 64) - 31.5f,

@@ -1,4 +1,5 @@
-// What a burn remembers of itself to be scrubbed: on the cpu backend, where all comes at once.
+// The recorded history of a burn that the editor scrubs through, on the cpu backend, which reports
+// at once.
 #include "document/burn_memory.h"
 
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@ namespace {
 
 using namespace fwtest;
 
-// The board burning under a memory's eyes.
+// The burning board with a memory.
 struct Remembered {
     Yard yard;
     std::unique_ptr<Burn> burn;
@@ -44,9 +45,9 @@ struct Remembered {
             memory.afterFrame(*burn);
         }
     }
-    // As the frames after the burn has come to rest.
+    // Frames after the burn went to sleep.
     void rest() {
-        for (int i = 0; i < 4 && memory.waits(); ++i) {
+        for (int i = 0; i < 4 && memory.isPending(); ++i) {
             memory.beforeFrame(*burn, 0);
             ASSERT_EQ(FW_OK, fwWorld_Step(burn->world, 0));
             memory.afterFrame(*burn);
@@ -63,29 +64,29 @@ size_t litOf(const std::vector<uint8_t>& ages) {
     return size_t(std::count_if(ages.begin(), ages.end(), [](uint8_t age) { return age > 0; }));
 }
 
-TEST(BurnMemory, KnowsNothingBeforeAnythingWasSeen) {
+TEST(BurnMemory, IsEmptyBeforeTheFirstFrame) {
     Remembered one;
-    EXPECT_FALSE(one.memory.knows(0));
+    EXPECT_FALSE(one.memory.isKnown(0));
     std::vector<uint8_t> values;
     EXPECT_FALSE(one.memory.agesAt(*one.burn, one.board, *one.surface, 0, values));
     EXPECT_FALSE(one.memory.timesOf(*one.burn, one.board, values));
     EXPECT_FALSE(one.memory.restore(*one.burn, 0));
 }
 
-TEST(BurnMemory, AgesGrowWithTimeAndAgreeWithTheWholeBurn) {
+TEST(BurnMemory, AgesGrowWithTimeAndMatchTheWholeBurn) {
     Remembered one;
     one.runTo(6);
     one.rest();
-    EXPECT_FALSE(one.memory.waits());
+    EXPECT_FALSE(one.memory.isPending());
     EXPECT_NEAR(6, one.memory.known(), 1e-6);
-    EXPECT_TRUE(one.memory.knows(3));
-    EXPECT_FALSE(one.memory.knows(7));
+    EXPECT_TRUE(one.memory.isKnown(3));
+    EXPECT_FALSE(one.memory.isKnown(7));
     EXPECT_EQ(0u, litOf(one.ages(-0.1)));
     const auto early = one.ages(2), late = one.ages(5);
     EXPECT_GT(litOf(early), 20u);
     EXPECT_GT(litOf(late), litOf(early));
     for (size_t i = 0; i < early.size(); ++i) EXPECT_LE(early[i], late[i]) << i;
-    // The same as a burn that was recorded by itself says.
+    // Equal to a separately recorded burn.
     one.yard.run("burn\n");
     const ArrivalField& field = one.yard.host->record.fields[0];
     ASSERT_EQ(field.seconds.size(), late.size());
@@ -95,7 +96,7 @@ TEST(BurnMemory, AgesGrowWithTimeAndAgreeWithTheWholeBurn) {
     EXPECT_LE(off, late.size() / 1000);
 }
 
-TEST(BurnMemory, KnowsOfASpotWhenItCaught) {
+TEST(BurnMemory, ReportsWhenASpotCaught) {
     Remembered one;
     one.runTo(6);
     one.rest();
@@ -115,7 +116,7 @@ TEST(BurnMemory, KnowsOfASpotWhenItCaught) {
     EXPECT_LT(one.memory.caughtAt(one.board + 9, 0), 0);
 }
 
-TEST(BurnMemory, TimesAreSharesOfTheTimeline) {
+TEST(BurnMemory, StoresTimesAsSharesOfTheTimeline) {
     Remembered one("set settings duration 10\n");
     one.runTo(5);
     one.rest();
@@ -131,15 +132,15 @@ TEST(BurnMemory, TimesAreSharesOfTheTimeline) {
     EXPECT_LE(latest, 128);
 }
 
-TEST(BurnMemory, GoesBackToTheLatestMomentThatWasKeptAndOnAsBefore) {
+TEST(BurnMemory, RestoresTheLatestKeyframeAndContinues) {
     Remembered one("set settings duration 24\n");
     one.runTo(12);
     one.rest();
     const auto before = one.ages(12);
     ASSERT_TRUE(one.memory.restore(*one.burn, 8));
-    EXPECT_GT(one.burn->time, 0);  // not from the beginning
+    EXPECT_GT(one.burn->time, 0);  // not from the start
     EXPECT_LE(one.burn->time, 8);
-    EXPECT_TRUE(one.memory.knows(12));  // what was seen stays known
+    EXPECT_TRUE(one.memory.isKnown(12));  // the seen history stays
     EXPECT_EQ(before, one.ages(12));
     one.runTo(12);
     one.rest();
@@ -148,13 +149,13 @@ TEST(BurnMemory, GoesBackToTheLatestMomentThatWasKeptAndOnAsBefore) {
     EXPECT_NEAR(0, one.burn->time, 0.2);
 }
 
-TEST(BurnMemory, ForgetsAll) {
+TEST(BurnMemory, CanBeCleared) {
     Remembered one;
     one.runTo(2);
     one.rest();
-    EXPECT_TRUE(one.memory.knows(1));
+    EXPECT_TRUE(one.memory.isKnown(1));
     one.memory.forget();
-    EXPECT_FALSE(one.memory.knows(0));
+    EXPECT_FALSE(one.memory.isKnown(0));
     EXPECT_FALSE(one.memory.restore(*one.burn, 1));
 }
 

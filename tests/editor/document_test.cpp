@@ -55,8 +55,8 @@ std::string refusal(Document& document, const std::string& line) {
     return message;
 }
 
-// A flat sheet of 64 x 32 texels, one metre wide, whose unwrap has two islands: the right half lies
-// left in the map. So a stroke across its middle goes over a seam.
+// A flat sheet of 64 x 32 texels, one metre wide, whose unwrap has two islands: the right half is
+// on the left of the map. A stroke across its middle crosses a seam.
 const PaintSurface& sheet() {
     static const PaintSurface surface = [] {
         PaintSurface made;
@@ -88,7 +88,7 @@ Document paintable() {
     return document;
 }
 
-TEST(EditorCommands, AddsWhatItsLineSays) {
+TEST(EditorCommands, AddsTheNamedObject) {
     Document document = newDocument();
     mustRun(document,
             "add source point name=\"Corner torch\" position 0.1 0.2 0.3 output 18 kW radius 5 cm");
@@ -102,7 +102,7 @@ TEST(EditorCommands, AddsWhatItsLineSays) {
     EXPECT_EQ("Add heat source", document.steps[1].name);
 }
 
-TEST(EditorCommands, PrintedLinesDoTheSame) {
+TEST(EditorCommands, PrintedLinesRepeatTheCommand) {
     Document first = newDocument(), second = newDocument();
     for (const char* line :
          {"add source flamethrower name=\"A \\\"jet\\\"\" position 1 2 3 direction 0 0 -1",
@@ -134,7 +134,7 @@ TEST(EditorCommands, PrintedLinesDoTheSame) {
     EXPECT_GE(first.steps.size(), 13u);
 }
 
-TEST(EditorCommands, RefusalsNameTheWordAndWhatIsTaken) {
+TEST(EditorCommands, RefusalsNameTheWordAndTheChoices) {
     Document document = newDocument();
     mustRun(document, "add source disc name=Torch");
     EXPECT_THAT(refusal(document, "ad source"), HasSubstr("\"ad\" is no command"));
@@ -149,11 +149,11 @@ TEST(EditorCommands, RefusalsNameTheWordAndWhatIsTaken) {
     EXPECT_THAT(refusal(document, "set \"Torch\" sticks_to \"Torch\""), HasSubstr("sticks to it"));
     EXPECT_THAT(refusal(document, "add source \"x"), HasSubstr("quote is not closed"));
     EXPECT_THAT(refusal(document, "move \"Torch\" 0 0"), HasSubstr("line ends"));
-    EXPECT_THAT(refusal(document, "remove \"Torch\" now"), HasSubstr("one word too many"));
+    EXPECT_THAT(refusal(document, "remove \"Torch\" now"), HasSubstr("an extra word"));
     EXPECT_THAT(refusal(document, "fill \"Torch\" value 1"), HasSubstr("no layer"));
 }
 
-TEST(EditorCommands, ValuesBeyondLimitsAreSetToThemAndTold) {
+TEST(EditorCommands, ValuesBeyondLimitsAreClampedAndReported) {
     Document document = newDocument();
     mustRun(document, "add source point name=Torch");
     std::string message;
@@ -162,7 +162,7 @@ TEST(EditorCommands, ValuesBeyondLimitsAreSetToThemAndTold) {
     EXPECT_EQ(0, document.scene.sources[0].radius);
 }
 
-TEST(EditorUndo, NamesAreVerbAndThing) {
+TEST(EditorUndo, NamesAreVerbAndObject) {
     Document document = paintable();
     mustRun(document, "add source point name=\"Corner torch\"");
     mustRun(document, "import crate.glb name=Crate");
@@ -187,7 +187,7 @@ TEST(EditorUndo, NamesAreVerbAndThing) {
     }
 }
 
-TEST(EditorUndo, ADragIsOneStepAndNoneIfNothingMoved) {
+TEST(EditorUndo, ADragIsOneStepOrNone) {
     Document document = newDocument();
     mustRun(document, "add source point name=Torch");
     beginDrag(document);
@@ -212,7 +212,7 @@ TEST(EditorUndo, ADragIsOneStepAndNoneIfNothingMoved) {
     EXPECT_EQ(0, document.scene.sources[0].position[0]);
 }
 
-TEST(EditorUndo, NudgesMergeWithinEightTenthsOfASecond) {
+TEST(EditorUndo, NudgesMergeWithin800Milliseconds) {
     Document document = newDocument();
     mustRun(document, "add source point name=Torch");
     const auto nudge = [&](const char* line, double now) {
@@ -229,21 +229,21 @@ TEST(EditorUndo, NudgesMergeWithinEightTenthsOfASecond) {
     EXPECT_EQ(4u, document.steps.size());
     nudge("set \"Torch\" radius 0.1", 3.2);  // another field
     EXPECT_EQ(5u, document.steps.size());
-    mustRun(document, "move \"Torch\" 1 0 0");  // something else happened
+    mustRun(document, "move \"Torch\" 1 0 0");  // another command in between
     nudge("set \"Torch\" radius 0.2", 3.3);
     EXPECT_EQ(7u, document.steps.size());
-    nudge("set \"Torch\" radius 0.1", 3.4);  // back to what it was: no change, no step
+    nudge("set \"Torch\" radius 0.1", 3.4);  // restored to its first value: no step
     EXPECT_EQ(6u, document.steps.size());
 }
 
-TEST(EditorUndo, TheCameraIsNoStep) {
+TEST(EditorUndo, CameraMovesAreNotSteps) {
     Document document = newDocument();
     mustRun(document, "set camera yaw 90 distance 2");
     EXPECT_EQ(1u, document.steps.size());
     EXPECT_EQ(90, document.scene.camera.yaw);
 }
 
-// A line that may or may not be possible: what an impatient hand does.
+// A line that may or may not be valid.
 std::string randomLine(std::mt19937& random, const Scene& scene) {
     const auto pick = [&](uint32_t n) { return random() % n; };
     const auto number = [&] {
@@ -348,7 +348,7 @@ std::string everythingOf(const Document& document) {
     return text;
 }
 
-TEST(EditorUndo, AThousandRandomStepsGoBackAndForthToTheByte) {
+TEST(EditorUndo, AThousandRandomStepsUndoAndRedoExactly) {
     for (uint32_t seed = 1; seed <= 2; ++seed) {
         std::mt19937 random(seed);
         Document document = paintable();
@@ -368,7 +368,8 @@ TEST(EditorUndo, AThousandRandomStepsGoBackAndForthToTheByte) {
                 ASSERT_EQ(after.back(), everythingOf(document)) << line;
             }
             if (document.steps.size() > before) after.push_back(everythingOf(document));
-            if (random() % 50 == 0 && canUndo(document)) {  // now and then back, and on from there
+            if (random() % 50 == 0 &&
+                canUndo(document)) {  // sometimes undo, and continue from there
                 for (uint32_t back = random() % 5; back > 0 && canUndo(document); --back) {
                     undo(document);
                 }
@@ -389,7 +390,7 @@ TEST(EditorUndo, AThousandRandomStepsGoBackAndForthToTheByte) {
     }
 }
 
-TEST(EditorUndo, TheLinesOfTheStepsMakeTheSameScene) {
+TEST(EditorUndo, LinesOfTheStepsRebuildTheScene) {
     std::mt19937 random(7);
     Document first = paintable(), second = paintable();
     std::string message;
@@ -401,8 +402,8 @@ TEST(EditorUndo, TheLinesOfTheStepsMakeTheSameScene) {
     EXPECT_EQ(everythingOf(first), everythingOf(second));
 }
 
-// As text, into the same scene and another one: as they were, but for name and id.
-TEST(EditorClipboard, WhatIsCopiedIsPastedAsOneStep) {
+// As text into the same scene and another one: unchanged but for name and id.
+TEST(EditorClipboard, PastesAsOneStep) {
     Document document = newDocument();
     mustRun(document, "add mesh name=Crate file \"crate.glb\" position 1 0 0");
     mustRun(document,
@@ -439,7 +440,7 @@ TEST(EditorClipboard, WhatIsCopiedIsPastedAsOneStep) {
     undo(document);
     EXPECT_EQ(before, everythingOf(document));
 
-    // Where there is no crate the torch stands by itself.
+    // Without the crate the torch stands by itself.
     Document other = newDocument();
     ASSERT_TRUE(pasteObjects(other,
                              copyObjects(document.scene, std::vector{document.scene.sources[0].id}),
@@ -450,7 +451,7 @@ TEST(EditorClipboard, WhatIsCopiedIsPastedAsOneStep) {
     EXPECT_EQ("Paste Corner torch", other.steps[other.at].name);
 }
 
-TEST(EditorClipboard, WhatIsNoObjectChangesNothing) {
+TEST(EditorClipboard, InvalidTextChangesNothing) {
     Document document = newDocument();
     mustRun(document, "add source point");
     const std::string before = everythingOf(document);
@@ -467,7 +468,7 @@ TEST(EditorClipboard, WhatIsNoObjectChangesNothing) {
     }
 }
 
-TEST(EditorFile, ASceneReadsBackEqualAndPrintsTheSameBytes) {
+TEST(EditorFile, ScenesRoundTrip) {
     std::mt19937 random(3);
     Document document = paintable();
     std::string message;
@@ -520,7 +521,7 @@ TEST(EditorFile, SaveAndOpenKeepSceneAndPaint) {
     EXPECT_TRUE(back.images == document.images);
     EXPECT_FALSE(unsaved(back));
 
-    // Elsewhere: paths begin there; the old file stays; undo still goes to the start.
+    // In another folder: paths start there, the old file stays, and undo still reaches the start.
     const fs::path other = folder.path / "shots/night.fwscene";
     ASSERT_TRUE(saveDocument(document, other, error)) << error;
     EXPECT_EQ("../models/crate.glb", document.scene.meshes[0].file);
@@ -532,8 +533,8 @@ TEST(EditorFile, SaveAndOpenKeepSceneAndPaint) {
     EXPECT_TRUE(unsaved(document));
 }
 
-// What a crash leaves lies in another folder than the scene that it is of, and begins paths there.
-TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
+// A crash copy lies in another folder than its scene and has paths from there.
+TEST(EditorFile, ARecoveryCopyIsUnsavedWorkOnItsOriginal) {
     Folder folder;
     Document document = paintable();
     const fs::path file = folder.path / "scenes/yard.fwscene",
@@ -547,7 +548,7 @@ TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
     const std::string meshes = document.scene.meshes.at(0).file;
     ASSERT_TRUE(saveCopy(document, copy, error)) << error;
     EXPECT_TRUE(unsaved(document));
-    // Each copy takes the place of the one before, with its pictures.
+    // Each copy replaces the one before with its images.
     mustRun(document, "fill Dry value 0.7");
     ASSERT_TRUE(saveCopy(document, copy, error)) << error;
     EXPECT_EQ(2, std::distance(fs::directory_iterator(copy.parent_path()), {}));
@@ -560,7 +561,7 @@ TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
     EXPECT_EQ(file, back.file);
     EXPECT_EQ(meshes, back.scene.meshes.at(0).file);  // from the original's folder
     EXPECT_TRUE(back.images == document.images);
-    // Saved, it is the original with the work in it; the copy's pictures may go.
+    // Saving writes the work to the original; the copy's images may be deleted.
     ASSERT_TRUE(saveDocument(back, back.file, error)) << error;
     fs::remove_all(copy.parent_path());
     ASSERT_TRUE(openDocument(file, back, repairs, error)) << error;
@@ -568,7 +569,7 @@ TEST(EditorFile, ACopyKeptElsewhereIsUnsavedWorkOnItsOriginal) {
     EXPECT_TRUE(back.images == document.images);
 }
 
-TEST(EditorFile, ASaveThatCannotBeSaysWhyAndKeepsTheOldFile) {
+TEST(EditorFile, AFailedSaveExplainsAndKeepsTheOldFile) {
     Folder folder;
     Document document = newDocument();
     std::string error;
@@ -579,7 +580,7 @@ TEST(EditorFile, ASaveThatCannotBeSaysWhyAndKeepsTheOldFile) {
     EXPECT_TRUE(document.file.empty());
 }
 
-TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
+TEST(EditorFile, AHundredKillsLeaveAValidFile) {
     Folder folder;
     const fs::path file = folder.path / "yard.fwscene";
     Document document = paintable();
@@ -595,8 +596,8 @@ TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
         runLine(document, "fill Dry value 0." + std::to_string(i % 10), ignored);
         return saveDocument(document, file, ignored);
     };
-    // What a child takes for its first saves says where in them a kill may fall: by the child's own
-    // clock, and on whatever machine and build this is.
+    // The child's time for its first saves, by its own clock, gives the range of kill times on any
+    // machine and build.
     constexpr int kFirstSaves = 4;
     const pid_t first = ::fork();
     ASSERT_GE(first, 0);
@@ -639,7 +640,7 @@ TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
         ASSERT_TRUE(openDocument(file, back, repairs, error)) << error;
         ASSERT_THAT(repairs, ::testing::IsEmpty());
         ASSERT_EQ("Crate", back.scene.meshes.at(0).name);
-        // The paint is that of the step that the scene is of.
+        // The paint belongs to the same step as the scene.
         if (back.scene.meshes[0].position[0] == float(kill)) {
             ++saves;
             const auto step = static_cast<uint32_t>(back.scene.meshes[0].position[1]);
@@ -649,7 +650,7 @@ TEST(EditorFile, AHundredKillsAtAnyMomentLeaveAWholeFile) {
     EXPECT_GT(saves, 20u);
 }
 
-TEST(EditorCommands, SpoiltLinesAreRefusedInWords) {
+TEST(EditorCommands, DamagedLinesAreRefusedWithAMessage) {
     std::mt19937 random(17);
     Document document = paintable();
     std::string message;
@@ -700,17 +701,17 @@ TEST(EditorFile, RepairsNameFileFieldValueAndLimit) {
     std::vector<std::string> repairs;
     std::string error;
     ASSERT_TRUE(readScene(text, "yard.fwscene", scene, repairs, error)) << error;
-    const auto told = [&](const char* part) {
+    const auto reported = [&](const char* part) {
         EXPECT_THAT(repairs, ::testing::Contains(HasSubstr(part)));
     };
-    told("yard.fwscene: sources[0].radius was -0.4 m, below 0 m; it is now 0 m.");
-    told("yard.fwscene: sources[0].output is a text; it takes a number");
-    told("sources[0].shape is \"round\"; it takes match, point, disc");
-    told("sources[1].id is 1, which another object has; it is now 4");
-    told("layers[0].mesh was #77, which is no mesh of the scene");
-    told("settings.up takes 3 numbers");
-    told("sources[0].lenght is not known here");
-    told("next_id is 4; it must be above every id; it is now 5");
+    reported("yard.fwscene: sources[0].radius was -0.4 m, below 0 m; it is now 0 m.");
+    reported("yard.fwscene: sources[0].output is a text; it takes a number");
+    reported("sources[0].shape is \"round\"; it takes match, point, disc");
+    reported("sources[1].id is 1, which another object has; it is now 4");
+    reported("layers[0].mesh was #77, which is no mesh of the scene");
+    reported("settings.up takes 3 numbers");
+    reported("sources[0].lenght is not known here");
+    reported("next_id is 4; it must be above every id; it is now 5");
     EXPECT_EQ(8u, repairs.size());
     repairs.clear();
     Scene again;
@@ -719,7 +720,7 @@ TEST(EditorFile, RepairsNameFileFieldValueAndLimit) {
     EXPECT_TRUE(scene == again);
 }
 
-TEST(EditorFile, RefusalsSayWhatItIs) {
+TEST(EditorFile, RefusalsNameTheCause) {
     const auto why = [](std::string_view text) {
         Scene scene;
         scene.nextId = 77;
@@ -732,14 +733,14 @@ TEST(EditorFile, RefusalsSayWhatItIs) {
     EXPECT_THAT(why(""), HasSubstr("x.fwscene was not opened"));
     EXPECT_THAT(why("{\"fwscene\": 1"), HasSubstr("line 1"));
     EXPECT_THAT(why("[]"), HasSubstr("a list"));
-    EXPECT_THAT(why("{}"), HasSubstr("which version"));
+    EXPECT_THAT(why("{}"), HasSubstr("has no scene version"));
     EXPECT_THAT(why("{\"fwscene\": 3}"), HasSubstr("fwscene is 3; this program reads up to 2"));
     EXPECT_THAT(why(std::string(200000, '[')), HasSubstr("not opened"));
     EXPECT_THAT(why("\x89PNG\r\n"), HasSubstr("not opened"));
     EXPECT_THAT(why(std::string(size_t{17} << 20, ' ')), HasSubstr("above 16777216"));
 }
 
-TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
+TEST(EditorFile, DamagedScenesAreRefusedOrRepaired) {
     std::mt19937 random(11);
     Document document = paintable();
     std::string message;
@@ -768,7 +769,7 @@ TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
                 case 3:
                     text.resize(at + 1);
                     break;
-                default: {  // another value where one was
+                default: {  // another value in place of one
                     const size_t colon = text.find(": ", at);
                     if (colon == std::string::npos) break;
                     const size_t end = text.find_first_of(",\n", colon);
@@ -786,7 +787,7 @@ TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
             continue;
         }
         mended += !repairs.empty();
-        // What was let in is a scene like any other.
+        // A loaded scene is valid.
         Scene again;
         repairs.clear();
         const std::string printed = printScene(scene);
@@ -798,7 +799,7 @@ TEST(EditorFile, TenThousandSpoiltScenesAreRefusedOrMended) {
     EXPECT_GT(mended, fw::test::rounds(500, 150));
 }
 
-TEST(EditorScene, WhatSticksMovesAlongAndStaysWhenItsHolderGoes) {
+TEST(EditorScene, AttachedObjectsMoveWithTheirParentAndStayWithoutIt) {
     Document document = newDocument();
     mustRun(document, "import a.glb name=Box position 1 0 0 rotation 0 90 0 scale 2 2 2");
     mustRun(document, "add source point name=Torch position 1 0 -2");
@@ -817,7 +818,7 @@ TEST(EditorScene, WhatSticksMovesAlongAndStaysWhenItsHolderGoes) {
     near({1, 3, -2});
 }
 
-// A file with one node, at (1, 2, 3) and turned so that its z is the mesh's x.
+// A file with one node at (1, 2, 3), rotated so that its z is the mesh's x.
 bool poseOfTheHook(const Mesh&, std::string_view node, Pose& pose, std::string& error) {
     error = "a.glb: there is no such node";
     pose = {0, 0, -1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 1, 2, 3, 1};
@@ -828,7 +829,7 @@ void expectNear(Vec3 wish, Vec3 given) {
     for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], given[k], 1e-5f) << k;
 }
 
-TEST(EditorScene, WhatSticksToANodeStandsAndTurnsWithIt) {
+TEST(EditorScene, ObjectsAttachedToANodeFollowIt) {
     Document document = newDocument();
     document.nodePose = poseOfTheHook;
     const auto place = [&] { return worldPosition(document.scene, 2, document.nodePose); };
@@ -844,12 +845,12 @@ TEST(EditorScene, WhatSticksToANodeStandsAndTurnsWithIt) {
     mustRun(document, "set Box rotation 0 90 0");
     expectNear({13, 2, -1}, place());
     expectNear({0, 0, -1}, way());
-    // A hand moves it in the world, and once if its holder is moved too.
+    // Moving it by hand works in world space, and only once if its parent moves too.
     mustRun(document, "move Jet 1 0 0");
     expectNear({14, 2, -1}, place());
     mustRun(document, "move \"Jet\" \"Box\" 0 1 0");
     expectNear({14, 3, -1}, place());
-    // Let go and taken again it stays where it is.
+    // Detached and attached again it stays in place.
     const HeatSource held = document.scene.sources[0];
     mustRun(document, "set Jet sticks_to none");
     EXPECT_EQ("", document.scene.sources[0].sticksToNode);
@@ -869,7 +870,7 @@ TEST(EditorScene, WhatSticksToANodeStandsAndTurnsWithIt) {
     undo(document);
     EXPECT_EQ(before, printScene(document.scene));
 
-    // As a game knows it there is no node, and all else is as it was.
+    // A game's scene has no node, and everything else is unchanged.
     const Scene placed = placedScene(document.scene, document.nodePose);
     EXPECT_EQ("", placed.sources[0].sticksToNode);
     expectNear(place(), worldPosition(placed, 2));
@@ -885,8 +886,8 @@ TEST(EditorScene, WhatSticksToANodeStandsAndTurnsWithIt) {
     expectNear({0, 0, -1}, document.scene.sources[0].direction);
 }
 
-// What has hardly any size cannot hold things far away: they stay where a file may have them.
-TEST(EditorScene, WhatSticksToAGrainIsStillAScene) {
+// A parent of almost no size cannot carry distant objects: they stay within the file's limits.
+TEST(EditorScene, ObjectsAttachedToATinyParentStayInRange) {
     Document document = newDocument();
     mustRun(document, "import a.glb name=Grain scale 1e-30 1e-30 1e-30 rotation 0 45 0");
     mustRun(document, "add emitter line position 5 0 0 direction 1000 0 1000 extent 100 0 100");
@@ -899,8 +900,8 @@ TEST(EditorScene, WhatSticksToAGrainIsStillAScene) {
     EXPECT_EQ(document.scene, again);
 }
 
-// A flame on a lamp on a node: each stands on the one before.
-TEST(EditorScene, ARowOfThingsEndsAtANode) {
+// A flame on a lamp on a node: each follows the one before.
+TEST(EditorScene, ChainsMayEndAtANode) {
     Document document = newDocument();
     document.nodePose = poseOfTheHook;
     mustRun(document, "import a.glb name=Box scale 2 2 2");
@@ -914,8 +915,8 @@ TEST(EditorScene, ARowOfThingsEndsAtANode) {
     expectNear({2, 0, 0}, placed.emitters[0].extent);
 }
 
-// A hundred in a row, each a tenth of a metre from the one before: all of them count.
-TEST(EditorScene, RowsOfThingsThatStickAreAsLongAsTheyAre) {
+// A hundred in a chain, each a tenth of a metre from the one before: all of them count.
+TEST(EditorScene, ChainsMayBeLong) {
     Document document = newDocument();
     constexpr int kRow = 100;
     for (int i = 0; i < kRow; ++i) {
@@ -933,25 +934,25 @@ TEST(EditorScene, RowsOfThingsThatStickAreAsLongAsTheyAre) {
     near(10);
     const std::string last = "T" + std::to_string(kRow - 1);
     mustRun(document, "move #" + std::to_string(row.front().id) + " #" +
-                          std::to_string(row.back().id) + " 1 0 0");  // it comes along, once
+                          std::to_string(row.back().id) + " 1 0 0");  // moves along, once
     near(11);
     EXPECT_THAT(refusal(document, "set T0 sticks_to " + last), HasSubstr("sticks to it"));
     mustRun(document, "add source point name=Tail position 0 1 0");
     mustRun(document, "set Tail sticks_to " + last);
     mustRun(document, "remove Tail");
-    // A knot, as another hand may write one: only who is in it is told so.
-    Scene knotted = document.scene;
-    knotted.sources[2].sticksTo = knotted.sources[4].id;
-    const std::vector<ObjectId> holders = holdersOf(knotted, row.back().id);
+    // A cycle in a file: only its members are reported.
+    Scene cyclic = document.scene;
+    cyclic.sources[2].sticksTo = cyclic.sources[4].id;
+    const std::vector<ObjectId> holders = holdersOf(cyclic, row.back().id);
     EXPECT_EQ(size_t(kRow - 2) + 1, holders.size());
     EXPECT_EQ(row[4].id, holders.back());
     std::vector<std::string> repairs;
-    EXPECT_TRUE(mendReferences(knotted, &repairs));
+    EXPECT_TRUE(mendReferences(cyclic, &repairs));
     ASSERT_EQ(1u, repairs.size());
     EXPECT_THAT(repairs[0], HasSubstr("sources[2].sticks_to"));
 }
 
-TEST(EditorFile, WhatStuckInVersionOneKeepsItsWay) {
+TEST(EditorFile, LoadsVersion1AttachedEmitters) {
     Scene scene;
     std::vector<std::string> repairs;
     std::string error;
@@ -974,7 +975,7 @@ TEST(EditorFile, WhatStuckInVersionOneKeepsItsWay) {
     EXPECT_EQ(scene, again);
 }
 
-TEST(EditorScene, KeysAreStraightLinesBetweenThem) {
+TEST(EditorScene, KeysInterpolateLinearly) {
     const Keys keys = {{1, 2}, {3, 4}};
     EXPECT_EQ(1, valueAt({}, 5));
     EXPECT_EQ(2, valueAt(keys, 0));
@@ -982,12 +983,12 @@ TEST(EditorScene, KeysAreStraightLinesBetweenThem) {
     EXPECT_EQ(4, valueAt(keys, 9));
 }
 
-TEST(EditorPaint, AStrokeGoesOverASeam) {
+TEST(EditorPaint, StrokesCrossSeams) {
     Stroke stroke;
     stroke.size = 0.1f;
     stroke.value = 0;
     stroke.hardness = 1;
-    stroke.path = {{0, 0.25f, 0}};  // where the two islands meet on the sheet
+    stroke.path = {{0, 0.25f, 0}};  // at the seam between the two islands
     const PaintImage image =
         applyStroke(sheet(), PaintMultiplier, makePaintImage(PaintMultiplier, 64, 32), stroke);
     for (uint32_t y = 0; y < 32; ++y)
@@ -1001,7 +1002,7 @@ TEST(EditorPaint, AStrokeGoesOverASeam) {
     EXPECT_EQ(0, image.at(0, 16));
 }
 
-TEST(EditorPaint, AStrokeIsTheSameInHoweverManyPiecesItComes) {
+TEST(EditorPaint, StrokesDoNotDependOnTheirPieces) {
     Stroke stroke;
     stroke.value = 2;
     stroke.strength = 0.7f;
@@ -1016,12 +1017,12 @@ TEST(EditorPaint, AStrokeIsTheSameInHoweverManyPiecesItComes) {
         all = area;
     }
     EXPECT_TRUE(whole == painter.image());
-    // A path that goes to and fro over itself is no stronger than one that goes once.
+    // A path that goes back over itself is no stronger.
     stroke.path.insert(stroke.path.end(), {{0, 0.3f, 0}, {-0.3f, 0.1f, 0}});
     EXPECT_TRUE(whole == applyStroke(sheet(), PaintMultiplier, empty, stroke));
 }
 
-TEST(EditorPaint, FillsKeepToWhatTheyAreBy) {
+TEST(EditorPaint, FillsStayWithinTheirCriterion) {
     const PaintImage empty = makePaintImage(PaintMoisture, 64, 32);
     FillRequest fill;
     fill.value = 1;
@@ -1046,13 +1047,13 @@ TEST(EditorPaint, FillsKeepToWhatTheyAreBy) {
 }
 
 TEST(EditorPaint, FillsByCurvatureFindEdgesAndHollows) {
-    // A strip that is flat, bends outwards with a radius of 0.1 m, is flat, and bends inwards.
+    // A strip: flat, bent outwards with a radius of 0.1 m, flat, bent inwards.
     PaintSurface surface;
     surface.width = 120;
     surface.height = 16;
     surface.spacing = 0.01f;
     for (uint32_t y = 0; y < surface.height; ++y) {
-        float x = 0, up = 0, angle = 0;  // of the strip's way
+        float x = 0, up = 0, angle = 0;  // along the strip
         for (uint32_t i = 0; i < surface.width; ++i) {
             surface.positions.insert(surface.positions.end(), {x, up, 0.01f * float(y)});
             surface.normals.insert(surface.normals.end(), {-std::sin(angle), std::cos(angle), 0});
@@ -1072,7 +1073,7 @@ TEST(EditorPaint, FillsByCurvatureFindEdgesAndHollows) {
         fill.curveLow = low;
         fill.curveHigh = high;
         const PaintImage image = applyFill(surface, PaintMoisture, empty, fill, {0, 1, 0});
-        std::string taken;  // in the middle of each of the four stretches
+        std::string taken;  // in the middle of each of the four parts
         for (const uint32_t x : {15u, 45u, 75u, 105u}) taken += image.at(x, 8) ? 'x' : '.';
         return taken;
     };
@@ -1090,7 +1091,7 @@ TEST(EditorPaint, FillsByCurvatureFindEdgesAndHollows) {
     EXPECT_THAT(printCommand(document.scene, command), HasSubstr("by curvature curvature -50 -2"));
 }
 
-TEST(EditorPaint, SmoothingLevelsAnEdgeAcrossTheSeam) {
+TEST(EditorPaint, SmoothingWorksAcrossASeam) {
     std::vector<uint8_t> values(64 * 32, 0);
     for (size_t i = 0; i < values.size(); ++i)
         if (sheet().positions[i * 3] > 0) values[i] = 255;

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Each command of the design's key map has its keys, on the pages that it is for; no two that can be
-# meant at once share theirs; keys that a user changed are there at the next start.
-# Usage: editor_keys.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# Each command of the key map has its keys on its pages, no two commands of one page share keys, and
+# keys that a user changed survive a restart.
+# Usage: editor_keys.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
 [[ -x $binary ]] || { echo "flamewright-editor is not built" && exit 77; }
@@ -19,7 +19,7 @@ fault() {
 # Pages by number, -2: all, -3: all that have a scene. Then keys, then the command.
 while IFS=$'\t' read -r page keys command; do
     grep -q -F -x -e "$page"$'\t'"$keys"$'\t'"$command" "$work/keys" ||
-        fault "$command is not on $keys (page $page): $(grep -F -e $'\t'"$command" "$work/keys" || echo it is not there)"
+        fault "$command is not on $keys (page $page): $(grep -F -e $'\t'"$command" "$work/keys" || echo it is missing)"
 done < <(tr '|' '\t' <<'TEXT'
 -2|Ctrl+P|Find anything
 -3|Ctrl+Z|Undo
@@ -83,7 +83,7 @@ done < <(tr '|' '\t' <<'TEXT'
 2|Shift+[|Weaker brush
 TEXT
 )
-# Every command that two pages see against every other of its keys.
+# Every pair of commands with equal keys on a common page.
 awk -F'\t' '$2 != "" {
     for (i = 1; i <= count; ++i)
         if (keys[i] == $2 && (page[i] == $1 || page[i] < -1 || $1 < -1)) print $2 ": " name[i] " and " $3

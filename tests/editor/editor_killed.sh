@@ -1,10 +1,9 @@
 #!/bin/bash
-# kill -9 at random moments while an artist works and saves: the scene's file always opens, with all
-# that a save was told of, and the copy that is kept aside always opens too and lacks no more than the
-# time between two copies. That time is pressed from 20 s to one here, so that copies are written at
-# every moment that is tried.
+# Kills the editor (kill -9) at random times while an artist works and saves. The scene's file always
+# opens and holds every reported save. The recovery copy always opens too and lacks at most the time
+# between two copies, which is 1 s here instead of 20 s, so that kills also hit the writing of copies.
 # Usage: editor_killed.sh [TIMES], with the build folder in FW_BUILD_FOLDER; 5 unless given. 77:
-# something it needs is not here.
+# a requirement is missing.
 set -euo pipefail
 times=${1:-5}
 build="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}"
@@ -15,11 +14,11 @@ source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 need Xvfb xdotool
 export HOME=$work XDG_STATE_HOME=$work/state XDG_CACHE_HOME=$work/cache
 open_display
-every=1 allowed=30 usual=20 # s: between copies here, what may be lost, between copies by default
+every=1 allowed=30 usual=20 # s: between copies here; allowed loss; default between copies
 copies=$work/state/flamewright
 cd "$work"
 
-# opens FILE: by the program itself, which reads its pictures too.
+# opens FILE: in the editor, which reads its images too.
 opens() {
     echo "open \"$1\"" >open.fws
     "$binary" --script open.fws --headless >open.log 2>&1 && ! grep -q -i 'repair\|cannot be read' open.log ||
@@ -45,7 +44,7 @@ for ((time = 1; time <= times; ++time)); do
     cp begin.fwscene scene/scene.fwscene
     start "$binary" --autosave "$every" scene/scene.fwscene
     await "did: Opened scene.fwscene"
-    # Steps as fast as the program takes them, a save among them, for 0.3 to 3.3 s.
+    # Steps and saves as fast as the editor takes them, for 0.3 to 3.3 s.
     pressed=()
     stop=$(($(milliseconds) + 300 + RANDOM % 3000))
     while (($(milliseconds) < stop)); do
@@ -60,8 +59,8 @@ for ((time = 1; time <= times; ++time)); do
     program=
     opens scene/scene.fwscene
     kept=$(events scene/scene.fwscene)
-    told=$(awk '/did: Add event/ { ++steps } /did: Saved/ { saved = steps } END { print saved + 0 }' log)
-    ((kept >= told)) || { echo "$told events were told to be saved, $kept are in the file" && exit 1; }
+    reported=$(awk '/did: Add event/ { ++steps } /did: Saved/ { saved = steps } END { print saved + 0 }' log)
+    ((kept >= reported)) || { echo "$reported events were reported as saved, $kept are in the file" && exit 1; }
     for copy in "$copies"/recovery-*.fwscene; do
         [[ -s $copy ]] || continue
         opens "$copy"

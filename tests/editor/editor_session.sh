@@ -1,10 +1,9 @@
 #!/bin/bash
-# An artist's long day, pressed together: the same round of work over and over in one window, with
-# real keys and clicks, half of it under the validation layers. Memory stays flat, and when the program
-# is killed in the middle of it, what was done until half a minute before is there again. All of it is
-# checked, and what is wrong is told at the end.
+# Repeats one round of work in one window with real keys and clicks, half of the time under the
+# validation layers. Memory must stay flat. After a kill, all work up to half a minute before must be
+# restored. The script checks everything and prints all faults at the end.
 # Usage: editor_session.sh [SECONDS], with the build folder in FW_BUILD_FOLDER; 40 unless given. 77:
-# something it needs is not here.
+# a requirement is missing.
 set -euo pipefail
 seconds=${1:-40}
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
@@ -20,16 +19,16 @@ fault() {
     echo "$1"
     faults+=("$1")
 }
-# The program is about to end or to be ended: what the validation layers said until here.
+# The messages of the validation layers up to now, before the program ends.
 check_messages() {
     ! grep -E 'VUID-|UNASSIGNED-|SYNC-HAZARD|validation:' "$work/log" || fault "the validation layer complains"
 }
 
-# MiB that the program holds.
+# Resident memory of the program in MiB.
 memory() { awk '/^VmRSS/ { print int($2 / 1024) }' "/proc/$program/status"; }
 
-# One round: a source placed, moved and taken back, the burn played, scrubbed, asked and compared,
-# a stroke painted, the flame page and the export page looked at.
+# One round: places, moves and undoes a source; plays, scrubs, queries and compares the burn; paints a
+# stroke; visits the flame page and the export page.
 round() {
     xdotool key 1 key shift+a mousemove 600 330 click 1
     await "did: Add heat source"
@@ -66,8 +65,8 @@ work_for() {
     done
 }
 
-# Without the layers, which keep a note of every buffer that there ever was. What is kept of a scene
-# (moments to go back to, undo) is bounded; a leak of a picture a round is not.
+# Without the layers, which remember every buffer. The memory of a scene (keyframes, undo) is bounded;
+# a leak of one image per round is not.
 layers=()
 start "$binary" --scene "Burning crate"
 await ready
@@ -85,7 +84,7 @@ await ready
 work_for $((seconds / 2))
 check_messages
 
-# Killed: the work until the last autosave is offered again.
+# After a kill the editor offers the work up to the last autosave.
 xdotool key 1 mousemove 600 330 key shift+a click 1
 await "did: Add heat source"
 for _ in $(seq 300); do

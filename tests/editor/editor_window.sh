@@ -1,10 +1,10 @@
 #!/bin/bash
-# Drives the editor as a hand does, with real keys and clicks in a window: imports a glTF, places a
-# heat source on it, plays, scrubs back, undoes and does again, paints on the mesh, paints a flame and
-# draws it by points, asks why, saves, writes the game's files, and opens what was saved; the scene is
-# the same to the byte, and the window's picture the one that is drawn without a window.
-# Under the validation layer, synchronization checks included.
-# Usage: editor_window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# Drives the editor with real keys and clicks in a window: imports a glTF, places a heat source, plays,
+# scrubs, undoes, redoes, paints the mesh, paints a flame and edits its points, queries a point, saves,
+# writes the game's files and opens the saved scene. The scene must be equal byte for byte, and the
+# window's picture must equal one drawn without a window.
+# Runs under the validation layer with synchronization checks.
+# Usage: editor_window.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/flamewright-editor"
 [[ -x $binary ]] || { echo "flamewright-editor is not built" && exit 77; }
@@ -12,7 +12,7 @@ binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/editor/app/fla
 source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 need Xvfb xdotool
 model=/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb
-[[ -f $model ]] || { echo "$model is not here (package assimp-testmodels)" && exit 77; }
+[[ -f $model ]] || { echo "$model is missing (package assimp-testmodels)" && exit 77; }
 
 export HOME=$work XDG_STATE_HOME=$work/state XDG_CACHE_HOME=$work/cache
 cp "$model" "$work/box.glb"
@@ -26,7 +26,7 @@ await ready
 xdotool mousemove 600 330 key shift+a
 xdotool click 1
 await "did: Add heat source"
-# By the clipboard, and back.
+# Copies and pastes, and undoes it.
 xdotool key ctrl+c
 await "did: Copied"
 xdotool key ctrl+v
@@ -36,7 +36,7 @@ await "did: Undone"
 xdotool key space
 await "burn at 1 s"
 xdotool key space
-# Back by hand: the preview follows while the button is down, and time goes on from there.
+# Scrubs back: the preview follows while the button is down, and time continues from there.
 xdotool mousemove 100 598 mousedown 1
 await "preview of"
 xdotool mousemove 96 598 mouseup 1
@@ -44,7 +44,7 @@ xdotool key ctrl+z
 await "did: Undone"
 xdotool key ctrl+shift+z
 await "did: Done again"
-# A stroke over the mesh is one step, and undone as one.
+# A stroke over the mesh is one undo step.
 xdotool key 2
 await "ready to paint"
 xdotool key f mousemove 440 380 mousedown 1
@@ -54,14 +54,14 @@ xdotool key ctrl+z
 await "did: Undone"
 xdotool key ctrl+shift+z
 await "did: Done again"
-# A straight line from where the stroke ended.
+# A straight line from the end of the stroke.
 xdotool mousemove 500 400 keydown shift click 1
 await "did: Paint burn multiplier on"
 xdotool keyup shift
 xdotool key 3 mousemove 540 300 mousedown 1
 xdotool mousemove 560 340 mousemove 560 400 mouseup 1
 await "did: Paint the flame"
-# A straight line from where that ended.
+# A straight line from that end.
 xdotool mousemove 590 460 keydown shift click 1
 await "did: Paint the flame"
 xdotool keyup shift
@@ -71,17 +71,17 @@ await "did: Smear the flame"
 xdotool key g mousemove 540 420 mousedown 1
 xdotool mousemove 540 380 mousemove 540 240 mouseup 1
 await "did: Gradient in the flame"
-# By points: the outline is dragged, and that is a step.
+# Dragging an outline point is a step.
 xdotool key p mousemove 645 443 mousedown 1
 xdotool mousemove 630 440 mousemove 612 432 mouseup 1
 await "did: Outline point of the flame"
-# Why does it not burn there? All but the forecast is answered at once.
+# Queries an unburnt point. Everything but the forecast is answered at once.
 xdotool key 1
 await ready
 xdotool key y mousemove 540 300 click 1
 await "answered [0-2] frames later"
 xdotool key Escape
-# Time goes on from where it was only looked at; a click is asked about; other keys for a command.
+# Time continues from the scrubbed time; a click queries a point; a command gets other keys.
 xdotool key ctrl+space
 await "did: Burns on from"
 xdotool key space key shift+F1
@@ -95,7 +95,7 @@ await "did: Saved first.fwscene"
 xdotool key 4 key ctrl+e
 await "did: Wrote [0-9]+ files"
 for file in first.c first.cpp; do
-    [[ -s $work/first_game/$file ]] || { ls -R "$work" && echo "the code is not there" && exit 1; }
+    [[ -s $work/first_game/$file ]] || { ls -R "$work" && echo "the code is missing" && exit 1; }
 done
 cc -std=c11 -Wall -Wextra -Werror -fsyntax-only -I"$(dirname "${BASH_SOURCE[0]}")/../../plugin/include" \
     "$work/first_game/first.c"
@@ -119,7 +119,7 @@ xdotool key ctrl+shift+s key ctrl+a type "$work/second.fwscene"
 xdotool key Return
 await "did: Saved second.fwscene"
 leave ctrl+q
-# Its pictures are named after the scene and after what they hold.
+# Its images are named after the scene and their content.
 sed 's/"second\.paint_/"first.paint_/' "$work/second.fwscene" | cmp - "$work/first.fwscene" ||
     { echo "saving changed the scene" && exit 1; }
 cmp "$work"/first.paint_*.png "$work"/second.paint_*.png || { echo "saving changed the paint" && exit 1; }

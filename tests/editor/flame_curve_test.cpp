@@ -1,4 +1,4 @@
-// Flames by points: what an outline and temperatures paint.
+// Flames by curve points: the painted outline and temperatures.
 #include "document/flame_curve.h"
 
 #include <gmock/gmock.h>
@@ -13,7 +13,7 @@ namespace {
 using namespace fwtest;
 using ::testing::HasSubstr;
 
-TEST(FlameCurve, TheOutlineGoesThroughItsPointsAndNeverBeyondTwoNeighbours) {
+TEST(FlameCurve, TheOutlineInterpolatesWithoutOvershoot) {
     const Keys outline = {{0, 0.5f}, {0.2f, 0.9f}, {0.6f, 0.9f}, {0.7f, 0.1f}, {1, 0.05f}};
     for (const Key& point : outline) EXPECT_FLOAT_EQ(point.value, radiusAt(outline, point.time));
     for (size_t i = 0; i + 1 < outline.size(); ++i) {
@@ -27,7 +27,7 @@ TEST(FlameCurve, TheOutlineGoesThroughItsPointsAndNeverBeyondTwoNeighbours) {
     }
     EXPECT_FLOAT_EQ(0.5f, radiusAt(outline, -1));
     EXPECT_FLOAT_EQ(0.05f, radiusAt(outline, 2));
-    EXPECT_FLOAT_EQ(0.3f, radiusAt({{0.5f, 0.3f}}, 0.1f));  // one point: as wide everywhere
+    EXPECT_FLOAT_EQ(0.3f, radiusAt({{0.5f, 0.3f}}, 0.1f));  // one point: the same width everywhere
 }
 
 TEST(FlameCurve, SootEndsAtTheOutlineAndHeatRisesToTheCore) {
@@ -42,7 +42,7 @@ TEST(FlameCurve, SootEndsAtTheOutlineAndHeatRisesToTheCore) {
             EXPECT_TRUE(texels[i] >= 0 && texels[i] <= 3000 && texels[i + 1] >= 0 &&
                         texels[i + 1] <= 2);
             EXPECT_EQ(out > 0.6f, texels[i + 1] == 0) << out << " at row " << y;
-            EXPECT_LE(texels[i], before);  // outwards it is colder
+            EXPECT_LE(texels[i], before);  // colder outwards
             before = texels[i];
         }
     }
@@ -51,12 +51,12 @@ TEST(FlameCurve, SootEndsAtTheOutlineAndHeatRisesToTheCore) {
     EXPECT_GT(texels[middle + 1], 0.9f);
 }
 
-TEST(FlameCurve, WhatIsTooColdToGlowIsNotThere) {
+TEST(FlameCurve, TexelsTooColdToGlowAreEmpty) {
     for (const float value : texelsOfCurve({{{0, 0.5f}, {1, 0.5f}}, {{0, 200}, {1, 300}}}))
         EXPECT_EQ(0, value);
 }
 
-TEST(FlameCurve, IsSetUndoneSavedAndRefusedByLines) {
+TEST(FlameCurve, CanBeSetUndoneAndSaved) {
     Yard yard;
     yard.run(
         "add flame camp name=Campfire\n"
@@ -65,7 +65,7 @@ TEST(FlameCurve, IsSetUndoneSavedAndRefusedByLines) {
         "expect Campfire outline 0:0.5 0.4:0.7 1:0.05\n"
         "save a.fwscene\nnew\nopen a.fwscene\nexpect Campfire stops 0:900 1:1800\n"
         "set Campfire stops none\nundo\nexpect Campfire stops 0:900 1:1800\n"
-        // Limits: within the picture, and no hotter than a profile can say.
+        // Limits: inside the picture, and no hotter than a profile can hold.
         "set Campfire outline 0:9 2:0.5\nexpect Campfire outline 0:1.25 1:0.5\n"
         "set Campfire stops 0:9000\nexpect Campfire stops 0:2700\nplay 0\n");
     EXPECT_THAT(yard.fails("set Campfire outline 0.5"), HasSubstr("2 numbers"));

@@ -1,5 +1,5 @@
-// What a brush does to a flame's shape: dabs stay in their circle and between their limits, a smear
-// takes along, and a gradient goes from one value to the other within the flame.
+// Brushes on a flame's shape: dabs stay in their circle and limits, a smear drags, a gradient
+// blends two values inside the flame.
 #include "document/flame_paint.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@ constexpr int kWide = ProfilePaint::kWidth, kHigh = ProfilePaint::kHeight;
 
 size_t texel(int x, int y) { return size_t(y) * kWide + size_t(x); }
 
-// Half as wide as it may be, as hot everywhere.
+// Half of the greatest width, equally hot everywhere.
 ProfilePaint column() {
     ProfilePaint paint;
     for (int y = 0; y < kHigh; ++y)
@@ -26,7 +26,7 @@ ProfilePaint column() {
     return paint;
 }
 
-TEST(FlamePaint, ADabStaysInItsCircleOnEitherSideOfTheAxis) {
+TEST(FlamePaint, DabsStayInTheirCircleOnBothSides) {
     Dab dab{
         .x = 20, .y = 60, .radiusX = 6, .radiusY = 9, .value = 1900, .strength = 1, .hardness = 1};
     ProfilePaint right = column(), left = column();
@@ -44,7 +44,7 @@ TEST(FlamePaint, ADabStaysInItsCircleOnEitherSideOfTheAxis) {
         }
 }
 
-TEST(FlamePaint, HeatThatIsPaintedGlowsAndWhatIsErasedIsGone) {
+TEST(FlamePaint, PaintedHeatGlowsAndErasedHeatIsGone) {
     ProfilePaint paint;
     Dab dab{.x = 10, .y = 40, .value = 1500, .strength = 1, .hardness = 1};
     paintDab(paint, dab);
@@ -76,8 +76,8 @@ TEST(FlamePaint, SmoothingLevelsAnEdge) {
     EXPECT_GT(step(), 0);
 }
 
-// From within the column out over its edge: it grows a tongue, of heat and of what glows.
-TEST(FlamePaint, ASmearTakesAlong) {
+// From inside the column out over its edge: it grows a tongue of heat and emission.
+TEST(FlamePaint, SmearsDragHeatAlong) {
     for (const float side : {1.0f, -1.0f}) {
         ProfilePaint paint = column();
         Dab dab{.tool = ProfileTool::kSmear,
@@ -98,7 +98,7 @@ TEST(FlamePaint, ASmearTakesAlong) {
     }
 }
 
-TEST(FlamePaint, AGradientGoesFromOneValueToTheOtherWithinTheFlame) {
+TEST(FlamePaint, GradientsBlendInsideTheFlame) {
     ProfilePaint paint = column();
     const Gradient up{
         .fromX = 0, .fromY = 20, .toX = 0, .toY = 100, .fromValue = 1800, .toValue = 1000};
@@ -107,9 +107,9 @@ TEST(FlamePaint, AGradientGoesFromOneValueToTheOtherWithinTheFlame) {
     EXPECT_NEAR(1400, paint.kelvin[texel(5, 60)], 6);
     EXPECT_EQ(1000, paint.kelvin[texel(5, 120)]);
     EXPECT_EQ(1, paint.soot[texel(5, 60)]);
-    EXPECT_EQ(0, paint.kelvin[texel(kWide - 1, 60)]) << "no flame beside the flame";
+    EXPECT_EQ(0, paint.kelvin[texel(kWide - 1, 60)]) << "nothing outside the flame";
 
-    // Aslant, left of the axis as right of it, half as strong.
+    // Slanted, equal on both sides of the axis, half strength.
     ProfilePaint right = column(), left = column();
     Gradient across{.plane = ProfilePlane::kSoot,
                     .fromX = 4,

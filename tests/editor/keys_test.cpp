@@ -1,4 +1,4 @@
-// Names of keys, and who has them.
+// Names of keys and their commands.
 #include "document/keys.h"
 
 #include <gtest/gtest.h>
@@ -6,7 +6,7 @@
 namespace fw::test::keys_test {
 namespace {
 
-TEST(Keys, NamesAreReadAndWrittenAlike) {
+TEST(Keys, NamesRoundTrip) {
     for (const char* name : {"A", "Ctrl+S", "Ctrl+Shift+Z", "Shift+[", "]", ",", "Space",
                              "Ctrl+Space", "Num 1", "Shift+F1", "Del", "Ctrl+Plus"}) {
         const auto keys = fwedit::parseKeys(name);
@@ -15,7 +15,7 @@ TEST(Keys, NamesAreReadAndWrittenAlike) {
     }
 }
 
-TEST(Keys, WhatNoCommandMayHaveIsNoKey) {
+TEST(Keys, ReservedKeysAreRefused) {
     for (const char* name :
          {"", "Esc", "Enter", "Ctrl+", "Shift", "a", "Ctrl+Ctrl+S", "Shift+Ctrl+S", "F13", "AB"})
         EXPECT_FALSE(fwedit::parseKeys(name)) << name;
@@ -24,7 +24,7 @@ TEST(Keys, WhatNoCommandMayHaveIsNoKey) {
     EXPECT_EQ("", fwedit::printKeys({-1, true, false}));
 }
 
-TEST(Keys, TwoCommandsOfOnePageCannotShareThem) {
+TEST(Keys, CommandsOfOnePageCannotShareAKey) {
     const fwedit::KeyUse uses[] = {{"Save", "Ctrl+S", fwedit::kEveryPageOfAScene},
                                    {"Frame selection", "F", 0},
                                    {"Smear", "F", 2},
@@ -37,9 +37,10 @@ TEST(Keys, TwoCommandsOfOnePageCannotShareThem) {
     EXPECT_EQ("Save", taken("Scale", "Ctrl+S", 0));
     EXPECT_EQ("Frame selection", taken("Scale", "F", 0));
     EXPECT_EQ("Smear", taken("Blur", "F", 2));
-    EXPECT_EQ("", taken("Smooth paint", "F", 1));                          // another page's
-    EXPECT_EQ("", taken("Frame selection", "F", 0));                       // its own
-    EXPECT_EQ("Frame selection", taken("Undo", "F", fwedit::kEveryPage));  // meets every page's
+    EXPECT_EQ("", taken("Smooth paint", "F", 1));     // used by another page
+    EXPECT_EQ("", taken("Frame selection", "F", 0));  // its own key
+    EXPECT_EQ("Frame selection",
+              taken("Undo", "F", fwedit::kEveryPage));  // conflicts on every page
     EXPECT_EQ("", taken("Scale", "Shift+F", 0));
 }
 

@@ -1,5 +1,5 @@
-// The live link: what is edited arrives, whole and no more of it than has changed; what is no
-// message is refused; either side may go at any moment.
+// The live link: edits arrive complete and only as far as they changed, invalid messages are
+// refused, and either side may leave at any time.
 #include "document/apply.h"
 #include "link/scene_link.h"
 
@@ -31,7 +31,7 @@ constexpr const char* kPainted =
     "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
     "add layer multiplier name=Belt mesh Board size 512\n";
 
-// Within two seconds, asked again and again.
+// Polls for up to two seconds.
 template <typename Ask>
 bool soon(Ask&& ask) {
     for (int i = 0; i < 1000; ++i) {
@@ -41,7 +41,7 @@ bool soon(Ask&& ask) {
     return false;
 }
 
-// An editor with a painted board, and a game that listens for it.
+// An editor with a painted board and a game that listens for it.
 struct LinkedYard {
     LinkedYard() {
         yard.run(kPainted);
@@ -56,7 +56,7 @@ struct LinkedYard {
     std::string error, report;
 };
 
-TEST(EditorLink, MessagesComeWholeInWhateverPieces) {
+TEST(EditorLink, MessagesArriveWholeInAnyPieces) {
     Bytes stream;
     for (uint8_t i = 0; i < 40; ++i)
         fwlink::appendMessage(stream, i % 2 ? Kind::Scene : Kind::Paint, Bytes(size_t{i} * 7, i));
@@ -77,7 +77,7 @@ TEST(EditorLink, MessagesComeWholeInWhateverPieces) {
     EXPECT_EQ(40u, came);
 }
 
-TEST(EditorLink, WhatIsNoMessageIsRefusedInWords) {
+TEST(EditorLink, InvalidMessagesAreRefused) {
     Bytes good;
     fwlink::appendMessage(good, Kind::Scene, Bytes{1, 2, 3});
     const auto refused = [&](size_t at, uint8_t value) {
@@ -88,18 +88,18 @@ TEST(EditorLink, WhatIsNoMessageIsRefusedInWords) {
         Message message;
         std::string error, later;
         EXPECT_FALSE(reader.next(message, error));
-        reader.feed(good);  // nothing is believed after that
+        reader.feed(good);  // nothing is accepted after that
         EXPECT_FALSE(reader.next(message, later));
         return error;
     };
-    EXPECT_THAT(refused(0, 'G'), HasSubstr("no message of a live link"));
+    EXPECT_THAT(refused(0, 'G'), HasSubstr("not a message of a live link"));
     EXPECT_THAT(refused(4, 9), HasSubstr("speaks version 9, this one 1"));
     EXPECT_THAT(refused(6, 77), HasSubstr("kind 77; there are 3"));
     EXPECT_THAT(refused(11, 0x7f), HasSubstr("it may have 33554432"));
     EXPECT_THAT(refused(17, 9), HasSubstr("came damaged"));
 }
 
-// All that an editor says about a scene with paint, as messages.
+// All messages of an editor about a scene with paint.
 std::vector<Message> messagesOf(const Document& document, SceneSender& sender, Listener& listener,
                                 Channel& channel) {
     std::string error;
@@ -120,7 +120,7 @@ std::vector<Message> messagesOf(const Document& document, SceneSender& sender, L
     return messages;
 }
 
-TEST(EditorLink, OnlyTilesThatChangedAreSent) {
+TEST(EditorLink, SendsOnlyChangedTiles) {
     Yard yard;
     yard.run(kPainted);
     Document& document = yard.host->document;
@@ -143,7 +143,7 @@ TEST(EditorLink, OnlyTilesThatChangedAreSent) {
     const auto first = messagesOf(document, sender, listener, channel);
     ASSERT_EQ(2u, first.size());
     take(first);
-    // A dab is in one of three tiles; a change that is no paint sends none.
+    // A dab touches one of three tiles; a change without paint sends none.
     yard.run("stroke Belt value 0 size 0.02 path 0:0.2:0.01 0.02:0.2:0.01\n");
     const auto second = messagesOf(document, sender, listener, channel);
     ASSERT_EQ(2u, second.size());
@@ -155,7 +155,7 @@ TEST(EditorLink, OnlyTilesThatChangedAreSent) {
     take(third);
     yard.run("undo 2\n");
     take(messagesOf(document, sender, listener, channel));
-    yard.run("undo\n");  // the fill: the layer is there, and nothing is painted on it
+    yard.run("undo\n");  // the fill: the layer exists with nothing painted
     EXPECT_TRUE(document.images.empty());
     take(messagesOf(document, sender, listener, channel));
     yard.run("remove Belt\n");
@@ -163,7 +163,7 @@ TEST(EditorLink, OnlyTilesThatChangedAreSent) {
     EXPECT_TRUE(reader.scene().images.empty());
 }
 
-TEST(EditorLink, TenThousandSpoiltBodiesAreRefusedOrAScene) {
+TEST(EditorLink, DamagedBodiesAreRefusedOrValid) {
     Yard yard;
     yard.run(kPainted);
     yard.run("fill Belt value 0.5\n");
@@ -197,7 +197,7 @@ TEST(EditorLink, TenThousandSpoiltBodiesAreRefusedOrAScene) {
     EXPECT_GT(refused, 5000u);
 }
 
-TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
+TEST(EditorLink, ReportsItsSceneAndEitherSideMayLeave) {
     Yard yard;
     yard.run(kPainted);
     auto receiver = std::make_unique<SceneReceiver>();
@@ -209,7 +209,7 @@ TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
     yard.run("link " + port + "\n");
     ASSERT_TRUE(soon(comes));
     EXPECT_EQ(yard.host->document.scene, scene.scene);
-    // The artist's lines go on while nobody answers; the newest is what counts.
+    // The artist's lines continue without answers; the latest counts.
     yard.run("set settings wind 1 0 0\nset settings wind 2 0 0\n");
     std::thread sample([&] {
         receiver->took(scene.number, "");
@@ -226,7 +226,7 @@ TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
     EXPECT_EQ(2, scene.scene.settings.wind[0]);
     EXPECT_THAT(yard.fails("link wait"), HasSubstr("there is no link"));
 
-    // Another editor comes; then the sample goes.
+    // Another editor connects; then the sample leaves.
     yard.run("link " + port + "\n");
     ASSERT_TRUE(soon(comes));
     receiver = nullptr;
@@ -236,12 +236,12 @@ TEST(EditorLink, AnswersWhatItShowsAndEitherSideMayGo) {
     EXPECT_THAT(yard.fails("link 70000"), HasSubstr("no port from 1 to 65535"));
 }
 
-TEST(EditorLink, AStrangerOnThePortIsShownOutAndTheNextIsServed) {
+TEST(EditorLink, AStrangerIsDisconnectedAndTheNextIsServed) {
     LinkedYard w;
     std::string said;
     Channel stranger;
     ASSERT_TRUE(stranger.connect(w.receiver.port(), w.error)) << w.error;
-    // A browser's request is no message, nor is a message that only the editor gets.
+    // Neither a browser's request nor an editor-only message is valid here.
     stranger.send(Kind::Taken, Bytes{1, 2, 3});
     EXPECT_TRUE(soon([&] {
         stranger.pump();
@@ -266,19 +266,19 @@ Bytes emptyPaint(uint32_t layer) {
     return body.body;
 }
 
-TEST(EditorLink, PaintForLayersOfNoSceneTakesMemoryOfWhatWasSentAndIsLimited) {
+TEST(EditorLink, PaintWithoutASceneIsLimitedToItsBytes) {
     SceneReader reader;
     bool whole = false;
     std::string error;
     for (uint32_t i = 0; i < fwedit::kMostObjects; ++i)
         ASSERT_TRUE(reader.take({Kind::Paint, emptyPaint(1000 + i)}, whole, error)) << error;
     EXPECT_EQ(fwedit::kMostObjects, reader.layers());
-    EXPECT_EQ(0u, reader.paintBytes());  // no tile came
+    EXPECT_EQ(0u, reader.paintBytes());  // no tile arrived
     EXPECT_FALSE(reader.take({Kind::Paint, emptyPaint(7)}, whole, error));
     EXPECT_THAT(error, HasSubstr("paint for more than 4000 layers"));
-    // Again for a layer that is here is no new one.
+    // Repeated messages for a known layer count once.
     EXPECT_TRUE(reader.take({Kind::Paint, emptyPaint(1000)}, whole, error)) << error;
-    // Nor has it a table of tiles once a scene names it.
+    // It has no tile table either until a scene names it.
     Yard yard;
     yard.run(kPainted);
     reader = {};
@@ -293,7 +293,7 @@ TEST(EditorLink, PaintForLayersOfNoSceneTakesMemoryOfWhatWasSentAndIsLimited) {
     EXPECT_TRUE(reader.scene().images.empty());
 }
 
-TEST(EditorLink, TilesBeyondTheLimitAreRefusedAndTilesThatGoCountNoLonger) {
+TEST(EditorLink, TilesAreLimitedAndFreedTilesNoLongerCount) {
     constexpr uint32_t kTiles = 4096;  // of a layer of 4096 x 4096: 16 MiB
     const auto paint = [](uint32_t layer, bool update, bool there) {
         fwlink::BodyWriter body;
@@ -325,7 +325,7 @@ TEST(EditorLink, TilesBeyondTheLimitAreRefusedAndTilesThatGoCountNoLonger) {
     EXPECT_TRUE(reader.take(paint(99, false, true), whole, error)) << error;
 }
 
-TEST(EditorLink, SilentCallersKeepNobodyOutAndTheLastSceneWins) {
+TEST(EditorLink, SilentClientsBlockNobodyAndTheLastSceneWins) {
     LinkedYard w;
     std::vector<Channel> silent(3 * SceneReceiver::kMostCallers);
     for (Channel& channel : silent) {
@@ -336,7 +336,7 @@ TEST(EditorLink, SilentCallersKeepNobodyOutAndTheLastSceneWins) {
     w.link();
     ASSERT_TRUE(soon([&] { return w.poll(); })) << w.report;
     EXPECT_TRUE(w.receiver.connected());
-    // An editor that hangs, or pretends to be one, is replaced by the next that sends a scene.
+    // An editor that hangs is replaced by the next that sends a scene.
     Yard other;
     other.run(kPainted);
     other.run("set settings wind 7 0 0\nlink " + std::to_string(w.receiver.port()) + "\n");
@@ -345,7 +345,7 @@ TEST(EditorLink, SilentCallersKeepNobodyOutAndTheLastSceneWins) {
     EXPECT_EQ(7, w.scene.scene.settings.wind[0]);
 }
 
-TEST(EditorLink, AnEditorThatReadsNoAnswersIsLetGo) {
+TEST(EditorLink, AnEditorThatReadsNoAnswersIsDropped) {
     LinkedYard w;
     w.link();
     ASSERT_TRUE(soon([&] { return w.poll(); })) << w.report;
@@ -355,7 +355,7 @@ TEST(EditorLink, AnEditorThatReadsNoAnswersIsLetGo) {
     EXPECT_FALSE(w.receiver.connected());
 }
 
-TEST(EditorLink, AnAnswerThatIsTooLongOrToNoSceneEndsTheLinkInWords) {
+TEST(EditorLink, InvalidAnswersEndTheLinkWithAMessage) {
     for (const bool isLong : {true, false}) {
         Yard yard;
         yard.run(kPainted);
@@ -378,7 +378,7 @@ TEST(EditorLink, AnAnswerThatIsTooLongOrToNoSceneEndsTheLinkInWords) {
     }
 }
 
-// ---- what a sample does with it
+// ---- burns of a linked sample
 
 std::string hashOf(Burn& burn) {
     std::vector<std::string> lines;
@@ -388,7 +388,7 @@ std::string hashOf(Burn& burn) {
     return lines.empty() ? "" : lines[0];
 }
 
-TEST(EditorBurn, GoesOnWithAChangedSceneAsIfItHadAlwaysBeenSo) {
+TEST(EditorBurn, ContinuesAChangedSceneAsIfItHadAlwaysBeenSo) {
     Yard yard;
     yard.run(kBoard);
     std::string error;
@@ -396,7 +396,7 @@ TEST(EditorBurn, GoesOnWithAChangedSceneAsIfItHadAlwaysBeenSo) {
     Burn& burn = *yard.host->burn;
     const auto revise = [&] { return reviseBurn(burn, yard.host->document.scene, yard.folder); };
     ASSERT_TRUE(runBurn(burn, 1, error)) << error;
-    // What comes later: a second match, and water in the way of the first one's fire.
+    // Later events: a second match, and water ahead of the first fire.
     yard.run(
         "add source match name=Later position 0.4 0.2 0 radius 0.04 start 2\n"
         "add source water position 0 0.2 0 radius 0.3 output 0.2 start 2\n"
@@ -412,12 +412,12 @@ TEST(EditorBurn, GoesOnWithAChangedSceneAsIfItHadAlwaysBeenSo) {
     ASSERT_TRUE(revise());
     EXPECT_EQ(6u, burn.parts.size());
     ASSERT_TRUE(runBurn(burn, 6, error)) << error;
-    auto anew = createBurn(yard.host->cpu(error), yard.host->document.scene, {}, yard.folder,
-                           yard.host->assets, error);
-    ASSERT_TRUE(anew && runBurn(*anew, 6, error)) << error;
-    EXPECT_EQ(hashOf(*anew), hashOf(burn));
+    auto rebuilt = createBurn(yard.host->cpu(error), yard.host->document.scene, {}, yard.folder,
+                              yard.host->assets, error);
+    ASSERT_TRUE(rebuilt && runBurn(*rebuilt, 6, error)) << error;
+    EXPECT_EQ(hashOf(*rebuilt), hashOf(burn));
 
-    // What a burn is made for is not changed under it.
+    // Properties that a burn was created with cannot change.
     for (const char* line :
          {"set Board moisture 0.4", "set settings pace 30", "set Struck position 0 0 0",
           "add layer multiplier mesh Board", "remove Board"}) {

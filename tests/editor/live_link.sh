@@ -1,9 +1,8 @@
 #!/bin/bash
-# A sample shows a scene that a script of the editor pushes to it, change by change: in place within
-# a frame what can be, by a burn of its own what cannot. What lights it sticks to a node of the file,
-# which is turned. At the end both have one fire, bit for bit,
-# and the sample's picture is the editor's viewport.
-# Usage: live_link.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# An editor script pushes a scene to a sample change by change. Most changes apply in place within a
+# frame, others start a new burn. The igniting flame is attached to a node of the file, which moves.
+# In the end both burns are equal bit for bit, and the sample's picture equals the editor's viewport.
+# Usage: live_link.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
 set -euo pipefail
 build="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}"
 editor=$build/editor/app/flamewright-editor sample=$build/samples/14_scene/14_scene
@@ -11,7 +10,7 @@ for program in "$editor" "$sample"; do
     [[ -x $program ]] || { echo "$program is not built" && exit 77; }
 done
 model=/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb
-[[ -f $model ]] || { echo "$model is not here (package assimp-testmodels)" && exit 77; }
+[[ -f $model ]] || { echo "$model is missing (package assimp-testmodels)" && exit 77; }
 work=$(mktemp -d)
 program=
 trap '[[ -z $program ]] || kill "$program" 2>/dev/null || true; rm -rf "$work"' EXIT
@@ -28,7 +27,7 @@ fail() {
 program=$!
 port=
 for _ in $(seq 600); do
-    port=$(sed -n 's/.*awaited on port \([0-9]*\).*/\1/p' "$work/log")
+    port=$(sed -n 's/.*on local port \([0-9]*\).*/\1/p' "$work/log")
     [[ -z $port ]] || break
     sleep 0.1
 done
@@ -65,10 +64,10 @@ mapfile -t hashes < <(grep '^Box: ' "$work/script.log")
 grep -q -F -x "${hashes[1]}" "$work/log" || fail "the sample's fire is not the editor's"
 grep -q -E '^scene 2 is shown after [12] frames?$' "$work/log" || fail "wind and light come late"
 
-# The same scene in the editor's viewport, to the pixel but for what only flickers.
+# The same scene in the editor's viewport, equal to the pixel except for flicker.
 "$editor" --headless --page scene+bare --size 320x180 --scale 1 --seconds 2 --shot "$work/viewport.png" \
     "$work/pushed.fwscene" >>"$work/log" 2>&1 || fail "the editor takes no picture"
-# And beside another setting: alike while nothing is changed, not in another light.
+# The comparison works: equal while nothing changes, different in other light.
 for shot in same other; do
     lines=
     [[ $shot == same ]] || lines='set settings daylight dusk light 0.2'
@@ -84,4 +83,4 @@ TEXT
 "$editor" --script "$work/compare.fws" --headless >>"$work/script.log" 2>&1 || fail "the pictures differ"
 if [[ -n ${FW_KEEP_PICTURES:-} ]]; then cp "$work/viewport.png" "$work/out/scene.png" "$FW_KEEP_PICTURES/"; fi
 grep -E 'is shown after' "$work/log"
-echo "pushed, shown and one fire: ${hashes[1]}"
+echo "pushed and shown; equal burns: ${hashes[1]}"

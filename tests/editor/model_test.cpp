@@ -1,4 +1,4 @@
-// Imported files as samples, editor and tools show them: slots, colours, pictures, cut-outs.
+// Imported files in samples, editor and tools: slots, colours, images, cut-outs.
 #include "model/model_surfaces.h"
 
 #include <gmock/gmock.h>
@@ -57,7 +57,7 @@ std::vector<BoardMaterial> manyPictures(uint32_t count) {
     return row;
 }
 
-TEST(ModelSurfaces, GivesEachOfEightMaterialsASlotOfItsOwn) {
+TEST(ModelSurfaces, GivesEachOfEightMaterialsASlot) {
     const Yard yard;
     std::vector<BoardMaterial> row(8, {kYellow, {}, "", ""});
     const auto surfaces = fwmodel::surfacesOf(modelOfRow(yard, row));
@@ -66,10 +66,10 @@ TEST(ModelSurfaces, GivesEachOfEightMaterialsASlotOfItsOwn) {
     EXPECT_THAT(surfaces.notes, IsEmpty());
 }
 
-TEST(ModelSurfaces, MaterialsBeyondEightShareSlotsByWhatTheyShow) {
+TEST(ModelSurfaces, MaterialsBeyondEightShareSlotsByAppearance) {
     const Yard yard;
     const auto surfaces = fwmodel::surfacesOf(modelOfRow(yard, tenMaterials()));
-    EXPECT_EQ(5u, surfaces.slotCount);  // yellow, blue, two pictures, white
+    EXPECT_EQ(5u, surfaces.slotCount);  // yellow, blue, two images, white
     EXPECT_THAT(surfaces.slots, ElementsAre(0, 1, 0, 1, 0, 1, 0, 2, 3, 4));
     EXPECT_EQ(0, surfaces.pictures[2].image);
     EXPECT_EQ(1, surfaces.pictures[3].image);
@@ -78,7 +78,7 @@ TEST(ModelSurfaces, MaterialsBeyondEightShareSlotsByWhatTheyShow) {
     EXPECT_THAT(surfaces.notes[0], HasSubstr("10 materials share 5"));
 }
 
-TEST(ModelSurfaces, PicturesBeyondTheLastSlotShowTheirMeanColourAndAreNamed) {
+TEST(ModelSurfaces, ImagesBeyondTheLastSlotShowTheirMeanColour) {
     const Yard yard;
     const auto model = modelOfRow(yard, manyPictures(9));
     const auto surfaces = fwmodel::surfacesOf(model);
@@ -95,10 +95,10 @@ TEST(ModelSurfaces, PicturesBeyondTheLastSlotShowTheirMeanColourAndAreNamed) {
     EXPECT_EQ(0xffffffffu, surfaces.colors[0]);
 }
 
-TEST(ModelSurfaces, TwoHundredPicturesCostLittleMoreThanTwenty) {
+TEST(ModelSurfaces, TwoHundredImagesCostLittleMoreThanTwenty) {
     const Yard yard;
     const auto seconds = [&](uint32_t count) {
-        // 40,000 vertices whose picture has no slot.
+        // 40,000 vertices whose image has no slot.
         const auto model = modelOfRow(yard, manyPictures(count), 200);
         const auto start = std::chrono::steady_clock::now();
         EXPECT_EQ(8u, fwmodel::surfacesOf(model).slotCount);
@@ -109,7 +109,7 @@ TEST(ModelSurfaces, TwoHundredPicturesCostLittleMoreThanTwenty) {
     EXPECT_LT(many, few + 0.5);
 }
 
-TEST(ModelSurfaces, AGreyFileLeavesTheColourToItsMaterial) {
+TEST(ModelSurfaces, GreyFilesTakeTheirMaterialsColour) {
     const Yard yard;
     const auto surfaces = fwmodel::surfacesOf(modelOfRow(yard, {{{0.8f, 0.8f, 0.8f}, {}, "", ""}}));
     EXPECT_FALSE(surfaces.ownColors());
@@ -117,7 +117,7 @@ TEST(ModelSurfaces, AGreyFileLeavesTheColourToItsMaterial) {
     EXPECT_EQ(1, fwmodel::materialDefOf(FW_MATERIAL_PINE, true).baseColor[0]);
 }
 
-TEST(ModelSurfaces, MasksCutOutAndAFactorsAlphaMovesTheirCutOff) {
+TEST(ModelSurfaces, MasksCutOutAndFactorAlphaMovesTheCutoff) {
     const Yard yard;
     fwimport::ImportedModel model = modelOfRow(
         yard, {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\",\"alphaCutoff\":0.4", ""},
@@ -134,7 +134,7 @@ TEST(ModelSurfaces, MasksCutOutAndAFactorsAlphaMovesTheirCutOff) {
     EXPECT_TRUE(surfaces.twoSided);
 }
 
-TEST(ModelSurfaces, OpenSheetsAreSeenFromBothSidesAndSolidsAreNot) {
+TEST(ModelSurfaces, OpenSheetsAreTwoSidedAndSolidsAreNot) {
     const Yard yard;
     fwimport::ImportedModel model =
         modelOfRow(yard, {{{1, 1, 1}, {}, "", "a"}, {{1, 1, 1}, {}, "", "b"}});
@@ -151,7 +151,7 @@ TEST(ModelSurfaces, OpenSheetsAreSeenFromBothSidesAndSolidsAreNot) {
     EXPECT_FALSE(fwmodel::surfacesOf(model).twoSided);
 }
 
-TEST(ModelSurfaces, ShadowsAreThoseOfWhatIsThere) {
+TEST(ModelSurfaces, CutOutPartsCastNoShadow) {
     const Yard yard;
     const auto model = modelOfRow(yard, {{{1, 1, 1}, leavesPng(), ",\"alphaMode\":\"MASK\"", ""},
                                          {{1, 1, 1}, leavesPng(), "", ""}});
@@ -171,7 +171,7 @@ TEST(ModelSurfaces, ShadowsAreThoseOfWhatIsThere) {
     EXPECT_NEAR(0.12, areas[1], 1e-6);
 }
 
-TEST(ModelSurfaces, CookedScenesHaveTheColoursOfTheirFiles) {
+TEST(ModelSurfaces, CookedScenesKeepTheColoursOfTheirFiles) {
     Yard yard;
     writeBoardRow(yard.folder, "ten", tenMaterials());
     yard.run("import ten.gltf name=Boards materials pine\ncook game\nsnippet game/boards.c\n");
@@ -185,7 +185,7 @@ TEST(ModelSurfaces, CookedScenesHaveTheColoursOfTheirFiles) {
     EXPECT_THAT(code, HasSubstr("def.baseColors[3] = scene->colors[1];"));
 }
 
-// ---- what is seen
+// ---- pictures
 
 struct Shot {
     fwimport::FloatPicture picture;
@@ -206,7 +206,7 @@ struct Shot {
                                                              static_cast<uint32_t>(cy + dy), c));
         return sum;
     }
-    [[nodiscard]] double differenceFrom(const Shot& other) const {  // RMS, of 255
+    [[nodiscard]] double differenceFrom(const Shot& other) const {  // RMS, in 1/255
         double sum = 0;
         size_t count = 0;
         for (uint32_t y = 0; y < picture.height; ++y)
@@ -220,7 +220,7 @@ struct Shot {
     }
 };
 
-// Places of the boards of a row in a neutral picture from straight ahead: the row fills 0.9 of it.
+// Places of the boards of a row in a neutral picture from the front: the row fills 0.9 of it.
 double placeOf(size_t board, size_t boards) {
     const double length = 0.25 * static_cast<double>(boards) - 0.05;
     return 0.05 + 0.9 * (0.25 * static_cast<double>(board) + 0.1) / length;
@@ -231,7 +231,7 @@ bool hasDevice(Yard& yard) {
     return yard.host->device(error) != nullptr;
 }
 
-TEST(NeutralStage, TheEditorShowsEachMaterialsOwnColour) {
+TEST(NeutralStage, TheEditorShowsEachMaterialsColour) {
     Yard yard;
     if (!hasDevice(yard)) GTEST_SKIP() << "no Vulkan device";
     writeBoardRow(yard.folder, "ten", tenMaterials());
@@ -286,7 +286,7 @@ TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
            ",\"extensions\":{\"KHR_materials_pbrSpecularGlossiness\":{\"diffuseFactor\":"
            "[0.1,0.7,0.2,1]}}",
            ""}}},
-        // Each position of the first board's corners carries all of the boards.
+        // Each corner position of the first board carries all of the boards.
         {"instances",
          {{{1, 0.2f, 0.2f}, {}, "", ""}, {{0.2f, 0.2f, 1}, {}, "", ""}},
          ",\"extensions\":{\"EXT_mesh_gpu_instancing\":{\"attributes\":{\"TRANSLATION\":0}}}"},

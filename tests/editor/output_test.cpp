@@ -1,5 +1,5 @@
-// What a scene is for: its files and its code are compiled, linked and run, and the game's fire is
-// the editor's; pictures are what they say; all of it can be stopped.
+// Output of a scene: its files and code compile, link and run, and the game's fire equals the
+// editor's; pictures match the scene; every output can be cancelled.
 #include "output/output.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 using namespace fwtest;
 using ::testing::HasSubstr;
 
-// All kinds of things that burn, heat, wet and blow, at their times.
+// Every kind of object that burns, heats, wets and blows, with its times.
 constexpr const char* kEverything =
     "set Board refine yes tint 1 0.9 0.8 moisture 0.02\n"
     "import board.glb name=\"Second board\" materials pine map_size 128 texels_per_metre 64 "
@@ -53,7 +53,7 @@ constexpr const char* kEverything =
     "add collider box name=Wall position 0 0 5 rotation 10 20 30\n"
     "add collider floor position 0 -0.1 0\n";
 
-// Runs it; what it printed. A status other than 0 fails.
+// Runs a command and returns its output. Fails on a status other than 0.
 std::string runCommand(const std::string& command) {
     std::FILE* pipe = popen((command + " 2>&1").c_str(), "r");
     std::string text;
@@ -66,7 +66,7 @@ std::string runCommand(const std::string& command) {
 constexpr uint32_t kFrames = 30;
 constexpr float kFrame = 0.125f;
 
-// The ignition maps of a world's first objects, as hashes.
+// Hashes of the ignition maps of a world's first objects.
 std::string hashesOf(FwWorld* world, const std::vector<FwBurnableMeshId>& objects) {
     std::string text;
     for (const FwBurnableMeshId object : objects) {
@@ -82,7 +82,7 @@ std::string hashesOf(FwWorld* world, const std::vector<FwBurnableMeshId>& object
     return text;
 }
 
-// A game around a snippet: on the cpu backend, as far as the test's own burn runs.
+// A game around a snippet, on the cpu backend, for the time of the test's burn.
 constexpr const char* kGame = R"(
 #include <flamewright/flamewright_debug.h>
 #include <stdio.h>
@@ -123,12 +123,12 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text;
 }
 
-TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
+TEST(EditorOutput, CAndCppSnippetsBurnLikeTheEditor) {
     Yard yard;
     yard.run(kBoard);
     yard.run(kEverything);
     yard.run("save yard.fwscene\ncook game\nsnippet game/yard.c\nsnippet game/yard.cpp\n");
-    // The game moves a board, and what sticks to it comes along as it does here.
+    // The game moves a board with attached objects as the editor does.
     yard.run("move Board 0 0.05 0.02\nplay 0\n");
     std::string error;
     FwContext* cpu = yard.host->cpu(error);
@@ -143,13 +143,13 @@ TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
     FwObjectState state{};
     state.structSize = sizeof state;
     ASSERT_EQ(FW_OK, fwWorld_GetObjectState(burn.world, objects[0], &state));
-    ASSERT_GT(state.ignited, 100u);  // something happened that could differ
+    ASSERT_GT(state.ignited, 100u);  // enough happened to show a difference
 
     const std::string library = FW_TEST_LIBRARY, include = FW_TEST_INCLUDE;
     const std::string folder = (yard.folder / "game").string();
     const std::string tail = " -I" + include + " " + library + " -lm -Wl,-rpath," +
                              fs::path(library).parent_path().string();
-    // A sanitized library wants a program that is.
+    // A sanitized library needs a sanitized program.
     const std::string strict = std::string(" -Wall -Wextra -Wpedantic -Werror -O1") +
                                (fw::test::kSanitized ? " -fsanitize=address,undefined" : "");
     std::string c = replaced(kGame, "CREATE", "yard_create(context, \"" + folder + "\", &yard)");
@@ -170,13 +170,13 @@ TEST(EditorOutput, AGameOfTheSnippetBurnsAsTheEditorDoesInCAndInCpp) {
                (yard.folder / "main.cpp").string() + tail);
     EXPECT_EQ(wanted, runCommand((yard.folder / "in_cpp").string()));
 
-    // Without its files it says so.
+    // Without its files it reports them.
     fs::remove(yard.folder / "game" / "campfire.fwprofile");
     EXPECT_NE(0, std::system(((yard.folder / "in_c").string() + " >/dev/null").c_str()));
 }
 
-TEST(EditorOutput, SnippetsOfSmallScenesCompileToo) {
-    // Each kind of helper is there only where it is needed; none may be there unused.
+TEST(EditorOutput, SnippetsOfSmallScenesCompile) {
+    // Each helper is emitted only where it is used.
     const char* scenes[] = {"",
                             "add flame camp\n",
                             "add source rain\n",
@@ -221,7 +221,7 @@ TEST(EditorOutput, RefusalsNameTheWord) {
     EXPECT_FALSE(fs::exists(yard.folder / "game"));
 }
 
-TEST(EditorOutput, WhatIsStoppedLeavesTheOldFile) {
+TEST(EditorOutput, CancelledOutputKeepsTheOldFile) {
     Yard yard;
     yard.run(kBoard);
     yard.run("add flame camp name=Campfire\n");
@@ -241,7 +241,7 @@ TEST(EditorOutput, WhatIsStoppedLeavesTheOldFile) {
     EXPECT_FALSE(fs::exists(yard.folder / "burn"));
 }
 
-TEST(EditorOutput, AFlameOfTheSceneBecomesAFlipbookOfItsOwnShape) {
+TEST(EditorOutput, FlamesBakeToFlipbooksOfTheirShape) {
     Yard yard;
     yard.run(
         "add flame camp name=Campfire\n"
@@ -264,7 +264,7 @@ TEST(EditorOutput, AFlameOfTheSceneBecomesAFlipbookOfItsOwnShape) {
     EXPECT_NE(textOf(yard.folder / "a.fwbook"), textOf(yard.folder / "b.fwbook"));
 }
 
-TEST(EditorOutput, ABakeHasTheTimeOfEachSpot) {
+TEST(EditorOutput, BakesHoldTheTimeOfEachSpot) {
     Yard yard;
     yard.run(kBoard);
     yard.run("bake burn\nburn\n");

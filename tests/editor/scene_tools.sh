@@ -1,8 +1,7 @@
 #!/bin/bash
-# The tools that a job runner calls: fw-info, fw-cook, fw-bake, fw-shot. Their help and exit codes, a
-# line of JSON for whatever they write, and that the shares of the work make the same files as all of
-# it at once.
-# Usage: scene_tools.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# The tools for job runners: fw-info, fw-cook, fw-bake, fw-shot. Checks help, exit codes and the JSON
+# line per written file, and that split work gives the same files as work in one run.
+# Usage: scene_tools.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
 set -euo pipefail
 build="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}"
 tools=$build/editor/tools script=$build/editor/script/fw-script
@@ -10,7 +9,7 @@ for program in "$script" "$tools"/fw-{info,cook,bake,shot}; do
     [[ -x $program ]] || { echo "$program is not built" && exit 77; }
 done
 model=/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb
-[[ -f $model ]] || { echo "$model is not here (package assimp-testmodels)" && exit 77; }
+[[ -f $model ]] || { echo "$model is missing (package assimp-testmodels)" && exit 77; }
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 export HOME=$work XDG_STATE_HOME=$work/state XDG_CACHE_HOME=$work/cache
@@ -21,7 +20,7 @@ fail() {
     echo "$1"
     exit 1
 }
-# exits CODE COMMAND...: what it writes lies in out.txt and err.txt.
+# exits CODE COMMAND...: expects the exit code; output goes to out.txt and err.txt.
 exits() {
     local status=0
     "${@:2}" >out.txt 2>err.txt || status=$?
@@ -56,7 +55,7 @@ exits 2 "$tools/fw-cook" two.fwscene --part 3/2
 
 exits 0 "$tools/fw-info" two.fwscene --json
 json fw-info
-# Of a glTF file: its size, its parts, and what of it is left out.
+# For a glTF file: its size, its parts, and the omitted parts.
 cat >board.gltf <<'TEXT'
 {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
  "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "animations": [{}],
@@ -78,7 +77,7 @@ grep -q -F '"size_x": 2, "size_y": 2, "size_z": 0' out.txt || fail "fw-info has 
 sed 's/{"mesh": 0}/{"mesh": 0, "scale": [1e-9, 1e-9, 1e-9]}/' board.gltf >tiny.gltf
 exits 1 "$tools/fw-cook" tiny.gltf --quiet
 grep -q "tiny.gltf: The mesh's longest side is" err.txt || fail "fw-cook does not name the mesh's file"
-# shares TOOL OPTION...: all at once, then in two shares, each as if on a machine of its own.
+# shares TOOL OPTION...: runs all at once, then in two shares as on two machines.
 shares() {
     exits 0 "$tools/fw-$1" two.fwscene --json --out "$1_all" "${@:2}"
     json "fw-$1"
@@ -90,12 +89,12 @@ shares() {
     diff -r "$1_all" "$1_parts" >out.txt || fail "fw-$1 writes other files in shares"
 }
 shares cook
-# A bar only where somebody looks: not in a job's log.
+# A progress bar shows on terminals only, not in a job's log.
 [[ ! -s err.txt ]] || fail "fw-cook writes a bar into a file"
 script -qec "$tools/fw-cook two.fwscene --out bar" /dev/null </dev/null >out.txt
 grep -q -E '\[#+ *\] +100 %' out.txt || fail "fw-cook shows no bar in a terminal"
 shares shot --at 0,1.5 --size 96x64
-# Not compared byte by byte: an EXR has its date in its head.
+# Not compared byte by byte: an EXR header holds a date.
 exits 0 "$tools/fw-bake" two.fwscene --json --out bake_all
 json fw-bake
 for part in 1 2; do

@@ -1,5 +1,5 @@
-// The editor driven by its scripts, through the shared library as a game links it: what is painted,
-// lit and asked is what burns and shows.
+// The editor driven by scripts through the shared library as in a game: paint, fires and queries
+// match the burn and its pictures.
 #include "script/script.h"
 
 #include <gmock/gmock.h>
@@ -20,7 +20,7 @@ namespace {
 using namespace fwtest;
 using ::testing::HasSubstr;
 
-TEST(EditorScript, AFireIsLitUndoneRedoneSavedAndReopened) {
+TEST(EditorScript, LightsUndoesRedoesSavesAndReopensAFire) {
     Yard yard;
     yard.run(kBoard);
     yard.run(
@@ -34,7 +34,7 @@ TEST(EditorScript, AFireIsLitUndoneRedoneSavedAndReopened) {
         "expect count mesh 1\nplay 20\nexpect lit Board above 0.9\n");
 }
 
-TEST(EditorScript, WhatDoesNotWorkIsNamedByItsLine) {
+TEST(EditorScript, NamesFailuresByLine) {
     Yard yard;
     const auto fails = [&](const std::string& line) { return yard.fails(line); };
     EXPECT_THAT(fails("import nothing.glb"), HasSubstr("nothing.glb"));
@@ -53,15 +53,15 @@ TEST(EditorScript, WhatDoesNotWorkIsNamedByItsLine) {
     EXPECT_THAT(error, HasSubstr("no object \"Nobody\""));
 }
 
-TEST(EditorBurn, APaintedBeltHoldsTheFireOnBothSidesOfEverySeam) {
+TEST(EditorBurn, APaintedBeltStopsFireAcrossEverySeam) {
     Yard yard;
     yard.run(kBoard);
     yard.run("play 20\nexpect lit Board above 0.9\n");
     const size_t whole = static_cast<size_t>(std::count_if(
         yard.host->record.fields[0].seconds.begin(), yard.host->record.fields[0].seconds.end(),
         [](float seconds) { return seconds < kNeverLit; }));
-    // Around the board, over the six faces' seams: one stroke along its height is enough, for the
-    // brush is a ball.
+    // Around the board over the seams of its six faces: one stroke along its height suffices,
+    // because the brush is a ball.
     yard.run(
         "add layer multiplier name=Belt mesh Board\n"
         "stroke Belt value 0 size 0.06 hardness 1 path 0:-0.05:0 0:0.45:0\n"
@@ -86,7 +86,7 @@ TEST(EditorBurn, APaintedBeltHoldsTheFireOnBothSidesOfEverySeam) {
     yard.run("undo\nplay 20\nexpect lit Board above 0.9\n");
 }
 
-TEST(EditorBurn, TheUnwrapLiesWhereItsTexelsAre) {
+TEST(EditorBurn, TheUnwrapMatchesItsTexels) {
     Yard yard;
     yard.run(kBoard);
     std::string error;
@@ -95,7 +95,7 @@ TEST(EditorBurn, TheUnwrapLiesWhereItsTexelsAre) {
     ASSERT_TRUE(surface) << error;
     ASSERT_FALSE(surface->corners.empty());
     ASSERT_EQ(0u, surface->corners.size() % 15);
-    // The texel at the middle of each triangle that is larger than a texel is at its middle.
+    // The texel at the centre of each large triangle lies at its centre.
     size_t large = 0;
     for (size_t t = 0; t < surface->corners.size(); t += 15) {
         const float* c = &surface->corners[t];
@@ -112,7 +112,7 @@ TEST(EditorBurn, TheUnwrapLiesWhereItsTexelsAre) {
             EXPECT_NEAR(middle[k], surface->positions[texel * 3 + k], 1.1f * surface->spacing);
     }
     EXPECT_GT(large, 4u);
-    // The board is closed: where the unwrap is cut, it is cut on both sides.
+    // The board is closed, so each cut of the unwrap has two sides.
     ASSERT_FALSE(surface->seams.empty());
     for (const Seam& seam : surface->seams) {
         const auto other =
@@ -124,7 +124,7 @@ TEST(EditorBurn, TheUnwrapLiesWhereItsTexelsAre) {
     }
 }
 
-TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
+TEST(EditorBurn, ThePaintSurfaceHasIslandsPiecesAndNormals) {
     Yard yard;
     yard.run(kBoard);
     std::string error;
@@ -141,7 +141,7 @@ TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
         const float* n = &surface->normals[i * 3];
         const float* p = &surface->positions[i * 3];
         EXPECT_NEAR(1, n[0] * n[0] + n[1] * n[1] + n[2] * n[2], 1e-4f);
-        // Outwards: from the middle of the board that it is on.
+        // Outwards from the middle of its board.
         const float middle = p[2] < -0.25f ? -0.5f : 0;
         if (std::abs(p[2] - middle) > 0.0099f && std::abs(p[0]) < 0.48f &&
             std::abs(p[1] - 0.2f) < 0.18f) {
@@ -155,7 +155,7 @@ TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
     };
     EXPECT_EQ(2, kinds(pieces));
     EXPECT_GE(kinds(islands), 2);
-    // Filling by piece leaves the other board as it is.
+    // Filling by piece leaves the other board unchanged.
     yard.run("add layer moisture name=Wet mesh Board\nfill Wet value 1 by piece at 0 0.2 0.01\n");
     const PaintImage& image = yard.host->document.images.begin()->second;
     for (size_t i = 0; i < surface->real.size(); ++i)
@@ -166,7 +166,7 @@ TEST(EditorBurn, TheSurfaceToPaintOnKnowsIslandsPiecesAndNormals) {
         }
 }
 
-TEST(EditorBurn, EveryKindOfObjectComesIntoTheWorld) {
+TEST(EditorBurn, CreatesEveryKindOfObject) {
     Yard yard;
     yard.run(kBoard);
     yard.run(
@@ -185,7 +185,7 @@ TEST(EditorBurn, EveryKindOfObjectComesIntoTheWorld) {
     ASSERT_TRUE(yard.host->burn);
     EXPECT_THAT(yard.host->burn->report, ::testing::IsEmpty());
     EXPECT_NEAR(3, yard.host->burn->time, 1e-6);
-    // What cannot work is left out and named; the rest burns.
+    // Invalid objects are omitted and named; the others burn.
     yard.run("add emitter mesh name=Lost\nimport board.glb name=Second\nplay 0\n");
     fs::remove(yard.folder / "board.glb");
     yard.host->assets.models.clear();
@@ -197,8 +197,8 @@ TEST(EditorBurn, EveryKindOfObjectComesIntoTheWorld) {
     EXPECT_THAT(yard.host->burn->report, ::testing::Contains(HasSubstr("\"Second\" is left out")));
 }
 
-// A node of the file that a thing burns of holds a flame, wherever that thing goes.
-TEST(EditorBurn, AFlameSticksToANodeOfTheFile) {
+// A flame attached to a node of a burning file follows the object.
+TEST(EditorBurn, AFlameFollowsANodeOfTheFile) {
     Yard yard;
     yard.run(kBoard);
     yard.run(
@@ -222,7 +222,7 @@ TEST(EditorBurn, AFlameSticksToANodeOfTheFile) {
     EXPECT_THAT(yard.fails("set Candle sticks_to_node wich"),
                 HasSubstr("sticks_to_node is \"wich\"; board.glb: there is no node \"wich\"; its "
                           "nodes are #0 to #2: boards, hook, wick"));
-    // A file that lost it is told of, and nothing is written that would be elsewhere.
+    // A missing node is reported, and nothing is written at a wrong place.
     yard.host->document.scene.flames[0].sticksToNode = "gone";
     yard.host->burn = nullptr;
     ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
@@ -230,7 +230,7 @@ TEST(EditorBurn, AFlameSticksToANodeOfTheFile) {
     EXPECT_THAT(yard.fails("cook game"), HasSubstr("no node \"gone\""));
 }
 
-TEST(EditorBurn, APartOfAFileBurnsByItself) {
+TEST(EditorBurn, APartOfAFileBurnsSeparately) {
     Yard yard;
     yard.run(kBoard);
     EXPECT_THAT(yard.fails("refuse set Board node boards"), HasSubstr("possible"));
@@ -241,7 +241,7 @@ TEST(EditorBurn, APartOfAFileBurnsByItself) {
     EXPECT_THAT(yard.host->burn->report[0], HasSubstr("there is no triangle in it"));
 }
 
-TEST(EditorBurn, ASourceOfHeatLightsAndWaterHolds) {
+TEST(EditorBurn, HeatSourcesIgniteAndWaterPrevents) {
     Yard yard;
     yard.run(
         "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
@@ -254,8 +254,8 @@ TEST(EditorBurn, ASourceOfHeatLightsAndWaterHolds) {
         "expect lit Board below 0.05\n");
 }
 
-// A zone of wind is where it stands, as strong as its keys say, and goes along with a change.
-TEST(EditorBurn, AFanBlowsWhereItStandsAndWhenItRuns) {
+// A wind zone acts at its place with its keyed strength, and follows edits.
+TEST(EditorBurn, FansBlowAtTheirPlaceAndTime) {
     Yard yard;
     yard.run(kBoard);
     yard.run(
@@ -274,7 +274,7 @@ TEST(EditorBurn, AFanBlowsWhereItStandsAndWhenItRuns) {
         return wind;
     };
     ASSERT_TRUE(runBurn(burn, 0.75, error)) << error;
-    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, -1)) << "it does not run yet";
+    EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, -1)) << "the fan does not run yet";
     EXPECT_EQ((Vec3{0, 0, 0}), windAt(5, 0)) << "behind the shelter";
     ASSERT_TRUE(runBurn(burn, 2, error)) << error;
     const Vec3 blown = windAt(0, -1);
@@ -292,7 +292,7 @@ TEST(EditorBurn, AFanBlowsWhereItStandsAndWhenItRuns) {
     EXPECT_EQ((Vec3{1, 0, 0}), windAt(0, 3));
 }
 
-TEST(EditorWhy, AnswersInAnArtistsWords) {
+TEST(EditorWhy, AnswersInPlainWords) {
     Yard yard;
     yard.run(kBoard);
     yard.run("play 0");
@@ -307,13 +307,13 @@ TEST(EditorWhy, AnswersInAnArtistsWords) {
     EXPECT_THAT(yard.why("why Board 0.45 0.2 0.01"), HasSubstr("Not lit"));
     yard.run("play " + std::to_string(1.5 + seconds + 0.3));
     EXPECT_THAT(yard.why("why Board 0.45 0.2 0.01"), ::testing::Not(HasSubstr("Not lit")));
-    // Paint that stops it is the first cause.
+    // Paint that stops the fire is named as the first cause.
     yard.run("add layer multiplier name=Belt mesh Board\nfill Belt value 0\nplay 1\n");
     (void)yard.why("why Board 0.45 0.2 0.01");
     EXPECT_THAT(yard.said, ::testing::Contains(HasSubstr("painted ×0")));
 }
 
-TEST(EditorInspect, ScrubbingOnlyComparesTimes) {
+TEST(EditorInspect, ScrubbingComparesTimesOnly) {
     ArrivalField field;
     field.width = field.height = 1024;
     field.seconds.resize(1024 * 1024);
@@ -330,7 +330,7 @@ TEST(EditorInspect, ScrubbingOnlyComparesTimes) {
     EXPECT_EQ(254, map[1024 * 1024 - 2]);
 }
 
-// Mean brightness of a picture, and how much of it is the colour of fire.
+// Mean brightness of a picture, and its share of fire-coloured pixels.
 struct Seen {
     double light = 0, fire = 0;
 };
@@ -349,8 +349,8 @@ Seen lookAt(const fs::path& file) {
     return seen;
 }
 
-// Mean difference of two pictures' channels, and the share of channels that differ by more than 3
-// %. Flames are floats that devices add up in any order: for the eye, not for the bit.
+// Mean difference of two pictures' channels, and the share of channels off by more than 3 %.
+// Devices add the floats of flames in any order, so pictures agree visually, not bit for bit.
 std::pair<double, double> difference(const fs::path& a, const fs::path& b) {
     fwimport::FloatPicture one, other;
     std::string error;
@@ -366,7 +366,7 @@ std::pair<double, double> difference(const fs::path& a, const fs::path& b) {
     return {sum / double(one.values.size()), far / double(one.values.size())};
 }
 
-TEST(EditorShot, ShowsTheFireThatTheScriptLitAndAgainFromTheSavedFile) {
+TEST(EditorShot, ShowsTheScriptedFireAndAgainFromTheFile) {
     Yard yard;
     std::string error;
     if (!yard.host->device(error)) GTEST_SKIP() << "no Vulkan device: " << error;
@@ -385,7 +385,7 @@ TEST(EditorShot, ShowsTheFireThatTheScriptLitAndAgainFromTheSavedFile) {
     const auto [mean, far] = difference(yard.folder / "during.png", yard.folder / "again.png");
     EXPECT_LT(mean, 0.002);
     EXPECT_LT(far, 0.01);
-    // And that is not because nothing differs between pictures.
+    // The difference measure works: other pictures do differ.
     EXPECT_GT(difference(yard.folder / "before.png", yard.folder / "during.png").second, 0.01);
 }
 

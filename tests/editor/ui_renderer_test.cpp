@@ -1,5 +1,4 @@
-// The interface is drawn where it differs from the frame before: the picture is that of one that is
-// drawn whole.
+// The interface redraws only changed parts; the picture must equal a full redraw.
 #include <gmock/gmock.h>
 
 #include <cstdio>
@@ -15,8 +14,8 @@ namespace {
 constexpr VkExtent2D kSize{320, 200};
 constexpr int kFrames = 12;
 
-// A panel that stands still, one whose numbers count, glass that moves over both, and from the
-// eighth frame on one panel fewer.
+// A still panel, one with changing numbers, glass that moves over both, and one panel fewer from
+// the eighth frame on.
 void show(int frame) {
     ImGui::NewFrame();
     const auto panel = [](const char* name, ImVec2 at, ImVec2 size) {
@@ -59,7 +58,7 @@ class UiRenderer : public testing::Test {
         EXPECT_EQ(validation_.exitCode(), 0);
     }
 
-    // What the last frame of those looks like, drawn one after another, others before not at all.
+    // The picture of the last of these frames, drawn one after another; earlier ones not at all.
     sample::Picture drawn(int first, int last) {
         ImGui::CreateContext();
         ImGui::GetIO().IniFilename = nullptr;
@@ -70,7 +69,7 @@ class UiRenderer : public testing::Test {
             fwui::UiRenderer ui(*host_, frames.outputPass, fwui::Frames::kSlots);
             ui.uploadFonts();
             for (int i = 0; i <= last; ++i) {
-                show(i);  // windows know what came before
+                show(i);  // windows keep state from earlier frames
                 if (i < first) continue;
                 fwui::Frame frame;
                 EXPECT_TRUE(frames.begin(frame));
@@ -89,13 +88,13 @@ class UiRenderer : public testing::Test {
     std::unique_ptr<sample::VulkanHost> host_;
 };
 
-TEST_F(UiRenderer, WhatIsDrawnInPartsIsThePictureDrawnWhole) {
+TEST_F(UiRenderer, PartialRedrawEqualsFullRedraw) {
     for (const int last : {1, 5, 7, 8, kFrames}) {
         const sample::Picture parts = drawn(last - 1, last), whole = drawn(last, last);
         EXPECT_TRUE(parts.rgba == whole.rgba) << "frame " << last << " after the one before";
         EXPECT_TRUE(drawn(0, last).rgba == whole.rgba) << "frame " << last << " after all";
     }
-    // Neighbours differ, or nothing was shown by that.
+    // Neighbouring frames differ, so the comparison is meaningful.
     EXPECT_FALSE(drawn(3, 3).rgba == drawn(4, 4).rgba);
 }
 

@@ -1,4 +1,4 @@
-// A folder, a script host in it and something to burn: what tests of the editor begin with.
+// A folder, a script host in it and a burnable file: the fixture of the editor tests.
 #pragma once
 
 #include "script/script.h"
@@ -18,9 +18,9 @@ namespace fwtest {
 using namespace fwedit;
 namespace fs = std::filesystem;
 
-// A folder with "board.glb" in it: an upright board, 1 m wide, 0.4 m tall, 2 cm thick, its lower
-// edge at y = 0; and a second, loose board behind it. On its front a node "hook", which looks along
-// x, and 0.1 m above that on the hook a "wick".
+// A folder with "board.glb": an upright board, 1 m wide, 0.4 m tall, 2 cm thick, lower edge at y =
+// 0, and a second, separate board behind it. On its front a node "hook" that looks along x, and a
+// "wick" 0.1 m above it.
 struct Yard {
     fs::path folder;
     std::vector<std::string> said;
@@ -45,7 +45,7 @@ struct Yard {
         while (std::getline(stream, line))
             ASSERT_TRUE(runScriptLine(*host, line, error)) << line << "\n  " << error;
     }
-    // What is said instead where a line must not work.
+    // The message of a line that must fail.
     std::string fails(const std::string& line) {
         std::string error;
         EXPECT_FALSE(runScriptLine(*host, line, error)) << line;
@@ -116,7 +116,7 @@ struct Yard {
     }
 };
 
-// The board of paper, lit at its left end.
+// The paper board, lit at its left end.
 inline constexpr const char* kBoard =
     "import board.glb name=Board materials paper map_size 128 texels_per_metre 64\n"
     "set settings pace 20 duration 20 frames_per_second 8 radiation no plume no contact no "

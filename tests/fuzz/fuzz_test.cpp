@@ -1,5 +1,5 @@
-// Random hosts: calls in any order with numbers, ids and bytes from anywhere, on the cpu backend.
-// Fixed seeds. The only things a random host keeps to are real pointers and honest array sizes.
+// Random hosts on the cpu backend: calls in any order with arbitrary numbers, ids and bytes, from
+// fixed seeds. Only pointers and array sizes are always valid.
 #include "abi/abi_support.h"
 
 #include <algorithm>
@@ -24,7 +24,7 @@ struct Random {  // xorshift64*
     uint32_t below(uint32_t n) { return next() % n; }
     bool once(uint32_t in) { return below(in) == 0; }
     float unit() { return float(next() >> 8) / 16777216.0f; }
-    float number() {  // mostly sane, sometimes anything at all
+    float number() {  // mostly valid, sometimes arbitrary
         static constexpr float kOdd[] = {0.0f,
                                          -0.0f,
                                          1e-30f,
@@ -43,7 +43,7 @@ struct Random {  // xorshift64*
 
 template <class Id>
 struct Ids {
-    std::vector<Id> known;  // newest last; a few stay after they are gone
+    std::vector<Id> known;  // newest last; a few stay after they were destroyed
     Id any(Random& random) const {
         if (random.once(40)) return Id{random.next() % 8, random.next() % 4};
         if (random.once(80)) return Id{random.next(), random.next()};
@@ -101,7 +101,7 @@ class Fuzz {
         ++(result < 0 ? refused : accepted);
     }
 
-    // Turns some words of a struct into something else; pointers are set after it.
+    // Changes some words of a struct; pointers are set afterwards.
     template <class Def>
     void garble(Def& def) {
         if (!random_.once(4)) return;
@@ -145,7 +145,7 @@ class Fuzz {
         garble(def);
         def.vertexCount = vertices;
         def.indexCount = triangles * 3 - (random_.once(30) ? 1 : 0);
-        def.mapSize = std::min(def.mapSize, 256u);  // so that a case stays small
+        def.mapSize = std::min(def.mapSize, 256u);  // keeps a case small
         def.indexSize = random_.once(30) ? 3 : (random_.once(2) ? 2 : 4);
         def.indices = def.indexSize == 2 ? static_cast<const void*>(narrow.data())
                                          : static_cast<const void*>(indices.data());
@@ -225,7 +225,7 @@ class Fuzz {
         def.pointCount = random_.once(2) ? 0 : random_.below(35);
         def.points = random_.once(20) ? nullptr : points;
         def.profile = random_.once(3) ? profiles_.any(random_) : FwFireProfileId{};
-        if (def.pointCount > 32 && def.points) def.pointCount = 32;  // honest array sizes
+        if (def.pointCount > 32 && def.points) def.pointCount = 32;  // valid array sizes
         def.structSize = sizeof def;
         FwVolumetricFireId id{};
         const FwResult result = fwWorld_CreateVolumetricFire(world_, &def, &id);
@@ -236,8 +236,7 @@ class Fuzz {
         }
     }
 
-    // Saves, and loads of what was saved, whole or not, in a world that may hold other things by
-    // now.
+    // Saves, and loads of complete or damaged saves into a world that may have changed since.
     void useSaves() {
         const FwResult asked = fwWorld_RequestSave(world_);
         check(asked);
@@ -255,7 +254,7 @@ class Fuzz {
         check(fwWorld_Load(world_, bytes.data(), bytes.size()));
     }
 
-    // Timelines of any size, and ticks within them or not, of which not all are reached.
+    // Timelines of any size; ticks inside and outside, some out of reach.
     void useTimeline() {
         FwTimelineDef def = fwDefaultTimelineDef();
         def.interval = 0.1f + random_.unit();
@@ -461,7 +460,7 @@ class Fuzz {
         garble(gusts);
         gusts.structSize = sizeof gusts;
         check(fwWorld_SetGusts(world_, &gusts));
-        float velocities[3 * 64];  // as many as a garbled count may ask for below
+        float velocities[3 * 64];  // as many as a damaged count may ask for below
         for (float& value : velocities) value = random_.number();
         FwWindGridDef grid = fwDefaultWindGridDef();
         grid.cellSize = random_.number();
@@ -474,7 +473,7 @@ class Fuzz {
         check(fwWorld_SetWindGrid(world_, random_.once(6) ? nullptr : &grid));
     }
     void shapeShield() {
-        uint8_t solid[512];  // as many as a garbled count may ask for below
+        uint8_t solid[512];  // as many as a damaged count may ask for below
         for (uint8_t& cell : solid) cell = uint8_t(random_.below(2));
         FwHeatShieldDef shield = fwDefaultHeatShieldDef();
         shield.cellSize = random_.number();
@@ -540,7 +539,7 @@ class Fuzz {
         check(result);
         if (result == FW_OK) rooms_.known.push_back(id);
     }
-    // Of what an object burnt, now and then damaged, for any object to play.
+    // A burn of the object, sometimes damaged, played by any object.
     void useBurn(FwBurnableMeshId object) {
         check(fwWorld_RequestBurn(world_, object));
         uint64_t size = 0;
@@ -571,7 +570,7 @@ class Fuzz {
         garble(def);
         float heights[36];
         for (float& height : heights) height = random_.once(99) ? random_.number() : random_.unit();
-        def.columns = std::min(def.columns, 6u);  // honest array sizes
+        def.columns = std::min(def.columns, 6u);  // valid array sizes
         def.rows = std::min(def.rows, 6u);
         def.heights = random_.once(9) ? nullptr : heights;
         def.depths = random_.once(9) ? nullptr : heights;
@@ -895,7 +894,7 @@ class Fuzz {
     Ids<FwFireEmitterId> emitters_;
     Ids<FwFireProfileId> profiles_;
     Ids<FwFlipbookId> books_;
-    std::vector<unsigned char> saved_;  // the last one that was kept
+    std::vector<unsigned char> saved_;  // the last save kept
     Ids<FwFireColliderId> colliders_;
     Ids<FwWindZoneId> zones_;
     Ids<FwRoomId> rooms_;
@@ -907,12 +906,12 @@ class Fuzz {
 
 class AbiFuzz : public ::testing::TestWithParam<int> {};
 
-TEST_P(AbiFuzz, RandomHosts) {
+TEST_P(AbiFuzz, SurvivesRandomHosts) {
     Fuzz fuzz{uint64_t(GetParam())};
     fuzz.run(12000);
     EXPECT_LT(400u, fuzz.accepted);
     EXPECT_LT(400u, fuzz.refused);
-    // It must have got somewhere.
+    // The session must have reached every feature.
     EXPECT_LT(10u, fuzz.meshes);
     EXPECT_LT(20u, fuzz.objects);
     EXPECT_LT(20u, fuzz.flames);

@@ -1,7 +1,7 @@
 #!/bin/bash
-# A game that a scripted player plays, with nobody watching: the result on the cpu backend and on
-# the device is the same line, hash included, and another seed makes another game. One that goes ten
-# seconds back on its way ends with the same line, too.
+# A scripted player plays a game without a window. The result line, hash included, is the same on the
+# cpu backend and the device, and differs for another seed. A game that rewinds ten seconds on its way
+# ends with the same line.
 # Usage: game_bot.sh, with the build folder in FW_BUILD_FOLDER.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_defence/tower_defence"
@@ -15,10 +15,10 @@ other=$(play cpu --seed 2)
 back=$(play cpu --seed 1 --rewind 2>&1)
 printf '%s\n' "cpu     $cpu" "vulkan  $device" "seed 2  $other" "rewound $back"
 over='game: stopped,.*waves 1, felled [1-9].*hash [0-9a-f]{16}'
-[[ $cpu =~ ^$over$ ]] || { echo "that is no result of a game with its first wave over" && exit 1; }
-[[ $cpu == "$device" ]] || { echo "the backends do not agree" && exit 1; }
+[[ $cpu =~ ^$over$ ]] || { echo "the result does not show a completed first wave" && exit 1; }
+[[ $cpu == "$device" ]] || { echo "the backends differ" && exit 1; }
 [[ $cpu != "$other" ]] || { echo "another seed makes the same game" && exit 1; }
-# Ten seconds, and at most the two between moments.
+# Ten seconds, plus at most the two between keyframes.
 [[ $back =~ rewind:\ (3[2-9][0-9])\ ticks && $back =~ $over ]] ||
-    { echo "it did not go ten seconds back and play on to the end of the wave" && exit 1; }
-[[ $back == *"$cpu"* ]] || { echo "what came after the ten seconds is another game" && exit 1; }
+    { echo "the game did not rewind ten seconds and finish the wave" && exit 1; }
+[[ $back == *"$cpu"* ]] || { echo "the game after the rewind differs" && exit 1; }

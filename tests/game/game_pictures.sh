@@ -1,8 +1,7 @@
 #!/bin/bash
-# What the game shows in a window is what it shows without one: a hand plays in a window, which
-# keeps what it did; screenshots of its pauses are compared with the pictures of a game without a
-# window that does the same.
-# Usage: game_pictures.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
+# The game looks the same in a window and without one: a windowed game with real input is recorded, and
+# screenshots of its pauses are compared with pictures of the same game without a window.
+# Usage: game_pictures.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_defence/tower_defence"
 [[ -x $binary ]] || { echo "tower_defence is not built" && exit 77; }
@@ -11,7 +10,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 need Xvfb xdotool import compare
 most_away=0.1 # percent of pixels that may be away by more than a twentieth
 
-# shoot NAME: pauses, waits until the picture stands, keeps it, goes on.
+# shoot NAME: pauses, waits for a still picture, saves it, continues.
 shoot() {
     xdotool key space
     await "did: stands still$"
@@ -47,14 +46,14 @@ mkdir "$work/played"
 "$binary" --headless --play "$work/inputs" --size 480x270 --out "$work/played" >"$work/play.log" 2>&1 ||
     { cat "$work/play.log" && exit 1; }
 mapfile -t pictures < <(find "$work/played" -name '[0-9]*.png' | sort -V)
-[[ ${#pictures[@]} -eq 3 ]] || { echo "there are ${#pictures[@]} pictures of three pauses" && exit 1; }
+[[ ${#pictures[@]} -eq 3 ]] || { echo "${#pictures[@]} pictures of three pauses" && exit 1; }
 status=0
 i=0
 for name in placed fight light; do
     away=$(compare -metric AE -fuzz 5% "$work/window_$name.png" "${pictures[i]}" "$work/away_$name.png" 2>&1) ||
         [[ $? -eq 1 ]]
     share=$(awk "BEGIN { print 100 * $away / (480 * 270) }")
-    echo "$name: $share % of the pixels are away"
+    echo "$name: $share % of the pixels differ"
     awk "BEGIN { exit !($share <= $most_away) }" || status=1
     if [[ -n ${FW_KEEP_PICTURES:-} ]]; then
         cp "$work/window_$name.png" "$work/away_$name.png" "$FW_KEEP_PICTURES/"
@@ -62,7 +61,7 @@ for name in placed fight light; do
     fi
     i=$((i + 1))
 done
-# Three different moments, or it would be no comparison.
+# The three pictures must differ, otherwise the comparison shows nothing.
 for other in fight light; do
     away=$(compare -metric AE -fuzz 5% "$work/window_placed.png" "$work/window_$other.png" null: 2>&1) || [[ $? -eq 1 ]]
     awk "BEGIN { exit !($away > 0.01 * 480 * 270) }" || { echo "$other looks like placed" && status=1; }

@@ -1,9 +1,9 @@
 #!/bin/bash
-# Plays the tower-defence game as a hand does, with real keys and clicks in a window: places a
-# tower, upgrades it, calls the wave, pauses, fast-forwards, resizes, goes ten seconds back, sells
-# and leaves. Under the validation layer, synchronization checks included.
-# Usage: game_window.sh, with the build folder in FW_BUILD_FOLDER. 77: something it needs is not here.
-# With FW_KEEP_PICTURES a folder: screenshots are left there (ImageMagick).
+# Plays the tower-defence game with real keys and clicks in a window: places a tower, upgrades it,
+# calls the wave, pauses, fast-forwards, resizes, rewinds ten seconds, sells and quits. Runs under the
+# validation layer with synchronization checks.
+# Usage: game_window.sh, with the build folder in FW_BUILD_FOLDER. 77: a requirement is missing.
+# FW_KEEP_PICTURES: a folder for screenshots (ImageMagick).
 set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/samples/tower_defence/tower_defence"
 [[ -x $binary ]] || { echo "tower_defence is not built" && exit 77; }
@@ -12,7 +12,7 @@ source "$(dirname "${BASH_SOURCE[0]}")/../support/window.sh"
 need Xvfb xdotool
 open_display
 
-# The middle of a plot, as the game says where it is.
+# The centre of a plot, as reported by the game.
 plot_place() { sed -n "s/^did: plot $1 at //p" "$work/log" | tail -1; }
 
 start "$binary" --size 720x405
@@ -46,7 +46,7 @@ picture fight
 xdotool key r
 await "did: rewind [0-9]+ ticks"
 back=$(sed -n 's/^did: rewind \([0-9]*\) ticks.*/\1/p' "$work/log")
-# Ten seconds, and at most the two between moments and what passed until the key was heard.
+# Ten seconds, plus at most the two between keyframes and the delay of the key.
 [[ $back -ge 320 && $back -le 420 ]] || { echo "rewind went back $back ticks" && exit 1; }
 await "did: second [3-5]$"
 picture again
@@ -55,5 +55,5 @@ await "did: sell 0$"
 xdotool key x
 await "did: sell 0: there is no tower"
 leave Escape
-grep -q "did: quit" "$work/log" || { echo "it did not say that it quits" && exit 1; }
+grep -q "did: quit" "$work/log" || { echo "the game did not report that it quits" && exit 1; }
 echo "placed, upgraded, paused, fast-forwarded, resized, rewound, sold and left"

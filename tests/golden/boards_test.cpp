@@ -1,4 +1,4 @@
-// Boards that burn, by what a picture of them shows, where a golden would say too little.
+// Properties of pictures of burning boards that a golden would not check.
 #include "support/own_world.h"
 #include "support/refine_scene.h"
 
@@ -29,8 +29,8 @@ class Boards : public OwnWorld {
     }
 };
 
-// Detail coordinates run around the board, so that those of its back are its front's mirror image:
-// where holes followed them it was seen through where both walls were open, in an inkblot.
+// Detail coordinates run around the board, so its back mirrors its front. Holes that followed them
+// would open both walls at the same places, like an inkblot.
 TEST_F(Boards, HolesAreNotMirrored) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
@@ -62,13 +62,13 @@ TEST_F(Boards, HolesAreNotMirrored) {
                 open / double(covered), twice / double(open));
     EXPECT_GT(open, covered / 10);
     EXPECT_LT(open, covered * 6 / 10);
-    // By chance as much as is open anywhere; a mirror image has all.
+    // Chance gives the product of the open shares; a mirror image would have all.
     EXPECT_LT(twice, open * 8 / 10);
 }
 
-// What heat browns ahead of a front is several texels wide: in the frame that a board catches in it
-// is all there, and does not end where the first round of the prediction did.
-TEST_F(Boards, ScorchIsThereAtOnce) {
+// Browning ahead of a front is several texels wide. When a board catches, all of it shows in the
+// same frame instead of ending at the prediction's first round.
+TEST_F(Boards, ScorchShowsInTheFirstFrame) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
     addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.02f);
@@ -91,9 +91,9 @@ TEST_F(Boards, ScorchIsThereAtOnce) {
     EXPECT_GT(first, later * 3 / 4);
 }
 
-// Only the back burns; its holes are the front's. Near the eye they are cut, far from it every
-// pixel finds them: as much must be open.
-TEST_F(Boards, WhatBurnsThroughFromBehindIsOpenNearAndFar) {
+// Only the back burns; its holes are the front's. Near the camera they are cut, far away they are
+// per-pixel holes: the open share must agree.
+TEST_F(Boards, HolesBurntFromBehindAreOpenNearAndFar) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
     addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.3f, FW_BURNABLE_REFINE);

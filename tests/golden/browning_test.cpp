@@ -1,5 +1,5 @@
-// What is only heated, by a fire that never reaches it, turns brown and stays so; what the heat
-// does not reach does not. FLAMEWRIGHT_MOTION=<folder> keeps the pictures.
+// Surfaces heated by a fire that never reaches them turn brown and stay brown; others do not.
+// FLAMEWRIGHT_MOTION=<folder> keeps the pictures.
 #include "support/own_world.h"
 
 #include <cstdlib>
@@ -9,7 +9,7 @@ namespace {
 
 constexpr uint32_t kWidth = 200, kHeight = 160;  // px
 
-// Upright, from (x, y, z) on: to +x it faces +z, to -x it faces -z.
+// Upright, from (x, y, z) on: across > 0 faces +z, across < 0 faces -z.
 Mesh panel(double x, double y, double z, double across, double up) {
     Mesh mesh;
     for (int k = 0; k < 4; ++k) {
@@ -23,7 +23,7 @@ Mesh panel(double x, double y, double z, double across, double up) {
 
 class Browning : public OwnWorld {
  protected:
-    // A board of 0.5 m at x, facing -z at z = 0.35, that only a thousand degrees could light.
+    // A board of 0.5 m at x that faces -z at z = 0.35 and ignites only at a thousand degrees.
     FwBurnableMeshId board(float x) {
         const Mesh mesh = panel(double(x) + 0.25, 0.25, 0.35, -0.5, 0.5);
         FwMaterialDef wood = fwDefaultMaterialDef();
@@ -33,14 +33,14 @@ class Browning : public OwnWorld {
         add(meshDefOf(mesh), wood, FW_BURNABLE_TWO_SIDED);
         return added_;
     }
-    // From the burning panel's side, and beside it.
+    // From the burning panel's side, and from beside it.
     Picture look(float x) {
         return pictureOf(
             world_,
             viewAt({x + 1.1f, 0.5f, -0.35f}, {x, 0.5f, 0.35f}, float(kWidth) / float(kHeight)),
             kWidth, kHeight);
     }
-    // Mean of the board's upper middle, of 255: heat rises.
+    // Mean colour of the board's upper middle, 0 to 255; heat rises.
     static glm::dvec3 colorOf(const Picture& p) {
         glm::dvec3 sum(0);
         for (uint32_t y = kHeight / 4; y < kHeight * 2 / 5; ++y)
@@ -51,7 +51,7 @@ class Browning : public OwnWorld {
     }
 };
 
-TEST_F(Browning, WhatIsHeatedFromAfarTurnsBrown) {
+TEST_F(Browning, HeatedSurfacesTurnBrown) {
     makeWorld(1, 64, FW_WORLD_RADIATION);
     const Mesh mesh = panel(-0.4, 0.1, 0, 0.8, 0.8);
     FwMaterialDef pine = fwDefaultMaterialDef();
@@ -65,7 +65,7 @@ TEST_F(Browning, WhatIsHeatedFromAfarTurnsBrown) {
     fwWorld_Step(world_, 0);
     const Picture fresh = look(0), farFresh = look(6);
     touch(FW_IGNITE, 0, 0.5f, 0, 0.3f);  // the board is farther
-    run(16, 0.25f);                      // by then it is out, and lights nothing
+    run(16, 0.25f);                      // by then it is out and ignites nothing
     const Picture browned = look(0), farAfter = look(6);
     if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION")) {
         writePng(std::string(folder) + "/browning_fresh.png", fresh);
@@ -85,9 +85,9 @@ TEST_F(Browning, WhatIsHeatedFromAfarTurnsBrown) {
     EXPECT_LT(glm::length(colorOf(farAfter) - colorOf(farFresh)), 2);
 }
 
-// A match that it is held to lights it, but it goes out before it was ever seen to burn: that
-// leaves a brown spot, charred here and there, not the embers of a minute's fire.
-TEST_F(Browning, WhatGoesOutAtOnceIsOnlyScorched) {
+// A match lights it, but the fire goes out before any picture shows it. That leaves a brown spot
+// with some char and no embers.
+TEST_F(Browning, AFireThatGoesOutAtOnceOnlyScorches) {
     makeWorld(1, 64);
     const FwBurnableMeshId lit = board(0);
     fwWorld_Step(world_, 0);

@@ -1,5 +1,6 @@
-// Walls of a solid that has burnt from both sides, seen from the front: bounds keep them from
-// crossing; without bounds the published Z-pass hides where they have, and says so with holes.
+// Walls of a solid that burnt from both sides, seen from the front. Bounds keep them from
+// intersecting; without bounds the depth peel pass of the reference implementation hides
+// intersections behind holes.
 #include "flamewright/flamewright.h"
 #include "flamewright/flamewright_debug.h"
 #include "support/own_world.h"
@@ -13,7 +14,7 @@ constexpr uint32_t kSide = 96;  // px, of 0.3 m
 
 class Crossing : public OwnDevice {
  protected:
-    // A board of 0.2 x 0.2 x 0.02 m that is about to be consumed: 0.03 m from either side.
+    // A board of 0.2 x 0.2 x 0.02 m that is almost consumed: 0.03 m from either side.
     FwWorld* board(uint32_t flags) {
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.maxStepsPerFrame = 8;
@@ -72,15 +73,15 @@ class Crossing : public OwnDevice {
     }
 };
 
-TEST_F(Crossing, BoundedWallsNeverCrossAndTheZPassHidesOthers) {
+TEST_F(Crossing, BoundedWallsNeverIntersectAndDepthPeelingHidesOthers) {
     FwWorld* plain = board(FW_BURNABLE_RECEDE);
     FwWorld* passed = board(FW_BURNABLE_RECEDE | FW_BURNABLE_Z_PASS);
     const std::vector<uint8_t> bounded = picture(plain, 0);
     EXPECT_GT(covered(bounded), 1000u);
-    // Nothing to hide: with the Z-pass it is the same picture, but for some pixel of an outline.
+    // Nothing to hide: with the pass the picture is the same but for a few outline pixels.
     EXPECT_LE(different(bounded, picture(passed, 0)), 4u);
 
-    // Unbounded, the back wall's inside is in front of the front wall.
+    // Without bounds the back wall's inner side is in front of the front wall.
     const std::vector<uint8_t> crossed = picture(plain, FW_DEBUG_CROSSING);
     const std::vector<uint8_t> front = picture(passed, FW_DEBUG_CROSSING | FW_DEBUG_NO_Z_PASS);
     const std::vector<uint8_t> hidden = picture(passed, FW_DEBUG_CROSSING);
@@ -94,8 +95,8 @@ TEST_F(Crossing, BoundedWallsNeverCrossAndTheZPassHidesOthers) {
     fwDestroyWorld(passed);
 }
 
-// The published springs pull walls through each other by themselves.
-TEST_F(Crossing, SpringsNeedTheZPass) {
+// The springs of the reference implementation pull walls through each other.
+TEST_F(Crossing, SpringsNeedTheDepthPeelPass) {
     FwWorld* world = board(FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS);
     const std::vector<uint8_t> front = picture(world, FW_DEBUG_NO_Z_PASS);
     const std::vector<uint8_t> hidden = picture(world, 0);

@@ -1,5 +1,5 @@
-// Burnt pieces that nothing holds fall to ash: a tall strip of wood burns through in the middle,
-// and what is above must go long before it is consumed; with something unburnt above, it must stay.
+// Unsupported burnt pieces fall to ash. A tall strip of wood burns through in the middle: the upper
+// part must vanish long before it is consumed, or stay if something unburnt above holds it.
 #include "support/own_world.h"
 
 namespace fw::test::falling_test {
@@ -9,7 +9,8 @@ constexpr uint32_t kWidth = 64, kHeight = 256;  // px: a strip of 0.15 x 1.2 m f
 
 class Falling : public OwnWorld {
  protected:
-    // Burns from the middle for `seconds`; the foot is wet. Share of the upper part that is seen.
+    // Burns from the middle for `seconds` with a wet foot. Returns the visible share of the upper
+    // part.
     double upperPart(bool wetTop, float seconds) {
         makeWorld(1, 8);
         const Mesh mesh = makePlane(0.15, 1.2, 0, 1, 0, 4);
@@ -18,7 +19,7 @@ class Falling : public OwnWorld {
         def.noiseAmplitude = 0;
         FwMaterialDef pine = fwDefaultMaterialDef();
         pine.upGain = 0;
-        pine.spreadRate = 0.06f;  // a look second is 10 ms: holes come after 6.2 s
+        pine.spreadRate = 0.06f;  // an appearance second is 10 ms: holes come after 6.2 s
         add(def, pine, FW_BURNABLE_TWO_SIDED);
         touch(FW_WET, 0.075f, 0.0f, 0, 0.25f);
         if (wetTop) touch(FW_WET, 0.075f, 1.2f, 0, 0.12f);
@@ -38,14 +39,15 @@ class Falling : public OwnWorld {
     }
 };
 
-TEST_F(Falling, WhatNothingHoldsFallsToAsh) {
-    // The front is at the top after 12.5 s. The middle is gone then, above it all stands.
+TEST_F(Falling, UnsupportedPiecesFallToAsh) {
+    // The front reaches the top after 12.5 s. By then the middle is gone and everything above
+    // stands.
     EXPECT_GT(upperPart(false, 9), 0.9);
-    // By itself the uppermost part would go after some 19 s.
+    // On its own the top would burn away after some 19 s.
     EXPECT_LT(upperPart(false, 15.5f), 0.02);
 }
 
-TEST_F(Falling, WhatIsHeldStays) { EXPECT_GT(upperPart(true, 13.0f), 0.4); }
+TEST_F(Falling, SupportedPiecesStay) { EXPECT_GT(upperPart(true, 13.0f), 0.4); }
 
 }  // namespace
 }  // namespace fw::test::falling_test

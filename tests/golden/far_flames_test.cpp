@@ -1,5 +1,5 @@
-// What burns further and further away: of its flames there are fewer, and they are as much larger,
-// so that most of its light is kept. FLAMEWRIGHT_MOTION=<folder> keeps the pictures.
+// With distance a burning object shows fewer and larger flames that keep most of its light.
+// FLAMEWRIGHT_MOTION=<folder> keeps the pictures.
 #include "support/own_world.h"
 #include "support/refine_scene.h"
 
@@ -12,18 +12,18 @@ namespace {
 
 constexpr uint32_t kSide = 160;  // px
 constexpr int kMoments = 6;
-constexpr float kHigh = 0.5f;  // m, of a burning cube
+constexpr float kHigh = 0.5f;  // m, size of a burning cube
 
 class FarFlames : public OwnWorld {
  protected:
-    // Linear light of all pixels, for its distance: what shows it `px` high.
+    // Linear light of all pixels, corrected for distance, at a size of `px`.
     double light(float px) {
         constexpr float kZoom = 3.4f;
         const float away = kHigh * kZoom * float(kSide) / (2 * px);
         const glm::vec3 middle(0.5f * kHigh, 0.8f * kHigh, 0.5f * kHigh);
         const glm::vec3 from = away * glm::normalize(glm::vec3(-0.8f, 0.3f, 1));
         FwView view = viewAt(middle + from, middle, 1, kZoom);
-        view.emissionScale = 0.1f;  // nothing is brighter than can be shown
+        view.emissionScale = 0.1f;  // nothing saturates
         for (float* lit : {view.sunColor, view.ambientSky, view.ambientGround})
             std::fill_n(lit, 3, 0.0f);
         const float black[4] = {0, 0, 0, 1};
@@ -68,7 +68,7 @@ TEST_F(FarFlames, KeepTheirLight) {
     for (int i = 1; i < 3; ++i) {
         std::printf("[   FIGURE ] %g px high: light %.3f of that at %g px\n", double(kPx[i]),
                     seen[i] / seen[0], double(kPx[0]));
-        // 0.725 both.
+        // Both 0.725 as measured.
         EXPECT_GT(seen[i] / seen[0], 0.6) << kPx[i] << " px";
         EXPECT_LT(seen[i] / seen[0], 1.3) << kPx[i] << " px";
     }

@@ -41,14 +41,14 @@ uint8_t paeth(int a, int b, int c) {
     return uint8_t(da <= db && da <= dc ? a : db <= dc ? b : c);
 }
 
-// What the Paeth filter predicts byte `x` of row `y` from.
+// The Paeth filter's prediction of byte `x` of row `y`.
 uint8_t predicted(const std::vector<uint8_t>& rgb, size_t row, size_t y, size_t x) {
     const int a = x >= 3 ? rgb[y * row + x - 3] : 0, b = y > 0 ? rgb[(y - 1) * row + x] : 0;
     const int c = x >= 3 && y > 0 ? rgb[(y - 1) * row + x - 3] : 0;
     return paeth(a, b, c);
 }
 
-// Next to the test program, that is in the build folder.
+// Beside the test program, in the build folder.
 fs::path failureFolder() {
     std::error_code none;
     const fs::path program = fs::read_symlink("/proc/self/exe", none);
@@ -145,7 +145,7 @@ testing::AssertionResult matchesGolden(const std::string& name, const Picture& a
     const std::string path = std::string(FW_TEST_SOURCE_DIR) + "/golden/" + name + ".png";
     if (blessing()) {
         if (!writePng(path, actual)) return testing::AssertionFailure() << path << " not written";
-        return testing::AssertionSuccess() << path << " written anew";
+        return testing::AssertionSuccess() << path << " written";
     }
     const fs::path folder = failureFolder();
     std::error_code none;

@@ -1,6 +1,6 @@
-// Pictures that tests compare with: RGB8 PNG files beside the tests. A difference beyond the
-// written tolerance leaves actual, expected and difference in the build folder; FLAMEWRIGHT_BLESS=1
-// writes the expected ones anew.
+// Golden pictures: RGB8 PNG files beside the tests. A difference beyond the stated tolerance leaves
+// actual, expected and difference in the build folder. FLAMEWRIGHT_BLESS=1 writes the expected
+// files again.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -16,12 +16,12 @@ struct Picture {
 };
 
 struct PictureTolerance {
-    double mean = 1.0;       // of absolute differences, in 1/255
-    double outliers = 0.01;  // share of pixels with a channel further off than `outlier`
+    double mean = 1.0;       // mean absolute difference, in 1/255
+    double outliers = 0.01;  // share of pixels with a channel off by more than `outlier`
     int outlier = 32;
 };
 
-bool readPng(const std::string& path, Picture& picture);  // only what writePng writes
+bool readPng(const std::string& path, Picture& picture);  // reads only what writePng writes
 bool writePng(const std::string& path, const Picture& picture);
 testing::AssertionResult picturesMatch(const Picture& actual, const Picture& expected,
                                        const PictureTolerance& tolerance);

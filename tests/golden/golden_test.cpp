@@ -1,6 +1,6 @@
-// How burning things look, through the C ABI on a lent Vulkan 1.0 device without features: small
-// pictures against the ones beside this file. Simulation is exact; what is drawn may differ a
-// little between devices, hence the tolerances.
+// Pictures of burning things through the C ABI on a host's Vulkan 1.0 device without features,
+// against the files beside this one. The simulation is exact; drawing may differ slightly between
+// devices, hence the tolerances.
 #include "golden/golden_image.h"
 #include "support/burnable.h"
 #include "support/host_context.h"
@@ -21,12 +21,16 @@ constexpr VkFormat kColor = VK_FORMAT_R8G8B8A8_UNORM, kDepth = VK_FORMAT_D32_SFL
 
 void must(VkResult result) { ASSERT_EQ(result, VK_SUCCESS); }
 
-// A host's pass with colour and depth, and a way to read the picture.
+// A host's pass with colour and depth, and a read-back of the picture.
 class Golden : public HostContext {
  protected:
     void SetUp() override {
         HostContext::SetUp();
         if (!context_) return;
+        if (device_->properties.deviceType != VK_PHYSICAL_DEVICE_TYPE_CPU) {
+            still_ = {1, 0.01, 40};
+            moving_ = {6, 0.04, 40};
+        }
         color_ = device_->makeImage(
             kColor, {kWidth, kHeight}, 1,
             VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT);
@@ -157,7 +161,7 @@ class Golden : public HostContext {
         return world;
     }
 
-    // A standing sheet of `side` m, or a box of it, with detail coordinates; lit near a corner.
+    // A standing sheet of `side` m, or a box of them, with detail coordinates, lit near a corner.
     void addThing(FwWorld* world, uint32_t preset, float side, float density, bool box,
                   uint32_t flags = 0, bool lid = true) {
         std::vector<float> positions, normals, details;
@@ -204,7 +208,7 @@ class Golden : public HostContext {
         ASSERT_GT(texels, 0u);
     }
 
-    // A sheet that hangs by its upper edge and moves, lit below; at the origin its middle.
+    // A sheet with its middle at the origin that hangs from its upper edge and is lit below.
     void hang(FwWorld* world, uint32_t preset, float side, int cells, float density) {
         const Mesh sheet = makeSheet(double(side), cells);
         std::vector<float> details;
@@ -235,7 +239,7 @@ class Golden : public HostContext {
         ASSERT_GT(texels, 0u);
     }
 
-    // What moves does so in steps of its own: a second as 24 frames.
+    // Moving objects need steps of their own: a second as 24 frames.
     Picture playAndDraw(FwWorld* world, float seconds, const FwView& view) {
         for (int i = 0; i < int(seconds * 24); ++i) {
             const FwVulkanFrame frame = frames_->begin(1.0f / 24);
@@ -269,9 +273,8 @@ class Golden : public HostContext {
         return view;
     }
 
-    // Lets the world burn for `seconds`, then draws it. `soft`: surfaces in the host's pass, then
-    // flames over its images. Of several `draws` the last one counts: how the first went decides
-    // what is made ready for others.
+    // Burns for `seconds`, then draws. `soft`: surfaces in the host's pass, then flames over its
+    // images. Of several `draws` the last counts, because the first one prepares later ones.
     Picture burnAndDraw(FwWorld* world, float seconds, FwView view, bool reversed,
                         bool soft = false, int draws = 1) {
         const FwTargetId target = makeTarget(reversed, soft ? FW_TARGET_NO_FLAMES : 0);
@@ -283,7 +286,7 @@ class Golden : public HostContext {
             EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_OK);
             frames_->submit();
         }
-        for (int i = 0; i < 12; ++i) {  // what is predicted grows by a ring a frame
+        for (int i = 0; i < 12; ++i) {  // prediction grows by a ring per frame
             const FwVulkanFrame frame = frames_->begin(0);
             EXPECT_EQ(fwWorld_RecordOutside(world, &frame, &view), FW_OK);
             if (i >= 12 - draws) drawInto(frame, world, target, over, view, reversed);
@@ -351,6 +354,10 @@ class Golden : public HostContext {
                              VK_PIPELINE_STAGE_HOST_BIT, 0, 1, &toHost, 0, nullptr, 0, nullptr);
     }
 
+    // Half of each picture is fire: the mean finds a wrong look, the outliers a wrong shape. The
+    // software device drew the goldens. GPUs round floats differently, so cosmetic motion drifts.
+    // An H100 differs by 0.69 (still) and 4.4 (moving) at most.
+    PictureTolerance still_{0.5, 0.005, 40}, moving_{1.5, 0.02, 40};
     std::unique_ptr<HostFrames> frames_;
     TestImage color_, depth_;
     VkRenderPass pass_ = VK_NULL_HANDLE;
@@ -359,58 +366,53 @@ class Golden : public HostContext {
     VkDeviceMemory pixelMemory_ = VK_NULL_HANDLE;
 };
 
-// Half of the picture is fire: a mean over it shows a wrong look, outliers a wrong shape.
-constexpr PictureTolerance kTolerance{0.5, 0.005, 40};
-// What moves on floats moves a little otherwise elsewhere.
-constexpr PictureTolerance kMoving{1.5, 0.02, 40};
-
 TEST_F(Golden, PineSheetByDay) {
     FwWorld* world = makeWorld(40);
     addThing(world, FW_MATERIAL_PINE, 0.6f, 128, false);
     const FwView view = makeView({0.25f, 0.1f, 1.0f}, false, false);
-    EXPECT_TRUE(matchesGolden("pine_sheet", burnAndDraw(world, 9, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("pine_sheet", burnAndDraw(world, 9, view, false), still_));
 }
 
 TEST_F(Golden, PaperBurnsThrough) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_NEWSPAPER, 0.3f, 512, false);
     const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 11, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("paper_hole", burnAndDraw(world, 11, view, false), still_));
 }
 
 TEST_F(Golden, ThatchByNight) {
     FwWorld* world = makeWorld(2, 1.5f);
     addThing(world, FW_MATERIAL_THATCH, 1.0f, 96, false);
     const FwView view = makeView({0.4f, 0.3f, 2.2f}, false, true);
-    EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("thatch_night", burnAndDraw(world, 7, view, false), still_));
 }
 
-// Where it has charred it is smaller: the sheet's outline gives way.
+// Charred leather is smaller: the sheet's outline recedes.
 TEST_F(Golden, LeatherShrinksAndCracks) {
     FwWorld* world = makeWorld(8);
     hang(world, FW_MATERIAL_LEATHER, 0.3f, 36, 320);
     const FwView view = makeView({0.1f, 0.05f, 0.55f}, false, false);
-    EXPECT_TRUE(matchesGolden("leather", playAndDraw(world, 8, view), kMoving));
+    EXPECT_TRUE(matchesGolden("leather", playAndDraw(world, 8, view), moving_));
 }
 
-// It keeps its shape, curls where it chars, and what is gone is gone.
+// Paper keeps its shape, curls where it chars, and loses its burnt parts.
 TEST_F(Golden, PaperCurls) {
     FwWorld* world = makeWorld(1);
     hang(world, FW_MATERIAL_PAPER, 0.24f, 32, 640);
     const FwView view = makeView({0.16f, 0.02f, 0.44f}, false, false);
     playAndDraw(world, 3.75f, view);
-    FwIgnitionDef end = fwDefaultIgnitionDef();  // its edges show without flames before them
+    FwIgnitionDef end = fwDefaultIgnitionDef();  // its edges show without flames in front
     end.kind = FW_EXTINGUISH;
     end.radius = 1;
     ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
-    EXPECT_TRUE(matchesGolden("paper_curls", playAndDraw(world, 0.5f, view), kMoving));
+    EXPECT_TRUE(matchesGolden("paper_curls", playAndDraw(world, 0.5f, view), moving_));
 }
 
 TEST_F(Golden, CottonBurnsThrough) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_COTTON, 0.3f, 384, false);
     const FwView view = makeView({0.1f, 0.05f, 0.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("cotton", burnAndDraw(world, 5, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("cotton", burnAndDraw(world, 5, view, false), still_));
 }
 
 TEST_F(Golden, WetPatchIsLeftOver) {
@@ -423,10 +425,10 @@ TEST_F(Golden, WetPatchIsLeftOver) {
     water.radius = 0.10f;
     ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
     const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
-    EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("wet_patch", burnAndDraw(world, 9, view, false), still_));
 }
 
-// Water's edge is soft where no fire has come, and it dries from there.
+// The edge of the water is soft before fire arrives, and it dries from there.
 TEST_F(Golden, WetPatchBeforeTheFire) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_PINE, 0.5f, 160, false);
@@ -437,10 +439,10 @@ TEST_F(Golden, WetPatchBeforeTheFire) {
     water.radius = 0.13f;
     ASSERT_EQ(fwWorld_Ignite(world, &water, nullptr), FW_OK);
     const FwView view = makeView({0.15f, 0.1f, 0.85f}, false, false);
-    EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("wet_fresh", burnAndDraw(world, 2, view, false), still_));
 }
 
-// Put out, it stays as black as it was, above the char too.
+// Extinguished, it stays black, also above the char.
 TEST_F(Golden, SootOutlivesItsFlame) {
     FwWorld* world = makeWorld(1);
     addThing(world, FW_MATERIAL_COTTON, 0.4f, 256, false);
@@ -450,41 +452,41 @@ TEST_F(Golden, SootOutlivesItsFlame) {
     end.kind = FW_EXTINGUISH;
     end.radius = 1;
     ASSERT_EQ(fwWorld_Ignite(world, &end, nullptr), FW_OK);
-    EXPECT_TRUE(matchesGolden("soot_stays", burnAndDraw(world, 3, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("soot_stays", burnAndDraw(world, 3, view, false), still_));
 }
 
 TEST_F(Golden, BurntOpenBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("open_box", burnAndDraw(world, 16, view, false), still_));
 }
 
-// What recedes has the same walls, thinner where they burn: behind a hole is what is left of one.
+// A receding box keeps its walls, thinner where they burn: the rest of a wall shows behind a hole.
 TEST_F(Golden, BurntBoxThatRecedes) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_RECEDE);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, false, false);
-    EXPECT_TRUE(matchesGolden("receding_box", burnAndDraw(world, 16, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("receding_box", burnAndDraw(world, 16, view, false), still_));
 }
 
-// Refined, walls have their thickness: an inner skin behind holes and along the open border.
+// Refined walls have thickness: an inner skin behind holes and along the open border.
 TEST_F(Golden, InsideOfARefinedBox) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PAINTED_WOOD, 0.5f, 128, true, FW_BURNABLE_REFINE, false);
     const FwView view = makeView({-0.5f, 0.8f, 1.0f}, false, false);
-    EXPECT_TRUE(matchesGolden("refined_box", burnAndDraw(world, 17, view, false), kTolerance));
+    EXPECT_TRUE(matchesGolden("refined_box", burnAndDraw(world, 17, view, false), still_));
 }
 
-// Flames against the sampled depth of the surfaces that they stand on.
+// Flames against the sampled depth of the surfaces below them.
 TEST_F(Golden, SoftFlames) {
     FwWorld* world = makeWorld(60);
     addThing(world, FW_MATERIAL_PINE, 0.5f, 128, true);
     const FwView view = makeView({-0.8f, 0.55f, 1.5f}, true, true);
-    EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), kTolerance));
+    EXPECT_TRUE(matchesGolden("soft_flames", burnAndDraw(world, 6, view, true, true), still_));
 }
 
-// A camp fire that no mesh feeds; a slab of its smoke is as thin as it is.
+// A camp fire without a mesh, with thin smoke.
 TEST_F(Golden, CampFireByNight) {
     FwWorld* world = makeWorld(1);
     FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
@@ -494,10 +496,10 @@ TEST_F(Golden, CampFireByNight) {
     ASSERT_EQ(fwWorld_CreateVolumetricFire(world, &fire, &id), FW_OK);
     const FwView view = makeView({0.4f, 0.3f, 2.4f}, false, true);
     EXPECT_TRUE(
-        matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false, false, 2), kTolerance));
+        matchesGolden("camp_fire_night", burnAndDraw(world, 3, view, false, false, 2), still_));
 }
 
-TEST_F(Golden, ReversedDepthIsTheSamePicture) {
+TEST_F(Golden, ReversedDepthGivesTheSamePicture) {
     Picture pictures[2];
     for (int reversed = 0; reversed < 2; ++reversed) {
         FwWorld* world = makeWorld(60);
@@ -506,12 +508,12 @@ TEST_F(Golden, ReversedDepthIsTheSamePicture) {
         pictures[reversed] = burnAndDraw(world, 5, view, reversed == 1);
     }
     EXPECT_TRUE(picturesMatch(pictures[1], pictures[0], {0.3, 0.004, 40}));
-    uint64_t bright = 0;  // and it is a picture of something
+    uint64_t bright = 0;  // the picture is not empty
     for (const uint8_t value : pictures[0].rgb) bright += value > 60;
     EXPECT_GT(bright, 5000u);
 }
 
-// The comparison itself must be able to fail.
+// The comparison must be able to fail.
 TEST(GoldenImage, RoundTripAndDifference) {
     Picture picture{33, 7, std::vector<uint8_t>(33 * 7 * 3)};
     for (size_t i = 0; i < picture.rgb.size(); ++i) picture.rgb[i] = uint8_t(i * i * 31 + i);
@@ -522,7 +524,7 @@ TEST(GoldenImage, RoundTripAndDifference) {
     EXPECT_EQ(read.rgb, picture.rgb);
     EXPECT_TRUE(picturesMatch(read, picture, {0, 0, 0}));
     for (size_t i = 0; i < 30; ++i) read.rgb[i] ^= 0x80;
-    EXPECT_FALSE(picturesMatch(read, picture, kTolerance));
+    EXPECT_FALSE(picturesMatch(read, picture, {0.5, 0.005, 40}));
     EXPECT_FALSE(readPng(path + ".missing", read));
 }
 

@@ -1,6 +1,6 @@
-// What burns must not shimmer: true consecutive frames, 1/30 s apart, against the same moments
-// drawn with sixteen samples per pixel. What a frame is off by may not change from frame to frame.
-// FLAMEWRIGHT_MOTION=<folder> keeps the frames. Not about flames, and not about speed.
+// Burning objects must not shimmer: consecutive frames 1/30 s apart against the same times with
+// sixteen samples per pixel. The error may not change from frame to frame.
+// FLAMEWRIGHT_MOTION=<folder> keeps the frames. Flames and speed are not tested here.
 #include "support/own_world.h"
 
 #include <algorithm>
@@ -15,11 +15,11 @@ constexpr uint32_t kWidth = 256, kHeight = 144, kSamples = 4;  // kSamples^2 per
 constexpr uint32_t kFrames = 4;
 constexpr float kFrameTime = 1.0f / 30.0f;
 
-// Of 1/255: where the thing covers its pixels whole, and where a rim or its outline crosses them.
+// In 1/255: where the object covers whole pixels, and at rims and outlines.
 struct Shimmer {
     double inside = 0, rim = 0;                  // mean change of the error
     double insideOutliers = 0, rimOutliers = 0;  // share of pixels where it changes by more than 48
-    double flicker = 0;                          // share that jumps by 32 there and back
+    double flicker = 0;                          // share that jumps by 32 and back
     uint64_t insideCount = 0, rimCount = 0;
 };
 
@@ -98,7 +98,7 @@ class Motion : public OwnWorld {
         add(def, material, twoSided ? uint32_t{FW_BURNABLE_TWO_SIDED} : 0u);
         touch(FW_IGNITE, at.x, at.y, at.z, radius);
         run(seconds, 0.25f);
-        for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);  // a ring of prediction a frame
+        for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);  // one ring of prediction per frame
     }
 
     Picture draw(glm::vec3 eye, glm::vec3 target, uint32_t scale, float time,
@@ -149,7 +149,7 @@ class Motion : public OwnWorld {
     }
 };
 
-// No shimmer: in the mean less than a shade or two, and next to no pixel jumps.
+// The mean stays below a shade or two, and almost no pixel jumps.
 void calm(const Shimmer& s, double inside) {
     EXPECT_GT(s.insideCount, 3000u);
     EXPECT_LT(s.inside, inside);
@@ -159,7 +159,7 @@ void calm(const Shimmer& s, double inside) {
     EXPECT_LT(s.flicker, 0.005);
 }
 
-// The measure itself must be able to fail.
+// The measure must be able to fail.
 TEST(MotionMeasure, SeesShimmer) {
     std::vector<Frame> frames(3);
     for (size_t f = 0; f < 3; ++f) {
@@ -186,7 +186,7 @@ Mesh sheet(float side, std::vector<float>& details) {
     return mesh;
 }
 
-TEST_F(Motion, PaperSheet) {
+TEST_F(Motion, PaperSheetDoesNotShimmer) {
     std::vector<float> details;
     const Mesh mesh = sheet(0.3f, details);
     makeWorld(1);
@@ -196,7 +196,7 @@ TEST_F(Motion, PaperSheet) {
     calm(measure("paper_burning", eye, target, {}, true), 2);
 }
 
-TEST_F(Motion, PineSheet) {
+TEST_F(Motion, PineSheetDoesNotShimmer) {
     std::vector<float> details;
     const Mesh mesh = sheet(0.6f, details);
     makeWorld(40);
@@ -208,7 +208,7 @@ TEST_F(Motion, PineSheet) {
     calm(measure("pine_far_moving", far, target, {0.0028f, 0.0011f, 0.003f}, false), 5);
 }
 
-TEST_F(Motion, Bunny) {
+TEST_F(Motion, BunnyDoesNotShimmer) {
     Mesh mesh;
     std::string error;
     if (!loadGlb("bunny_31k.glb", mesh, error)) GTEST_SKIP() << error;

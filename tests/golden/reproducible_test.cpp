@@ -1,5 +1,5 @@
-// The same fire in two contexts gives the same pictures, byte for byte: nothing that is shown may
-// depend on the order in which a device runs its threads, or on a clock.
+// The same fire in two contexts gives byte-equal pictures: nothing visible may depend on the
+// device's thread order or on a clock.
 #include "support/burnable.h"
 #include "support/own_world.h"
 
@@ -12,7 +12,7 @@ constexpr uint32_t kWidth = 320, kHeight = 180;
 
 class Reproducible : public OwnDevice {
  protected:
-    // A standing sheet of `side` m that is lit near a corner, and wet in its middle.
+    // A standing sheet of `side` m, lit near a corner and wet in its middle.
     static void addSheet(FwWorld* world, uint32_t preset, float side, float x, uint32_t flags) {
         const Mesh sheet = makeSheet(double(side), 6);
         FwMeshDef mesh = meshDefOf(sheet);
@@ -54,7 +54,7 @@ class Reproducible : public OwnDevice {
     }
 };
 
-TEST_F(Reproducible, TwoContextsShowTheSameFireByteForByte) {
+TEST_F(Reproducible, TwoContextsGiveByteEqualPictures) {
     std::array<std::vector<Picture>, 2> films;
     for (std::vector<Picture>& pictures : films) {
         film(context_, pictures);

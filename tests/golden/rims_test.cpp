@@ -1,6 +1,6 @@
-// Rims of holes are cut as geometry near the eye and found by each fragment far from it. A camera
-// goes through the switch, both ways, before a half-burnt box: no frame may differ from the one
-// before by much more than its neighbours do. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
+// Rims of holes are cut as geometry near the camera and found per pixel far away. A camera crosses
+// the switch in both directions in front of a half-burnt box: no frame may differ from the previous
+// one much more than its neighbours do. FLAMEWRIGHT_MOTION=<folder> keeps the frames.
 #include "support/own_world.h"
 #include "support/refine_scene.h"
 #include "support/sanitized.h"
@@ -23,8 +23,8 @@ class Rims : public OwnWorld {
     }
 };
 
-// Of 1/255. sum: of pixels' differences, over those that the object covers. glow: how much brighter
-// or darker the block of 16 x 16 is that differs most.
+// In 1/255. sum: differences of the pixels that the object covers. glow: brightness change of the
+// 16 x 16 block that changes most.
 struct Difference {
     double sum = 0, glow = 0;
 };
@@ -51,7 +51,7 @@ Difference differenceOf(const Picture& a, const Picture& b) {
     return d;
 }
 
-TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
+TEST_F(Rims, CutAndPerPixelRimsAgreeAtTheSwitch) {
     FwWorld* worlds[2];
     for (FwWorld*& world : worlds) {
         makeWorld(1, 32);
@@ -68,11 +68,11 @@ TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
         touch(FW_IGNITE, 0, 0.45f, 0.45f, 0.03f);
         run(12, 0.25f);
         for (int i = 0; i < 24; ++i) fwWorld_Step(world_, 0);
-        draw(6.0f);  // from here on the world knows how many pixels a picture has
+        draw(6.0f);  // from here on the world knows the picture's size
     }
     for (uint32_t i = 0; i < kPlaces; ++i) {
-        // Both switches are outside of these: who comes from afar is still discarded, who comes
-        // from nearby still cut.
+        // Both switches lie outside: coming from afar holes are still per pixel, coming from nearby
+        // still cut.
         const float distance = 4.95f - 0.13f * float(i);
         Picture pictures[2];
         for (const int nearby : {0, 1}) {
@@ -90,7 +90,7 @@ TEST_F(Rims, NearAndFarAgreeWhereTheySwitch) {
         std::printf(
             "%.2f m: the switch changes %.2f, a block's light by %.1f; 0.4 %% nearer %.2f, %.1f\n",
             double(distance), switched.sum, switched.glow, moved.sum, moved.glow);
-        EXPECT_GT(switched.sum, 0.5) << "nothing has switched here";
+        EXPECT_GT(switched.sum, 0.5) << "nothing switched";
         EXPECT_LT(switched.sum, 1.5 * moved.sum);
         EXPECT_LT(switched.glow, 5.5);
     }

@@ -1,5 +1,4 @@
-// When fire will arrive, asked of a world on a device and of one without: the same answers, some
-// frames later.
+// Arrival predictions on a device equal those of the cpu backend, some frames later.
 #include "support/own_world.h"
 
 namespace fw::test {
@@ -30,8 +29,8 @@ class Arrival : public OwnDevice {
         EXPECT_EQ(fwWorld_Ignite(made.world, &match, nullptr), FW_OK);
         return made;
     }
-    // s of the world at which it will catch; kind.
-    static std::pair<double, uint32_t> tell(const Asked& asked, float x, float y, int& frames) {
+    // World time (s) at which it will catch; kind.
+    static std::pair<double, uint32_t> predict(const Asked& asked, float x, float y, int& frames) {
         const float point[3] = {x, y, 0};
         FwQueryId query{};
         EXPECT_EQ(fwWorld_RequestArrival(asked.world, asked.object, point, &query), FW_OK);
@@ -51,7 +50,7 @@ class Arrival : public OwnDevice {
     }
 };
 
-TEST_F(Arrival, IsTheSameOnADeviceAndWithout) {
+TEST_F(Arrival, BothBackendsAgree) {
     FwContextDef cpuDef = fwDefaultContextDef();
     cpuDef.backend = FW_BACKEND_CPU;
     FwContext* cpu = nullptr;
@@ -64,11 +63,11 @@ TEST_F(Arrival, IsTheSameOnADeviceAndWithout) {
     };
     const auto compare = [&](float x, float y, uint32_t kind) {
         int frames[2];
-        const auto onDevice = tell(worlds[0], x, y, frames[0]);
-        const auto without = tell(worlds[1], x, y, frames[1]);
+        const auto onDevice = predict(worlds[0], x, y, frames[0]);
+        const auto without = predict(worlds[1], x, y, frames[1]);
         EXPECT_EQ(onDevice.second, kind) << x << ' ' << y;
         EXPECT_EQ(without.second, kind) << x << ' ' << y;
-        // Asked at other moments, but of one fire.
+        // Queried at other times, but about the same fire.
         if (kind != FW_ARRIVAL_NEVER) {
             EXPECT_NEAR(onDevice.first, without.first, 0.002) << x << ' ' << y;
         }

@@ -1,6 +1,6 @@
-// Flipbooks as a device draws them: a particle shows what its book says, between two frames too,
-// and a book that the host takes back leaves the others as they were. Smoke's quads stand upright
-// and their alpha is their book's alone, so that pictures can be compared texel by texel.
+// Flipbooks drawn by a device: a particle shows its flipbook, also between two frames, and removing
+// a flipbook leaves the others unchanged. Smoke quads stand upright and take their alpha from the
+// flipbook alone, so pictures compare texel by texel.
 #include "book/book.h"
 #include "book/picture.h"
 #include "shared/particle.h"
@@ -17,13 +17,13 @@ using gpu::vec2;
 using gpu::vec4;
 
 constexpr uint32_t kSide = 256;  // px
-constexpr float kSize = 1;       // m, of the particle
+constexpr float kSize = 1;       // m, particle size
 constexpr uint32_t kSeed = 0x51a3;
-constexpr float kSmokeLife = 10;  // in lives of the fire
+constexpr float kSmokeLife = 10;  // in lifetimes of the fire
 
 std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
 
-// A soft spot that goes 8 of 64 texels to the right with each frame, 6 up.
+// A soft spot that moves 8 of 64 texels right and 6 up per frame.
 book::Book spots(book::Kind kind) {
     book::Book made(memory());
     book::Facts& f = made.facts;
@@ -54,7 +54,7 @@ book::Book spots(book::Kind kind) {
 
 struct Shown {
     std::vector<float> alpha;  // kSide^2, rows from the bottom
-    float width = 0;           // m, of the quad
+    float width = 0;           // m, width of the quad
     bool mirrored = false;
 };
 
@@ -71,23 +71,19 @@ class BookPicture : public OwnWorld {
         FwFlipbookDef def = fwDefaultFlipbookDef();
         def.cooked = bytes.data();
         def.cookedSize = bytes.size();
-        FwFlipbookId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateFlipbook(world_, &def, &id));
-        return id;
+        return created(fwWorld_CreateFlipbook, world_, def);
     }
     FwFlipbookId create(uint32_t preset) {
         FwFlipbookDef def = fwDefaultFlipbookDef();
         def.preset = preset;
-        FwFlipbookId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateFlipbook(world_, &def, &id));
-        return id;
+        return created(fwWorld_CreateFlipbook, world_, def);
     }
-    // One particle, a second old, that is nothing but smoke and shows `time` of its book, in a
-    // picture of `span` m about (aside, 0).
+    // One particle of pure smoke, a second old, at `time` of its flipbook, in a picture of `span` m
+    // around (aside, 0).
     Shown smokeAt(FwFlipbookId book, float time, float span = 2, float aside = 0) {
         FwFireEmitterDef def = fwDefaultFireEmitterDef();
         def.seed = kSeed;
-        def.shape = FW_EMITTER_DISC;  // of no size
+        def.shape = FW_EMITTER_DISC;  // a point
         def.rate = 0.25f;
         def.speed = 1e-3f;
         def.cone = 1e-5f;
@@ -98,8 +94,7 @@ class BookPicture : public OwnWorld {
         def.life = 1 / (0.65f + time * (0.35f + kSmokeLife));
         def.maxParticles = 1;
         def.smokeBooks[0] = book;
-        FwFireEmitterId emitter{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &emitter));
+        const FwFireEmitterId emitter = created(fwWorld_CreateFireEmitter, world_, def);
         for (int i = 0; i < 5 * 32; ++i) fwWorld_Step(world_, 1.0f / 32);
         const FwView view = frontView({aside, 0}, span, span);
         const float nothing[4] = {0, 0, 0, 0};
@@ -120,7 +115,7 @@ class BookPicture : public OwnWorld {
                                       255);
         return shown;
     }
-    // Of the book, where a pixel lies.
+    // UV in the flipbook of a pixel.
     static vec2 uvOf(const Shown& shown, uint32_t x, uint32_t y) {
         const float metres = 2.0f / kSide;
         float u = (float(x) + 0.5f - kSide / 2.0f) * metres / shown.width;
@@ -129,11 +124,11 @@ class BookPicture : public OwnWorld {
     }
 };
 
-TEST_F(BookPicture, DrawnAsTheBookSaysOnAFrameAndBetweenTwo) {
+TEST_F(BookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
     const book::Book made = spots(book::Kind::Smoke);
-    (void)create(FW_FLIPBOOK_SPARK);  // it is not the only one
+    (void)create(FW_FLIPBOOK_SPARK);  // one of several flipbooks
     const FwFlipbookId id = create(made);
-    for (const float time : {0.25f, 0.375f}) {  // frame 1; halfway from it to 2
+    for (const float time : {0.25f, 0.375f}) {  // frame 1; halfway between frames 1 and 2
         const Shown shown = smokeAt(id, time);
         double drawn = 0, said = 0, worst = 0;
         float most = 0;
@@ -150,7 +145,7 @@ TEST_F(BookPicture, DrawnAsTheBookSaysOnAFrameAndBetweenTwo) {
                 const float v = book::showBook(made, time, uvOf(shown, x, y)).z;
                 worst = std::max(worst, std::abs(double(shown.alpha[y * kSide + x] / opacity - v)));
             }
-        // Peaks, a spot's width apart.
+        // Peaks at least a spot's width apart.
         int peaks = 0;
         constexpr int kNear = 12;
         for (int y = kNear; y + kNear < int(kSide); ++y)
@@ -166,15 +161,15 @@ TEST_F(BookPicture, DrawnAsTheBookSaysOnAFrameAndBetweenTwo) {
             }
         std::printf("[   FIGURE ] book at %.3f: off by %.4f at most, %d peak(s), %.2f high\n",
                     double(time), worst, peaks, double(most / opacity));
-        EXPECT_LT(worst, 0.04) << time;  // 8 bits of book, of motion and of picture
+        EXPECT_LT(worst, 0.04) << time;  // 8 bits of flipbook, of motion and of picture
         EXPECT_EQ(1, peaks) << time;
-        EXPECT_GT(most / opacity, 0.9f) << time;  // a cross-fade would have 0.6
+        EXPECT_GT(most / opacity, 0.9f) << time;  // a cross-fade would reach 0.6
     }
 }
 
-// Stripes of two texels, seen from where four texels are a pixel: their mean, wherever pixels lie.
-// All of a frame's texels would show every other stripe, or none.
-TEST_F(BookPicture, FarAwayItShowsTheMeanAndDoesNotShimmer) {
+// Stripes of two texels at four texels per pixel show their mean at any pixel offset. Sampling
+// level 0 would show every other stripe or none.
+TEST_F(BookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
     book::Book striped = spots(book::Kind::Smoke);
     for (size_t i = 0; i < striped.texels.size() / 4; ++i)
         striped.texels[4 * i + 2] = i % 64 / 2 % 2 ? 240 : 0;
@@ -201,22 +196,23 @@ TEST_F(BookPicture, FarAwayItShowsTheMeanAndDoesNotShimmer) {
     EXPECT_LT(*high / *low, 1.03);
 }
 
-TEST_F(BookPicture, BooksComeAndGo) {
+TEST_F(BookPicture, FlipbooksMayBeCreatedAndDestroyed) {
     const book::Book made = spots(book::Kind::Smoke);
     const FwFlipbookId roll = create(FW_FLIPBOOK_ROLL), id = create(made);
     const Shown before = smokeAt(id, 0.25f);
-    ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, roll));  // the picture is laid anew
+    ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, roll));  // the atlas is rebuilt
     const Shown after = smokeAt(id, 0.25f);
-    for (size_t i = 0; i < before.alpha.size(); ++i)  // from another place of a picture as large
+    for (size_t i = 0; i < before.alpha.size();
+         ++i)  // from another place of an equally large atlas
         ASSERT_NEAR(before.alpha[i], after.alpha[i], 1.5f / 255) << i;
     ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, id));
-    const Shown without = smokeAt({}, 0.25f);  // by noise
+    const Shown without = smokeAt({}, 0.25f);  // drawn with noise
     EXPECT_NE(before.alpha, without.alpha);
     EXPECT_GT(*std::max_element(without.alpha.begin(), without.alpha.end()), 0.05f);
 }
 
-// Where books show all but sparks the device leaves the noise of others out.
-TEST_F(BookPicture, LooksTheSameBesideWhatHasNone) {
+// If flipbooks cover all particles but sparks, the device skips the noise of the others.
+TEST_F(BookPicture, LooksTheSameBesideEmittersWithoutFlipbooks) {
     const auto picture = [&](bool beside) {
         fwDestroyWorld(world_);
         world_ = nullptr;
@@ -232,9 +228,8 @@ TEST_F(BookPicture, LooksTheSameBesideWhatHasNone) {
         def.fireBooks[0] = create(FW_FLIPBOOK_FLAME);
         def.fireBooks[1] = create(FW_FLIPBOOK_ROLL);
         def.smokeBooks[0] = create(FW_FLIPBOOK_SMOKE);
-        other.position[0] = 100;  // out of the picture
-        FwFireEmitterId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &id));
+        other.position[0] = 100;  // outside the picture
+        FwFireEmitterId id = created(fwWorld_CreateFireEmitter, world_, def);
         if (beside) {
             EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &other, &id));
         }
@@ -247,7 +242,7 @@ TEST_F(BookPicture, LooksTheSameBesideWhatHasNone) {
     EXPECT_EQ(alone, beside);
 }
 
-// A soft spot of fire that hides nothing; `hides`: as much as it glows.
+// A soft spot of fire that covers nothing; `hides`: it covers as much as it glows.
 book::Book glow(float hides) {
     book::Book made = spots(book::Kind::Fire);
     for (size_t i = 0; i < made.texels.size(); i += 4) {
@@ -258,12 +253,12 @@ book::Book glow(float hides) {
     return made;
 }
 
-// Fire of a book that hides nothing is a sum: whoever is made first, hot or red, near or far, the
-// picture is the same but for what eight bits round. Nobody sorts it, so that its order in a frame
-// is that in which its emitters are made. Fire that hides is sorted, and no sum.
-TEST_F(BookPicture, WhatEmitsAloneLooksTheSameInAnyOrder) {
+// Additive fire is a sum, so the picture is the same in any order but for 8-bit rounding. It is not
+// sorted; its order in a frame is the order of creation. Fire that covers is sorted and not
+// additive.
+TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
     const auto picture = [&](const book::Book& made, bool backwards) {
-        fwDestroyWorld(world_);  // eddies go by its clock
+        fwDestroyWorld(world_);  // eddies depend on its clock
         world_ = nullptr;
         const FwWorldDef fresh = fwDefaultWorldDef();
         EXPECT_EQ(FW_OK, fwCreateWorld(context_, &fresh, &world_));
@@ -283,12 +278,11 @@ TEST_F(BookPicture, WhatEmitsAloneLooksTheSameInAnyOrder) {
             def.smoke = 0;
             def.temperature = i < 3 ? 1800.0f : 1250.0f;
             def.fireBooks[0] = book;
-            FwFireEmitterId id{};
-            EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(world_, &def, &id));
+            (void)created(fwWorld_CreateFireEmitter, world_, def);
         }
         for (int i = 0; i < 48; ++i) fwWorld_Step(world_, 1.0f / 32);
         FwView view = frontView({0, 0}, 3, 3);
-        view.exposure = 0.15f;  // far from white, where all would be the same
+        view.exposure = 0.15f;  // far from white, where all would be equal
         const float black[4] = {0, 0, 0, 1};
         return shoot(world_, view, kSide, kSide, black);
     };
@@ -306,7 +300,7 @@ TEST_F(BookPicture, WhatEmitsAloneLooksTheSameInAnyOrder) {
     std::printf("           apart %d levels at most, %.4f of its light; %d texels lit\n", most,
                 apart / shown, lit);
     EXPECT_GT(lit, 5000);
-    EXPECT_LE(most, 6);  // of some dozens that are added one to the other
+    EXPECT_LE(most, 6);  // rounding of some dozens of additions
     EXPECT_LT(apart, 0.005 * shown);
     const std::vector<uint8_t> hiding = picture(glow(1), false);
     double hidden = 0;

@@ -1,4 +1,4 @@
-// The budget: what burns is the same at every level of detail, and no fire goes away.
+// The frame budget: burns are equal at every level of detail, and no fire disappears.
 #include "abi/fire_world.h"
 #include "abi/panels.h"
 #include "support/views.h"
@@ -8,15 +8,12 @@
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::lastMessage;
 using host::Panels;
 
-FwBudgetState budgetOf(FwWorld* world) {
-    FwBudgetState state{};
-    state.structSize = sizeof state;
-    EXPECT_EQ(FW_OK, fwWorld_GetBudgetState(world, &state)) << lastMessage(world);
-    return state;
-}
+FwBudgetState budgetOf(FwWorld* world) { return getState(fwWorld_GetBudgetState, world); }
 
 FwResult setBudget(FwWorld* world, float limit, float measured) {
     FwBudgetDef def = fwDefaultBudgetDef();
@@ -41,7 +38,7 @@ std::vector<std::byte> saved(Panels& panels) {
 
 class Budget : public testing::TestWithParam<bool> {
  protected:
-    // A world of sheets that burn under six flames; null: there is no device.
+    // A world of burning sheets below six flames; null without a device.
     std::unique_ptr<Panels> make() {
         FwContext* context = nullptr;
         if (GetParam()) {
@@ -57,14 +54,13 @@ class Budget : public testing::TestWithParam<bool> {
         for (int i = 0; i < 6; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = float(i) - 2.5f;
-            FwVolumetricFireId id{};
-            EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels->world, &fire, &id));
+            (void)created(fwWorld_CreateVolumetricFire, panels->world, fire);
         }
         return panels;
     }
 };
 
-TEST_P(Budget, WhatBurnsIsTheSameAtEveryLevel) {
+TEST_P(Budget, DetailDoesNotChangeTheBurn) {
     const auto free = make();
     if (!free) GTEST_SKIP() << "no Vulkan device";
     const auto held = make();
@@ -78,7 +74,7 @@ TEST_P(Budget, WhatBurnsIsTheSameAtEveryLevel) {
     EXPECT_EQ(0u, budgetOf(free->world).level);
     EXPECT_EQ(saved(*free), saved(*held));
 
-    ASSERT_EQ(FW_OK, setBudget(held->world, 2, 0.1f));  // there is room again
+    ASSERT_EQ(FW_OK, setBudget(held->world, 2, 0.1f));  // the budget is large again
     held->run(4);
     EXPECT_EQ(0u, budgetOf(held->world).level);
     free->run(4);
@@ -87,7 +83,7 @@ TEST_P(Budget, WhatBurnsIsTheSameAtEveryLevel) {
 INSTANTIATE_TEST_SUITE_P(Backends, Budget, testing::Bool(),
                          [](const auto& backend) { return backend.param ? "device" : "cpu"; });
 
-TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
+TEST(BudgetOnDevice, KeepsEveryFireAndItsLight) {
     double light[2] = {};
     for (const bool held : {false, true}) {
         FwContext* context = nullptr;
@@ -98,8 +94,7 @@ TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
         for (int i = 0; i < 5; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = 1.4f * float(i - 2);
-            FwVolumetricFireId id{};
-            ASSERT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels.world, &fire, &id));
+            (void)created(fwWorld_CreateVolumetricFire, panels.world, fire);
         }
         ASSERT_EQ(FW_OK, setBudget(panels.world, held ? 2 : 0, 100));
         std::vector<unsigned char> pixels(320 * 180 * 4);
@@ -109,7 +104,7 @@ TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
         shot.view = fw::test::viewAt({0, 1, 9}, {0, 0.8f, 0}, 320.0f / 180, 4.57f);
         panels.run(2.5);
         uint32_t shots = 0;
-        for (; shots < 30; ++shots) {  // tiers take their time, by frames
+        for (; shots < 30; ++shots) {  // tiers change over frames
             panels.run(1.0 / 32);
             ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(panels.world, &shot))
                 << lastMessage(panels.world);
@@ -124,14 +119,14 @@ TEST(BudgetOnDevice, NoFireGoesAwayAndTheLightStays) {
             for (uint32_t y = 0; y < 180; ++y)
                 for (uint32_t x = part * 64; x < part * 64 + 64; ++x)
                     most = std::max<unsigned>(most, pixels[(y * 320 + x) * 4]);
-            EXPECT_GT(most, 100u) << "fire " << part << (held ? " at least detail" : "");
+            EXPECT_GT(most, 100u) << "fire " << part << (held ? " at lowest detail" : "");
         }
     }
     EXPECT_NEAR(light[1] / light[0], 1, 0.08);
     std::printf("light at the least detail: %.3f of all\n", light[1] / light[0]);
 }
 
-// Fires, burning sheets and a jet's particles, seen in a picture now and then.
+// Fires, burning sheets and a jet's particles, shown in a picture now and then.
 struct Seen {
     static constexpr uint32_t kWide = 160, kHigh = 90;
     std::unique_ptr<Panels> panels;
@@ -147,14 +142,12 @@ struct Seen {
         for (int i = 0; i < 2; ++i) {
             FwVolumetricFireDef fire = host::presetDef(FW_FIRE_CAMP);
             fire.position[0] = 1.5f * float(i) - 3.0f;
-            FwVolumetricFireId id{};
-            EXPECT_EQ(FW_OK, fwWorld_CreateVolumetricFire(panels->world, &fire, &id));
+            (void)created(fwWorld_CreateVolumetricFire, panels->world, fire);
         }
         FwFireEmitterDef emitter = fwDefaultFireEmitterDef();
         emitter.position[0] = 0.2f;
         emitter.power = 300;
-        FwFireEmitterId id{};
-        EXPECT_EQ(FW_OK, fwWorld_CreateFireEmitter(panels->world, &emitter, &id));
+        (void)created(fwWorld_CreateFireEmitter, panels->world, emitter);
         panels->ignite(panels->add(2.2f, 0.4f, 0), 2.4f, 0.4f, 0.1f, 0.05f);
         shot.width = kWide, shot.height = kHigh;
         shot.pixels = pixels.data();
@@ -166,7 +159,7 @@ struct Seen {
         ASSERT_EQ(FW_OK, fwWorld_RenderOffscreen(panels->world, &shot))
             << lastMessage(panels->world);
     }
-    // Light of the picture's columns, linear, of the red in it.
+    // Linear red light of the picture's columns.
     double light(uint32_t from, uint32_t to) const {
         double sum = 0;
         for (uint32_t y = 0; y < kHigh; ++y)
@@ -176,13 +169,14 @@ struct Seen {
     }
 };
 
-// Memory of what is shown falls below what the host gives within 60 frames and stays there; without
-// a limit it comes back. What burns knows nothing of it.
-TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndComeBack) {
+// Visual memory falls below the limit within 60 frames and stays there; without a limit it returns.
+// The burn is unaffected.
+TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndReturn) {
     Seen seen, free;
     if (!seen.make() || !free.make()) GTEST_SKIP() << "no Vulkan device";
     FwWorld* world = seen.panels->world;
-    for (int i = 0; i < 4; ++i) seen.frames(10);  // books of its flames have their room then
+    for (int i = 0; i < 4; ++i)
+        seen.frames(10);  // by then the impostors of its flames are allocated
     const uint64_t all = budgetOf(world).bytes;
     EXPECT_GT(all, 200000u);
     FwBudgetDef def = fwDefaultBudgetDef();
@@ -191,7 +185,7 @@ TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndComeBack) {
     seen.frames(60);
     const uint32_t level = budgetOf(world).level;
     EXPECT_GT(level, 0u);
-    for (int i = 0; i < 4; ++i) {  // and is still
+    for (int i = 0; i < 4; ++i) {  // still under the limit
         seen.frames(5);
         EXPECT_EQ(level, budgetOf(world).level);
         EXPECT_LE(budgetOf(world).bytes, def.bytes);
@@ -199,27 +193,27 @@ TEST(BudgetOnDevice, BytesSettleUnderTheLimitAndComeBack) {
     std::printf("bytes: %llu of %llu, at level %u\n",
                 static_cast<unsigned long long>(budgetOf(world).bytes),
                 static_cast<unsigned long long>(all), level);
-    EXPECT_GT(seen.light(0, 95), 10.0) << "the fires are there";
+    EXPECT_GT(seen.light(0, 95), 10.0) << "the fires are visible";
     def.bytes = 0;
     ASSERT_EQ(FW_OK, fwWorld_SetBudget(world, &def));
     seen.frames(60);
     EXPECT_EQ(0u, budgetOf(world).level);
-    EXPECT_NEAR(1, double(budgetOf(world).bytes) / double(all), 0.15) << "but for what is spare";
+    EXPECT_NEAR(1, double(budgetOf(world).bytes) / double(all), 0.15)
+        << "except for spare capacity";
     free.panels->run(180.0 / 32);
     EXPECT_EQ(saved(*free.panels), saved(*seen.panels));
 }
 
-// At the least detail a third of the quads shows (ParticlePass counts them), each larger: there is
-// as much fire, of flames too that are so small in the picture that they are fewer and larger for
-// that.
-TEST(BudgetOnDevice, QuadsFallAndTheFireStays) {
+// At the lowest detail a third of the quads shows (ParticlePass counts them), each larger, so the
+// amount of fire stays. This includes flames so small that they are merged anyway.
+TEST(BudgetOnDevice, FewerQuadsShowTheSameFire) {
     double sheet[2] = {}, jet[2] = {};
     for (const bool held : {false, true}) {
         Seen seen;
         if (!seen.make()) GTEST_SKIP() << "no Vulkan device";
         ASSERT_EQ(FW_OK, setBudget(seen.panels->world, held ? 2 : 0, 100));
         seen.frames(40);
-        for (uint32_t i = 0; i < 12; ++i) {  // of seconds, as flames flicker
+        for (uint32_t i = 0; i < 12; ++i) {  // several seconds, because flames flicker
             seen.panels->run(5.0 / 32);
             seen.frames(1);
             jet[held] += seen.light(58, 112);
@@ -233,7 +227,7 @@ TEST(BudgetOnDevice, QuadsFallAndTheFireStays) {
     EXPECT_NEAR(sheet[1] / sheet[0], 1, 0.08);
 }
 
-TEST(AbiBudget, RefusesWhatIsNoBudget) {
+TEST(AbiBudget, RefusesInvalidBudgets) {
     host::FireWorld w;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, -1, -1));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, 1001, -1));
@@ -245,8 +239,8 @@ TEST(AbiBudget, RefusesWhatIsNoBudget) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetBudget(w.world, nullptr));
 }
 
-// The clock of the host's own thread, on the backend that has no other.
-TEST(AbiBudget, TheProcessorsTimeIsMeasured) {
+// Measured by the clock of the host's thread; the cpu backend has no other.
+TEST(AbiBudget, MeasuresProcessorTime) {
     host::FireWorld w;
     FwBudgetDef def = fwDefaultBudgetDef();
     def.cpuMilliseconds = 1e-6f;

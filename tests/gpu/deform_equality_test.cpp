@@ -1,8 +1,8 @@
-// The deformation passes on a device against the library: the same mesh, the same fire, step for
-// step. Floats, and devices keep bends and burnt shares in fewer bits: near, to a written distance.
+// The deformation passes on a device against the library: the same mesh and fire, step by step.
+// Devices store bends and burnt shares in fewer bits, so results agree within stated tolerances.
 #include "mesh/bake.h"
-#include "mesh/deform/solver.h"
 #include "mesh/refine/model.h"
+#include "reference/deform_solver.h"
 #include "support/meshes.h"
 #include "support/pass_rig.h"
 
@@ -25,7 +25,7 @@ constexpr float kSide = 0.2f;  // m
 
 // One object on both sides.
 struct Pair {
-    // `words`: as devices do it that have few texels.
+    // `words`: as on devices with few texels per buffer.
     Pair(TestDevice& testDevice, const Mesh& mesh, const gpu::DeformObject& what,
          bool words = false)
         : device(testDevice),
@@ -59,7 +59,7 @@ struct Pair {
         rig.make(FW_BIND_DEFORM_GROUPS, groups * 8);
         rig.make(FW_BIND_DEFORM_NODES, nodes.size() * sizeof nodes[0], nodes.data());
         rig.make(FW_BIND_DEFORM_COATS, coats.size() * sizeof coats[0], coats.data());
-        // The second ones are on the inner skin, if it has one.
+        // The second half is the inner skin, if there is one.
         rig.make(FW_BIND_SHOWN, 2 * domain.vertices.size() * sizeof(gpu::ShownVertex));
         skin = domain.vertices;
         if (object.wall > 0) {
@@ -76,7 +76,7 @@ struct Pair {
         push.step = kStep;
     }
 
-    // What has burnt since tick 1, of what `when` gives a time from ignition; s.
+    // Burns each texel since tick 1 at the time (s after ignition) that `when` gives.
     template <class When>
     void burn(When when) {
         for (uint32_t i = 0; i < states.size(); ++i)
@@ -84,7 +84,7 @@ struct Pair {
         std::copy(states.begin(), states.end(), rig.of<uint32_t>(FW_BIND_STATE).begin());
     }
 
-    // A frame at `now` with `steps` of its solver.
+    // A frame at `now` with `steps` solver steps.
     void frame(uint32_t now, uint32_t steps) {
         const bool soft = (object.flags & gpu::kDeformRecede) == 0;
         const bool springs = (object.flags & gpu::kDeformSprings) != 0;
@@ -118,7 +118,8 @@ struct Pair {
             const float more = fresh ? 0 : shown.burnt - last.burnt;
             lost.push_back(more * object.materials[node.flags & 7u].depth / float(steps));
             if (!soft) continue;
-            if (!springs) shown.burnt = std::floor(shown.burnt * 255) / 255;  // as devices keep it
+            if (!springs)
+                shown.burnt = std::floor(shown.burnt * 255) / 255;  // at the device's precision
             shown.x = last.x;
             shown.y = last.y;
             shown.z = last.z;
@@ -130,11 +131,11 @@ struct Pair {
             else
                 mesh::sheetStep(model, object, drive, state);
         }
-        mesh::drape(model, state, soft && !springs);
+        mesh::skinVertices(model, state, soft && !springs);
         fresh = false;
     }
 
-    // The device goes on from where the library is.
+    // The device continues from the library's state.
     void sync() {
         const auto shown = rig.of<gpu::ShownVertex>(FW_BIND_SHOWN);
         const auto soft = rig.of<gpu::uvec4>(FW_BIND_SOFT);
@@ -157,15 +158,15 @@ struct Pair {
             shown[vertex].y = state.shown[vertex].y;
             shown[vertex].z = state.shown[vertex].z;
         }
-        state.tied = false;  // and looks at its ties, as the library does
+        state.tied = false;  // and rebuilds its link cache, as the library does
     }
 
     struct Apart {
-        double place = 0;   // m, at most
-        double mean = 0;    // m
-        double normal = 0;  // degrees, in the mean
+        double place = 0;   // m, largest
+        double mean = 0;    // m, mean
+        double normal = 0;  // degrees, mean
         double lead = 0;    // s
-        double moved = 0;   // m from rest, at most
+        double moved = 0;   // m from rest, largest
     };
     [[nodiscard]] Apart apart() const {
         Apart worst;
@@ -234,7 +235,7 @@ class DeformEquality : public GpuTest {
     }
 };
 
-TEST_F(DeformEquality, ReceedingSolids) {
+TEST_F(DeformEquality, RecedingSolidsAgree) {
     Pair pair(*device_, makeCube(kSide, 10, true), object(gpu::kDeformRecede));
     pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
     for (uint32_t now = 100; now < 60000; now += 9000) {
@@ -249,13 +250,13 @@ TEST_F(DeformEquality, ReceedingSolids) {
                                [](const auto& n) { return n.opposite != mesh::kNone; }));
 }
 
-// The inner skin of what recedes stays where it is while there is a wall before it, never comes
-// before what is left of that, and holes open in both at once.
-TEST_F(DeformEquality, InnerSkinsOfReceedingSolids) {
+// The inner skin of a receding solid stays while there is a wall in front and never comes in front
+// of it. Holes open in both at once.
+TEST_F(DeformEquality, InnerSkinsOfRecedingSolidsAgree) {
     constexpr float kWall = 0.004f;
     gpu::DeformObject made = object(gpu::kDeformRecede);
     made.wall = kWall;
-    for (gpu::DeformMaterial& m : made.materials) m.depth = kWall;  // all of it goes
+    for (gpu::DeformMaterial& m : made.materials) m.depth = kWall;  // all of it burns away
     Pair pair(*device_, makeCube(kSide, 10, true), made);
     pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
     size_t still = 0, gone = 0;
@@ -282,10 +283,10 @@ TEST_F(DeformEquality, InnerSkinsOfReceedingSolids) {
     EXPECT_GT(gone, 100u);
 }
 
-// A sheet that hangs, blows, chars, curls and tears for ten seconds. It flaps, and so doubles any
-// difference some ten times a second: what is compared is every twelve steps by themselves, and of
-// those the middle one, as a piece that tears off may do so a step sooner on one side.
-constexpr double kApart = 1e-4;  // m, in the mean
+// A sheet hangs, blows, chars, curls and tears for ten seconds. Flapping doubles any difference
+// some ten times a second, so every twelve steps are compared by themselves. The median counts,
+// because a piece may tear off a step earlier on one side.
+constexpr double kApart = 1e-4;  // m, mean
 Pair::Apart apartAfter12(Pair& pair) {
     pair.frame(100, 1);
     std::vector<double> means, normals;
@@ -307,7 +308,7 @@ Pair::Apart apartAfter12(Pair& pair) {
     return made;
 }
 
-TEST_F(DeformEquality, Sheets) {
+TEST_F(DeformEquality, SheetsAgree) {
     Pair pair(*device_, makeSheet(double(kSide), 20), sheet());
     light(pair);
     const Pair::Apart apart = apartAfter12(pair);
@@ -322,8 +323,7 @@ TEST_F(DeformEquality, Sheets) {
     EXPECT_LT(apart.normal, 1);
 }
 
-// By words, as where there are few texels: the same bits.
-TEST_F(DeformEquality, WordsAreTexels) {
+TEST_F(DeformEquality, WordsAndTexelsGiveEqualBits) {
     gpu::DeformObject springs = object(gpu::kDeformSprings);
     springs.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
     for (const gpu::DeformObject& what : {sheet(), object(gpu::kDeformRecede), springs}) {
@@ -340,8 +340,8 @@ TEST_F(DeformEquality, WordsAreTexels) {
     }
 }
 
-// Whatever one side does differently is seen: curl, weight, a pin, shrinking, drag.
-TEST_F(DeformEquality, ADifferenceIsSeen) {
+// The comparison must notice a difference in curl, weight, pin, shrinking or drag.
+TEST_F(DeformEquality, ComparisonCatchesMutants) {
     for (uint32_t what = 0; what < 5; ++what) {
         Pair pair(*device_, makeSheet(double(kSide), 20), sheet());
         light(pair);
@@ -358,7 +358,7 @@ TEST_F(DeformEquality, ADifferenceIsSeen) {
     }
 }
 
-TEST_F(DeformEquality, PublishedSprings) {
+TEST_F(DeformEquality, ReferenceSpringsAgree) {
     gpu::DeformObject made = object(gpu::kDeformSprings);
     made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
     Pair pair(*device_, makeCube(kSide, 10, true), made);

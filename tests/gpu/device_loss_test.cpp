@@ -1,6 +1,6 @@
-// A lent device is lost at one of the library's Vulkan calls after another, as the host's table of
-// entry points says: each time the host is told so, everything is freed, and the fire goes on from
-// the last mirror on another context. FLAMEWRIGHT_LOSE_EVERY=1 in the environment: at every call.
+// Loses a host device at one of the library's Vulkan calls after another through the host's entry
+// points. The host hears of it, everything is freed, and the fire continues from the last mirror in
+// another context. FLAMEWRIGHT_LOSE_EVERY=1 in the environment tests every call.
 #include "support/loss_scene.h"
 #include "support/views.h"
 #include "support/vulkan_device.h"
@@ -52,7 +52,7 @@ class LossOnDevice : public GpuTest {
         return barrier;
     }
 
-    // A life of a context on the lent device, until a call of it fails.
+    // One run of a context on the host device until a call fails.
     struct Life {
         Host host;
         HostFrames frames;
@@ -61,16 +61,16 @@ class LossOnDevice : public GpuTest {
         FwTargetId target{};
         FwResult result = FW_OK;
         TestDevice& device;
-        int64_t playedFrom = 0;  // calls until the first frame
+        int64_t playedFrom = 0;  // Vulkan calls before the first frame
 
         explicit Life(LossOnDevice& test) : frames(*test.device_, 2), device(*test.device_) {
             scene.step = [this, &test](FwWorld* world, float seconds) {
                 return record(test, world, seconds);
             };
-            FwVulkanHost lent = test.device_->host();
-            lent.getInstanceProcAddr = losingEntry;
+            FwVulkanHost vulkanHost = test.device_->host();
+            vulkanHost.getInstanceProcAddr = losingEntry;
             FwContextDef def = fwDefaultContextDef();
-            def.vulkan = &lent;
+            def.vulkan = &vulkanHost;
             def.callbacks = host.callbacks();
             FwErrorInfo error{};
             result = fwCreateContext(&def, &context, &error);
@@ -85,10 +85,10 @@ class LossOnDevice : public GpuTest {
         Life(const Life&) = delete;
         Life& operator=(const Life&) = delete;
         ~Life() {
-            frames.waitAll();  // what was submitted before
+            frames.waitAll();  // work submitted before
             fwDestroyContext(context);
             EXPECT_EQ(0, host.blocks);
-            EXPECT_EQ(0, losingVulkan()->live) << "objects of the device are left";
+            EXPECT_EQ(0, losingVulkan()->live) << "objects of the device leak";
         }
         void burn() {
             if (result == FW_OK) result = scene.make(context);
@@ -107,7 +107,7 @@ class LossOnDevice : public GpuTest {
             FwResult done = fwWorld_RecordOutside(world, &frame, &view);
             if (done == FW_OK)
                 done = fwWorld_RecordComposite(world, &frame, target, &view, &images);
-            if (done == FW_OK) frames.submit();  // a host that has lost its device cannot
+            if (done == FW_OK) frames.submit();  // impossible for a host whose device is lost
             return done;
         }
     };
@@ -124,7 +124,7 @@ class LossOnDevice : public GpuTest {
     TestImage color_, depth_;
 };
 
-TEST_F(LossOnDevice, AtEveryCallOfALentDevice) {
+TEST_F(LossOnDevice, IsSurvivedAtEveryCallOfAHostDevice) {
     if (!device_) return;
     LosingVulkan& vulkan = *losingVulkan();
     LossReference reference;
@@ -143,7 +143,7 @@ TEST_F(LossOnDevice, AtEveryCallOfALentDevice) {
     }
     const std::vector<int64_t> losses =
         host::chooseLosses(vulkan, frames, calls, mirroredAt, 24, false);
-    std::map<uint32_t, uint32_t> mirrors;  // by frame, how often
+    std::map<uint32_t, uint32_t> mirrors;  // mirrors by frame
     std::vector<Bytes> recovered;
     for (const int64_t call : losses) {
         SCOPED_TRACE("lost at call " + std::to_string(call) + ", " + vulkan.nameOf(call));
@@ -154,9 +154,9 @@ TEST_F(LossOnDevice, AtEveryCallOfALentDevice) {
             Life life(*this);
             life.burn();
             ASSERT_TRUE(vulkan.lost) << "the call did not come";
-            EXPECT_TRUE(host::tellsOfLoss(life.result, vulkan.nameOf(call)))
+            EXPECT_TRUE(host::reportsLoss(life.result, vulkan.nameOf(call)))
                 << fwResultName(life.result) << ": " << life.host.lastError;
-            if (life.scene.world) {  // it stays lost, and gives what it has
+            if (life.scene.world) {  // the device stays lost, and the world returns what it has
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, life.record(*this, life.scene.world, 0.1f));
                 EXPECT_EQ(FW_OK, life.scene.takeSave());
             }

@@ -1,6 +1,6 @@
-// Every pass and shader once, on buffers that end where the last thing in them does. Under
-// GPU-assisted validation (tests/run --gpu-assisted) each access past an end is reported, and the
-// second test proves that; without it the software device would never notice.
+// Runs every pass and shader once on buffers of exact size. Under GPU-assisted validation
+// (tests/run --gpu-assisted) each access past an end is reported, which the second test proves.
+// Without it a software device would not notice.
 #include "book/own.h"
 #include "book/picture.h"
 #include "components/heat_shield.h"
@@ -26,8 +26,8 @@ constexpr std::string_view kOfPublished[] = {"published", "skin", "refine_publis
 
 class EveryPass : public GpuTest {
  protected:
-    // A small box whose faces are charts, each of them with seams: one object of the model that
-    // recedes, or one in as-published mode whose vertices the host moves.
+    // A small box whose faces are charts with seams: a receding object of the deform model, or the
+    // reference refinement with vertices moved by the host.
     static const BurnScene& scene(bool published) {
         static const BurnScene scenes[2] = {makeScene(false), makeScene(true)};
         return scenes[published ? 1 : 0];
@@ -47,7 +47,8 @@ class EveryPass : public GpuTest {
         const mesh::BurnDomain& domain = scene.domains[0];
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m) {
             object.materials[m] = plainMaterial(domain, 0.3, 1.0, 1.0);
-            object.materials[m].look = FW_MATERIAL_POLYESTER;  // with the plants: all families
+            object.materials[m].look =
+                FW_MATERIAL_POLYESTER;  // all material families, including plants
             object.materials[m].baseColor = {0.8f, 0.4f, 0.2f, 900};
             object.materials[m].holeTicks = 300;  // pieces fall
         }
@@ -59,12 +60,12 @@ class EveryPass : public GpuTest {
             object.deform.flags = gpu::kDeformRecede;
             for (gpu::DeformMaterial& m : object.deform.materials)
                 m = gpu::DeformMaterial{4096, 0.01f, 0, 0, 8192, 2, 0, 0};
-            object.deform.wall = 0.05f;  // it has an inner skin
+            object.deform.wall = 0.05f;  // with an inner skin
         }
         scene.objects.push_back(object);
-        if (published) {  // and one that is refined so too
+        if (published) {  // and a refined object with one
             object.flags = gpu::kObjectPublished;
-            object.arp = true;
+            object.reference = true;
             scene.objects.push_back(object);
             scene.addPublished();
             return scene;
@@ -83,7 +84,7 @@ class EveryPass : public GpuTest {
         return scene;
     }
 
-    // The box and its fire, and nothing that it does to its mesh.
+    // The box and its fire, without deformation or refinement.
     static const BurnScene& plainScene() {
         static const BurnScene plain = [] {
             BurnScene scene = makeScene(false);
@@ -96,7 +97,7 @@ class EveryPass : public GpuTest {
         return plain;
     }
 
-    // A part of its own, a centimetre off a face.
+    // A separate part one centimetre from a face.
     static void addTag(Mesh& box) {
         float right = 0;
         for (size_t i = 0; i < box.uvs.size(); i += 2) right = std::max(right, box.uvs[i]);
@@ -113,24 +114,25 @@ class EveryPass : public GpuTest {
         gpu::vk::WorldLimits limits;
         limits.looks = testLooks();
         limits.exactBuffers = true;
-        limits.maxFlames = 64;  // fewer than the scene wishes for
+        limits.maxFlames = 64;  // fewer than the scene needs
         limits.maxLights = 4;
-        limits.maxRefinedTriangles = 500;  // fewer than it wishes for
-        rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits,
-                                       shortBinding != kNoBinding ? shorteningEntry(shortBinding)
-                                       : published ? fewTexelsEntry()  // passes by words, then
-                                                   : nullptr);
+        limits.maxRefinedTriangles = 500;  // fewer than the scene needs
+        rig_ = std::make_unique<VkRig>(
+            *device_, 2, 0, limits,
+            shortBinding != kNoBinding ? shorteningEntry(shortBinding)
+            : published ? fewTexelsEntry()  // then passes read words instead of texels
+                        : nullptr);
         scene_ = shortBinding != kNoBinding ? &plainScene() : &scene(published);
         scene_->create(rig_->backend);
         rig_->backend.setRoom(
             0, {1u << 16, 1u << 20, gpu::kAirOutside, 1, /*flashes*/ 1u << 20, 0, 0, 0});
-        if (shortBinding == kNoBinding) makeTargets();  // else nothing is drawn
+        if (shortBinding == kNoBinding) makeTargets();  // otherwise nothing is drawn
         const float eye[3] = {0.9f, 0.7f, 1.1f}, at[3] = {0, 0, 0};
         rig_->view = testView(eye, at, 40, 1, false);
         if (published) makeVertices();
         FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
         flames_[0] = flameAlone(fire, 1);
-        components::setFirePreset(fire, FW_FIRE_CANDLE);  // the eye is not in it
+        components::setFirePreset(fire, FW_FIRE_CANDLE);  // the camera is outside it
         flames_[1] = flameAlone(fire, 1);
         flames_[0].record.tier = FW_FIRE_TIER_MARCH_HIGH;
         flames_[1].record.tier = FW_FIRE_TIER_IMPOSTOR;
@@ -161,7 +163,7 @@ class EveryPass : public GpuTest {
     void makeTargets() {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE | FW_TARGET_AS_NEEDED;
-        def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, or no slices show
+        def.colorFormat = VK_FORMAT_R16G16B16A16_SFLOAT;  // linear, otherwise slices do not show
         def.depthFormat = VK_FORMAT_D32_SFLOAT;
         target_ = rig_->context.registerTarget(def);
         def.flags |= FW_TARGET_HAZE | FW_TARGET_TRANSPARENCY;
@@ -180,7 +182,7 @@ class EveryPass : public GpuTest {
                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     }
 
-    // The last of them is deep in the view, the others beside each other.
+    // The last one is far away, the others lie side by side.
     void makeField(uint32_t slot, field::FieldPreset preset, uint32_t shape) {
         FwParticleFieldDef def = fwDefaultParticleFieldDef();
         components::setFieldPreset(def, uint32_t(preset));
@@ -196,8 +198,7 @@ class EveryPass : public GpuTest {
         fieldDraws_[slot] = components::fieldDraw(field, 0, 0, 0);
     }
 
-    // The box's corners where a host has them: a little larger, in a buffer without a word to
-    // spare.
+    // The box's vertices in the host's buffer: slightly larger, in a buffer without a spare word.
     void makeVertices() {
         const mesh::BurnDomain& domain = scene_->domains[0];
         std::vector<float> places(domain.report.vertices * 3);
@@ -230,13 +231,13 @@ class EveryPass : public GpuTest {
     }
 
     struct Frame {
-        uint32_t kind = 0, every = 0;  // events: of each `every`-th texel, 0: none
+        uint32_t kind = 0, every = 0;  // events on every `every`-th texel; 0: none
         uint32_t steps = 2, switches = 0;
         bool latch = false, probes = false, draw = true, exchange = false;
         bool effects = true;  // flames, particles and fields
-        bool whole = false;   // one event more, of all texels of each object
+        bool whole = false;   // one more event for all texels of each object
     };
-    // The box as its own neighbour: it shines on itself, touches itself and throws embers at
+    // The box as its own neighbour: it radiates to itself, touches itself and throws embers at
     // itself.
     void placeBox() {
         placed_.object = 0;
@@ -260,7 +261,7 @@ class EveryPass : public GpuTest {
         linkRange_ = {0, uint32_t(links_.size())};
         remote_.linkRanges = {&linkRange_, 1};
         remote_.blockers = {&blocker_, 1};
-        // Its faces are in each other's way, and a wall of the host's is.
+        // Its faces occlude each other, and so does a wall of the host's.
         components::HeatShield shield(std::pmr::get_default_resource());
         shield.shape.counts = {24, 24, 24};
         shield.shape.origin = {-600, -600, -600};
@@ -298,7 +299,7 @@ class EveryPass : public GpuTest {
                 if (what.latch) step.materials = {&update, 1};
                 if (what.exchange) step.remote = &remote_;
             }
-            // Without it until then.
+            // Without it up to that step.
             if (what.exchange && &step == &steps[what.steps / 2]) step.shield = &shield_;
             if (what.exchange) {
                 step.exchange = step.governed = step.capped = true;
@@ -335,14 +336,15 @@ class EveryPass : public GpuTest {
             ASSERT_TRUE(
                 components::advanceSparks(emitter_->emitter, emitter_->air, 0.2f, sparks[0]));
             sparks[1] = sparks[0];
-            sparks[1].object = 1;  // those of its tiles, too
+            sparks[1].object = 1;  // those of its tiles too
             emitters.sparks = sparks;
             emitters.sparkCount = 2;
             emitters.sparkQuads = 20;  // fewer than there are
         }
         if (what.effects) plan.emitters = &emitters;
         std::vector<gpu::FieldRun> runs;
-        for (uint32_t i = 0; scene_->arp == nullptr && i < 3; ++i) runs.push_back({i, fieldStep_});
+        for (uint32_t i = 0; scene_->referenceModel == nullptr && i < 3; ++i)
+            runs.push_back({i, fieldStep_});
         const uint32_t rounds[] = {uint32_t(runs.size())}, drawn[] = {0, 1, 2};
         ++fieldStep_;
         gpu::FieldUpdate fields;
@@ -405,17 +407,17 @@ class EveryPass : public GpuTest {
         images.depth.image = depth_.image;
         images.depth.view = depth_.view;
         FwView view = rig_->view;
-        if (index_ % 2) view.exposure *= 0.99f;  // another than that of the outside part
+        if (index_ % 2) view.exposure *= 0.99f;  // differs from the view of the outside part
         EXPECT_TRUE(rig_->backend.recordComposite(frame, target_, view, images));
-        FwVulkanFrame lends = frame;
-        lends.sampledColor = behind_.view;
-        lends.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-        lends.transparency = 0.5f;
-        EXPECT_TRUE(rig_->backend.recordComposite(lends, hazeTarget_, view, images));
-        EXPECT_TRUE(rig_->backend.recordComposite(lends, halfTarget_, view, images));
+        FwVulkanFrame hostFrame = frame;
+        hostFrame.sampledColor = behind_.view;
+        hostFrame.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        hostFrame.transparency = 0.5f;
+        EXPECT_TRUE(rig_->backend.recordComposite(hostFrame, hazeTarget_, view, images));
+        EXPECT_TRUE(rig_->backend.recordComposite(hostFrame, halfTarget_, view, images));
     }
 
-    // Flames and particles show flipbooks from now on.
+    // From here on flames and particles show flipbooks.
     void showBooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
         book::Book books[3]{book::Book(memory), book::Book(memory), book::Book(memory)};
@@ -429,7 +431,7 @@ class EveryPass : public GpuTest {
         emitter_->emitter.books = {1u, 2u | 3u << 16};
     }
 
-    // No view shows it: of what it will do nothing is predicted until one does again.
+    // No view shows it, so its prediction stops until one does again.
     void hide(bool hidden) {
         gpu::BurnObject record = scene_->init(0).record;
         const gpu::vec4 rows[] = {record.worldRow0, record.worldRow1, record.worldRow2};
@@ -438,7 +440,7 @@ class EveryPass : public GpuTest {
                                     hidden ? flags | gpu::kObjectHidden : flags);
     }
 
-    // As a save may have it: unburnt, in all lists with all of its tiles.
+    // As after a load: unburnt, in all lists with all of its tiles.
     void restoreBox() {
         const mesh::BurnDomain& domain = scene_->domains[0];
         std::vector<uint32_t> ticks(domain.texelCount(), gpu::kInert);
@@ -458,11 +460,11 @@ class EveryPass : public GpuTest {
         rig_->backend.restore({&one, 1}, now_);
     }
 
-    // Unburnt, lit, blown at, soaked, dried, put out, lit all over, looked at tile by tile, and
-    // again in a slot that was given back.
+    // Unburnt, lit, blown at, soaked, dried, extinguished, lit all over, inspected tile by tile,
+    // and again in a reused slot.
     void burn() {
         frame({});
-        if (scene_->arp) {
+        if (scene_->referenceModel) {
             const float corner[3] = {0.25f, 0.25f, 0.25f};
             rig_->backend.startBoundary(1, corner, now_);
         }
@@ -490,7 +492,7 @@ class EveryPass : public GpuTest {
         rig_->backend.createObject(0, scene_->init(0));
         frame({gpu::kEventIgnite, 1, 2, 0, true, true});
         for (int i = 0; i < 2; ++i) frame({.steps = 4});
-        if (!scene_->arp) restoreBox();
+        if (!scene_->referenceModel) restoreBox();
         frame({.steps = 4});
         rig_->alsoRecord = nullptr;
         (void)rig_->finish();
@@ -498,20 +500,19 @@ class EveryPass : public GpuTest {
             if (time.count) passes_.insert(time.name);
     }
 
-    // Of one scene: its passes ran and no others are missing. Two tests, so that they run beside
-    // each other.
+    // The scene ran all of its passes. Two tests, so that they run in parallel.
     void expectPasses(bool published) {
         makeRig(kNoBinding, published);
         burn();
         if (HasFatalFailure()) return;
         FwContextInfo info{};
         rig_->context.fillInfo(info);
-        if (!info.gpuTimers) return;  // what ran cannot be known
+        if (!info.gpuTimers) return;  // without timers it is unknown which passes ran
         const auto expectOne = [&](const char* name) {
             const bool second = std::find(std::begin(kOfPublished), std::end(kOfPublished),
                                           std::string_view(name)) != std::end(kOfPublished);
             if (second != published) return;
-            EXPECT_TRUE(passes_.contains(name)) << name << " is not in this test's scenes";
+            EXPECT_TRUE(passes_.contains(name)) << name << " is not run by this test's scenes";
         };
         for (const gpu::ComputePass* pass : gpu::computePasses()) expectOne(pass->name);
         for (const gpu::DrawPass* pass : gpu::drawPasses()) expectOne(pass->name);
@@ -527,7 +528,7 @@ class EveryPass : public GpuTest {
     FwTargetId target_{}, hazeTarget_{}, halfTarget_{};
     TestImage color_, depth_, behind_;
     TestBuffer vertices_;
-    std::set<std::string> passes_;  // that took time
+    std::set<std::string> passes_;  // passes with a time
     gpu::RemoteUpdate::Placed placed_{};
     gpu::RemoteUpdate remote_;
     gpu::ShieldUpdate shield_;
@@ -549,17 +550,17 @@ TEST_F(EveryPass, StaysInsideItsBuffers) {
     if (device_) expectPasses(false);
 }
 
-TEST_F(EveryPass, StaysInsideItsBuffersAsPublished) {
+TEST_F(EveryPass, StaysInsideItsBuffersInReferenceMode) {
     if (device_) expectPasses(true);
 }
 
-// One pass is enough to prove that the layer looks, and that our buffers end where they should: an
-// object's reset writes to the last texel of its state and to its last tile. One plain object and
-// no effects: the other shaders take the driver minutes, and the tests above have them.
-TEST_F(EveryPass, AnAccessPastAnEndIsReported) {
+// One pass proves that the layer checks and that the buffers end where they should: the reset of an
+// object writes its last texel and tile. One plain object without effects, because instrumented
+// shaders take minutes.
+TEST_F(EveryPass, ReportsAnAccessPastTheEnd) {
     if (!device_) return;
     if (!gpuAssisted()) GTEST_SKIP() << "only GPU-assisted validation sees it (--gpu-assisted)";
-    // That nothing is told of buffers of their full length the tests above have shown.
+    // The tests above show that full-length buffers raise no message.
     for (const uint32_t binding : {FW_BIND_STATE, FW_BIND_PREDICT, FW_BIND_TILE_STATE}) {
         rig_.reset();
         device_.reset();
@@ -568,12 +569,13 @@ TEST_F(EveryPass, AnAccessPastAnEndIsReported) {
         frame({.steps = 0, .draw = false, .effects = false});
         rig_->frames.waitAll();
         rig_.reset();
-        const std::vector<std::string> told = device_->takeMessages();
-        const bool seen = std::any_of(told.begin(), told.end(), [](const std::string& message) {
-            return message.find("access out of bounds") != std::string::npos;
-        });
+        const std::vector<std::string> messages = device_->takeMessages();
+        const bool seen =
+            std::any_of(messages.begin(), messages.end(), [](const std::string& message) {
+                return message.find("access out of bounds") != std::string::npos;
+            });
         EXPECT_TRUE(seen) << "binding " << binding;
-        for (const std::string& message : told)
+        for (const std::string& message : messages)
             if (!seen) ADD_FAILURE() << message;
     }
 }

@@ -1,5 +1,5 @@
-// Fire from object to object on a device against the cpu backend: two worlds that hear the same
-// calls, one of them some frames late, end in the same texels.
+// Heat transfer between objects on a device against the cpu backend: two worlds get the same calls,
+// one reads back some frames later, and both end in equal texels.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"
 #include "support/sanitized.h"
@@ -81,7 +81,7 @@ class ExchangeEquality : public GpuTest {
             rig.frames.submit();
             cpu.advance(frame.frameIndex, deltaTime);
         }
-        // Maps of all objects, taken at the next frame's end; empty if they differ.
+        // Compares the maps of all objects, fetched at the end of the next frame.
         void compare(const std::string& when) {
             each([&](world::World& w) {
                 for (const FwBurnableMeshId id : ids) w.requestBurnMap(id);
@@ -111,7 +111,7 @@ class ExchangeEquality : public GpuTest {
                 ASSERT_EQ(theirs.energy, mine.energy) << when << ", object " << i;
             }
         }
-        uint32_t heats = 0, wet = 0;  // objects with heat, and texels under water, compared
+        uint32_t heats = 0, wet = 0;  // compared objects with heat, and wet texels
     };
 
     static uint32_t burning(Both& both) {
@@ -125,7 +125,7 @@ class ExchangeEquality : public GpuTest {
     }
 };
 
-// One mesh, whose fire has a gap to cross.
+// One mesh whose fire must cross a gap.
 Mesh twoBoxes() {
     Mesh both = makeCube(0.12, 2);
     const Mesh one = both;
@@ -137,8 +137,8 @@ Mesh twoBoxes() {
     return both;
 }
 
-// A ball that holds objects is one event for each of them, beside events of texels of others.
-TEST_F(ExchangeEquality, BallsThatHoldWholeObjects) {
+// A ball is one event for each object it holds, beside events of texels of others.
+TEST_F(ExchangeEquality, BallsAroundWholeObjectsAgree) {
     if (!device_) return;
     for (const uint32_t tilesMost : {0u, 6u}) {
         FwWorldDef def = worldDef(FW_WORLD_RADIATION);
@@ -176,7 +176,7 @@ TEST_F(ExchangeEquality, BallsThatHoldWholeObjects) {
         steps(8);
         both.compare("dried and lit");
         ball(FW_IGNITE, 1, 0.1f, 0.02f);
-        ball(FW_EXTINGUISH, 1, 50, 0.02f);  // with texels of some of the same objects
+        ball(FW_EXTINGUISH, 1, 50, 0.02f);  // together with texels of some of the same objects
         ball(FW_IGNITE, 3, 0.1f, 0.02f);
         steps(4);
         both.compare("put out");
@@ -186,7 +186,7 @@ TEST_F(ExchangeEquality, BallsThatHoldWholeObjects) {
     }
 }
 
-TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
+TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
     if (!device_) return;
     FwWorldDef def = worldDef(15);
     def.maxBurningTiles = 90;
@@ -226,7 +226,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
             w.pushTexels(both.ids[i], kind, texels);
         });
     };
-    // The lists of the cpu in another order each step: that order must not matter.
+    // The cpu shuffles its lists each step; the order must not matter.
     both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
     ignite(0, FW_IGNITE, 0);
     uint32_t steps = 0, mostCaught = 0;
@@ -238,7 +238,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
             moved(transform, one(1.6f), one(0.6f), one(1.6f), one(6));
             both.each([&](world::World& w) { w.setTransform(both.ids[i], transform); });
         }
-        if (frame % 40 == 10) {  // as they stand then; some have burnt away, others move on
+        if (frame % 40 == 10) {  // at their current state: some have burnt away, others have moved
             const FwBurnableMeshId walls[] = {both.ids[0], both.ids[2], both.ids[7], both.ids[9]};
             uint8_t post[40 * 24 * 40] = {};
             for (int y = 0; y < 24; ++y) post[(12 * 24 + y) * 40 + 20] = 1;
@@ -283,10 +283,9 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllOfItOn) {
     std::printf("%u steps, %u of %zu objects alight\n", steps, mostCaught, both.ids.size());
 }
 
-// However fire comes to them, by front, heat, contact, ember, the as-published kernel or a flame
-// that blows on them: no more tiles burn than may, of an object and of the world, and both backends
-// choose the same.
-TEST_F(ExchangeEquality, NoMoreTilesBurnThanMay) {
+// No more tiles burn than allowed, per object and per world, and both backends choose the same
+// ones. They catch by front, heat, contact, embers, the reference kernel or a flame.
+TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     if (!device_) return;
     constexpr uint32_t kOfWorld = 30, kOfOne = 4;
     FwWorldDef def = worldDef(15);
@@ -317,8 +316,8 @@ TEST_F(ExchangeEquality, NoMoreTilesBurnThanMay) {
         });
     };
     for (const size_t i : {0, 1, 3, 5}) light(i);
-    // One that a flame blows on all the time, far from the others: what is lite it would light at
-    // once.
+    // A flame blows all the time on an object far from the others; without the limit it would
+    // ignite LITE objects at once.
     components::Governance few;
     few.tilesMost = kOfOne;
     both.add(board, FW_MATERIAL_PAPER, 3, 0.2f, 3, 0, 0, 0, few);
@@ -360,13 +359,13 @@ TEST_F(ExchangeEquality, NoMoreTilesBurnThanMay) {
     FwObjectState blown{};
     both.cpu.objectState(both.ids.back(), blown);
     EXPECT_GT(blown.ignited, 0u);
-    EXPECT_GT(full, 30u);  // often enough to be asked for more
+    EXPECT_GT(full, 30u);  // often enough at the limit
     EXPECT_GT(burning(both), 5u);
 }
 
-// With all of it on, among objects that come and go within reach of each other: nothing is asked of
-// the device or the heap once every pair has met.
-TEST_F(ExchangeEquality, SteadyFramesAskNothing) {
+// With all modes on and objects coming and going within reach: once every pair has met, a frame
+// allocates nothing on device or heap.
+TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
     if (!device_) return;
     core::Log log{FwCallbacks{}};
     VkRig rig(*device_, 2, 0, {}, countingEntry());

@@ -1,7 +1,7 @@
-// Particle fields on a device against the library's step, cell by cell: presets, sizes, walls,
-// paint, rings, one group for each of many.
-#include "field/field.h"
+// Particle fields on a device equal the library's step cell by cell: presets, sizes, walls, paint,
+// rings, many fields in one dispatch.
 #include "gpu/passes/field_units.h"
+#include "reference/field_scene.h"
 #include "support/pass_rig.h"
 #include "support/sanitized.h"
 
@@ -21,7 +21,7 @@ constexpr uint32_t kBindings[] = {FW_BIND_FIELDS, FW_BIND_FIELD_CELLS, FW_BIND_F
                                   FW_BIND_FIELD_COUNTERS, FW_BIND_FIELD_RUNS};
 constexpr uint32_t kTexels[] = {FW_BIND_FIELD_CELLS};
 
-struct Pair {  // the library's, and where the device has it
+struct Pair {  // the library's field and its place on the device
     Field field{std::pmr::get_default_resource()};
     FieldRules rules{};
     std::vector<uint8_t> masks;
@@ -142,7 +142,7 @@ class FieldEquality : public GpuTest {
 
 class FieldEqualityBy : public FieldEquality, public ::testing::WithParamInterface<bool> {};
 
-TEST_P(FieldEqualityBy, EveryCellAsTheLibrary) {
+TEST_P(FieldEqualityBy, EveryCellEqualsTheLibrary) {
     if (!device_) return;
     std::vector<Pair> pairs;
     for (uint32_t preset = 0; preset < field::kFieldPresets; ++preset) {
@@ -155,7 +155,7 @@ TEST_P(FieldEqualityBy, EveryCellAsTheLibrary) {
     expectEqual(pairs);
     const uint32_t steps = rounds(300u, 20u);
     for (uint32_t s = 0; s < steps; ++s) {
-        if (s % 50 == 30) {  // other winds, other walls, a source that stops
+        if (s % 50 == 30) {  // changed winds and walls, a source that stops
             for (Pair& pair : pairs) {
                 pair.rules.forceX = int(s % 3) * 90 - 90;
                 pair.rules.sourceCount = s % 100 == 30 ? 0 : 2;

@@ -1,4 +1,4 @@
-// Particle fields as a device draws them.
+// Pictures of particle fields.
 #include "support/own_world.h"
 
 #include <algorithm>
@@ -9,9 +9,9 @@ namespace {
 
 class FieldPicture : public OwnWorld {};
 
-// A sheet of water that falls into a pool, in the sun: neither its source nor the pool's surface,
-// where the sheet ends within a cell or two, is a row of white dots.
-TEST_F(FieldPicture, ASheetOfWaterHasNoRimsOfWhiteDots) {
+// A sheet of water falls into a pool in the sun. Neither its source nor the pool's surface, where
+// the sheet ends within a cell or two, may be a row of white dots.
+TEST_F(FieldPicture, SheetsOfWaterHaveNoWhiteDottedRims) {
     constexpr uint32_t kSide = 192;  // px
     for (const uint32_t cells : {32u, 64u}) {
         FwWorld* world = nullptr;
@@ -23,8 +23,7 @@ TEST_F(FieldPicture, ASheetOfWaterHasNoRimsOfWhiteDots) {
         def.life *= float(cells) / 32;  // speeds are in cells
         def.size[0] = 1.1f;
         def.size[1] = 1.3f;
-        FwParticleFieldId id{};
-        ASSERT_EQ(FW_OK, fwWorld_CreateParticleField(world, &def, &id));
+        (void)created(fwWorld_CreateParticleField, world, def);
         for (int i = 0; i < 4 * 24; ++i) fwWorld_Step(world, 1.0f / 24);
         FwView view = frontView({0, 0.65f}, 1.5f, 1.5f);
         const float sun[3] = {0.28f, 0.58f, 0.76f};
@@ -36,7 +35,7 @@ TEST_F(FieldPicture, ASheetOfWaterHasNoRimsOfWhiteDots) {
         }
         const float dark[4] = {0.02f, 0.02f, 0.02f, 1};
         const std::vector<uint8_t> pixels = shoot(world, view, kSide, kSide, dark);
-        // Of rows that the sheet covers: how much of each is white.
+        // For each row of the sheet, the white share.
         float worst = 0;
         int rows = 0;
         for (uint32_t y = 0; y < kSide; ++y) {

@@ -1,5 +1,5 @@
-// The device against the cpu backend, bit for bit: random fires, douses, dryings and wind on many
-// meshes at once. Validation and synchronization validation listen all the while.
+// The device against the cpu backend, bit for bit: random fires, extinguishing, drying and wind on
+// many meshes at once, under validation and synchronization validation.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"
 #include "support/sanitized.h"
@@ -18,7 +18,7 @@ class FrontEquality : public GpuTest {
         uint32_t compared = 0, runTiles = 0;
     };
 
-    // P12: the account of an object with heat is what its texels lost.
+    // An object's energy account equals the loss of its texels.
     static uint64_t checkBook(const BurnScene& scene, const gpu::cpu::CpuBackend& cpu,
                               uint32_t object) {
         const SceneObject& what = scene.objects[object];
@@ -35,7 +35,7 @@ class FrontEquality : public GpuTest {
         return units;
     }
 
-    // Runs the same plans on both; vk may get switches of its own.
+    // Runs the same plans on both; the device may get other switches.
     Outcome compare(const BurnScene& scene, uint32_t steps, uint32_t stepsPerFrame,
                     uint32_t mapEvery, uint32_t seed, uint32_t vkSwitches = 0) {
         Outcome outcome;
@@ -51,7 +51,7 @@ class FrontEquality : public GpuTest {
                 if (answer.frameIndex == 0) continue;
                 while (at < expected.size() && expected[at].frameIndex < answer.frameIndex) ++at;
                 if (at == expected.size()) {
-                    ADD_FAILURE() << "an answer of frame " << answer.frameIndex;
+                    ADD_FAILURE() << "an unexpected answer of frame " << answer.frameIndex;
                     return;
                 }
                 const FrameAnswer& want = expected[at];
@@ -115,7 +115,7 @@ std::string text(uint32_t frame, uint32_t object, uint32_t texel) {
            std::to_string(texel);
 }
 
-TEST_F(FrontEquality, P7_TenThousandStepsAreEqual) {
+TEST_F(FrontEquality, TenThousandStepsAreEqual) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(11, 0.6);
     ASSERT_GE(scene.domains.size(), 5u);
@@ -124,25 +124,25 @@ TEST_F(FrontEquality, P7_TenThousandStepsAreEqual) {
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
     EXPECT_GT(outcome.compared, steps / 20);
     EXPECT_GT(outcome.ignitions, 1000u);
-    std::printf("P7: %zu objects, %u steps, %u maps compared, %u tiles run\n", scene.objects.size(),
+    std::printf("%zu objects, %u steps, %u maps compared, %u tiles run\n", scene.objects.size(),
                 steps, outcome.compared, outcome.runTiles);
 }
 
-TEST_F(FrontEquality, P7_OneStepPerFrame) {
+TEST_F(FrontEquality, OneStepPerFrameIsEqual) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(12);
     const Outcome outcome = compare(scene, 300, 1, 3, 2);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
 }
 
-TEST_F(FrontEquality, P7_DenseEqualsSparse) {
+TEST_F(FrontEquality, DenseEqualsSparse) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(13, 0.6);
     const Outcome outcome = compare(scene, 320, 4, 10, 3, FW_DEBUG_DENSE);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
 }
 
-TEST_F(FrontEquality, P7_HeatAndWaterAreEqual) {
+TEST_F(FrontEquality, HeatAndWaterAreEqual) {
     if (!device_) return;
     BurnScene scene = BurnScene::make(16, 0.5);
     scene.addHeat();
@@ -151,17 +151,17 @@ TEST_F(FrontEquality, P7_HeatAndWaterAreEqual) {
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
     EXPECT_GT(outcome.ignitions, 1000u);
     EXPECT_GT(outcome.lost, uint64_t(1000) * gpu::kFuelFull);
-    std::printf("P7: heat of %zu objects, %u steps, %u maps compared, %u tiles run\n",
+    std::printf("heat of %zu objects, %u steps, %u maps compared, %u tiles run\n",
                 scene.objects.size(), steps, outcome.compared, outcome.runTiles);
 }
 
-// The as-published mode is for comparison, and floats; equal all the same.
-TEST_F(FrontEquality, P16_PublishedIsEqual) {
+// The reference kernel uses floats and must still be equal.
+TEST_F(FrontEquality, ReferenceKernelIsEqual) {
     if (!device_) return;
     BurnScene scene = BurnScene::make(15, 0.6);
     for (size_t i = 0; i < scene.objects.size(); ++i) {
         SceneObject& object = scene.objects[i];
-        if (i % 4 == 3) continue;  // one of the product front among them
+        if (i % 4 == 3) continue;  // includes an object of the product front
         object.flags |= gpu::kObjectPublished;
         const auto& slowness = scene.domains[object.mesh].slowness;
         object.slowness.assign(slowness.begin(), slowness.end());
@@ -171,12 +171,11 @@ TEST_F(FrontEquality, P16_PublishedIsEqual) {
     const Outcome outcome = compare(scene, steps, 4, 4, 5);
     EXPECT_TRUE(outcome.equal) << text(outcome.step, outcome.object, outcome.texel);
     EXPECT_GT(outcome.ignitions, steps / 4 * scene.objects.size());
-    std::printf("P16: %zu objects, %u steps, %u maps compared, %llu ignitions\n",
-                scene.objects.size(), steps, outcome.compared,
-                (unsigned long long)outcome.ignitions);
+    std::printf("%zu objects, %u steps, %u maps compared, %llu ignitions\n", scene.objects.size(),
+                steps, outcome.compared, (unsigned long long)outcome.ignitions);
 }
 
-TEST_F(FrontEquality, P18_MutantsAreCaught) {
+TEST_F(FrontEquality, EqualityTestCatchesMutants) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(14);
     for (const uint32_t mutant :

@@ -1,6 +1,6 @@
-// A host with state of its own around our calls: it draws (or computes), calls us, sets again only
-// what plugin/docs/integration.md says we change, and goes on. Its pixels and numbers are exactly
-// those of the same frame without us. Through the C ABI.
+// A host draws or computes, calls the library, sets again only the state that
+// plugin/docs/integration.md lists as changed, and continues. Its pixels and numbers equal those of
+// a frame without the library.
 #include "gpu/host_with_state.h"
 
 #include <set>
@@ -10,7 +10,7 @@ namespace {
 
 #include "host.comp.inc"
 
-// What the published list names. A host that leaves one out sees it in its pixels.
+// The published list of changed state. A host that omits one item sees a difference.
 enum Published : uint32_t {
     kPipeline = 1,
     kSets = 2,
@@ -26,7 +26,7 @@ enum Published : uint32_t {
 
 class HostClobber : public HostWithState {
  protected:
-    // What the host binds of the list; the rest (vertex bindings 2 and 3) it binds once.
+    // Binds the listed state; vertex bindings 2 and 3 are bound once only.
     void bind(VkCommandBuffer commands, const Stage& stage, uint32_t what) const {
         const VkDeviceSize zero = 0;
         if (what & kPipeline)
@@ -60,9 +60,10 @@ class HostClobber : public HostWithState {
     }
 
     struct Pictures {
-        std::vector<uint32_t> alone, around, ours;  // the host alone, with us, and us alone
+        std::vector<uint32_t> alone, around, ours;  // the host alone, both, the library alone
     };
-    // One frame with three passes. `rebound`: what of the list the host sets again after us.
+    // One frame with three passes. `rebound`: the listed state that the host sets again after the
+    // library's call.
     Pictures shoot(const Stage& stage, bool secondary, uint32_t rebound = kAll) {
         VkCommandBuffer seconds[3]{};
         if (secondary) {
@@ -126,7 +127,7 @@ class HostClobber : public HostWithState {
         frames_->waitAll();
         if (secondary) vkFreeCommandBuffers(device_->device, device_->pool, 3, seconds);
 
-        uint64_t seen[3]{};  // queries begun before us and ended after us
+        uint64_t seen[3]{};  // queries that begin before the library's call and end after it
         FW_MUST(vkGetQueryPoolResults(device_->device, queries_, 0, 3, sizeof seen, seen, 8,
                                       VK_QUERY_RESULT_64_BIT));
         for (const uint64_t samples : seen) EXPECT_GT(samples, 0u);
@@ -138,13 +139,13 @@ class HostClobber : public HostWithState {
         return out;
     }
 
-    // Pass 0: the host alone; 1: the host, us, the host; 2: we alone.
+    // Pass 0: the host alone; 1: the host, the library, the host; 2: the library alone.
     void recordInside(const FwVulkanFrame& frame, const Stage& stage, const FwView& view,
                       uint32_t number, uint32_t rebound) {
         const VkCommandBuffer commands = frame.commandBuffer;
         const bool hosts = number != 2, us = number != 0;
         vkCmdBeginQuery(commands, queries_, number, 0);
-        // Depth on both sides is the host's own already: only its bias lets it draw there.
+        // Both sides already have the host's depth: only its bias lets it draw there.
         VkClearAttachment clear{};
         clear.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
         clear.clearValue.depthStencil.depth = kHostDepth;
@@ -178,9 +179,10 @@ class HostClobber : public HostWithState {
 
     struct Verdict {
         uint32_t hosts = 0, fire = 0, overFire = 0;  // pixels
-        uint32_t wrong = 0;  // that are the host's, or nobody's, and are not as without us
+        uint32_t wrong =
+            0;  // pixels of the host or of nobody that differ from the picture without the library
     };
-    // A pixel is ours where we draw when alone and the host, nearer, does not.
+    // A pixel is the library's where it draws alone and the nearer host does not.
     static Verdict judge(const Pictures& p) {
         Verdict out;
         const uint32_t clear = p.alone[kPixels - 1];  // outside the host's scissor
@@ -190,7 +192,8 @@ class HostClobber : public HostWithState {
             out.fire += fire && !host;
             out.overFire += fire && host;
             if (fire && !host)
-                out.wrong += p.around[i] != p.ours[i];  // our pixels are as ever, too
+                out.wrong +=
+                    p.around[i] != p.ours[i];  // the library's own pixels are unchanged too
             else
                 out.wrong += p.around[i] != p.alone[i];
         }
@@ -198,12 +201,12 @@ class HostClobber : public HostWithState {
     }
 };
 
-TEST_F(HostClobber, ItsPixelsAreItsOwnAroundUs) {
+TEST_F(HostClobber, HostPixelsAreUnchangedByOurCalls) {
     if (!device_) return;
     for (const uint32_t samples : {1u, 4u}) {
         for (const bool reversed : {false, true}) {
             for (const bool srgb : {false, true}) {
-                // Of any two settings all four ways, which half of the eight have.
+                // Half of the eight combinations: all four of every two settings.
                 if (((samples > 1) != reversed) != srgb) continue;
                 const Stage stage = makeStage({samples, reversed, srgb});
                 for (const bool secondary : {false, true}) {
@@ -216,8 +219,8 @@ TEST_F(HostClobber, ItsPixelsAreItsOwnAroundUs) {
                     EXPECT_EQ(verdict.wrong, 0u);
                     EXPECT_GT(verdict.hosts, 1500u);
                     EXPECT_GT(verdict.fire, 300u);
-                    EXPECT_GT(verdict.overFire, 200u) << "drawn over us and before us";
-                    // Every rectangle of the host's is there, so that nothing it sets is idle.
+                    EXPECT_GT(verdict.overFire, 200u) << "drawn over and under the library";
+                    // Every rectangle of the host is visible, so that each of its states matters.
                     const std::set<uint32_t> colors(pictures.alone.begin(), pictures.alone.end());
                     EXPECT_GT(colors.size(), 20u);
                 }
@@ -226,9 +229,9 @@ TEST_F(HostClobber, ItsPixelsAreItsOwnAroundUs) {
     }
 }
 
-// The same host, forgetting one thing of the list: its pixels show each. Validation has nothing to
-// say but of the dynamic state that our pipelines hold fixed, which it says is no longer set.
-TEST_F(HostClobber, WhatIsForgottenShows) {
+// The same host omits one item of the list: the picture shows each. Validation may only report the
+// dynamic state that our pipelines hold fixed.
+TEST_F(HostClobber, EachOmittedStateIsVisible) {
     if (!device_) return;
     const Stage stage = makeStage({1, false, false});
     for (const auto& [left, name] : {std::pair{kVertex0, "vertex binding 0"},
@@ -246,7 +249,7 @@ TEST_F(HostClobber, WhatIsForgottenShows) {
     }
 }
 
-TEST_F(HostClobber, ItsNumbersAreItsOwnAroundOurWork) {
+TEST_F(HostClobber, HostComputeIsUnchangedByOurCalls) {
     if (!device_) return;
     constexpr uint32_t kCount = 4096;
     std::vector<uint32_t> in(kCount), want(kCount);

@@ -1,5 +1,5 @@
-// The host of host_draw_test.cpp: its images, its pass, its own drawing before and after us, and a
-// ball that burns in the middle of its picture.
+// The host of host_draw_test.cpp: its images, its pass, its drawing before and after the library's,
+// and a burning ball in the middle of the picture.
 #pragma once
 #include <gmock/gmock.h>
 
@@ -19,22 +19,22 @@ struct Shot {  // how the host draws
     bool secondary = false, reversedDepth = false, composite = false, depth = true;
     FwDepthMode depthMode = FW_DEPTH_TEST;
     uint32_t flags = 0;         // FwTargetFlags beyond FW_TARGET_COMPOSITE
-    uint32_t depthSamples = 0;  // of a sampled depth, 0: as samples
-    float depthValue = -1;   // everywhere in a composite's or a sampled depth; -1: as the mode says
-    bool asNeeded = true;    // FW_TARGET_AS_NEEDED
-    VkRect2D scissor{};      // FwVulkanFrame::scissor
-    float transparency = 0;  // FwVulkanFrame::transparency, over the host's blue
-    float shift[2] = {0, 0};  // px, of what lies beneath a pixel: a supersampled picture's parts
+    uint32_t depthSamples = 0;  // of a sampled depth; 0: as the target
+    float depthValue = -1;      // uniform value of a composite's or sampled depth; -1: by mode
+    bool asNeeded = true;       // FW_TARGET_AS_NEEDED
+    VkRect2D scissor{};         // FwVulkanFrame::scissor
+    float transparency = 0;     // FwVulkanFrame::transparency, over the host's blue
+    float shift[2] = {0, 0};    // px, offset within a pixel for a supersampled picture
     [[nodiscard]] bool attachesDepth() const { return depth && depthMode != FW_DEPTH_SAMPLED; }
     [[nodiscard]] bool samplesDepth() const { return depth && depthMode == FW_DEPTH_SAMPLED; }
 };
 
 struct Picture {
-    std::vector<float> rgb;  // 0..1 as stored (floats as they are), 3 per pixel
+    std::vector<float> rgb;  // 0..1 as stored (floats unchanged), 3 per pixel
     [[nodiscard]] const float* at(uint32_t x, uint32_t y) const {
         return &rgb[(size_t(y) * kWidth + x) * 3];
     }
-    // Pixels whose colour is away from (r, g, b).
+    // Pixels whose colour differs from (r, g, b).
     [[nodiscard]] uint32_t unlike(uint32_t x0, uint32_t x1, float r, float g, float b) const {
         uint32_t count = 0;
         for (uint32_t y = 0; y < kHeight; ++y) {
@@ -73,7 +73,7 @@ class HostDraw : public GpuTest {
         for (auto& material : object.materials) {
             material = plainMaterial(scene_.domains[0], 0.05);
             material.look = look_;
-            material.baseColor = {0.8f, 0.1f, 0.6f, 0};  // nothing of the host's is purple
+            material.baseColor = {0.8f, 0.1f, 0.6f, 0};  // nothing else in the picture is purple
         }
         scene_.objects.push_back(object);
         scene_.create(rig_->backend);
@@ -89,7 +89,7 @@ class HostDraw : public GpuTest {
         GpuTest::TearDown();
     }
 
-    // `burnFrames_` eighths of a second of a fire on the side that we look at.
+    // Burns the visible side for `burnFrames_` eighths of a second.
     void burn() {
         uint32_t now = 4096;
         for (uint64_t f = 1; f <= burnFrames_; ++f) {
@@ -119,7 +119,7 @@ class HostDraw : public GpuTest {
         endTick_ = now;
     }
 
-    // One of those that burn() lights.
+    // A texel that burn() lights.
     [[nodiscard]] uint32_t litTexel() const {
         std::pmr::vector<uint32_t> texels;
         const float point[3] = {0, 0, 0.6f};
@@ -127,7 +127,7 @@ class HostDraw : public GpuTest {
         return texels[0];
     }
 
-    // Colour (and depth, and a resolve with several samples); final layouts fit what follows.
+    // Colour, and depth, and a resolve with several samples; final layouts fit the next use.
     VkRenderPass makePass(const Shot& shot) {
         std::vector<VkAttachmentDescription> attachments;
         const auto add = [&](VkFormat format, uint32_t samples, VkAttachmentLoadOp load,
@@ -197,7 +197,7 @@ class HostDraw : public GpuTest {
         return rig_->context.registerTarget(def);
     }
 
-    // One for all shots of a kind: pipelines are made per target, and take long.
+    // One target for all shots of a kind: pipelines are built per target, which is slow.
     std::pair<VkRenderPass, FwTargetId> targetFor(const Shot& shot) {
         for (const Kept& kept : targets_)
             if (kept.shot.color == shot.color && kept.shot.encoding == shot.encoding &&
@@ -211,8 +211,8 @@ class HostDraw : public GpuTest {
         return {pass, targets_.back().target};
     }
 
-    // The host's own pixels: a strip left of us, before; one right of us, after; and an occluder
-    // with the nearest depth over the left half.
+    // The host's pixels: a strip on the left before, one on the right after, and an occluder at the
+    // nearest depth over the left half.
     static void clearRect(VkCommandBuffer commands, VkClearColorValue color, int32_t x0,
                           int32_t x1) {
         VkClearAttachment clear{};
@@ -292,7 +292,7 @@ class HostDraw : public GpuTest {
             ours.scissor = shot.scissor;
             ours.transparency = shot.transparency;
             if (before.image) {
-                lendBlue(commands, before);
+                showBlue(commands, before);
                 ours.sampledColor = before.view;
                 ours.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
             }
@@ -309,7 +309,7 @@ class HostDraw : public GpuTest {
                 begin.renderArea.extent = {kWidth, kHeight};
                 begin.clearValueCount = shot.attachesDepth() ? 2 : 1;
                 begin.pClearValues = clears;
-                if (shot.samplesDepth()) lendDepth(commands, depth, shot.depthValue);
+                if (shot.samplesDepth()) showDepth(commands, depth, shot.depthValue);
                 vkCmdBeginRenderPass(commands, &begin,
                                      second ? VK_SUBPASS_CONTENTS_SECONDARY_COMMAND_BUFFERS
                                             : VK_SUBPASS_CONTENTS_INLINE);
@@ -380,8 +380,8 @@ class HostDraw : public GpuTest {
         return picture;
     }
 
-    // A depth that the host drew: `value` everywhere, then ready for our fragment shaders.
-    static void lendDepth(VkCommandBuffer commands, const TestImage& depth, float value) {
+    // The host's depth: `value` everywhere, then readable by fragment shaders.
+    static void showDepth(VkCommandBuffer commands, const TestImage& depth, float value) {
         VkImageMemoryBarrier barrier{};
         barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
         barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -404,8 +404,8 @@ class HostDraw : public GpuTest {
                              &barrier);
     }
 
-    // A copy of what the host drew, but for its strips: ready for our fragment shaders.
-    static void lendBlue(VkCommandBuffer commands, const TestImage& image) {
+    // A copy of the host's picture without its strips, readable by fragment shaders.
+    static void showBlue(VkCommandBuffer commands, const TestImage& image) {
         VkImageMemoryBarrier barrier{};
         barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
         barrier.dstAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
@@ -428,7 +428,7 @@ class HostDraw : public GpuTest {
                              &barrier);
     }
 
-    // Nearest depth over the left half, by a clear in the pass.
+    // Nearest depth over the left half by a clear in the pass.
     static void occlude(VkCommandBuffer commands, float nearest) {
         VkClearAttachment clear{};
         clear.aspectMask = VK_IMAGE_ASPECT_DEPTH_BIT;
@@ -492,16 +492,16 @@ class HostDraw : public GpuTest {
     }
 
     void expectHostsPixels(const Picture& picture, const Shot& shot) {
-        EXPECT_EQ(picture.unlike(0, 8, 1, 0, 0), 0u) << "drawn before us";
-        EXPECT_EQ(picture.unlike(kWidth - 8, kWidth, 0, 1, 0), 0u) << "drawn after us";
+        EXPECT_EQ(picture.unlike(0, 8, 1, 0, 0), 0u) << "drawn before the library";
+        EXPECT_EQ(picture.unlike(kWidth - 8, kWidth, 0, 1, 0), 0u) << "drawn after the library";
         const uint32_t left = picture.unlike(8, kWidth / 2 - 1, 0, 0, 1);
         const uint32_t right = picture.unlike(kWidth / 2 + 1, kWidth - 8, 0, 0, 1);
         if (shot.depth)
             EXPECT_EQ(left, 0u) << "behind the host's occluder";
         else
-            EXPECT_GT(left, 300u) << "there is no depth to hide us";
-        EXPECT_GT(right, 300u) << "we drew";
-        EXPECT_LT(right, 2600u) << "and left the background alone";
+            EXPECT_GT(left, 300u) << "no depth hides the fire";
+        EXPECT_GT(right, 300u) << "the library drew";
+        EXPECT_LT(right, 2600u) << "and left the background unchanged";
     }
 
     struct Kept {

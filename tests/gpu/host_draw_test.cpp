@@ -1,6 +1,6 @@
-// Drawing in a host's own pass and over a host's images: primary and secondary command buffers, one
-// and four samples, normal and reversed depth, three encodings. The host draws before and after us,
-// and its pixels stay its own.
+// Drawing inside a host's pass and over a host's images: primary and secondary command buffers, one
+// and four samples, normal and reversed depth, three encodings. The host draws before and after,
+// and its pixels stay unchanged.
 #include "host_draw.h"
 
 namespace fw::test::host_draw {
@@ -57,12 +57,12 @@ TEST_F(HostDraw, EncodingsAgree) {
     Shot automatic = unorm;
     automatic.encoding = FW_OUTPUT_AUTO;
     EXPECT_EQ(shoot(automatic).rgb, b.rgb);
-    // Flames blend in light over sRGB and in display values over UNORM.
+    // Flames blend in linear light over sRGB and in display values over UNORM.
     EXPECT_LT(differ, a.rgb.size() / 25) << "of " << a.rgb.size();
     EXPECT_GT(most, 1.0f) << "fire is brighter than white";
 }
 
-TEST_F(HostDraw, Composite) {
+TEST_F(HostDraw, CompositesOverTheHostsImages) {
     if (!device_) return;
     for (const bool reversed : {false, true}) {
         Shot shot;
@@ -70,7 +70,7 @@ TEST_F(HostDraw, Composite) {
         shot.reversedDepth = reversed;
         const Picture over = shoot(shot);
         EXPECT_GT(over.unlike(0, kWidth, 0, 0, 1), 600u);
-        shot.depthMode = FW_DEPTH_TEST_ONLY;  // behind something everywhere
+        shot.depthMode = FW_DEPTH_TEST_ONLY;  // uniformly behind a wall
         const Picture hidden = shoot(shot);
         EXPECT_EQ(hidden.unlike(0, kWidth, 0, 0, 1), 0u);
     }
@@ -80,7 +80,7 @@ TEST_F(HostDraw, Composite) {
     EXPECT_GT(shoot(shot).unlike(0, kWidth, 0, 0, 1), 600u);
 }
 
-// Depth of a plane that faces the eye, at `distance` m from it.
+// Depth of a plane that faces the camera at `distance` m.
 float depthOf(const FwView& view, float distance) {
     const float z = -distance;
     return (view.projection[10] * z + view.projection[14]) / (view.projection[11] * z);
@@ -94,7 +94,7 @@ double lightOf(const Picture& picture) {  // all but the host's blue and its str
     return sum;
 }
 
-// The same of light: a finer picture has less of what is stored.
+// The same in linear light, since a finer picture changes the stored values.
 double linearLightOf(const Picture& picture) {
     double sum = 0;
     for (uint32_t y = 0; y < kHeight; ++y)
@@ -103,12 +103,12 @@ double linearLightOf(const Picture& picture) {
     return sum;
 }
 
-// Flames against a depth that is sampled: hidden behind it, whole before it, and in between they
-// fade where a depth test cuts them off, by half where it would. However the host lends it, the
-// picture is the same.
-TEST_F(HostDraw, SampledDepthIsSoft) {
+// Flames against a sampled depth: hidden behind it, complete in front of it, fading in between
+// where a depth test would cut. The picture is the same for every way that the host passes the
+// depth.
+TEST_F(HostDraw, SampledDepthFadesFlames) {
     if (!device_) return;
-    const float planes[4] = {2.0f, 2.44f, 2.47f, 4.0f};  // m from the eye; the fire is at 2.5
+    const float planes[4] = {2.0f, 2.44f, 2.47f, 4.0f};  // m from the camera; the fire is at 2.5
     std::vector<float> reference;
     for (const bool reversed : {false, true}) {
         for (const uint32_t samples : {1u, 4u}) {
@@ -131,7 +131,7 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
                     soft.depthValue = hard.depthValue =
                         depthOf(reversed ? reversed_ : normal_, planes[i]);
                     Picture picture = shoot(soft);
-                    if (!composite) {  // the host's strips are not of ours
+                    if (!composite) {  // without the host's strips
                         EXPECT_EQ(picture.unlike(0, 8, 1, 0, 0), 0u);
                         EXPECT_EQ(picture.unlike(kWidth - 8, kWidth, 0, 1, 0), 0u);
                     }
@@ -139,7 +139,7 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
                     if (composite && (samples > 1) == reversed) {
                         Shot half = soft;
                         half.flags = FW_TARGET_HALF_EFFECTS;
-                        // Tongues a few pixels wide: a rough sample.
+                        // Tongues are a few pixels wide, so sampling is coarse.
                         const double light = linearLightOf(picture);
                         EXPECT_NEAR(linearLightOf(shoot(half)), light, 0.1 * light + 0.01)
                             << planes[i] << " m, at half resolution";
@@ -151,10 +151,11 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
                 EXPECT_EQ(softLight[0], 0) << "behind a wall";
                 EXPECT_EQ(hardLight[0], 0);
                 EXPECT_GT(hardLight[3], 100);
-                EXPECT_NEAR(softLight[3], hardLight[3], 1e-3 * hardLight[3]) << "nothing near";
+                EXPECT_NEAR(softLight[3], hardLight[3], 1e-3 * hardLight[3])
+                    << "nothing near the flame";
                 EXPECT_LT(softLight[2], 0.9 * softLight[3]) << "a wall among the flames";
                 EXPECT_LT(softLight[1], 0.8 * softLight[2]);
-                EXPECT_GT(softLight[1], 1.1 * hardLight[1]) << "half of them stands before it";
+                EXPECT_GT(softLight[1], 1.1 * hardLight[1]) << "half of the flames are in front";
                 if (reference.empty()) reference = all;
                 float most = 0;
                 for (size_t i = 0; i < all.size(); ++i)
@@ -165,9 +166,9 @@ TEST_F(HostDraw, SampledDepthIsSoft) {
     }
 }
 
-// A window that is resized every frame, down to one pixel, over a fire that goes on: a warmed-up
-// library asks nothing of the device and nothing of the heap.
-TEST_F(HostDraw, EveryFrameAnotherSizeAsksForNothing) {
+// A window resized every frame, down to one pixel, while the fire burns: a warm library allocates
+// nothing on device or heap.
+TEST_F(HostDraw, ResizingEveryFrameAllocatesNothing) {
     if (!device_) return;
     const Shot shot;
     const VkRenderPass pass = makePass(shot);
@@ -234,15 +235,14 @@ TEST_F(HostDraw, EveryFrameAnotherSizeAsksForNothing) {
     rig_->context.unregisterTarget(target);
 }
 
-// Composites over two images in turn: a framebuffer each while warming up, then none, until the
-// host takes its images back. Without the flag each call makes one. Validation sees what is left
-// over.
-TEST_F(HostDraw, KeptCompositesMakeNothing) {
+// Composites alternate over two images: one framebuffer each while warming up, then none until the
+// host takes its images back. Without the flag every call creates one. Validation reports leaks.
+TEST_F(HostDraw, KeptCompositesCreateNothing) {
     if (!device_) return;
     Shot shot;
     shot.composite = true;
     const FwTargetId target = registerTarget(shot, VK_NULL_HANDLE);
-    shot.flags = FW_TARGET_NO_SURFACES;  // sooner made
+    shot.flags = FW_TARGET_NO_SURFACES;  // faster to create
     FwTargetId second = registerTarget(shot, VK_NULL_HANDLE);
     TestImage colors[2], depths[2];
     for (int i = 0; i < 2; ++i) {
@@ -273,7 +273,7 @@ TEST_F(HostDraw, KeptCompositesMakeNothing) {
     };
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u) << "warming up";
     EXPECT_EQ(made(target, 12, FW_COMPOSITE_KEEP), 0u);
-    EXPECT_EQ(made(target, 4, 0), 4u) << "what was kept is let go";
+    EXPECT_EQ(made(target, 4, 0), 4u) << "kept framebuffers are released";
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 2u);
     EXPECT_EQ(made(second, 6, FW_COMPOSITE_KEEP), 2u) << "another target has its own";
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
@@ -283,9 +283,9 @@ TEST_F(HostDraw, KeptCompositesMakeNothing) {
     EXPECT_EQ(made(target, 6, FW_COMPOSITE_KEEP), 0u);
 }
 
-// Pipelines of a kind of material are made with the first object of it, none while a frame is
-// recorded (shoot() asks), and the picture is that of a target that had them all.
-TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
+// The first object of a material family creates its pipelines. No pipeline is created while a frame
+// records (shoot() checks). The picture equals that of a target with all of them.
+TEST_F(HostDraw, MaterialFamiliesCreateTheirPipelinesOnFirstUse) {
     if (!device_) return;
     Shot late, all;
     all.asNeeded = false;
@@ -296,7 +296,7 @@ TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
     };
     const uint64_t some = madeBy([&] { (void)targetFor(late); });
     EXPECT_EQ(madeBy([&] { (void)targetFor(all); }) - some, gpu::kSurfaceVariants - 5)
-        << "wood, as it is, cold beside fire and burning, from both sides";
+        << "wood: fresh, cold and burning, from both sides";
     const auto place = [&](uint32_t slot, FwMaterialPreset look, float x) {
         gpu::ObjectInit init = scene_.init(0);
         std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials =
@@ -307,7 +307,7 @@ TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
         init.record.worldRow2.w = -1;
         return madeBy([&] { rig_->backend.createObject(slot, init); });
     };
-    EXPECT_EQ(place(1, FW_MATERIAL_PLYWOOD, -0.8f), 0u) << "wood it is";
+    EXPECT_EQ(place(1, FW_MATERIAL_PLYWOOD, -0.8f), 0u) << "the wood pipelines exist";
     EXPECT_EQ(shoot(late).rgb, shoot(all).rgb);
     EXPECT_EQ(place(2, FW_MATERIAL_THATCH, 0.8f), 5u);
     EXPECT_EQ(shoot(late).rgb, shoot(all).rgb);
@@ -323,9 +323,9 @@ TEST_F(HostDraw, NewKindsOfMaterialComeWithTheirPipelines) {
     EXPECT_EQ(shoot(late).rgb, shoot(all).rgb) << "it burns";
 }
 
-// Pixels in the scissor are as without it; pixels outside are the host's. In a pass of the host's,
-// in a composite, and where what is soft is drawn at half resolution first.
-TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
+// Pixels inside the scissor equal those without it; pixels outside are the host's. In a host pass,
+// a composite, and with effects at half resolution.
+TEST_F(HostDraw, DrawsOnlyInsideTheScissor) {
     if (!device_) return;
     Shot inPass, composite, half;
     composite.composite = half.composite = true;
@@ -338,7 +338,7 @@ TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
         const Picture cut = shoot(*shot);
         uint32_t inside = 0, differ = 0, outside = 0;
         for (uint32_t y = 0; y < kHeight; ++y)
-            for (uint32_t x = 8; x < kWidth - 8; ++x) {  // the strips beside are the host's
+            for (uint32_t x = 8; x < kWidth - 8; ++x) {  // the side strips are the host's
                 const float *a = whole.at(x, y), *b = cut.at(x, y);
                 const bool shown = x >= 50 && x < 64 && y >= 20 && y < 37;
                 const bool drawn = std::abs(b[0]) + std::abs(b[1]) + std::abs(b[2] - 1) > 0.02f;
@@ -351,7 +351,7 @@ TEST_F(HostDraw, DrawsWithinTheScissorAlone) {
             }
         EXPECT_EQ(outside, 0u);
         EXPECT_EQ(differ, 0u);
-        EXPECT_GT(inside, shot == &half ? 10u : 100u) << "some of the fire lies in the scissor";
+        EXPECT_GT(inside, shot == &half ? 10u : 100u) << "part of the fire is inside the scissor";
     }
 }
 
@@ -359,10 +359,10 @@ double lightOfStored(double stored) {
     return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
 }
 
-// Surfaces and flames together: at 1 the host's picture is untouched, half of the way each pixel is
-// half-way between the host's picture and ours, whatever lies over what: as stored in UNORM and
-// float targets, as light in sRGB ones.
-TEST_F(HostDraw, TransparencyMixesThePictureAsAWhole) {
+// Surfaces and flames together: at 1 the host's picture is unchanged; at 0.5 each pixel is halfway
+// between the host's picture and ours, whatever overlaps. As stored in UNORM and float targets, as
+// light in sRGB ones.
+TEST_F(HostDraw, TransparencyMixesTheWholePicture) {
     if (!device_) return;
     Shot unorm, srgb, linear;
     unorm.color = VK_FORMAT_R8G8B8A8_UNORM;
@@ -394,7 +394,7 @@ TEST_F(HostDraw, TransparencyMixesThePictureAsAWhole) {
                                      m = double(mixed.at(x, y)[c]);
                         const auto level = [&](double v) { return light ? lightOfStored(v) : v; };
                         const double wanted = level(a) + double(share) * (level(host) - level(a));
-                        // A step of what is stored is worth more light where it is bright.
+                        // One stored step is more light where it is bright.
                         const double step =
                             light ? (lightOfStored(m + 0.5 / 255) - lightOfStored(m - 0.5 / 255)) *
                                         255
@@ -408,7 +408,7 @@ TEST_F(HostDraw, TransparencyMixesThePictureAsAWhole) {
     }
 }
 
-TEST_F(HostDraw, TargetsAreChecked) {
+TEST_F(HostDraw, TargetsRefuseInvalidDefs) {
     if (!device_) return;
     const VkRenderPass pass = makePass({});
     const auto refused = [&](const std::function<void(FwVulkanTargetDef&)>& spoil,

@@ -46,7 +46,7 @@ VkShaderModule HostWithState::makeModule(const uint32_t* words, size_t bytes) {
     return made(vkCreateShaderModule, vkDestroyShaderModule, info);
 }
 
-// Two sets of one buffer each, and push constants; for drawing and for computing.
+// Two sets of one buffer each and push constants, for drawing and for computing.
 void HostWithState::makeLayouts() {
     VkDescriptorPoolSize sizes[] = {{VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 2},
                                     {VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 2}};
@@ -86,7 +86,8 @@ void HostWithState::makeLayouts() {
     };
     for (const Rect& rect : kBefore) rectangle(rect, 0xFF40C0FFu);
     for (const Rect& rect : kAfter) rectangle(rect, 0xFFFFA080u);
-    // A host that forgets its indices draws with ours: they must not lead out of its vertices.
+    // A host that does not rebind its indices draws with ours: they must not read past its
+    // vertices.
     while (positions.size() < 2 * 4096) {
         add(positions, {2, 2});
         colors.push_back(0);
@@ -104,7 +105,7 @@ void HostWithState::makeLayouts() {
     vkGetPhysicalDeviceFormatProperties(device_->physicalDevice, VK_FORMAT_D32_SFLOAT_S8_UINT,
                                         &properties);
     if (!(properties.optimalTilingFeatures & VK_FORMAT_FEATURE_DEPTH_STENCIL_ATTACHMENT_BIT))
-        depthFormat_ = VK_FORMAT_D24_UNORM_S8_UINT;  // one of the two is always there
+        depthFormat_ = VK_FORMAT_D24_UNORM_S8_UINT;  // one of the two always exists
     VkQueryPoolCreateInfo queries{};
     queries.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO;
     queries.queryType = VK_QUERY_TYPE_OCCLUSION;

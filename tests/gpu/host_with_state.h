@@ -1,5 +1,5 @@
-// A host with state of its own: layouts, pipelines and render passes in which everything dynamic is
-// its own, and a world that burns in the middle of its picture. Fixture of host_clobber_test.cpp.
+// A host with its own layouts, pipelines and render passes in which everything dynamic is set. A
+// world burns in the middle of its picture. Fixture of host_clobber_test.cpp.
 #pragma once
 #include "support/burn_scene.h"
 #include "support/host_context.h"
@@ -24,12 +24,12 @@ struct Case {
     }
 };
 
-// One rectangle of the host's, in pixels.
+// One rectangle of the host, in pixels.
 struct Rect {
     int32_t x0, y0, x1, y1;
 };
-// Drawn before us, then after us. The first of each stands aside, the second before the fire, the
-// third reaches over the host's scissor.
+// Drawn before and after the library. The first of each stands aside, the second covers the fire,
+// the third reaches past the host's scissor.
 constexpr Rect kBefore[] = {{8, 8, 24, 56}, {40, 44, 56, 50}, {0, 0, 24, 6}};
 constexpr Rect kAfter[] = {{72, 8, 88, 56}, {40, 28, 56, 36}, {16, 20, 84, 26}, {72, 58, 96, 64}};
 constexpr VkRect2D kScissorRect{{6, 5}, {84, 54}};
@@ -54,7 +54,8 @@ class HostWithState : public HostContext {
         GpuTest::TearDown();
     }
 
-    // What a case draws with and into; for several shots, since software devices compile for long.
+    // Pipelines and targets of a case, shared by several shots because software devices compile
+    // slowly.
     struct Stage {
         VkRenderPass pass = VK_NULL_HANDLE;
         VkPipeline pipeline = VK_NULL_HANDLE;
@@ -68,15 +69,15 @@ class HostWithState : public HostContext {
     void makeLayouts();
     VkPipelineLayout makeLayout(VkDescriptorType type, VkShaderStageFlags stages, uint32_t push,
                                 const TestBuffer (&buffers)[2], VkDescriptorSet (&sets)[2]);
-    // Everything dynamic: blending by constants, a stencil test that a reference of 0 fails, and a
-    // strict depth test that only a biased depth passes where kHostDepth is there already.
+    // Everything dynamic: blend constants, a stencil test that fails for reference 0, and a strict
+    // depth test that passes only with bias where kHostDepth is already stored.
     VkPipeline makePipeline(const Case& one, VkRenderPass pass);
     // Colour, depth with stencil, and a resolve with several samples; one pass after another.
     VkRenderPass makePass(const Case& one);
     Stage makeStage(const Case& one);
     VkShaderModule makeModule(const uint32_t* words, size_t bytes);
 
-    // Made once, of one kind: `make` fills the handle, `drop` is the vkDestroy of it.
+    // Created once per kind: `make` creates the handle, `drop` is its vkDestroy.
     template <class Handle, class Info>
     Handle made(VkResult(VKAPI_PTR* make)(VkDevice, const Info*, const VkAllocationCallbacks*,
                                           Handle*),

@@ -1,4 +1,4 @@
-// Lights on a device: as bright together as all that burns, whatever the host's number of them.
+// Lights on a device sum to the power of all fires for every count that the host allows.
 #include "abi/panels.h"
 
 #include <gtest/gtest.h>
@@ -7,12 +7,13 @@
 
 namespace {
 
+using host::getState;
 using host::Panels;
 
 class LightsOnDevice : public testing::TestWithParam<bool> {};
 
-// Sheets that burn here and there in a row of 40 m, as one light, as few and as many.
-TEST_P(LightsOnDevice, NoWattIsLost) {
+// Sheets that burn here and there in a row of 40 m, as one light, few and many.
+TEST_P(LightsOnDevice, ConservesPower) {
     for (const uint32_t most : {1u, 4u, 64u}) {
         FwContext* context = nullptr;
         if (GetParam()) {
@@ -31,12 +32,10 @@ TEST_P(LightsOnDevice, NoWattIsLost) {
             panels.ignite(ids.back(), x + 0.2f, 0, z + 0.1f, 0.05f);
         }
         panels.run(2);
-        // All of each sheet burns by then, so that nothing grows while readbacks and filter follow.
+        // By then each sheet burns completely, so nothing grows while readbacks and filter follow.
         double power = 0;
         for (const FwBurnableMeshId id : ids) {
-            FwObjectState state{};
-            state.structSize = sizeof state;
-            ASSERT_EQ(FW_OK, fwWorld_GetObjectState(panels.world, id, &state));
+            const FwObjectState state = getState(fwWorld_GetObjectState, panels.world, id);
             power += double(state.power);
         }
         FwLight lights[64];

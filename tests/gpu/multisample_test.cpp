@@ -4,7 +4,7 @@
 namespace fw::test::host_draw {
 namespace {
 
-constexpr float kPlaces[4][2] = {  // of Vulkan's standard samples, px from a pixel's middle
+constexpr float kPlaces[4][2] = {  // Vulkan's standard samples, px from the pixel's centre
     {-0.125f, -0.375f},
     {0.375f, -0.125f},
     {-0.375f, 0.125f},
@@ -24,18 +24,18 @@ class Multisampled : public HostDraw {
 class BurntAway : public Multisampled {
  protected:
     BurntAway() {
-        litRadius_ = 9;         // all of it
-        texelsPerMetre_ = 160;  // half a pixel is more than what charts have around them
+        litRadius_ = 9;         // the whole ball
+        texelsPerMetre_ = 160;  // half a pixel exceeds the gutter of charts
         burnFrames_ = 200;
     }
 };
 
-// A pixel's middle may lie beside a triangle that covers some of its samples: looked up there, it
-// had not burnt, and outlines stayed in the air.
+// A pixel's centre may lie beside a triangle that covers some of its samples. A lookup at the
+// centre found unburnt texels there and left outlines.
 TEST_F(BurntAway, LeavesNoPixelAtFourSamples) {
     if (!device_) return;
     EXPECT_EQ(0u, shoot(surfaces(1)).unlike(8, kWidth - 8, 0, 0, 1));
-    for (const auto& place : kPlaces) {  // from four places, for slivers at the ball's outline
+    for (const auto& place : kPlaces) {  // four positions, for slivers at the ball's outline
         Shot shot = surfaces(4);
         shot.shift[0] = place[0];
         shot.shift[1] = place[1];
@@ -56,7 +56,7 @@ double toLight(double stored) {
     return stored <= 0.04045 ? stored / 12.92 : std::pow((stored + 0.055) / 1.055, 2.4);
 }
 
-// Against the mean of four pictures, of what lies beneath each sample.
+// Against the mean of four pictures, one per sample position.
 TEST_F(Rim, OfAHoleIsAsSmoothAsFourPictures) {
     if (!device_) return;
     std::vector<double> parts(size_t{kWidth} * kHeight * 3);
@@ -69,7 +69,7 @@ TEST_F(Rim, OfAHoleIsAsSmoothAsFourPictures) {
             parts[i] += 0.25 * toLight(double(picture.rgb[i]));
     }
     const Picture single = shoot(surfaces(1)), several = shoot(surfaces(4));
-    // Inside of the ball's outline, right of the host's own occluder.
+    // Inside the ball's outline, right of the host's occluder.
     double singleOff = 0, severalOff = 0;
     for (uint32_t y = 18; y < 46; ++y) {
         for (uint32_t x = 50; x < 59; ++x) {

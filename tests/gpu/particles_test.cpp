@@ -1,4 +1,4 @@
-// Particles on a device: they move as the library's text says, and their quads are drawn in order.
+// Particles on a device move as the library's code says, and their quads are drawn in order.
 #include "components/view_params.h"
 #include "gpu/passes/blend_order.h"
 #include "gpu/passes/draw.h"
@@ -21,12 +21,12 @@ namespace {
 
 using gpu::vec3;
 
-constexpr uint32_t kTiles = 64;  // quads that burning meshes might have
+constexpr uint32_t kTiles = 64;  // quads of burning meshes, at most
 constexpr uint32_t kBurnTiles = 40;
 
 class ParticlePass : public GpuTest {
  protected:
-    // `lights`: quads that emit alone, in places of their own.
+    // `lights`: additive quads in a range of their own.
     void makeRig(uint32_t quads, bool byTexels = false, uint32_t lights = 0) {
         static constexpr uint32_t kBindings[] = {
             FW_BIND_EMITTERS, FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
@@ -75,7 +75,7 @@ class ParticlePass : public GpuTest {
         end_ += one.emitter.ring;
         return one;
     }
-    // All of them, on both sides.
+    // A frame on both sides.
     void frame(float seconds) {
         uint32_t records = 0;
         groups_ = 0;
@@ -93,7 +93,7 @@ class ParticlePass : public GpuTest {
         dispatch(false);
         moves_ = vec3(0.0f);
     }
-    // All places of the device's, from the next frame on; the library's stay.
+    // Moves all places of the device from the next frame on; the library's stay.
     void move(vec3 by) { moved_ += by, moves_ += by; }
     void dispatch(bool still) {
         std::fill_n(rig_->of<uint32_t>(FW_BIND_DRAW_ARGS).begin(), gpu::kFlameOrder, 0u);
@@ -127,7 +127,7 @@ class ParticlePass : public GpuTest {
         return of<uint32_t>(FW_BIND_DRAW_ARGS);
     }
     [[nodiscard]] uint32_t quads() const { return arguments()[0] / 6; }
-    // Of the quads in their order.
+    // Depths of the quads in draw order.
     [[nodiscard]] std::vector<float> depths() const {
         const auto view = [&](const gpu::FlameQuad& q) {
             const vec3 at = vec3(q.baseHeight) + vec3(q.axisWidth) * (0.5f * q.baseHeight.w);
@@ -140,7 +140,7 @@ class ParticlePass : public GpuTest {
                 view(of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]]));
         return out;
     }
-    // Each quad once, from the first of the particles' on.
+    // Each quad appears once, from the first particle quad on.
     void expectAll(uint32_t first) const {
         std::vector<uint32_t> order;
         for (uint32_t i = 0; i < quads(); ++i) order.push_back(arguments()[gpu::kFlameOrder + i]);
@@ -175,7 +175,7 @@ INSTANTIATE_TEST_SUITE_P(, ParticleWays, testing::Values(false, true), [](const 
     return std::string(way.param ? "ByTexels" : "ByWords");
 });
 
-TEST_P(ParticleWays, MoveThemAsTheLibrarySays) {
+TEST_P(ParticleWays, MoveLikeTheLibrary) {
     FwFireEmitterDef sticky =
         emitterDef(FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND, 500);
     sticky.stick = 0.3f;
@@ -205,24 +205,24 @@ TEST_P(ParticleWays, MoveThemAsTheLibrarySays) {
             ++alive;
             const gpu::Particle p = particle(one->emitter.first + i);
             ASSERT_NEAR(one->particles[i].placeAge.w, p.placeAge.w, 1e-4f) << i;
-            // Their sines and roots differ in the last bits.
+            // Sines and roots differ in the last bits.
             ASSERT_LT(glm::length(one->place(i) - vec3(p.placeAge)), 5e-3f) << i;
             for (uint32_t k = 0; k < 2; ++k)
                 stuck[k] += std::abs(p.placeAge.z - 20 - 2 * float(k)) < 1 ? 1u : 0u;
         }
     }
-    EXPECT_LT(5u, stuck[0]);  // it burns where it sticks
+    EXPECT_LT(5u, stuck[0]);  // stuck fuel burns
     EXPECT_LT(5u, stuck[1]);
     EXPECT_LT(60u, alive);
     EXPECT_LT(40u, quads());
-    // Another picture of the same moment shows the same.
+    // A second picture of the same time shows the same.
     const uint32_t shown = quads();
     dispatch(true);
     EXPECT_EQ(shown, quads());
 }
 
-// Where the world's origin moves none is lost, and each goes on as it would have.
-TEST_P(ParticleWays, GoAlongWhenAllPlacesMove) {
+// A shift of the origin loses no particle, and each continues its path.
+TEST_P(ParticleWays, FollowAShiftedOrigin) {
     add(emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500));
     add(emitterDef(0, 80));
     makeRig(512, GetParam());
@@ -242,7 +242,7 @@ TEST_P(ParticleWays, GoAlongWhenAllPlacesMove) {
     EXPECT_LT(60u, alive);
 }
 
-// Of two meshes' tiles only its own; the strong ones as much more often as they have power.
+// With tiles of two meshes, particles use only their own mesh's, in proportion to power.
 TEST_F(ParticlePass, AreBornOnTheTilesOfTheirMeshByPower) {
     FwFireEmitterDef def = emitterDef(0, 60);
     def.shape = FW_EMITTER_MESH;
@@ -281,8 +281,9 @@ TEST_F(ParticlePass, AreBornOnTheTilesOfTheirMeshByPower) {
     EXPECT_EQ(0u, elsewhere);
     EXPECT_GT(strong + weak, 1800u);
     EXPECT_LT(lost, 20u);
-    EXPECT_NEAR(double(strong) / weak, 3, 0.75);  // of few that are met the strong are chosen less
-    // Nothing burns any more: who is born now is not seen.
+    EXPECT_NEAR(double(strong) / weak, 3,
+                0.75);  // with few hits strong tiles are chosen less often
+    // When nothing burns any more, new particles are invisible.
     const uint32_t serial = fire.record.serial;
     rig_->of<gpu::IterationCounters>(FW_BIND_COUNTERS)[0].runCount = 0;
     frame(1.0f / 60);
@@ -293,7 +294,7 @@ TEST_F(ParticlePass, AreBornOnTheTilesOfTheirMeshByPower) {
     }
 }
 
-TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
+TEST_F(ParticlePass, QuadsAreDrawnFarthestFirst) {
     for (const float rate : {600.0f, 2000.0f, 9000.0f}) {
         references_.clear();
         end_ = 0;
@@ -317,8 +318,8 @@ TEST_F(ParticlePass, QuadsAreDrawnFarthestFirstFewOrMany) {
     }
 }
 
-// A puff that reached into the ground would end at a straight line where no depth softens it.
-TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGroundThatItStrikes) {
+// A puff that reached into the ground would end in a straight line without soft depth.
+TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGround) {
     FwFireEmitterDef def = emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500);
     def.direction[1] = -0.5f;
     add(def);
@@ -330,7 +331,7 @@ TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGroundThatItStrikes) {
         if ((quad.kind & 3u) != gpu::kQuadSmoke) continue;
         ++puffs;
         const float middle = quad.baseHeight.y + 0.5f * quad.baseHeight.w * quad.axisWidth.y;
-        const float above = middle / (0.5f * quad.baseHeight.w);  // in its radii
+        const float above = middle / (0.5f * quad.baseHeight.w);  // in quad radii
         ASSERT_GT(above, 0.88f);
         lying += above < 0.9f;
     }
@@ -339,8 +340,8 @@ TEST_F(ParticlePass, SmokeOfAJetLiesOnTheGroundThatItStrikes) {
     std::printf("[   FIGURE ] puffs %u, lying on the ground %u\n", puffs, lying);
 }
 
-// Nor at a wall, where it hangs before what its jet struck: its puffs leave it as they grow.
-TEST_F(ParticlePass, SmokeOfAJetHangsBeforeTheWallThatItStrikes) {
+// Nor at a wall: puffs move away from the hit wall as they grow.
+TEST_F(ParticlePass, SmokeOfAJetHangsInFrontOfTheWall) {
     constexpr float kWall = 3;  // m, along x
     add(emitterDef(FW_EMITTER_JET, 500));
     makeRig(8192);
@@ -359,7 +360,8 @@ TEST_F(ParticlePass, SmokeOfAJetHangsBeforeTheWallThatItStrikes) {
         const auto& quad = of<gpu::FlameQuad>(FW_BIND_FLAMES)[arguments()[gpu::kFlameOrder + i]];
         if ((quad.kind & 3u) != gpu::kQuadSmoke) continue;
         ++puffs;
-        const float off = (kWall - quad.baseHeight.x) / (0.5f * quad.baseHeight.w);  // in radii
+        const float off =
+            (kWall - quad.baseHeight.x) / (0.5f * quad.baseHeight.w);  // in quad radii
         all += quad.opacity;
         within += off < 0.85f ? quad.opacity : 0.0f;
         hanging += off < 1.3f;
@@ -372,8 +374,8 @@ TEST_F(ParticlePass, SmokeOfAJetHangsBeforeTheWallThatItStrikes) {
     EXPECT_LT(within, 0.1f * all);
 }
 
-// With less detail fewer of them show, each of them larger, and none that was not seen before.
-TEST_F(ParticlePass, AShareOfThemShowsEachLarger) {
+// At lower detail fewer quads show, each larger, and all of them were visible before.
+TEST_F(ParticlePass, LowerDetailShowsFewerAndLargerQuads) {
     FwFireEmitterDef def = emitterDef(0, 100);
     def.rate = 2000;
     add(def);
@@ -396,7 +398,7 @@ TEST_F(ParticlePass, AShareOfThemShowsEachLarger) {
     EXPECT_GT(all, 800u);
     for (const float share : {0.7f, 0.35f}) {
         measure(share, few, fewArea);
-        const double some = double(share) * 13 / 12;  // with those that show in part
+        const double some = double(share) * 13 / 12;  // includes partly visible ones
         EXPECT_NEAR(some, double(few) / all, 0.04) << few << " of " << all;
         EXPECT_NEAR(fewArea / allArea, 1, 0.15);
     }
@@ -414,7 +416,7 @@ TEST_F(ParticlePass, TheRadixSortIsStable) {
     def.shape = FW_EMITTER_DISC;
     def.radius = 0;
     def.speed = 1e-5f;
-    def.size0 = def.size1 = 1e-4f;  // all in one place
+    def.size0 = def.size1 = 1e-4f;  // all at one place
     add(def);
     makeRig(10000);
     for (int i = 0; i < 15; ++i) frame(0.05f);
@@ -422,11 +424,11 @@ TEST_F(ParticlePass, TheRadixSortIsStable) {
     for (uint32_t i = 0; i < quads(); ++i) ASSERT_EQ(kTiles + i, arguments()[gpu::kFlameOrder + i]);
 }
 
-// At depths by chance, all at one, and the other way round; what is as far stays in its order.
-TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandAtAnyDepths) {
+// Random depths, equal depths, reversed depths; equal ones keep their order.
+TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandQuads) {
     constexpr uint32_t kQuads = 60000, kDepths = 700;
     makeRig(kQuads);
-    const float* m = view_.view;  // its third row points back to the eye
+    const float* m = view_.view;  // its third row points towards the camera
     const vec3 back(m[2], m[6], m[10]);
     const auto depthOf = [](uint32_t kind, uint32_t i) {
         const uint32_t chance = gpu::particleBits(i) % kDepths;
@@ -446,7 +448,7 @@ TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandAtAnyDepths) {
         ASSERT_EQ(kQuads, quads());
         expectAll(kTiles);
         float last = 1e9f;
-        std::map<float, uint32_t> lastOf;  // quad of each depth
+        std::map<float, uint32_t> lastOf;  // last quad of each depth
         for (uint32_t i = 0; i < kQuads; ++i) {
             const uint32_t quad = arguments()[gpu::kFlameOrder + i];
             const float depth = depthOf(kind, quad - kTiles);
@@ -458,7 +460,7 @@ TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandAtAnyDepths) {
     }
 }
 
-TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {
+TEST_F(ParticlePass, QuadsBeyondTheCapacityAreOmitted) {
     FwFireEmitterDef def = emitterDef(0, 100);
     def.rate = 20000;
     add(def);
@@ -470,15 +472,15 @@ TEST_F(ParticlePass, MoreThanThereIsRoomForAreNotDrawnAndNothingBreaks) {
     for (size_t i = 1; i < d.size(); ++i) ASSERT_GE(d[i - 1], d[i] * (1 - 1.0f / 2000)) << i;
 }
 
-// Depths by chance of what hides and of what emits alone, from the eye on.
+// Random depths of covering and additive quads.
 class EmittingQuads : public ParticlePass {
  protected:
     static float depthOf(uint32_t quad) { return 2 + 30 * gpu::particleHash(quad * 31 + 7); }
-    // The order of so many of both.
+    // The draw order of so many of both.
     std::vector<uint32_t> order(uint32_t hiding, uint32_t lights, uint32_t few) {
         makeRig(std::max(hiding, 1u), false, lights);
         room_.few = few;
-        const float* m = view_.view;  // its third row points back to the eye
+        const float* m = view_.view;  // its third row points towards the camera
         const auto put = [&](uint32_t place) {
             gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[place];
             quad = {};
@@ -505,14 +507,14 @@ class EmittingQuads : public ParticlePass {
     uint32_t firstLight_ = 0;
 };
 
-TEST_F(EmittingQuads, AreNotSortedWhereNothingHides) {
+TEST_F(EmittingQuads, AreNotSortedWithoutCoveringQuads) {
     const std::vector<uint32_t> found = order(0, 5000, gpu::fewQuads(true));
     for (uint32_t i = 0; i < found.size(); ++i) ASSERT_EQ(firstLight_ + i, found[i]);
 }
 
-// Each behind what hides and is nearer, before what hides and is farther: the light that comes
-// through is that of a full sort. With more than 1,024 that hide, to a run of them.
-TEST_F(EmittingQuads, LieBetweenThoseThatHide) {
+// Each is behind nearer covering quads and in front of farther ones: the transmitted light equals
+// that of a full sort. With more than 1,024 covering quads, to within a run of them.
+TEST_F(EmittingQuads, AreOrderedAgainstCoveringQuads) {
     struct {
         uint32_t hiding, lights, few;
     } const cases[] = {{1, 1, 1024},       {1, 700, 1024},     {300, 40, 1024},
@@ -521,7 +523,7 @@ TEST_F(EmittingQuads, LieBetweenThoseThatHide) {
     for (const auto& c : cases) {
         SCOPED_TRACE(testing::Message() << c.hiding << " " << c.lights << " " << c.few);
         const std::vector<uint32_t> found = order(c.hiding, c.lights, c.few);
-        std::vector<float> sorted;  // of those that hide
+        std::vector<float> sorted;  // of the covering quads
         for (const uint32_t quad : found)
             if (quad < firstLight_) sorted.push_back(depthOf(quad));
         for (size_t i = 1; i < sorted.size(); ++i)
@@ -534,7 +536,7 @@ TEST_F(EmittingQuads, LieBetweenThoseThatHide) {
                 continue;
             }
             const float depth = depthOf(quad);
-            // Behind it, and not drawn before it: those of a run at most, or as far to a rounding.
+            // Covered but drawn later: at most those of one run, or equally far up to rounding.
             const auto wrong = [&](float d, bool drawn) {
                 return drawn ? d < depth * (1 - 1.0f / 1000) : d > depth * (1 + 1.0f / 1000);
             };
@@ -545,10 +547,9 @@ TEST_F(EmittingQuads, LieBetweenThoseThatHide) {
     }
 }
 
-// The order in which they are made is the order in which they lie: of two frames in which what
-// hides is the same, what emits alone is another, nothing of those that hide changes its place
-// among them.
-TEST_F(EmittingQuads, ChangeNothingAmongThoseThatHide) {
+// Creation order is draw order: in two frames with equal covering quads and different additive
+// ones, no covering quad changes its rank.
+TEST_F(EmittingQuads, DoNotReorderCoveringQuads) {
     const auto hiding = [&](std::vector<uint32_t> all) {
         std::erase_if(all, [&](uint32_t quad) { return quad >= firstLight_; });
         return all;
@@ -560,8 +561,8 @@ TEST_F(EmittingQuads, ChangeNothingAmongThoseThatHide) {
     }
 }
 
-// By its books alone an emitter's fire emits: it is not where the sort looks, its smoke is.
-TEST_P(ParticleWays, FireThatEmitsAloneHasPlacesOfItsOwn) {
+// An additive flipbook keeps an emitter's fire out of the sort; its smoke is sorted.
+TEST_P(ParticleWays, AdditiveFireIsNotSorted) {
     FwFireEmitterDef def = emitterDef(0, 100);
     def.rate = 400;
     def.life = 1;
@@ -618,7 +619,7 @@ class SparkPass : public GpuTest {
         rig_.reset();
         GpuTest::TearDown();
     }
-    // Quads of a frame by their seed's bits; who shares those is left out.
+    // Quads of a frame by their seed bits; duplicates are left out.
     std::map<uint32_t, gpu::FlameQuad> shown(const gpu::SparkSource& source,
                                              bool byTexels = false) {
         rig_->of<gpu::SparkSource>(FW_BIND_SPARKS)[0] = source;
@@ -654,7 +655,7 @@ class SparkPass : public GpuTest {
 };
 
 // By words and by texels.
-TEST_F(SparkPass, MeetTheFieldOfHeightsThatTheLibrarySays) {
+TEST_F(SparkPass, FollowTheLibrarysHeightfield) {
     if (!device_) return;
     SparkRig rig(200);
     for (int i = 0; i < 150; ++i) ASSERT_TRUE(rig.step(1 / 30.0f));
@@ -667,7 +668,7 @@ TEST_F(SparkPass, MeetTheFieldOfHeightsThatTheLibrarySays) {
         size_t found = 0, bounced = 0;
         for (const Spark& one : wanted) {
             const auto at = seen.find(one.now.seed & 0xFFFFu);
-            if (at == seen.end()) continue;  // too far gone to show
+            if (at == seen.end()) continue;  // too faded to show
             ++found;
             bounced += one.leg.began > 0;
             EXPECT_LT(glm::length(placeOf(at->second) - one.place), 0.04f) << one.slot;
@@ -677,8 +678,8 @@ TEST_F(SparkPass, MeetTheFieldOfHeightsThatTheLibrarySays) {
     }
 }
 
-// Where the library has them; and a moment that comes again shows the same, whatever was between.
-TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {
+// At the library's places; the same time shows the same sparks, whatever ran in between.
+TEST_F(SparkPass, DependOnTheClockOnly) {
     if (!device_) return;
     SparkRig rig(200);
     for (int i = 0; i < 150; ++i) ASSERT_TRUE(rig.step(1 / 30.0f));
@@ -695,7 +696,7 @@ TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {
     }
     for (const Spark& one : wanted) {
         const auto at = first.find(one.now.seed & 0xFFFFu);
-        if (at == first.end()) continue;  // too far gone to show
+        if (at == first.end()) continue;  // too faded to show
         ++found;
         // A bounce a moment earlier or later is at most that far away.
         EXPECT_LT(glm::length(placeOf(at->second) - one.place), 0.03f) << one.slot;
@@ -714,7 +715,7 @@ TEST_F(SparkPass, ShowsThoseOfTheClockAgainAndAgain) {
     EXPECT_EQ(moved, first.size());
 }
 
-// Of two meshes' tiles only its own, and each as often as it has power.
+// With tiles of two meshes, sparks use only their own mesh's, in proportion to power.
 TEST_F(SparkPass, AreThrownByTheTilesOfTheirMeshByPower) {
     if (!device_) return;
     SparkRig rig(100);
@@ -722,7 +723,7 @@ TEST_F(SparkPass, AreThrownByTheTilesOfTheirMeshByPower) {
     gpu::SparkSource source = rig.record;
     source.object = 5;
     for (gpu::vec4& key : source.keys) key.w = 1;
-    source.up.w = -1;  // the ground is deep
+    source.up.w = -1;  // the ground is far below
     const auto tiles = rig_->of<gpu::BurnTile>(FW_BIND_BURN_TILES);
     for (uint32_t i = 0; i < kBurnTiles; ++i) {
         tiles[i] = {};

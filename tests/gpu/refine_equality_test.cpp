@@ -1,4 +1,4 @@
-// The refinement passes on a device against the library: integers equal, floats near.
+// The refinement passes on a device against the library: integers equal, floats close.
 #include "support/refine_probes.h"
 #include "support/refine_rig.h"
 
@@ -29,15 +29,15 @@ class RefineEquality : public GpuTest {
         uint32_t heat = 0, levels = 0, starts = 0, indices = 0, holes = 0;
         double level = 0, place = 0;
     };
-    // One frame on both. A level that lies on a whole number to the last bit may be told apart by
-    // the device's log2, so the library takes the device's levels for what follows from them.
+    // One frame on both. The device's log2 may round a level at an integer differently, so the
+    // library continues with the device's levels.
     static Difference frame(RefinePlayer& player, RefineRig& rig, float now, float dt) {
         Difference d;
         const RefineScene& scene = player.scene;
         mesh::RefineState& s = player.state;
         const mesh::RefineFrame at = player.frameAt(now, dt);
         mesh::refineLevels(scene.model, player.settings, at, s);
-        // What the device's own passes add of the lists, which the rig has none of.
+        // The device's own passes add these to the lists; the rig has none.
         const auto heat = rig.of<uint32_t>(FW_BIND_REFINE_HEAT);
         for (uint32_t& word : heat)
             word &= gpu::kRefineGone | gpu::kRefineStays | gpu::kRefineGoing;
@@ -94,7 +94,7 @@ class RefineEquality : public GpuTest {
     }
 };
 
-TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
+TEST_F(RefineEquality, LevelsTrianglesAndPositionsEqualTheLibrarys) {
     if (!device_) return;
     mesh::RefineOptions options;
     options.depth = 4;
@@ -105,11 +105,11 @@ TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
     RefineRig rig(*device_, scene);
     uint32_t most = 0, frames = 0, biased = 0;
     double place = 0;
-    // Instrumented, a frame takes a hundred times as long.
+    // An instrumented frame takes a hundred times as long.
     const float first = gpuAssisted() ? scene.end - 1 : 0,
                 last = scene.end + (gpuAssisted() ? 1 : 8);
     for (float now = first; now < last; now += 0.21f, ++frames) {
-        // Far and near, plenty and little.
+        // Far and near, large and small budget.
         player.views = {{{0.4f, 0.3f, 1 + float(frames % 9)}, 900}};
         player.settings.budget = frames % 7 < 4 ? 50000 : 3000;
         scene.heat(now, player.tiles);
@@ -134,7 +134,7 @@ TEST_F(RefineEquality, LevelsTrianglesAndPlacesAreTheLibrarys) {
 }
 
 // The comparison must notice a wrong table and a wrong flip bit.
-TEST_F(RefineEquality, MutantsAreCaught) {
+TEST_F(RefineEquality, EqualityTestCatchesMutants) {
     if (!device_) return;
     mesh::RefineOptions options;
     options.depth = 3;
@@ -159,9 +159,9 @@ TEST_F(RefineEquality, MutantsAreCaught) {
 
 using Place = std::array<float, 3>;
 
-struct CutPiece {  // a triangle that the device wrote
+struct CutPiece {  // a triangle written by the device
     Place corners[3];
-    float left[3];  // last words
+    float left[3];  // its last words
     [[nodiscard]] bool wall() const { return left[0] < -0.5f; }
 };
 
@@ -191,8 +191,8 @@ std::vector<uint32_t> plainSlots(const RefineRig& rig, const RefineScene& scene)
     return slots;
 }
 
-// The library's shell from the device's vertices: what crosses a hole, with its inner skin if it is
-// thick, walls, and what does not.
+// The library's shell from the device's vertices: cut triangles with inner skin and walls, and
+// uncut ones.
 struct WantedCut {
     std::vector<CutPiece> pieces;
     std::vector<uint32_t> plain;
@@ -235,7 +235,7 @@ WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now, bool 
     return wanted;
 }
 
-// Of both as sets: pieces without a partner within 10 um.
+// Pieces without a partner within 10 um, in either direction.
 size_t unmatched(std::vector<CutPiece> a, std::vector<CutPiece> b) {
     const auto before = [](const CutPiece& x, const CutPiece& y) {
         return x.corners[0][0] < y.corners[0][0];
@@ -264,10 +264,10 @@ size_t unmatched(std::vector<CutPiece> a, std::vector<CutPiece> b) {
     return alone + size_t(std::count(used.begin(), used.end(), false));
 }
 
-// Edges of what is drawn that no neighbour closes, but those deep inside, where walls end. Places
-// are joined where they are equal to the bit.
+// Drawn edges without a neighbour, except deep inside where walls end. Positions join only if
+// bitwise equal.
 size_t openEdges(const RefineRig& rig, const RefineScene& scene, std::span<const CutPiece> pieces) {
-    using Key = std::array<uint32_t, 4>;  // place, whether deep
+    using Key = std::array<uint32_t, 4>;  // position, deep flag
     std::map<std::pair<Key, Key>, int> edges;
     const auto edge = [&](const Key& a, const Key& b) {
         if (a[3] && b[3]) return;
@@ -298,7 +298,7 @@ size_t openEdges(const RefineRig& rig, const RefineScene& scene, std::span<const
         std::count_if(edges.begin(), edges.end(), [](const auto& one) { return one.second != 0; }));
 }
 
-TEST_F(RefineEquality, HolesAreCutAsTheLibraryDoes) {
+TEST_F(RefineEquality, HolesAreCutLikeTheLibrarys) {
     if (!device_) return;
     mesh::RefineOptions options;
     options.depth = 4;
@@ -341,9 +341,9 @@ TEST_F(RefineEquality, HolesAreCutAsTheLibraryDoes) {
     }
 }
 
-// Without room for all of them some small triangles stay whole: nothing is missing, nothing is
-// written where it must not be.
-TEST_F(RefineEquality, WithoutRoomWhatACutWouldNeedStaysWhole) {
+// Beyond the capacity some small triangles stay uncut: nothing is missing and nothing is written
+// out of range.
+TEST_F(RefineEquality, WithoutCapacityTrianglesStayUncut) {
     if (!device_) return;
     constexpr uint32_t kRoom = 50;
     mesh::RefineOptions options;
@@ -363,15 +363,15 @@ TEST_F(RefineEquality, WithoutRoomWhatACutWouldNeedStaysWhole) {
         if (wanted.pieces.size() <= kRoom) continue;
         ++full;
         EXPECT_GT(pieces.size(), kRoom - 4);
-        // Every one of them is a piece of the whole cut.
+        // Each is a piece of the full cut.
         EXPECT_EQ(wanted.pieces.size() - pieces.size(), unmatched(wanted.pieces, pieces));
         EXPECT_GT(plainSlots(rig, scene).size(), wanted.plain.size());
     }
     EXPECT_GT(full, 5u);
 }
 
-// A box without a lid: inside there is a skin a wall away, and walls stand along the border.
-TEST_F(RefineEquality, InnerSkinAndBordersAreTheLibrarys) {
+// A box without a lid: an inner skin at wall thickness, and walls along the border.
+TEST_F(RefineEquality, InnerSkinAndBordersEqualTheLibrarys) {
     if (!device_) return;
     SideBuilder box;
     box.side({0, 0, 0.3}, {0.6, 0, 0}, {0, 0.4, 0}, 1, 1);
@@ -404,7 +404,7 @@ TEST_F(RefineEquality, InnerSkinAndBordersAreTheLibrarys) {
         }
         borders = std::max(borders, border);
         skins = std::max(skins, skin);
-        // Inside of what is whole, vertices stand at their inner places.
+        // Inside an uncut surface, vertices are at their inner positions.
         const auto vertices = rig.of<gpu::RefineVertex>(FW_BIND_REFINE_VERTICES);
         for (const uint32_t slot : wanted.plain) {
             const gpu::RefineVertex& v = vertices[scene.model.slots.size() + slot];
@@ -417,9 +417,9 @@ TEST_F(RefineEquality, InnerSkinAndBordersAreTheLibrarys) {
     EXPECT_TRUE(gpuAssisted() || skins > 100);
 }
 
-// Levels come with the distance: points fixed on a burnt surface move no more than by a fraction of
-// a pixel between frames. Without the way from between their parents they would.
-TEST_F(RefineEquality, NothingPopsAsTheEyeComesNearer) {
+// Levels change with distance: points fixed on a burnt surface move by no more than a fraction of a
+// pixel per frame. Without morphing from the parents' midpoint they would.
+TEST_F(RefineEquality, NothingPopsAsTheCameraApproaches) {
     if (!device_ || gpuAssisted()) return;
     RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(5), 64);
     scene.light({0.02, 0.45, 0.37}, 0.02);
@@ -434,7 +434,7 @@ TEST_F(RefineEquality, NothingPopsAsTheEyeComesNearer) {
         rig.morph = morph;
         std::vector<glm::vec3> before;
         scene.heat(now, player.tiles, true);
-        for (int k = -8; k < kDolly; ++k) {  // levels rise to the first view before it counts
+        for (int k = -8; k < kDolly; ++k) {  // levels settle at the first view before it counts
             const float u = float(kDolly - std::max(k, 0)) / kDolly;
             player.views = {{{-1 - 11 * u, 0.6f, 0.5f}, 1000}};
             (void)frame(player, rig, now, k < 0 ? 0.5f : 1 / 60.0f);

@@ -1,5 +1,5 @@
-// The published scheme's pass on a device against the library: which vertices its triangles name
-// and which of them are consumed, and where vertices lie.
+// The refinement pass of the reference implementation on a device against the library: vertices of
+// its triangles, consumed triangles, vertex positions.
 #include "mesh/refine/published_frame.h"
 #include "support/pass_rig.h"
 #include "support/refine_scene.h"
@@ -32,18 +32,18 @@ class RefinePublishedEquality : public GpuTest {
     }
 };
 
-TEST_F(RefinePublishedEquality, TrianglesAndPlacesAreTheLibrarys) {
+TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     if (!device_) return;
     auto* memory = std::pmr::new_delete_resource();
     const uint32_t depth = 4;
     RefineScene scene(gridBox(0.8, 0.6, 0.02, 1, 1, 1, 11), mesh::arpOptions(depth), 96);
     scene.light({0.2, 0.2, 0.02}, 0.05, 0.15);
     const mesh::RefineModel& m = scene.model;
-    const mesh::ArpModel arp = mesh::makeArpModel(scene.domain, m, depth, memory);
-    const mesh::ArpSettings settings = mesh::arpSettings(arp, 0, 0, 0.05f);
+    const mesh::ArpModel reference = mesh::makeArpModel(scene.domain, m, depth, memory);
+    const mesh::ArpSettings settings = mesh::arpSettings(reference, 0, 0, 0.05f);
     mesh::ArpState state(memory);
-    state.reset(arp);
-    mesh::arpIgnite(arp, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
+    state.reset(reference);
+    mesh::arpIgnite(reference, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
 
     PassRig rig(*device_, kBindings, sizeof(gpu::ArpPush));
     const auto make = [&](uint32_t binding, const auto& data) {
@@ -57,7 +57,7 @@ TEST_F(RefinePublishedEquality, TrianglesAndPlacesAreTheLibrarys) {
     for (uint32_t d = 0; d < m.draws.size(); ++d) vertices[d].material = m.draws[d].slot;
     make(FW_BIND_VERTICES, vertices);
     const auto slots = uint32_t(m.slots.size());
-    const uint32_t placeGroups = (slots + 63) / 64, nameGroups = (arp.most() + 63) / 64;
+    const uint32_t placeGroups = (slots + 63) / 64, nameGroups = (reference.most() + 63) / 64;
     rig.make(FW_BIND_REFINE_VERTICES, slots * sizeof(gpu::RefineVertex));
     rig.make(FW_BIND_ARP_LIST, size_t(nameGroups) * 256);
     rig.make(FW_BIND_REFINE_INDICES, size_t(nameGroups) * 768);
@@ -73,7 +73,7 @@ TEST_F(RefinePublishedEquality, TrianglesAndPlacesAreTheLibrarys) {
     for (float now = 0; now < scene.end + 6; now += 0.9f, ++frames) {
         const uint32_t tick = kStartTick + uint32_t(now * 4096);
         const mesh::ArpView view{{0.2f, 0.2f, 1.5f}, frames % 3 == 2 ? 150.0f : 0.0f};
-        mesh::arpAdvance(arp, settings, tick, view, false, state);
+        mesh::arpAdvance(reference, settings, tick, view, false, state);
         gpu::RefineObject object{};
         object.cornerCount = slots;
         object.textureWidth = m.textureWidth;

@@ -1,5 +1,5 @@
 #!/bin/bash
-# Runs one sample for a few small frames under the validation layer, synchronization checks included.
+# Runs one sample for a few small frames under the validation layer with synchronization checks.
 # Usage: sample.sh NAME headless|window [SWITCH...], with the build folder in FW_BUILD_FOLDER. Fails on
 # any validation message, and headless on a run that leaves no picture. The switches are the sample's.
 set -euo pipefail
@@ -21,7 +21,7 @@ arguments=(--frames 6 --size 320x180 --seed 7 --out "$work/out" "$@")
 case $name in
     02_burning_mesh)
         model=/usr/share/assimp/models/glTF2/BoxTextured-glTF-Binary/BoxTextured.glb
-        [[ -f $model ]] || { echo "$model is not here (package assimp-testmodels)" && exit 77; }
+        [[ -f $model ]] || { echo "$model is missing (package assimp-testmodels)" && exit 77; }
         arguments+=("$model")
         ;;
 esac
@@ -42,9 +42,9 @@ if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|SPIR-V WARNING|Validation (Error|Wa
 fi
 # A server draws nothing: it leaves a save.
 [[ $name != 13_server || -s $work/out/server.fwsave ]] || { echo "$name left no save" && exit 1; }
-# Nor do two processes with one fire: they leave their hashes.
+# Two processes with one fire leave their hashes instead of pictures.
 if [[ $name == 12_multiplayer ]]; then
-    cmp "$work/out/server.txt" "$work/out/client.txt" || { echo "$name left no hashes that are one" && exit 1; }
+    cmp "$work/out/server.txt" "$work/out/client.txt" || { echo "$name left different hashes" && exit 1; }
 fi
 if [[ $mode == headless && $name != 12_multiplayer && $name != 13_server && -z $(find "$work/out" -name '*.png' -size +0 2>/dev/null) ]]; then
     echo "$name left no picture in --out"

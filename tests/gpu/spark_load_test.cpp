@@ -1,6 +1,5 @@
-// Sparks are functions of the clock: a world that is loaded while they fly shows the very ones that
-// flew when it was saved, whether it is the same world, later, or another one. And they bounce off
-// the host's field of heights.
+// Sparks are functions of the clock: a loaded world shows exactly the sparks at the save, in the
+// same world later or in another one. They bounce off the host's heightfield.
 #include "support/own_world.h"
 #include "support/views.h"
 
@@ -15,7 +14,7 @@ constexpr int kFrames = 5 * 16, kLater = 3 * 16;
 
 class SparksLoaded : public OwnDevice {
  protected:
-    // A fire of 150 kW of which nothing but the sparks shows, before black.
+    // A fire of 150 kW that shows only sparks, on black.
     FwWorld* fireWorld() {
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.maxFlames = 0;
@@ -38,13 +37,13 @@ class SparksLoaded : public OwnDevice {
         const float black[4] = {0, 0, 0, 1};
         return shoot(world, view, kSide, kSide, black);
     }
-    // Pixels that sparks light.
+    // Pixels lit by sparks.
     static size_t lit(const std::vector<uint8_t>& pixels) {
         size_t count = 0;
         for (size_t i = 0; i < pixels.size(); i += 4) count += pixels[i] > 24;
         return count;
     }
-    // Light is added up in the order in which quads were counted: the last bit of a sum may differ.
+    // Light is summed in the order in which quads were counted, so the last bit may differ.
     static void expectSame(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
         ASSERT_EQ(a.size(), b.size());
         int most = 0;
@@ -68,13 +67,13 @@ class SparksLoaded : public OwnDevice {
     FwFireEmitterId emitter_{};
 };
 
-TEST_F(SparksLoaded, ShowWhatFlewThen) {
+TEST_F(SparksLoaded, MatchThoseAtTheSave) {
     FwWorld* world = fireWorld();
     step(world, kFrames);
     const std::vector<uint8_t> bytes = saved(world);
     step(world, 1);
     const std::vector<uint8_t> then = picture(world);
-    EXPECT_GT(lit(then), 60u) << "there is nothing to compare";
+    EXPECT_GT(lit(then), 60u) << "too few sparks to compare";
     step(world, kLater);
     const std::vector<uint8_t> later = picture(world);
     size_t other = 0;
@@ -84,7 +83,7 @@ TEST_F(SparksLoaded, ShowWhatFlewThen) {
     ASSERT_EQ(fwWorld_Load(world, bytes.data(), bytes.size()), FW_OK);
     step(world, 1);
     expectSame(then, picture(world));
-    step(world, kLater);  // and they fly on as they did
+    step(world, kLater);  // and they continue their paths
     expectSame(later, picture(world));
 
     FwWorld* another = fireWorld();
@@ -95,9 +94,9 @@ TEST_F(SparksLoaded, ShowWhatFlewThen) {
     fwDestroyWorld(world);
 }
 
-// A slope, seen from its side: above its line sparks fly, bounce and rest; below it none shows.
-TEST_F(SparksLoaded, MeetTheHostsHeights) {
-    constexpr uint32_t kCorners = 33;  // 16 m each way
+// A slope from its side: sparks show above its line only.
+TEST_F(SparksLoaded, BounceOffTheHostsHeightfield) {
+    constexpr uint32_t kCorners = 33;  // 16 m in each direction
     constexpr float kSteep = 0.6f;
     float heights[kCorners * kCorners];
     for (uint32_t i = 0; i < kCorners * kCorners; ++i)
@@ -135,7 +134,7 @@ TEST_F(SparksLoaded, MeetTheHostsHeights) {
         return count;
     };
     EXPECT_EQ(0u, below(true));
-    EXPECT_LT(40u, below(false)) << "nothing flies there anyway";
+    EXPECT_LT(40u, below(false)) << "no spark flies there without the slope";
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// Targets, views and frames as the C edge checks them on a host's device: what would show as a
-// wrong picture, and nothing else, is refused or said.
+// Targets, views and frames as the C edge checks them on a host device: an error that would only
+// show as a wrong picture is refused or reported.
 #include "support/host_context.h"
 #include "support/views.h"
 
@@ -22,7 +22,7 @@ class Targets : public HostContext {
         GpuTest::TearDown();
     }
 
-    // Surfaces alone, as needed: no object needs any, so it is quickly made.
+    // Surfaces only, created as needed: fast, because no object needs any.
     static FwVulkanTargetDef surfacesOver(VkFormat color) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
         def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_FLAMES | FW_TARGET_AS_NEEDED;
@@ -35,7 +35,7 @@ class Targets : public HostContext {
         def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES;
         return def;
     }
-    // Its message, or nothing where it is registered; it is unregistered at once.
+    // The message of a refusal; empty if the target was registered, which is undone at once.
     std::string refusal(const FwVulkanTargetDef& def) {
         FwTargetId id{};
         const FwResult result = fwContext_RegisterTarget(context_, &def, &id);
@@ -71,7 +71,7 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
     for (const auto& format : formats) {
         if (!blends(format.color)) continue;
         FwVulkanTargetDef def = surfacesOver(format.color);
-        EXPECT_EQ(uint32_t(FW_OUTPUT_AUTO), def.encoding) << "the default";
+        EXPECT_EQ(uint32_t(FW_OUTPUT_AUTO), def.encoding) << "the default encoding";
         EXPECT_EQ("", refusal(def)) << format.color;
         for (uint32_t encoding = 0; encoding < 3; ++encoding) {
             def.encoding = encoding;
@@ -85,7 +85,7 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
         }
     }
     EXPECT_EQ("", warnings_);
-    // A format that is not known: named by the host, and said.
+    // An unknown format: the host must state the encoding, and the message says so.
     FwVulkanTargetDef odd = surfacesOver(VK_FORMAT_R8G8B8A8_SNORM);
     if (!blends(odd.colorFormat)) return;
     EXPECT_THAT(refusal(odd),
@@ -95,23 +95,23 @@ TEST_F(Targets, EncodingMustFitTheFormat) {
     EXPECT_THAT(warnings_, HasSubstr("FW_OUTPUT_LINEAR (0) is used as given"));
 }
 
-TEST_F(Targets, SurfacesNeedDepthThatTheyWrite) {
+TEST_F(Targets, SurfacesNeedAWritableDepth) {
     if (!device_) return;
     FwVulkanTargetDef def = flamesOver(VK_FORMAT_R8G8B8A8_UNORM);
     def.depthMode = FW_DEPTH_TEST_ONLY;
-    EXPECT_EQ("", refusal(def)) << "flames alone";
+    EXPECT_EQ("", refusal(def)) << "flames only";
     def = surfacesOver(VK_FORMAT_R8G8B8A8_UNORM);
     def.depthMode = FW_DEPTH_TEST_ONLY;
     EXPECT_THAT(refusal(def), HasSubstr("surfaces that write no depth show their far sides"));
     EXPECT_EQ("", warnings_);
-    // Flat sheets are right without a depth, so that is said and not refused.
+    // Flat sheets are correct without depth, so this is reported and not refused.
     def.depthMode = FW_DEPTH_NONE;
     def.depthFormat = VK_FORMAT_UNDEFINED;
     EXPECT_EQ("", refusal(def));
     EXPECT_THAT(warnings_, HasSubstr("FW_DEPTH_NONE without FW_TARGET_NO_SURFACES"));
 }
 
-TEST_F(Targets, PassInfoFindsWrongFields) {
+TEST_F(Targets, PassInfoRefusesWrongFields) {
     if (!device_) return;
     VkAttachmentDescription attachments[2]{};
     for (VkAttachmentDescription& one : attachments) {
@@ -163,13 +163,13 @@ TEST_F(Targets, PassInfoFindsWrongFields) {
     subpass.pDepthStencilAttachment = &depth;
     VkApplicationInfo other{};
     EXPECT_THAT(wrong([&](auto& d) { d.renderPassInfo = &other; }), HasSubstr("has sType 0"));
-    // A composite's pass is ours: nothing of a subpass can be given.
+    // The library owns a composite's pass: the host cannot name a subpass.
     FwVulkanTargetDef composite = surfacesOver(VK_FORMAT_R8G8B8A8_UNORM);
     composite.subpass = 1;
     EXPECT_THAT(refusal(composite), HasSubstr("FwVulkanTargetDef::subpass is 1"));
 }
 
-TEST_F(Targets, ReadyOncePreparedAndProgressCounts) {
+TEST_F(Targets, AreReadyOncePreparedAndReportProgress) {
     if (!device_) return;
     const auto ask = [&](FwTargetId id, FwPipelineProgress& progress) {
         progress = {};
@@ -181,12 +181,11 @@ TEST_F(Targets, ReadyOncePreparedAndProgressCounts) {
     EXPECT_EQ(0u, all.made);
     EXPECT_LT(10u, all.total);
     const FwVulkanTargetDef def = flamesOver(VK_FORMAT_R8G8B8A8_UNORM);
-    FwTargetId target{};
-    ASSERT_EQ(FW_OK, fwContext_RegisterTarget(context_, &def, &target));
+    const FwTargetId target = created(fwContext_RegisterTarget, context_, def);
     EXPECT_EQ(FW_NOT_READY, ask(target, own)) << "nothing is prepared: record calls do nothing";
     EXPECT_LT(0u, own.made);
     EXPECT_EQ(all.total, own.total - own.made);
-    // Another thread sees it go on, and waits for nobody.
+    // Another thread sees the progress without blocking.
     std::thread worker([&] { EXPECT_EQ(FW_OK, fwContext_Prepare(context_)); });
     uint32_t seen = 0;
     while (ask(target, own) == FW_NOT_READY) {
@@ -199,7 +198,7 @@ TEST_F(Targets, ReadyOncePreparedAndProgressCounts) {
     EXPECT_EQ(own.total, own.made);
     EXPECT_EQ(FW_OK, ask({}, all));
     EXPECT_EQ(all.total, all.made);
-    // Destroyed with a frame: until then it is there.
+    // Destroyed with a frame: it exists until then.
     ASSERT_EQ(FW_OK, fwContext_UnregisterTargetAfterFrame(context_, target, 5));
     EXPECT_EQ(1u, fwContext_Collect(context_, 4));
     EXPECT_EQ(FW_OK, ask(target, own));
@@ -208,10 +207,10 @@ TEST_F(Targets, ReadyOncePreparedAndProgressCounts) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwContext_UnregisterTargetAfterFrame(context_, target, 5));
     const uint32_t before = all.made;
     EXPECT_EQ(FW_OK, ask({}, all));
-    EXPECT_GT(before, all.made) << "its pipelines count no longer";
+    EXPECT_GT(before, all.made) << "its pipelines no longer count";
 }
 
-TEST_F(Targets, ViewsAndFramesThatShowNothingAreRefused) {
+TEST_F(Targets, RefuseViewsAndFramesThatShowNothing) {
     if (!device_) return;
     ASSERT_EQ(FW_OK, fwContext_Prepare(context_));
     const FwWorldDef worldDef = fwDefaultWorldDef();
@@ -251,7 +250,7 @@ TEST_F(Targets, ViewsAndFramesThatShowNothingAreRefused) {
     frames.waitAll();
 }
 
-// Each component once, whatever the number of worlds; buffers are summed over them.
+// Each component once for any number of worlds; buffers are summed over worlds.
 TEST_F(Targets, MemoryReportCountsEachWorldOnce) {
     if (!device_) return;
     const auto report = [&] {
@@ -271,9 +270,7 @@ TEST_F(Targets, MemoryReportCountsEachWorldOnce) {
         FwWorld* world = nullptr;
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &worldDef, &world));
         const std::vector<FwMemoryRow> rows = report();
-        FwContextInfo info{};
-        info.structSize = sizeof info;
-        ASSERT_EQ(FW_OK, fwContext_GetInfo(context_, &info));
+        const FwContextInfo info = getState(fwContext_GetInfo, context_);
         EXPECT_EQ(info.gpuMemoryUsed, row(rows, "blocks").capacity);
         uint64_t components = 0;
         for (const FwMemoryRow& one : rows) {

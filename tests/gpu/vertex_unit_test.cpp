@@ -1,5 +1,4 @@
-// A host's vertex buffer in centimetres: what is drawn from it stands where the same buffer in
-// metres puts it.
+// A host's vertex buffer in centimetres draws at the same place as one in metres.
 #include "support/burn_scene.h"
 #include "support/burnable.h"
 #include "support/host_context.h"
@@ -21,8 +20,8 @@ class VertexUnits : public HostContext {
         HostContext::TearDown();
     }
 
-    // The strongest light of a burning ball whose vertices a buffer moves by 2 m, with vertices in
-    // units of `vertexUnit` m and a world in units of `worldUnit` m; m.
+    // Position of the strongest light of a burning ball that a vertex buffer moves by 2 m.
+    // `vertexUnit`: m per unit of the buffer; `worldUnit`: m per unit of the world.
     std::array<float, 3> lightOf(float worldUnit, float vertexUnit) {
         HostFrames frames(*device_, 2);
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -75,7 +74,7 @@ class VertexUnits : public HostContext {
 TEST_F(VertexUnits, BuffersAreInTheMeshesUnit) {
     if (!device_) return;
     const std::array<float, 3> metres = lightOf(1, 1);
-    EXPECT_NEAR(metres[0], 2, 0.6) << "where the buffer has it";
+    EXPECT_NEAR(metres[0], 2, 0.6) << "at the buffer's place";
     const std::array<float, 3> both = lightOf(0.01f, 0.01f), assets = lightOf(0.01f, 1);
     for (size_t i = 0; i < 3; ++i) {
         EXPECT_NEAR(metres[i], both[i], 0.01);

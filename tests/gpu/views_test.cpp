@@ -1,5 +1,5 @@
-// Frames that are recorded for several views: each is drawn as if it were the only one. Through the
-// C ABI, with a scene of all that a view has something of its own for.
+// Frames recorded for several views: each view is drawn as if it were the only one, with a scene of
+// everything that has state per view.
 #include "support/views.h"
 #include "flamewright/flamewright_vulkan.h"
 #include "support/burnable.h"
@@ -28,14 +28,14 @@ constexpr uint32_t kWarmUp = 40;  // frames
 
 using Pixels = std::vector<uint8_t>;  // RGBA8
 
-// The camera of view `which` in frame `f`, on its way around the fires.
+// The camera of view `which` in frame `f`, moving around the fires.
 FwView cameraOf(uint32_t which, uint32_t f) {
     const float turn = 0.01f * float(f) + (which == 1 ? 0.5f : which == 2 ? -0.6f : 0.0f);
     const float away = which == 1 ? 4.2f : 3.4f;
     FwView view = viewAt({away * std::sin(turn), 1.1f + 0.003f * float(f), away * std::cos(turn)},
                          {0, 0.55f, 0}, float(kWidth) / float(kHeight), 2.4f);
     view.time = float(f) / 32.0f;
-    view.viewId = 7 + which;  // any numbers
+    view.viewId = 7 + which;  // arbitrary numbers
     return view;
 }
 
@@ -95,8 +95,8 @@ class Views : public GpuTest {
         GpuTest::TearDown();
     }
 
-    // Volumetric fires near and far, one with smoke; a jet that throws sparks; a mesh that burns.
-    // `fireAlone`: one volumetric fire, with much smoke, and nothing else.
+    // Volumetric fires near and far, one with smoke; a jet that throws sparks; a burning mesh.
+    // `fireAlone`: a single volumetric fire with much smoke.
     FwWorld* makeWorld(bool fireAlone = false) {
         FwWorldDef def = fwDefaultWorldDef();
         def.wind[0] = 0.6f;
@@ -165,7 +165,7 @@ class Views : public GpuTest {
         return target;
     }
 
-    // `view` of the world over black, and on to memory.
+    // Draws `view` of the world over black and copies the picture to memory.
     static void draw(FwWorld* world, const FwVulkanFrame& frame, FwTargetId target,
                      const FwView& view, const Picture& picture) {
         const VkCommandBuffer commands = frame.commandBuffer;
@@ -218,7 +218,7 @@ class Views : public GpuTest {
         VkMemoryBarrier toHost{};
         toHost.sType = VK_STRUCTURE_TYPE_MEMORY_BARRIER;
         toHost.srcAccessMask = VK_ACCESS_TRANSFER_WRITE_BIT;
-        // Or to another picture in the same memory.
+        // The same memory may hold another picture next.
         toHost.dstAccessMask = VK_ACCESS_HOST_READ_BIT | VK_ACCESS_TRANSFER_WRITE_BIT;
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                              VK_PIPELINE_STAGE_HOST_BIT | VK_PIPELINE_STAGE_TRANSFER_BIT, 0, 1,
@@ -231,7 +231,7 @@ class Views : public GpuTest {
         return text;
     }
 
-    // Bytes of all buffers that view `number` of a frame has, from 1.
+    // Bytes of all buffers of view `number` of a frame, from 1.
     [[nodiscard]] uint64_t bytesOfView(uint32_t number) const {
         std::vector<FwMemoryRow> rows(256);
         rows.resize(std::min<size_t>(
@@ -251,8 +251,7 @@ class Views : public GpuTest {
     std::unique_ptr<HostFrames> frames_;
 };
 
-// The pictures of two views in one recording are those of two worlds with one view each.
-TEST_F(Views, TwoInARecordingShowWhatEachAloneShows) {
+TEST_F(Views, TwoViewsInOneRecordingEqualTwoWorlds) {
     if (!device_) return;
     const struct {
         const char* name;
@@ -288,16 +287,16 @@ TEST_F(Views, TwoInARecordingShowWhatEachAloneShows) {
         std::printf("           %s: at most %u of 255 off; the two are %u apart\n", kind.name,
                     worst, unlike);
         EXPECT_LE(worst, 2u) << kind.name;
-        EXPECT_GT(unlike, 60u) << "views of one place would show nothing";
+        EXPECT_GT(unlike, 60u) << "the two views must differ";
         EXPECT_GT(litOf(single[0].pixels()), 200u) << "something burns";
         for (FwWorld* world : {alone[0], alone[1], both}) fwDestroyWorld(world);
         EXPECT_EQ(fwContext_UnregisterTarget(context_, target), FW_OK);
     }
 }
 
-// Two frames' worth of views, a third one that comes late: nothing is asked of the device or of the
-// heap once each was there.
-TEST_F(Views, AskNothingOnceTheyWereThere) {
+// With two views and a late third one: once each was drawn, frames allocate nothing on device or
+// heap.
+TEST_F(Views, WarmViewsAllocateNothing) {
     if (!device_) return;
     FwWorld* const world = makeWorld();
     const FwTargetId target = targetOf(0, FW_DEPTH_TEST);
@@ -321,8 +320,8 @@ TEST_F(Views, AskNothingOnceTheyWereThere) {
     fwDestroyWorld(world);
 }
 
-// A view that goes is drawn as one that nobody gave, gives its memory back, and is as before when
-// it comes again.
+// A removed view is drawn like one that was never given, frees its memory, and is as before when it
+// returns.
 TEST_F(Views, MayComeAndGo) {
     if (!device_) return;
     FwWorld* const world = makeWorld();
@@ -348,20 +347,20 @@ TEST_F(Views, MayComeAndGo) {
     EXPECT_LE(mostAway(second.pixels(), third.pixels()), 2u);
     const uint64_t held = bytesOfView(2);
     EXPECT_GT(held, 100000u);
-    // Its id is known for a while, but of a frame without it it says nothing.
+    // Its id stays known for a while but does not affect frames without it.
     for (int i = 0; i < 8; ++i) {
         FwView stale[2] = {cameraOf(1, f), cameraOf(1, f)};
         stale[1].viewId = 4711;
         frame(1, i >= 6, stale);
     }
-    EXPECT_EQ(mostAway(second.pixels(), third.pixels()), 0u) << "a stale id and one that never was";
+    EXPECT_EQ(mostAway(second.pixels(), third.pixels()), 0u) << "a stale id equals an unknown id";
     EXPECT_GT(bytesOfView(2), 0u) << "it may come again";
     for (int i = 0; i < 64; ++i) frame(1, false);
-    EXPECT_EQ(bytesOfView(2), 0u) << "it was away for long";
+    EXPECT_EQ(bytesOfView(2), 0u) << "it was absent for long";
     for (int i = 0; i < 24; ++i) frame(2, i >= 16);
     EXPECT_GT(bytesOfView(2), held / 2);
     EXPECT_LE(mostAway(second.pixels(), third.pixels()), 2u) << "it is as before";
-    // More ids than there is room for, one after another: the oldest goes.
+    // More ids than capacity, one after another: the oldest is dropped.
     for (uint32_t id = 100; id < 116; ++id) {
         FwView views[2] = {cameraOf(0, f), cameraOf(1, f)};
         views[1].viewId = id;
@@ -376,8 +375,8 @@ TEST_F(Views, MayComeAndGo) {
     for (FwWorld* one : {world, alone}) fwDestroyWorld(one);
 }
 
-// Each error names what is wrong, and leaves the world as it was.
-TEST_F(Views, AreChecked) {
+// Each error names its cause and leaves the world unchanged.
+TEST_F(Views, RefuseInvalidValues) {
     if (!device_) return;
     FwWorldDef def = fwDefaultWorldDef();
     FwWorld* world = nullptr;
@@ -405,7 +404,7 @@ TEST_F(Views, AreChecked) {
     with([](FwView& view) { view.projection[5] = NAN; }, "views[2].projection[5] is nan");
     with([](FwView& view) { view.structSize = uint32_t(sizeof(FwView)) - 4; },
          "views[2].structSize is");
-    // An older host's views are shorter, and lie closer together.
+    // An older host's views are shorter and lie closer together.
     constexpr size_t kShort = offsetof(FwView, viewId);
     std::vector<std::byte> old(2 * kShort);
     for (uint32_t i = 0; i < 2; ++i) {
@@ -422,11 +421,11 @@ TEST_F(Views, AreChecked) {
     fwDestroyWorld(world);
 }
 
-// A view that the frame was not recorded for is marched as it is drawn: nearly as the others, and
-// without a pattern of single pixels in its smoke.
-TEST_F(Views, OneThatWasNotRecordedForIsAlike) {
+// A view that was not recorded is marched while it is drawn: almost the same picture, without a
+// pixel pattern in its smoke.
+TEST_F(Views, AnUnrecordedViewLooksAlike) {
     if (!device_) return;
-    // How far pixels of the upper half, where there is smoke alone, are from the mean of their
+    // Distance of pixels of the upper half, which holds only smoke, from the mean of their
     // neighbours.
     const auto grain = [](const Pixels& picture) {
         const auto at = [&](uint32_t i, uint32_t j) {
@@ -444,7 +443,7 @@ TEST_F(Views, OneThatWasNotRecordedForIsAlike) {
     view.time = 1;
     FwView other = view;
     other.viewId = 3;
-    other.ambientSky[0] += 1e-6f;  // else it would show the same march
+    other.ambientSky[0] += 1e-6f;  // otherwise it would reuse the same march
     for (const FwDepthMode depth : {FW_DEPTH_TEST, FW_DEPTH_SAMPLED}) {
         FwWorld* const world = makeWorld(true);
         const FwTargetId target = targetOf(FW_TARGET_NO_SURFACES, depth);
@@ -464,7 +463,7 @@ TEST_F(Views, OneThatWasNotRecordedForIsAlike) {
         std::printf("           depth mode %u: RMS %.2f of 255; grain %.2f, marched before %.2f\n",
                     uint32_t(depth), off, grainy, wanted);
         EXPECT_LT(grainy, 4 * wanted) << "depth mode " << depth;
-        // Slabs of a tested depth are tone mapped one by one.
+        // With a tested depth, slabs are tone mapped one by one.
         EXPECT_LT(off, depth == FW_DEPTH_TEST ? 12 : 10) << "depth mode " << depth;
         vkDeviceWaitIdle(device_->device);
         fwDestroyWorld(world);

@@ -1,5 +1,5 @@
-// What the vk backend promises its host: no submit, wait, allocation or pipeline in a steady frame,
-// clear refusals, pools that grow under a fire, idle worlds that record nothing.
+// Promises of the vk backend to its host: no submit, wait, allocation or pipeline in a steady
+// frame, clear refusals, pools that grow under a fire, idle worlds that record nothing.
 #include "abi/abi_support.h"
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
@@ -42,8 +42,8 @@ void expectEqual(const FrameAnswer& want, const FrameAnswer& got, const char* wh
 
 class VkContract : public GpuTest {};
 
-// 1.0 without a feature, unless another version was asked for.
-TEST_F(VkContract, ApiOneZeroIsWhatTheTestsRunOn) {
+// 1.0 without features, unless another version was requested.
+TEST_F(VkContract, TestsRunOnVulkan1_0) {
     if (!device_) return;
     const char* asked = std::getenv("FLAMEWRIGHT_API");
     const uint32_t want = asked && *asked ? testApiVersion()
@@ -58,8 +58,8 @@ TEST_F(VkContract, ApiOneZeroIsWhatTheTestsRunOn) {
     EXPECT_STREQ(info.deviceName, device_->properties.deviceName);
 }
 
-// P7 on another version of the API, slot pacing by way of three frames in flight.
-TEST_F(VkContract, ApiOneThreeBurnsTheSame) {
+// Equal burns on another API version, with slot pacing of three frames in flight.
+TEST_F(VkContract, BurnsIdenticallyOnVulkan1_3) {
     makeDevice({.apiVersion = VK_API_VERSION_1_3});
     if (!device_) return;
     const BurnScene scene = BurnScene::make(3, 0.6);
@@ -81,10 +81,10 @@ TEST_F(VkContract, ApiOneThreeBurnsTheSame) {
     }
 }
 
-TEST_F(VkContract, SteadyFramesAskNothingOfTheDevice) {
+TEST_F(VkContract, SteadyFramesAllocateNothing) {
     if (!device_) return;
     BurnScene scene = BurnScene::make(21, 0.6);
-    scene.objects[0].arp = true;  // the first object refines as published
+    scene.objects[0].reference = true;  // the first object uses the reference refinement
     scene.addPublished();
     gpu::vk::WorldLimits limits;
     limits.looks = testLooks();
@@ -109,7 +109,7 @@ TEST_F(VkContract, SteadyFramesAskNothingOfTheDevice) {
     EXPECT_GT(counts.work, 300u);
 }
 
-TEST_F(VkContract, IdleWorldRecordsNothing) {
+TEST_F(VkContract, IdleWorldsRecordNothing) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(22, 0.4);
     VkRig rig(*device_, 2, 0, {}, countingEntry());
@@ -145,7 +145,7 @@ TEST_F(VkContract, IdleWorldRecordsNothing) {
     counts = takeCounts();
     EXPECT_GT(counts.work, 30u) << "it burns";
     frame(gpu::kEventExtinguish, 0xFFFFFFFFu);
-    for (int i = 0; i < 100; ++i) frame(0, 0);  // looks forget what they saw coming, too
+    for (int i = 0; i < 100; ++i) frame(0, 0);  // predictions expire too
     (void)takeCounts();
     for (int i = 0; i < 4; ++i) frame(0, 0);
     counts = takeCounts();
@@ -157,8 +157,8 @@ TEST_F(VkContract, IdleWorldRecordsNothing) {
     EXPECT_EQ(answers.back().counters[0].burning, 0u);
 }
 
-// Objects come and go while others burn: ranges are reused, pools grow, and nothing else changes.
-TEST_F(VkContract, PoolsGrowUnderAFire) {
+// Objects come and go while others burn: ranges are reused, pools grow, and no burn changes.
+TEST_F(VkContract, PoolsGrowWithoutChangingAFire) {
     if (!device_) return;
     BurnScene scene = BurnScene::make(23, 0.6);
     const size_t first = scene.objects.size();
@@ -179,14 +179,14 @@ TEST_F(VkContract, PoolsGrowUnderAFire) {
     };
     for (int f = 0; f < 60; ++f) {
         if (f == 5) before = capacity();
-        if (f % 2 == 1 && f < 50) {  // a new one, now and then
+        if (f % 2 == 1 && f < 50) {  // a new object now and then
             SceneObject object = scene.objects[random() % first];
             scene.objects.push_back(object);
             const auto slot = uint32_t(scene.objects.size() - 1);
             rig.backend.createObject(slot, scene.init(slot));
             cpu.createObject(slot, scene.init(slot));
         }
-        if (f % 6 == 5) {  // one burns no more, and comes back unburnt in the same slot
+        if (f % 6 == 5) {  // an object that is out returns unburnt in the same slot
             const uint32_t slot = uint32_t(random() % first);
             rig.backend.destroyObject(slot);
             cpu.destroyObject(slot);
@@ -213,7 +213,7 @@ TEST_F(VkContract, PoolsGrowUnderAFire) {
     EXPECT_GT(compared, 100u);
 }
 
-TEST_F(VkContract, BudgetIsAnErrorAndChangesNothing) {
+TEST_F(VkContract, ExceedingTheBudgetFailsAndChangesNothing) {
     if (!device_) return;
     const mesh::BurnDomain domain = [&] {
         mesh::BakeInput input = makePlane(1, 1).input(600, 4096);
@@ -245,7 +245,7 @@ TEST_F(VkContract, BudgetIsAnErrorAndChangesNothing) {
     FwContextInfo info{};
     rig.context.fillInfo(info);
     EXPECT_LE(info.gpuMemoryUsed, info.gpuMemoryBudget);
-    // What was there before still burns.
+    // Existing objects still burn.
     gpu::StepPlan step;
     step.now = 4096;
     gpu::TexelEvent event{0, domain.width * (domain.height / 2) + domain.width / 2, 0, 4097};
@@ -258,7 +258,7 @@ TEST_F(VkContract, BudgetIsAnErrorAndChangesNothing) {
     const std::vector<FrameAnswer> answers = rig.finish();
     ASSERT_FALSE(answers.empty());
     EXPECT_EQ(answers[0].counters[0].ignited, 1u);
-    // Room comes back once the lists were walked.
+    // Memory returns once the lists were processed.
     rig.backend.destroyObject(made - 1);
     for (uint64_t f = 2; f < 6; ++f) {
         gpu::StepPlan next;
@@ -272,7 +272,7 @@ TEST_F(VkContract, BudgetIsAnErrorAndChangesNothing) {
     rig.backend.createObject(made - 1, scene.init(0));
 }
 
-TEST_F(VkContract, PacingIsChecked) {
+TEST_F(VkContract, RefusesInvalidFramePacing) {
     if (!device_) return;
     VkRig rig(*device_);
     const auto refused = [&](const FwVulkanFrame& frame, const char* field) {
@@ -304,7 +304,7 @@ TEST_F(VkContract, PacingIsChecked) {
         plan.frameIndex = 3;
         rig.backend.run(plan);
         rig.backend.endOutside();
-        refused(frame, "frameIndex");  // once a frame
+        refused(frame, "frameIndex");  // once per frame
         frame.frameIndex = 2;
         refused(frame, "frameIndex");
         frame.frameIndex = 4;
@@ -321,7 +321,7 @@ TEST_F(VkContract, PacingIsChecked) {
     });
 }
 
-TEST_F(VkContract, SlotPacingLearnsWhatIsDone) {
+TEST_F(VkContract, SlotPacingReportsCompletedFrames) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(24, 0.4);
     VkRig rig(*device_);
@@ -343,10 +343,10 @@ TEST_F(VkContract, SlotPacingLearnsWhatIsDone) {
             rig.backend.endOutside();
         });
     }
-    EXPECT_EQ(answers, 4u);  // the last two may still be in flight, for all we were told
+    EXPECT_EQ(answers, 4u);  // as far as the library knows, the last two are in flight
 }
 
-TEST_F(VkContract, LostDeviceIsLatched) {
+TEST_F(VkContract, ALostDeviceStaysLost) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(25, 0.4);
     VkRig rig(*device_);
@@ -360,11 +360,11 @@ TEST_F(VkContract, LostDeviceIsLatched) {
     frame.frameIndex = 99;
     const core::Error error = errorOf([&] { (void)rig.backend.beginOutside(frame, rig.view); });
     EXPECT_EQ(error.result, FW_ERROR_DEVICE_LOST);
-    rig.backend.destroyObject(0);  // and all the rest goes with the rig
+    rig.backend.destroyObject(0);  // the rig destroys the rest
 }
 
-// Devices are asked for 20 storage buffers in a stage (gpu/vk/device.cpp): no pass may bind more.
-TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanDevicesAreAskedFor) {
+// Devices need 20 storage buffers per stage (gpu/vk/device.cpp): no pass may bind more.
+TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanRequired) {
     const auto bound = [](std::span<const gpu::Use> uses) {
         std::set<uint32_t> all;
         for (const gpu::Use& use : uses)
@@ -385,10 +385,10 @@ TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanDevicesAreAskedFor) {
     }
     for (const gpu::DrawPass* pass : gpu::drawPasses())
         EXPECT_LE(bound(pass->uses), 20u) << pass->name;
-    EXPECT_EQ(most, 20u) << "then devices may be asked for fewer";
+    EXPECT_EQ(most, 20u) << "the device requirement can be lowered";
 }
 
-TEST_F(VkContract, BadHostsAreRefused) {
+TEST_F(VkContract, RefusesInvalidHosts) {
     if (!device_) return;
     core::Memory memory{FwCallbacks{}};
     core::Log log{FwCallbacks{}};
@@ -413,9 +413,8 @@ TEST_F(VkContract, BadHostsAreRefused) {
     EXPECT_EQ(memory.bytes(), 0u);
 }
 
-// Through the library's own functions: what is wrong with a frame or a view is named, nothing is
-// recorded, and the next frame is as good as the first.
-TEST_F(VkContract, BadFramesAndViewsAreRefused) {
+// Each error of a frame or a view is named, nothing is recorded, and the next frame is valid.
+TEST_F(VkContract, RefusesInvalidFramesAndViews) {
     if (!device_) return;
     const FwVulkanHost host = device_->host();
     FwContextDef def = fwDefaultContextDef();
@@ -463,7 +462,7 @@ TEST_F(VkContract, BadFramesAndViewsAreRefused) {
     fwDestroyContext(context);
 }
 
-// For the thread sanitizer as well: tests/run --tsan --suite gpu --filter VkThreads.
+// Also for the thread sanitizer: tests/run --tsan --suite gpu --filter VkThreads.
 using VkThreads = VkContract;
 
 TEST_F(VkThreads, NotReadyBeforePrepare) {
@@ -481,10 +480,10 @@ TEST_F(VkThreads, NotReadyBeforePrepare) {
         worker.join();
         EXPECT_TRUE(context.ready());
     }
-    EXPECT_EQ(memory.bytes(), 0u) << "something was not given back";
+    EXPECT_EQ(memory.bytes(), 0u) << "memory leaks";
 }
 
-TEST_F(VkThreads, TargetsAreRegisteredWhileFramesAreRecorded) {
+TEST_F(VkThreads, TargetsMayBeRegisteredWhileFramesRecord) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(28, 0.4);
     gpu::vk::WorldLimits limits;
@@ -512,7 +511,7 @@ TEST_F(VkThreads, TargetsAreRegisteredWhileFramesAreRecorded) {
                                            FW_MATERIAL_PAPER};
     for (int f = 0; f < 30; ++f) {
         rig.run(maker.next(1, false).plan);
-        if (f % 10 != 0) continue;  // a kind that targets of the other thread have yet to get
+        if (f % 10 != 0) continue;  // a material family that targets of the other thread still lack
         gpu::ObjectInit init = scene.init(0);
         auto materials = scene.objects[0].materials;
         for (gpu::BurnMaterial& material : materials) material.look = kKinds[f / 10];
@@ -525,7 +524,7 @@ TEST_F(VkThreads, TargetsAreRegisteredWhileFramesAreRecorded) {
     EXPECT_FALSE(rig.finish().empty());
 }
 
-TEST_F(VkThreads, TwoContextsOnTwoDevices) {
+TEST_F(VkThreads, TwoContextsOnTwoDevicesAreIndependent) {
     if (!device_) return;
     std::string reason;
     const std::unique_ptr<TestDevice> other = TestDevice::make({}, reason);
@@ -554,7 +553,7 @@ TEST_F(VkThreads, TwoContextsOnTwoDevices) {
     for (const std::string& message : other->takeMessages()) ADD_FAILURE() << message;
 }
 
-TEST_F(VkContract, PassesAreTimed) {
+TEST_F(VkContract, TimesEveryPass) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(27, 0.4);
     VkRig rig(*device_);

@@ -1,17 +1,17 @@
-// Volumetric flames on a device against the same maths marched on the CPU, ray by ray; and what a
-// world with fires asks of the device and the heap.
+// Volumetric flames on a device against the same maths marched on the CPU ray by ray, and the
+// allocations of worlds with fires.
 #include "book/own.h"
 #include "book/picture.h"
 #include "components/particle_field.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
 #include "gpu/passes/volume_books.h"
+#include "reference/flame_march.h"
 #include "shared/spark.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
 #include "support/spark_reference.h"
 #include "support/world_defs.h"
-#include "volume/march.h"
 #include "world/world.h"
 
 #include <glm/gtc/type_ptr.hpp>
@@ -31,7 +31,7 @@ using gpu::vec2;
 using gpu::vec3;
 using gpu::vec4;
 
-// One flame of a fire that stands at the origin, `seconds` after it was lit.
+// One flame of a fire at the origin, `seconds` after it was lit.
 gpu::VolumeFlame flameOf(uint32_t preset, float seconds, uint32_t flags = 0) {
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     components::setFirePreset(def, preset);
@@ -41,7 +41,7 @@ gpu::VolumeFlame flameOf(uint32_t preset, float seconds, uint32_t flags = 0) {
     return flameAlone(def, seconds);
 }
 
-// Nothing in it varies but with the place: what sampling may get wrong shows alone.
+// Varies with position only, so that sampling errors show alone.
 gpu::VolumeFlame smoothFlame() {
     gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1, FW_FIRE_NO_SMOKE);
     gpu::FlameRecord& r = flame.record;
@@ -55,7 +55,7 @@ class Volume : public GpuTest {
         gpu::vk::WorldLimits limits;
         limits.volumeSteps = steps;
         limits.looks = testLooks();
-        targets_ = {};  // of the rig before
+        targets_ = {};  // of the previous rig
         index_ = 0;
         rig_ = std::make_unique<VkRig>(*device_, 2, 0, limits, entry);
         color_ = device_->makeImage(kColor, {kSide, kSide}, 1,
@@ -78,7 +78,7 @@ class Volume : public GpuTest {
     }
     void lookAtSmoothFlame() {
         const float eye[3] = {0.7f, 0.9f, 2.6f}, at[3] = {0, 0.22f, 0};
-        look(eye, at, 10);  // its rim takes few pixels
+        look(eye, at, 10);  // its rim covers few pixels
     }
     void look(const float eye[3], const float at[3], float degrees) {
         FwView& view = rig_->view;
@@ -88,7 +88,7 @@ class Volume : public GpuTest {
         view.time = 2;
         looked_ = view;
     }
-    // The view of look(), in parallel: so many m wide.
+    // The view of look() in orthographic projection, `across` m wide.
     void lookParallel(float across) {
         const float near = 0.05f, far = 50.0f;
         glm::mat4 projection(1.0f);
@@ -99,7 +99,7 @@ class Volume : public GpuTest {
         std::memcpy(rig_->view.projection, glm::value_ptr(projection), sizeof projection);
         looked_ = rig_->view;
     }
-    // As the view's depth is, of so many m along it.
+    // The view's depth value at `away` m along the view.
     [[nodiscard]] float depthOf(float away) const {
         const float* p = rig_->view.projection;
         return (p[14] - p[10] * away) / (p[15] - p[11] * away);
@@ -111,27 +111,27 @@ class Volume : public GpuTest {
 
     FwTargetId targetOf(FwDepthMode mode) {
         FwVulkanTargetDef def = fwDefaultVulkanTargetDef();
-        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES;  // sooner made
+        def.flags = FW_TARGET_COMPOSITE | FW_TARGET_NO_SURFACES;  // faster to create
         if (!backdrop_.empty()) def.flags |= FW_TARGET_HAZE;
         if (half_) def.flags |= FW_TARGET_HALF_EFFECTS;
         def.colorFormat = kColor;
         def.depthMode = mode;
         if (mode != FW_DEPTH_NONE) def.depthFormat = kDepth;
         def.reversedDepth = reversed_;
-        // Pipelines are dear: once for all draws of a kind.
+        // Pipelines are slow to build: once for all draws of a kind.
         FwTargetId& target = targets_[backdrop_.empty() ? size_t(mode) : targets_.size() - 1];
         if (target.index1 == 0) target = rig_->context.registerTarget(def);
         return target;
     }
 
-    // Marched before it is drawn, as the second picture of a view is. Over black, behind it at
-    // `far` m along the view something flat; linear, rows top first.
+    // Marched before it is drawn, as the second picture of a view is. Over black with a flat scene
+    // at `far` m along the view; linear, top row first.
     std::vector<vec4> draw(std::span<const gpu::VolumeFlame> flames, FwDepthMode mode,
                            float far = 0) {
         (void)drawOnce(flames, mode, far);
         return drawOnce(flames, mode, far);
     }
-    // Marched as it is drawn: the view is not quite that of the outside part.
+    // Marched while it is drawn: the view differs slightly from that of the outside part.
     std::vector<vec4> drawDirect(std::span<const gpu::VolumeFlame> flames, FwDepthMode mode,
                                  float far = 0) {
         other_ = true;
@@ -193,8 +193,8 @@ class Volume : public GpuTest {
             vkCmdCopyBufferToImage(commands, scenes_.buffer, depth_.image,
                                    VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL, 1, &whole);
         }
-        FwVulkanFrame lends = frame;
-        if (!backdrop_.empty()) showBackdrop(commands, lends);
+        FwVulkanFrame hostFrame = frame;
+        if (!backdrop_.empty()) showBackdrop(commands, hostFrame);
         FwVulkanComposite images = fwDefaultVulkanComposite();
         images.flags = FW_COMPOSITE_KEEP;
         images.width = images.height = kSide;
@@ -216,7 +216,7 @@ class Volume : public GpuTest {
         }
         FwView view = rig_->view;
         if (other_) view.ambientSky[0] = 1e-12f;
-        EXPECT_TRUE(rig_->backend.recordComposite(lends, target, view, images));
+        EXPECT_TRUE(rig_->backend.recordComposite(hostFrame, target, view, images));
         VkBufferImageCopy region{};
         region.imageSubresource = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 0, 1};
         region.imageExtent = {kSide, kSide, 1};
@@ -230,7 +230,7 @@ class Volume : public GpuTest {
                              0, 1, &toHost, 0, nullptr, 0, nullptr);
     }
 
-    // m along the view, pixel by pixel, to the ground and the post.
+    // m along the view to the ground and the post, per pixel.
     [[nodiscard]] std::vector<float> depthsOfGround() const {
         const FwView& view = rig_->view;
         const glm::mat4 fromClip =
@@ -256,8 +256,8 @@ class Volume : public GpuTest {
         return depths;
     }
 
-    // What the host drew, in the target and as the copy that it lends.
-    void showBackdrop(VkCommandBuffer commands, FwVulkanFrame& lends) {
+    // Puts the host's picture in the target and in the copy that it provides.
+    void showBackdrop(VkCommandBuffer commands, FwVulkanFrame& hostFrame) {
         std::copy(backdrop_.begin(), backdrop_.end(), static_cast<vec4*>(backdrops_.mapped));
         VkImageMemoryBarrier barrier{};
         barrier.sType = VK_STRUCTURE_TYPE_IMAGE_MEMORY_BARRIER;
@@ -266,7 +266,7 @@ class Volume : public GpuTest {
         barrier.newLayout = VK_IMAGE_LAYOUT_TRANSFER_DST_OPTIMAL;
         barrier.image = behind_.image;
         barrier.subresourceRange = {VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
-        // After the target was cleared, too.
+        // Also after the target was cleared.
         const VkMemoryBarrier cleared{VK_STRUCTURE_TYPE_MEMORY_BARRIER, nullptr,
                                       VK_ACCESS_TRANSFER_WRITE_BIT, VK_ACCESS_TRANSFER_WRITE_BIT};
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_ALL_COMMANDS_BIT,
@@ -285,12 +285,12 @@ class Volume : public GpuTest {
         vkCmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TRANSFER_BIT,
                              VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT, 0, 0, nullptr, 0, nullptr, 1,
                              &barrier);
-        lends.sampledColor = behind_.view;
-        lends.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        hostFrame.sampledColor = behind_.view;
+        hostFrame.sampledColorLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
     }
 
-    // One flame's picture by the library's march. `cells`: in cells and weighed as the device does
-    // before it draws; else ray by ray. `steps` 0: as many as the device takes.
+    // One flame's picture by the library's march. `cells`: at half resolution and weighted as on
+    // the device; otherwise ray by ray. `steps` 0: the device's count.
     std::vector<vec4> march(const gpu::VolumeFlame& flame, uint32_t preset, bool cells = true,
                             uint32_t steps = 0, float far = 0) {
         gpu::ViewInput input;
@@ -398,8 +398,8 @@ class Volume : public GpuTest {
         return picture;
     }
 
-    // What a view of so many pixels a side sees of a flame, summed over all pixels, by rays as
-    // close whatever the flame's size on the screen.
+    // Light of a flame summed over a view of this many pixels per side. Rays are equally dense at
+    // any size of the flame on the screen.
     vec4 lightOf(const gpu::VolumeFlame& flame, uint32_t preset) {
         gpu::ViewInput input;
         input.view = &rig_->view;
@@ -435,7 +435,7 @@ class Volume : public GpuTest {
         return sum * (pixels.x * pixels.y / float(kColumns * kRows));
     }
 
-    // m along the view: between slabs, nearest to `far`.
+    // m along the view: the border between slabs nearest to `far`.
     float borderNear(const gpu::VolumeFlame& flame, float far) {
         gpu::ViewInput input;
         input.view = &rig_->view;
@@ -467,8 +467,7 @@ class Volume : public GpuTest {
         return all > 0 ? float(different / all) : 0.0f;
     }
 
-    // As draw, in `zoom` times as many pixels each way: so many pictures, each of its part of the
-    // view.
+    // Like draw() at `zoom` times the resolution: several pictures, each of a part of the view.
     std::vector<vec4> drawFine(const gpu::VolumeFlame& flame, FwDepthMode mode, uint32_t zoom) {
         const FwView whole = rig_->view;
         const uint32_t side = kSide * zoom;
@@ -491,7 +490,7 @@ class Volume : public GpuTest {
         return all;
     }
 
-    // px, to fractions: where 3 % of the light is left of, above, right of and below it.
+    // px, fractional: where 3 % of the light lies left of, above, right of and below it.
     static vec4 reachOf(const std::vector<vec4>& picture) {
         const auto side = size_t(std::lround(std::sqrt(double(picture.size()))));
         std::vector<double> column(side), row(side);
@@ -511,8 +510,8 @@ class Volume : public GpuTest {
         };
         return {at(column, 0.03), at(row, 0.03), at(column, 0.97), at(row, 0.97)};
     }
-    // How far size and tip of one are off those of another, parts of its size; less than `nothing`
-    // px is nothing.
+    // Differences in size and tip between two pictures, as shares of the size; less than `nothing`
+    // px counts as 0.
     static float sizeOff(const std::vector<vec4>& one, const std::vector<vec4>& other,
                          float nothing = 0.33f) {
         const vec4 ours = reachOf(one), theirs = reachOf(other);
@@ -525,9 +524,8 @@ class Volume : public GpuTest {
                          part(std::abs(ours.y - theirs.y), size.y)});
     }
 
-    // How far pixels are off those wanted, but for what all up to so many columns and rows from
-    // them are in the mean; and the light of those wanted. Pixels nearer to the border are left
-    // out.
+    // Differences of pixels from the reference beyond those of their neighbourhood's mean, and the
+    // reference's light. Pixels near the border are omitted.
     struct Rough {
         double off = 0, light = 0;
     };
@@ -547,7 +545,7 @@ class Volume : public GpuTest {
         return rough;
     }
 
-    // How much pixels differ from the mean of their four neighbours, over the mean of all.
+    // Difference of pixels from the mean of their four neighbours, over the mean of all.
     static float grainOf(const std::vector<vec4>& picture) {
         double different = 0, all = 0;
         for (uint32_t y = 1; y + 1 < kSide; ++y)
@@ -562,7 +560,7 @@ class Volume : public GpuTest {
         return all > 0 ? float(different / all) : 0.0f;
     }
 
-    // ---- a fire by its power alone, the mean of moments -----------------------------------------
+    // ---- fires of equal power, averaged over time
 
     using Mean = std::vector<vec4>;
     static constexpr int kMoments = 24;
@@ -570,8 +568,8 @@ class Volume : public GpuTest {
     static void addMoment(Mean& sum, const Mean& picture) {
         for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
     }
-    // The view of a moment, a part of a pixel aside of what look() has it: which pixels' middles an
-    // edge takes in is no part of a fire's look.
+    // Moves the view of look() by a part of a pixel, because the exact pixel coverage of an edge
+    // does not matter.
     void nudge(int moment) {
         if (!nudges_) return;
         const auto offset = [&](float part) {
@@ -585,9 +583,11 @@ class Volume : public GpuTest {
             projection[4 * column + 1] = looked_.projection[4 * column + 1] + offset(0.755f) * w;
         }
     }
-    static float tallOf(float power) { return 0.235f * std::pow(power, 0.4f); }  // m, Heskestad
+    static float tallOf(float power) {
+        return 0.235f * std::pow(power, 0.4f);
+    }  // m, Heskestad (1984)
 
-    // What emitters show: a flame, a roll and a puff.
+    // Flipbooks for emitters: a flame, a roll and a puff.
     void layBooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
         std::vector<book::Book> books;
@@ -615,7 +615,7 @@ class Volume : public GpuTest {
             addMoment(mean, draw({&flame, 1}, FW_DEPTH_TEST));
         }
     }
-    // Its fire, by the books that are laid or, without, by noise.
+    // Adds the emitter's fire, by the created flipbooks or by noise.
     void addEmitter(FwFireEmitterDef def, Mean& mean, bool byBooks = true) {
         def.flags |= FW_EMITTER_NO_SMOKE;
         def.sparks = 0;
@@ -640,7 +640,7 @@ class Volume : public GpuTest {
         emitters_ = nullptr;
     }
 
-    // A field that stands for a fire of so many kW, as integration.md has it.
+    // A field equivalent to a fire of `power` kW, as integration.md describes.
     static FwParticleFieldDef fieldOf(float power) {
         FwParticleFieldDef def = fwDefaultParticleFieldDef();
         components::setFieldPreset(def, FW_FIELD_FIRE);
@@ -653,30 +653,29 @@ class Volume : public GpuTest {
     }
 
     std::unique_ptr<VkRig> rig_;
-    FwView looked_{};      // as look() left it
-    bool nudges_ = false;  // moments are seen from a part of a pixel aside of it
-    bool other_ = false;   // the view that is drawn is not that of the outside part
-    bool half_ = false;    // a rig's targets draw at half resolution
+    FwView looked_{};      // the view that look() made
+    bool nudges_ = false;  // each time is seen with a sub-pixel offset
+    bool other_ = false;   // the drawn view is not that of the outside part
+    bool half_ = false;    // the rig's targets draw at half resolution
     float memory_ = 1;     // gpu::Detail::memory
-    const gpu::EmitterUpdate* emitters_ = nullptr;  // beside the flames
+    const gpu::EmitterUpdate* emitters_ = nullptr;  // emitters beside the flames
     const gpu::FieldUpdate* fields_ = nullptr;
     std::vector<std::vector<Mean>> films_;
     TestImage color_, depth_, behind_;
     TestBuffer read_, scenes_, backdrops_;
-    std::vector<float> scene_;    // m along the view, of each pixel; empty: flat
-    vec4 ground_{0.0f};           // a plane that is the scene: dot(xyz, x) + w is 0 on it
-    float post_ = 0;              // m along the view, of a post that stands on it; 0: there is none
-    bool reversed_ = false;       // depth is 1 at the eye
-    std::vector<vec4> backdrop_;  // that the host drew and lends; empty: black, and no haze
+    std::vector<float> scene_;    // m along the view, per pixel; empty: flat
+    vec4 ground_{0.0f};           // a plane of the scene: dot(xyz, x) + w is 0 on it
+    float post_ = 0;              // m along the view, of a post on it; 0: none
+    bool reversed_ = false;       // depth is 1 at the camera
+    std::vector<vec4> backdrop_;  // the host's own picture; empty: black, no haze
     uint64_t index_ = 0;
-    uint32_t key_ = 0;                      // of the last flame
+    uint32_t key_ = 0;                      // of the previous flame
     std::array<FwTargetId, 5> targets_{};   // by depth mode; with haze
-    const volume::Profile* own_ = nullptr;  // that march() takes instead of the preset's
+    const volume::Profile* own_ = nullptr;  // used by march() in place of the preset's
 };
 
-// Each preset's flame, smoke and all: the device draws what the library marches, before it draws or
-// as it does.
-TEST_F(Volume, DrawsWhatTheLibraryMarches) {
+// Every preset with smoke: the device draws the library's march, before it draws or while it does.
+TEST_F(Volume, MatchesTheLibrarysMarch) {
     if (!device_) return;
     makeRig();
     for (const uint32_t preset : {FW_FIRE_CAMP, FW_FIRE_TORCH, FW_FIRE_MAGIC_BLUE}) {
@@ -695,14 +694,14 @@ TEST_F(Volume, DrawsWhatTheLibraryMarches) {
     }
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f);
     EXPECT_GT(differenceOf(draw({&flame, 1}, FW_DEPTH_NONE), march(flame, FW_FIRE_TORCH)), 0.05f)
-        << "another profile would not have been noticed";
+        << "another profile would go unnoticed";
     EXPECT_GT(differenceOf(drawDirect({&flame, 1}, FW_DEPTH_NONE), march(flame, FW_FIRE_CAMP)),
               0.02f)
-        << "cells would not have been noticed";
+        << "half resolution would go unnoticed";
 }
 
-// Two colours that go over into each other as the gas gets hotter.
-TEST_F(Volume, TheHottestGasHasAColourOfItsOwn) {
+// Two colours that blend as the gas gets hotter.
+TEST_F(Volume, BlendsToTheCoreColour) {
     if (!device_) return;
     makeRig();
     const gpu::VolumeFlame plain = flameOf(FW_FIRE_MAGIC_BLUE, 1.3f);
@@ -713,7 +712,7 @@ TEST_F(Volume, TheHottestGasHasAColourOfItsOwn) {
     EXPECT_GT(differenceOf(drawn, draw({&plain, 1}, FW_DEPTH_NONE)), 0.05f);
 }
 
-// Where samples begin differs from cell to cell; nobody sees it.
+// Sample offsets differ per half-resolution pixel without visible grain.
 TEST_F(Volume, HasNoGrain) {
     if (!device_) return;
     makeRig();
@@ -729,11 +728,11 @@ TEST_F(Volume, HasNoGrain) {
                 double(marched), double(direct));
     EXPECT_LT(marched, exact + 0.005f);
     EXPECT_LT(direct, exact + 0.005f);
-    EXPECT_GT(grainOf(grainy), exact + 0.01f) << "grain would not have been noticed";
+    EXPECT_GT(grainOf(grainy), exact + 0.01f) << "grain would go unnoticed";
 }
 
-// Nobody knows the first picture's screen before it is drawn: it has more rays a pixel instead.
-TEST_F(Volume, TheFirstPictureHasLessGrainThanOneRayAPixel) {
+// The screen bounds are unknown before the first picture, so it takes more rays per pixel instead.
+TEST_F(Volume, TheFirstPictureTakesMoreThanOneRayPerPixel) {
     if (!device_) return;
     makeRig();
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_HOUSE, 1.3f, FW_FIRE_NO_SMOKE);
@@ -743,9 +742,9 @@ TEST_F(Volume, TheFirstPictureHasLessGrainThanOneRayAPixel) {
     EXPECT_LT(first, 0.8f * one);
 }
 
-// Nobody knows a screen that has just become another, either; one that stays beside the one that
-// frames are marched for takes more rays but once.
-TEST_F(Volume, AScreenThatBecomesAnotherShowsNoGrain) {
+// The bounds of a changed screen are unknown too. A screen beside the one that frames are marched
+// for takes more rays only once.
+TEST_F(Volume, AChangedScreenShowsNoGrain) {
     if (!device_) return;
     makeRig();
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_HOUSE, 1.3f, FW_FIRE_NO_SMOKE);
@@ -760,7 +759,7 @@ TEST_F(Volume, AScreenThatBecomesAnotherShowsNoGrain) {
     EXPECT_LT(back, 0.8f * one);
 }
 
-// Profiles of the host's lie behind the presets' and may be others while frames are in flight.
+// The host's profiles follow the presets' in memory and may change while frames are in flight.
 TEST_F(Volume, DrawsTheHostsProfile) {
     if (!device_) return;
     makeRig();
@@ -784,8 +783,8 @@ TEST_F(Volume, DrawsTheHostsProfile) {
     }
 }
 
-// T4.1: neither the number of samples nor that of slabs decides how bright it is.
-TEST_F(Volume, BrightnessIsThatOfTheMedium) {
+// Neither the number of samples nor that of slabs changes the brightness.
+TEST_F(Volume, BrightnessMatchesTheMedium) {
     if (!device_) return;
     makeRig();
     lookAtSmoothFlame();
@@ -807,7 +806,7 @@ TEST_F(Volume, BrightnessIsThatOfTheMedium) {
     }
 }
 
-// What stands in a flame hides what is behind it, and no more.
+// An object in a flame hides exactly what is behind it.
 TEST_F(Volume, EndsAtTheScene) {
     if (!device_) return;
     makeRig();
@@ -829,17 +828,17 @@ TEST_F(Volume, EndsAtTheScene) {
         double(difference), double(direct), double(whole), double(meanOf(wanted).x),
         double(meanOf(soft).x), double(cut));
     EXPECT_LT(cut, 0.9f * whole);
-    // Where depth is only tested it shows those slabs whose middle is before it, whole.
+    // With tested depth, slabs show whole if their middle is in front.
     const float border = borderNear(flame, far);
     EXPECT_NEAR(cut / meanOf(march(flame, FW_FIRE_CAMP, true, 200, border)).x, 1.0f, 0.05f);
     EXPECT_LT(std::abs(border - far), 0.08f);
-    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_SAMPLED, 0.5f)).w, 0.0f) << "a wall before it";
+    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_SAMPLED, 0.5f)).w, 0.0f) << "a wall in front";
 }
 
-// T4.6, at half resolution: where a plane goes aslant through a flame the picture has no edge that
-// the flame itself has not. A step from pixel to pixel is at most 1/255 of the brightest beyond
-// that of the flame, cut ray by ray, and all along the cut it is as bright.
-TEST_F(Volume, APlaneThroughItCutsNoEdge) {
+// A slanted plane through a flame at half resolution adds no edge: steps between pixels exceed
+// those of the ray-by-ray flame by at most 1/255 of the brightest, and the brightness along the cut
+// is the same.
+TEST_F(Volume, APlaneThroughAFlameAddsNoHardEdge) {
     if (!device_) return;
     makeRig();
     lookAtSmoothFlame();
@@ -870,16 +869,16 @@ TEST_F(Volume, APlaneThroughItCutsNoEdge) {
             "its light\n",
             double(steepest(soft)), double(steepest(exact)), double(steepest(whole)),
             double(brightest), double(meanOf(soft).x / meanOf(exact).x));
-        EXPECT_LT(meanOf(exact).x, 0.95f * meanOf(whole).x) << "it is not cut";
+        EXPECT_LT(meanOf(exact).x, 0.95f * meanOf(whole).x) << "the plane does not cut it";
         EXPECT_LT(steepest(soft), std::max(steepest(exact), steepest(whole)) + brightest / 255);
         EXPECT_NEAR(meanOf(soft).x / meanOf(exact).x, 1.0f, 0.05f);
     }
 }
 
-// A fire on the ground, whose depth is only tested, is the same as where there is no ground, and as
-// where the ground's depth is sampled, but for light that cells beside a pixel give it: from all
-// around and above, in perspective and in parallel. All tiers.
-TEST_F(Volume, StandsOnGroundThatDepthIsTestedAgainst) {
+// A fire on the ground with tested depth looks the same as without ground and as with sampled
+// depth. Only light that half-resolution pixels spread differs. From all sides and above, in both
+// projections, for all tiers.
+TEST_F(Volume, StandsOnTestedGround) {
     if (!device_) return;
     struct Seen {
         const char* name;
@@ -898,12 +897,12 @@ TEST_F(Volume, StandsOnGroundThatDepthIsTestedAgainst) {
     struct Tier {
         uint32_t tier;
         bool direct;
-        double none;   // RMS against no ground, of 255 of the brightest
-        double soft;   // against a sampled depth
+        double none;   // RMS against no ground, in 1/255 of the brightest
+        double soft;   // against sampled depth
         double alone;  // of both without ground
     };
-    // Where the ground ends rays of what is marched as it is drawn, samples begin elsewhere. A
-    // slice is cut by the ground.
+    // Where the ground ends the rays of a directly drawn march, samples are offset differently. The
+    // ground cuts slices.
     const Tier tiers[] = {{FW_FIRE_TIER_MARCH_HIGH, false, 0.3, 3.2, 1.4},
                           {FW_FIRE_TIER_MARCH_HIGH, true, 0.1, 1.0, 1.6},
                           {FW_FIRE_TIER_IMPOSTOR, false, 0.3, 3.6, 2.9},
@@ -951,9 +950,9 @@ TEST_F(Volume, StandsOnGroundThatDepthIsTestedAgainst) {
     }
 }
 
-// A wall before a fire's foot hides it, and a post in the fire what is behind the post: the plane
-// through the base makes no slab nearer than its own front.
-TEST_F(Volume, WhatStandsBeforeItsBaseHidesIt) {
+// A wall in front of a fire's base hides it, and a post in the fire hides what is behind it: the
+// plane through the base makes no slab nearer than its own near distance.
+TEST_F(Volume, ObjectsInFrontOfTheBaseHideIt) {
     if (!device_) return;
     makeRig();
     ground_ = vec4(0, 1, 0, 0);
@@ -973,14 +972,14 @@ TEST_F(Volume, WhatStandsBeforeItsBaseHidesIt) {
         look(eye, at, 30);
         const float middle = 2.75f, behind = inPost(middle + 0.4f);
         EXPECT_GT(behind, 1.0f);
-        EXPECT_LT(inPost(middle - 0.4f), 0.02f * behind) << "before all of it, tier " << tier;
+        EXPECT_LT(inPost(middle - 0.4f), 0.02f * behind) << "in front of all of it, tier " << tier;
         EXPECT_NEAR(inPost(middle + 0.3f), behind, 1e-3f * behind) << "behind all of it";
-        if (tier == FW_FIRE_TIER_IMPOSTOR) continue;  // all of it is tested in its middle
+        if (tier == FW_FIRE_TIER_IMPOSTOR) continue;  // all of it is tested at its middle
         EXPECT_LT(inPost(middle - 0.1f), 0.6f * behind);
     }
 }
 
-TEST_F(Volume, TheEyeMayBeInside) {
+TEST_F(Volume, TheCameraMayBeInside) {
     if (!device_) return;
     makeRig();
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
@@ -995,11 +994,11 @@ TEST_F(Volume, TheEyeMayBeInside) {
     const float away[3] = {0, 0.2f, 30};
     const float beyond[3] = {0, 0.2f, 60};
     look(away, beyond, 40);
-    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "behind the eye";
+    EXPECT_EQ(meanOf(draw({&flame, 1}, FW_DEPTH_NONE)).w, 0.0f) << "behind the camera";
 }
 
-// Seen from inside a quarter of a step is many pixels, and edges that face the eye went from layer
-// to layer of samples as a comb.
+// From inside, a quarter of a step covers many pixels; edges facing the camera would jump between
+// sample layers like a comb.
 TEST_F(Volume, NoCombFromInside) {
     if (!device_) return;
     makeRig();
@@ -1019,14 +1018,14 @@ TEST_F(Volume, NoCombFromInside) {
     EXPECT_LT(comb / all, 0.0013);
 }
 
-// Tongues that come loose are thinner than samples are apart: they were rows of beads. Less so of
-// one that asks for the most samples.
-TEST_F(Volume, ThinTonguesAreNoBeads) {
+// Detached tongues are thinner than the sample distance and must not become rows of beads, least of
+// all at the highest sample count.
+TEST_F(Volume, ThinTonguesDoNotBreakIntoBeads) {
     if (!device_) return;
     makeRig();
     constexpr int kViews = 12;
-    constexpr float kAcross = 170;  // px, of the flame
-    double beads[2] = {};           // where AUTO marches it, where it asks
+    constexpr float kAcross = 170;  // px, width of the flame
+    double beads[2] = {};           // at AUTO, at FW_FIRE_TIER_MARCH_HIGH
     for (int k = 0; k < 2 * kViews; ++k) {
         const int i = k / 2;
         gpu::VolumeFlame flame = flameOf(FW_FIRE_BONFIRE, 1.0f + 0.3f * float(i), FW_FIRE_NO_SMOKE);
@@ -1048,7 +1047,7 @@ TEST_F(Volume, ThinTonguesAreNoBeads) {
     EXPECT_LT(beads[1], 0.03);
 }
 
-// The few samples of flames beyond the largest 32 show as bright a flame, as large.
+// The fewer samples of flames beyond the largest 32 keep brightness and size.
 TEST_F(Volume, FewSamplesShowTheSameFlame) {
     if (!device_) return;
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
@@ -1060,7 +1059,7 @@ TEST_F(Volume, FewSamplesShowTheSameFlame) {
         index_ = 0;
         return picture;
     };
-    // px from the left, from the top, to the right, to the bottom that light reaches
+    // px from left, top, right and bottom that light reaches
     const auto bounds = [](const std::vector<vec4>& picture) {
         float brightest = 0;
         for (const vec4& pixel : picture) brightest = std::max(brightest, pixel.x);
@@ -1079,22 +1078,22 @@ TEST_F(Volume, FewSamplesShowTheSameFlame) {
     std::printf("           red %.4f of %.4f; %d..%d x %d..%d of %d..%d x %d..%d px\n", double(b.x),
                 double(a.x), narrow.x, narrow.z, narrow.y, narrow.w, wide.x, wide.z, wide.y,
                 wide.w);
-    // Radiance as it is seen; the blue at a foot is thinner than a step, and little of it.
+    // Luminance; the thin blue at a base has little of it.
     const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
     EXPECT_NEAR(glm::dot(b, seen) / glm::dot(a, seen), 1.0f, 0.05f);
-    // What is thick between two samples is seen through where they miss it: a little less covers.
+    // Dense parts between two samples are partly missed, so slightly less is covered.
     EXPECT_NEAR(b.w / a.w, 1.0f, 0.07f);
     std::printf("           luminance %.4f, alpha %.4f, blue %.4f of those of many\n",
                 double(glm::dot(b, seen) / glm::dot(a, seen)), double(b.w / a.w),
                 double(b.z / a.z));
     EXPECT_LT(a.z * seen.z, 0.03f * glm::dot(a, seen));
     for (int c = 0; c < 4; ++c) EXPECT_LE(std::abs(wide[c] - narrow[c]), 1);  // 3 % of 40 px
-    EXPECT_GT(differenceOf(many, few), 0.005f) << "they were as many";
+    EXPECT_GT(differenceOf(many, few), 0.005f) << "both used equally many samples";
 }
 
-// Wherever the eye is the probe finds all of a flame: neither its spacing nor tiles' borders show
-// as the eye comes nearer.
-TEST_F(Volume, NothingPopsAsTheEyeComes) {
+// At every camera distance the probe finds the whole flame: neither its spacing nor tile borders
+// show on approach.
+TEST_F(Volume, NothingPopsAsTheCameraApproaches) {
     if (!device_) return;
     makeRig();
     const gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
@@ -1110,8 +1109,8 @@ TEST_F(Volume, NothingPopsAsTheEyeComes) {
     std::printf("           at most %.4f of its light is lost or made\n", double(worst));
 }
 
-// A flame of a few pixels is as bright as a near one, pixel for pixel of its size: as the eye goes
-// away it neither swells nor goes out, wherever its cells fall.
+// A flame of a few pixels is as bright per area as a near one, whatever its alignment to the pixel
+// grid.
 TEST_F(Volume, ASmallFlameKeepsItsLight) {
     if (!device_) return;
     makeRig();
@@ -1119,7 +1118,7 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
     for (const uint32_t preset : {FW_FIRE_CANDLE, FW_FIRE_TORCH, FW_FIRE_CAMP, FW_FIRE_BONFIRE,
                                   FW_FIRE_HOUSE, FW_FIRE_GAS_BURNER}) {
         gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
-        const float tall = 1.5f * flame.record.high.w;  // about what is seen of it
+        const float tall = 1.5f * flame.record.high.w;  // around its visible part
         float least = 9, most = 0, worstCover = 0, leastDirect = 9, mostDirect = 0;
         for (float px = 36; px > 4.5f; px *= 0.79f) {
             const float away = tall * float(kSide) / (px * 2.0f * std::tan(0.2618f));
@@ -1133,14 +1132,14 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
             least = std::min(least, light);
             most = std::max(most, light);
             worstCover = std::max(worstCover, std::abs(drawn.w / wanted.w - 1));
-            // A house's flame is so thick that its samples, 64 at most, are a little dark.
+            // A house's flame is so dense that 64 samples are slightly dark.
             EXPECT_NEAR(light, 1.0f, preset == FW_FIRE_HOUSE ? 0.075f : 0.05f)
                 << components::firePresetName(preset) << " " << px << " px high";
             const vec4 direct = meanOf(drawDirect({&flame, 1}, FW_DEPTH_TEST));
             const float asDrawn = glm::dot(direct, seen) * float(kSide * kSide);
             leastDirect = std::min(leastDirect, asDrawn / glm::dot(wanted, seen));
             mostDirect = std::max(mostDirect, asDrawn / glm::dot(wanted, seen));
-            // Few samples of a house's thick flame are a little dark.
+            // Few samples of a house's dense flame are slightly dark.
             EXPECT_NEAR(asDrawn / glm::dot(wanted, seen), 1.0f,
                         preset == FW_FIRE_HOUSE ? 0.09f : 0.06f)
                 << components::firePresetName(preset) << " as drawn, " << px << " px high";
@@ -1151,14 +1150,14 @@ TEST_F(Volume, ASmallFlameKeepsItsLight) {
             "drawn\n",
             components::firePresetName(preset), double(least), double(most), double(worstCover),
             double(leastDirect), double(mostDirect));
-        // A house's flame is so thick that its few samples see a little more through it.
+        // A house's flame is so dense that few samples let slightly more through.
         EXPECT_LT(worstCover, 0.07f) << components::firePresetName(preset);
     }
 }
 
-// A card shows as bright a flame, as wide and as high, as the march that it takes turns with, and
-// so does a page of its own book, which is shown nearer.
-TEST_F(Volume, ACardIsTheSameFlame) {
+// A billboard has the brightness, width and height of the march it alternates with, and so has the
+// flame's own impostor, which is used nearer.
+TEST_F(Volume, BillboardsShowTheSameFlame) {
     if (!device_) return;
     makeRig();
     const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
@@ -1167,7 +1166,7 @@ TEST_F(Volume, ACardIsTheSameFlame) {
         gpu::VolumeFlame flame = flameOf(preset, 1.3f, FW_FIRE_NO_SMOKE);
         const float tall = 1.5f * flame.record.high.w;
         float worst[2] = {}, worstSize[2] = {}, worstCover[2] = {};
-        // px across it, or as many as a whole flame leaves; the first as a page
+        // px across, or as many as a whole flame leaves; the first as an impostor
         for (const float wide : {24.0f, 13.0f, 10.0f, 7.0f, 4.0f}) {
             const bool page = wide > 20;
             const float px = std::min(wide * tall / flame.record.low.w, 34.0f);
@@ -1181,7 +1180,7 @@ TEST_F(Volume, ACardIsTheSameFlame) {
             flame.record.key = ++key_;
             flame.record.tier = page ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
             std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
-            // Until a book has turned to it.
+            // Until the impostor was updated once.
             for (uint32_t k = 0; page && k < gpu::kBookTurn; ++k)
                 card = drawOnce({&flame, 1}, FW_DEPTH_TEST, 0);
             const vec4 a = meanOf(card), b = meanOf(marched);
@@ -1189,7 +1188,7 @@ TEST_F(Volume, ACardIsTheSameFlame) {
                 std::max(worst[page], std::abs(glm::dot(a, seen) / glm::dot(b, seen) - 1));
             worstCover[page] = std::max(worstCover[page], std::abs(a.w / b.w - 1));
             worstSize[page] = std::max(worstSize[page], sizeOff(card, marched));
-            EXPECT_GT(differenceOf(card, marched), 1e-3f) << "it is no card";
+            EXPECT_GT(differenceOf(card, marched), 1e-3f) << "it is not a billboard";
         }
         for (const bool page : {false, true}) {
             std::printf("           %s%s: light within %.4f, cover %.4f, size and tip %.4f\n",
@@ -1202,8 +1201,8 @@ TEST_F(Volume, ACardIsTheSameFlame) {
     }
 }
 
-// Half the samples, or slices of its lattice, show as bright a flame, as wide and as high.
-TEST_F(Volume, TiersAreTheSameFlame) {
+// Half the samples, or slices of its lattice, keep brightness, width and height.
+TEST_F(Volume, EveryTierShowsTheSameFlame) {
     if (!device_) return;
     makeRig();
     for (const uint32_t tier : {uint32_t(FW_FIRE_TIER_MARCH_LOW), uint32_t(FW_FIRE_TIER_SLICES)}) {
@@ -1214,8 +1213,8 @@ TEST_F(Volume, TiersAreTheSameFlame) {
             float worst = 0, worstCover = 0;
             for (const float px : {34.0f, 26.0f, 18.0f}) {
                 const float away = tall * float(kSide) / (px * 2.0f * std::tan(0.2618f));
-                // Of a slice a pixel is one ray, of so few pixels a rough sample: the mean of views
-                // a part of a pixel apart counts. Those of a march differ little.
+                // A slice takes one ray per pixel, a coarse sample at this size, so the mean of
+                // slightly moved views counts. Marched views differ little.
                 const int views = tier == FW_FIRE_TIER_SLICES ? 6 : 1;
                 std::vector<vec4> high(kSide * kSide, vec4(0.0f)), other = high;
                 for (int k = 0; k < views; ++k) {
@@ -1238,10 +1237,10 @@ TEST_F(Volume, TiersAreTheSameFlame) {
                 const vec4 a = meanOf(other), b = meanOf(high);
                 worst = std::max(worst, std::abs(glm::dot(a, kSeen) / glm::dot(b, kSeen) - 1));
                 worstCover = std::max(worstCover, std::abs(a.w / b.w - 1));
-                EXPECT_GT(differenceOf(other, high), 1e-3f) << "it is the same tier";
+                EXPECT_GT(differenceOf(other, high), 1e-3f) << "the tiers do not differ";
             }
-            // A march's cells reach half a pixel further than a slice's rays: bounds are those of a
-            // flame of many pixels.
+            // Half-resolution pixels of a march reach half a pixel further than rays of slices, so
+            // bounds are compared at a large size.
             const float away = tall * float(kSide) / (34.0f * 2.0f * std::tan(0.2618f));
             const float at[3] = {0, 0.5f * tall, 0};
             const float eye[3] = {0.3f * away, 0.5f * tall + 0.1f * away, 0.95f * away};
@@ -1263,10 +1262,9 @@ TEST_F(Volume, TiersAreTheSameFlame) {
     }
 }
 
-// The same fire near, further away and far: as a volume, as particles that show flipbooks, and as a
-// field on a card. How much light comes from it, how bright what it covers is, of which colour and
-// where, is not the tier's.
-TEST_F(Volume, ThreeTiersOneLook) {
+// The same fire as a volume near, as flipbook particles further away, and as a field on a billboard
+// far away. Light, brightness, colour and place do not depend on the tier.
+TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
     if (!device_) return;
     nudges_ = true;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
@@ -1311,10 +1309,10 @@ TEST_F(Volume, ThreeTiersOneLook) {
         float radiance = 0, green = 0, up = 0, tip = 0;  // means over the powers
         vec4 reach{0.0f};
     } fires[3];
-    constexpr float kAway = 6, kDegrees = 22;  // heights of the fire
+    constexpr float kAway = 6, kDegrees = 22;  // fire heights
     const float heightPx = float(kSide) / (2 * kAway * std::tan(glm::radians(0.5f * kDegrees)));
     for (int i = 0; i < 3; ++i) {
-        // What a tier has drawn stays until it is told of a frame: none sees the one before.
+        // A tier keeps its last drawing until another frame, so each gets its own rig.
         makeRig();
         layBooks();
         for (int k = 0; k < 3; ++k) {
@@ -1325,7 +1323,7 @@ TEST_F(Volume, ThreeTiersOneLook) {
             tiers[i](power, mean);
             const vec4 m = meanOf(mean);
             const float light = glm::dot(m, kSeen);
-            float up = 0, tip = 0;  // px, where its light is; what is of it near its top
+            float up = 0, tip = 0;  // px, where its light is; its share near the tip
             for (uint32_t p = 0; p < kSide * kSide; ++p) {
                 const float part = glm::dot(mean[p], kSeen) / (light * kSide * kSide);
                 const float above = float(kSide - 1 - p / kSide) + 0.5f;
@@ -1355,10 +1353,10 @@ TEST_F(Volume, ThreeTiersOneLook) {
         EXPECT_NEAR(fires[i].radiance / fires[0].radiance, 1, 0.05) << kNames[i];
         EXPECT_NEAR(fires[i].green / fires[0].green, 1, 0.05) << kNames[i];
         EXPECT_NEAR(fires[i].up / fires[0].up, 1, 0.03) << kNames[i];
-        // It ends in a faint tip, not in a stump: what is above 0.6 of its height.
+        // It ends in a faint tip: light above 0.6 of its height.
         EXPECT_GT(fires[i].tip / fires[0].tip, 0.5f) << kNames[i];
         EXPECT_LT(fires[i].tip / fires[0].tip, 2.0f) << kNames[i];
-        // Left, top, right and bottom, of the fire's height.
+        // Left, top, right and bottom, relative to the fire's height.
         const vec4 off = glm::abs(fires[i].reach - fires[i - 1].reach);
         const float bounds = std::max({off.x, off.y, off.z, off.w});
         std::printf("[   FIGURE ] %s against %s: radiance of what it covers %.4f, bounds %.4f\n",
@@ -1368,12 +1366,11 @@ TEST_F(Volume, ThreeTiersOneLook) {
     }
 }
 
-// A camera dollies out from a fire that a host shows as a volume near, by flipbooks further away
-// and as a field far away, one after the other. About each of the two switches both tiers are
-// filmed by the same frames: light, how bright what they cover is and where it begins and ends
-// differ little, and the picture's light changes from one to the other as it does while a fire
-// flickers. The field's card is five thirds as wide as the fire's base.
-TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
+// A camera moves away from a fire that is a volume near, flipbooks further away and a field far
+// away. Around both switches the two tiers are drawn in the same frames: light, brightness,
+// beginning and end differ little, and the switch changes the light no more than flicker does. The
+// field's billboard is five thirds as wide as the fire's base.
+TEST_F(Volume, ADollyThroughVolumeFlipbooksAndFieldShowsOneFire) {
     if (!device_) return;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
     constexpr float kPower = 100, kStep = 1 / 6.0f;  // kW, s
@@ -1465,18 +1462,18 @@ TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
     constexpr const char* kNames[] = {"volume", "flipbooks", "field"};
     Film films[3];
     for (int i = 0; i < 3; ++i) {
-        // What a tier has drawn stays until it is told of a frame: none sees the one before.
+        // A tier keeps its last drawing until another frame, so each gets its own rig.
         makeRig();
         layBooks();
         films[i] = tiers[i]();
         ASSERT_EQ(size_t(kFrames), films[i].size());
     }
-    const auto lightOf = [&](int tier, int frame) {  // for its distance
+    const auto lightOf = [&](int tier, int frame) {  // corrected for distance
         const float away = awayAt(frame) / tall;
         return glm::dot(meanOf(films[tier][size_t(frame)]), kSeen) * away * away;
     };
     for (int near = 0; near < 2; ++near) {
-        const int first = kLeg * near + kLeg / 2, last = first + kLeg;  // about the switch
+        const int first = kLeg * near + kLeg / 2, last = first + kLeg;  // around the switch
         double light[2] = {}, cover[2] = {}, change[2] = {}, cut = 0;
         Mean mean[2] = {Mean(kSide * kSide, vec4(0.0f)), Mean(kSide * kSide, vec4(0.0f))};
         for (int frame = first; frame < last; ++frame) {
@@ -1494,7 +1491,7 @@ TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
         }
         const double brighter = light[1] / light[0];
         const double radiance = brighter * cover[0] / cover[1];
-        // Where its light begins and ends on each side, in heights of the fire.
+        // Where its light begins and ends on each side, relative to the fire's height.
         const vec4 moved = glm::abs(reachOf(mean[1]) - reachOf(mean[0]));
         const float pixels =
             float(kSide) * tall / (2 * awayAt(first + kLeg / 2) * std::tan(glm::radians(10.0f)));
@@ -1507,15 +1504,15 @@ TEST_F(Volume, ADollyFromAVolumeOverFlipbooksToAFieldShowsOneFire) {
         EXPECT_NEAR(brighter, 1, 0.05) << kNames[near + 1];
         EXPECT_NEAR(radiance, 1, 0.05) << kNames[near + 1];
         EXPECT_LT(bounds, 0.03f) << kNames[near + 1];
-        // It does not pop: no more than fires of these tiers flicker, and a quarter.
+        // No popping: at most a quarter more than the flicker of these tiers.
         EXPECT_LT(cut / light[0], 1.25 * std::max(change[0], change[1]) / light[0])
             << kNames[near + 1];
     }
 }
 
-// A flamethrower is shown by books, or by noise where a host opens none. A volume's light of the
-// same power is told for comparison alone: a jet is a sheet of flame all along its way.
-TEST_F(Volume, AJetByNoiseIsLikeOneByBooks) {
+// A flamethrower uses flipbooks, or noise if the host provides none. The light of a volume of equal
+// power is printed for comparison only: a jet burns along its whole path.
+TEST_F(Volume, AJetByNoiseLooksLikeOneByFlipbooks) {
     if (!device_) return;
     constexpr float kPower = 500;  // kW
     const float far = 9 * tallOf(kPower);
@@ -1549,8 +1546,8 @@ TEST_F(Volume, AJetByNoiseIsLikeOneByBooks) {
     EXPECT_NEAR(1, greener, 0.1f);
 }
 
-// Whatever tiers two flames are of, the near one is before the far one.
-TEST_F(Volume, TheNearOneIsBeforeTheFarOne) {
+// For flames of any two tiers the near one is in front.
+TEST_F(Volume, NearFlamesCoverFarOnesInEveryTier) {
     if (!device_) return;
     makeRig();
     const uint32_t tiers[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_IMPOSTOR, FW_FIRE_TIER_SLICES,
@@ -1561,7 +1558,7 @@ TEST_F(Volume, TheNearOneIsBeforeTheFarOne) {
         FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
         def.position[2] = z;
         def.seed = seed;
-        def.density = 4;  // who is before whom shows
+        def.density = 4;  // dense, so that the order is visible
         def.flags = FW_FIRE_NO_SMOKE;
         return flameAlone(def, 1.3f);
     };
@@ -1578,16 +1575,15 @@ TEST_F(Volume, TheNearOneIsBeforeTheFarOne) {
                 right[i] += (1 - a[i].w) * b[i];
                 wrong[i] += (1 - b[i].w) * a[i];
             }
-            EXPECT_LT(differenceOf(both, right), 0.005f) << near << " before " << far;
-            EXPECT_GT(differenceOf(wrong, right), 0.05f) << "it would not be noticed";
+            EXPECT_LT(differenceOf(both, right), 0.005f) << near << " in front of " << far;
+            EXPECT_GT(differenceOf(wrong, right), 0.05f) << "a wrong order would go unnoticed";
         }
 }
 
-// As the eye goes away a flame becomes a card, or slices, or has fewer samples, and on its way back
-// it is marched again: from frame to frame its light, for its distance, changes by 0.015 at most
-// beyond what it does where it stays what it is (which is most where its cells become larger or
-// smaller).
-TEST_F(Volume, NoSwitchOfTiersPops) {
+// As the camera moves away a flame becomes a billboard, slices or a coarser march, and back. Per
+// frame its distance-corrected light changes by at most 0.015 more than without a switch, where
+// most change comes from the pixel size.
+TEST_F(Volume, SwitchingTiersDoesNotPop) {
     if (!device_) return;
     makeRig();
     const vec4 seen(0.2126f, 0.7152f, 0.0722f, 0.0f);
@@ -1606,7 +1602,7 @@ TEST_F(Volume, NoSwitchOfTiersPops) {
                 flame.record.tier = frame >= 20 && frame < 60 ? other : first;
                 const float light =
                     glm::dot(meanOf(drawOnce({&flame, 1}, FW_DEPTH_TEST, 0)), seen) * away * away;
-                // The first picture is marched as it is drawn.
+                // The first picture is marched while it is drawn.
                 if (frame > 1) worst = std::max(worst, std::abs(light / last - 1));
                 last = light;
             }
@@ -1624,7 +1620,7 @@ TEST_F(Volume, NoSwitchOfTiersPops) {
             "%.4f\n",
             components::firePresetName(preset), double(stays), double(card), double(book),
             double(low), double(slices), double(cut));
-        // Slices are a ray a pixel, of so few pixels a rough sample.
+        // Slices take one ray per pixel, a coarse sample at this size.
         EXPECT_LT(slices, std::max(stays, cut) + 0.015f) << components::firePresetName(preset);
         EXPECT_LT(low, stays + 0.02f) << components::firePresetName(preset);
         EXPECT_LT(card, stays + 0.015f) << components::firePresetName(preset);
@@ -1633,9 +1629,8 @@ TEST_F(Volume, NoSwitchOfTiersPops) {
     }
 }
 
-// A camera dollies away through all tiers and back: over each tier's stretch of the way the flame
-// is as bright, covers as much and reaches as far as where it is marched all the way, and no frame
-// pops.
+// A camera moves away through all tiers and back: on every stretch brightness, coverage and size
+// equal those of a march all the way, and no frame pops.
 TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
     if (!device_) return;
     makeRig();
@@ -1647,7 +1642,7 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
     const float tall = 1.5f * flame.record.high.w;
     struct Leg {
         double light = 0, cover = 0;
-        float pop = 0;  // most from one frame to the next, of its light
+        float pop = 0;  // largest relative change of light between frames
         Mean mean = Mean(kSide * kSide, vec4(0.0f));
     };
     const auto film = [&](bool all, std::array<Leg, std::size(kLegs)>& legs) {
@@ -1665,7 +1660,7 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
             const vec4 mean = meanOf(picture) * away * away;
             const float light = glm::dot(mean, kSeen);
             for (size_t p = 0; p < picture.size(); ++p) leg.mean[p] += picture[p];
-            // The first picture is marched as it is drawn.
+            // The first picture is marched while it is drawn.
             if (frame > 1) leg.pop = std::max(leg.pop, std::abs(light / last - 1));
             last = light;
             leg.light += double(light);
@@ -1684,7 +1679,8 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
             "of "
             "%.4f\n",
             kLegs[i], light, cover, double(size), double(through[i].pop), double(marched[i].pop));
-        // A march's cells reach half a pixel further than a slice's rays: see TiersAreTheSameFlame.
+        // Half-resolution pixels of a march reach half a pixel further than rays of slices: see
+        // EveryTierShowsTheSameFlame.
         if (kLegs[i] != FW_FIRE_TIER_SLICES) {
             EXPECT_LT(size, 0.03f) << kLegs[i];
         }
@@ -1694,15 +1690,14 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
     }
 }
 
-// A fire shows another's pages as it is itself: smaller, and leaning otherwise. Of a fire that is
-// the other but for that, and seen from the same side, the pages are what it would show. While both
-// burn it is as bright, covers as much and reaches as far as where it is marched all the way, and
-// changes from frame to frame as that does, also where it becomes a card. A second view marches
-// both, whatever the first shows.
-TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
+// A fire shows another fire's impostor at its own size and lean. For a fire that differs only in
+// these and is seen from the same side, the impostor equals its own. Brightness, coverage, size and
+// change per frame match a march all the way, also where it becomes a billboard. A second view
+// marches both, whatever the first shows.
+TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
     if (!device_) return;
     makeRig();
-    // A key whose pages are hardly late: what they show can be compared.
+    // A key with almost no delay, so that frames can be compared.
     const auto shelf = std::make_unique<gpu::VolumeBookShelf>();
     (*shelf)[0].used = true;
     (*shelf)[0].written = gpu::kBookPages;
@@ -1715,7 +1710,7 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
     uint32_t reads = 2001;
     while (isLate(reads)) ++reads;
     constexpr float kTall = 0.5f, kAway = 5.6f * kTall, kBeside = 0.3f;  // m
-    // `scale`, `lean`: of the one on the left; the other's pages they are.
+    // `scale`, `lean`: of the fire on the left, which shows the other's impostor.
     const auto flameAt = [&](bool left, float seconds, float scale, float lean) {
         FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
         def.flags = FW_FIRE_NO_SMOKE;
@@ -1726,7 +1721,7 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
         if (!left) scale = 1, lean = 0;
         const vec3 to(left ? -kBeside : kBeside, 0, 0);
         const float c = std::cos(lean), s = std::sin(lean);
-        // Towards the eye, leaning across the view, and to where the eye sees it from its place.
+        // Towards the camera, leaning across the view, at the position where the camera sees it.
         const float aside = left ? std::atan(kBeside / kAway) : 0.0f;
         const float ca = std::cos(aside), sa = std::sin(aside);
         const auto turn = [&](vec4& v) {
@@ -1756,7 +1751,7 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
         for (float* length : {&r.tauStart, &r.tauFree, &r.lambda, &r.lambdaWarp, &r.lambdaColumn})
             *length *= scale;
         r.soot /= scale;
-        r.speed *= std::sqrt(scale);  // as many eddies on its way: flameTau goes by the root
+        r.speed *= std::sqrt(scale);  // equally many eddies: flameTau follows the root
         return flame;
     };
     const auto film = [&](bool marched, int frames, float scale, float lean, float step,
@@ -1773,7 +1768,7 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
             }
             const float eye[3] = {0, 0.5f * kTall, kAway}, at[3] = {0, 0.5f * kTall, 0};
             look(eye, at, 24);
-            // The other was there first: its pages they are, whoever covers more of the view.
+            // The other was there first, so its impostor is shown, whichever is larger.
             const std::span<const gpu::VolumeFlame> shown(flames);
             Mean picture = drawOnce(shown.subspan(frame < 4 ? 1 : 0), FW_DEPTH_TEST, 0);
             for (uint32_t i = 0; i < picture.size(); ++i)
@@ -1781,12 +1776,13 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
             see(frame, picture);
         }
     };
-    // 32 pages are a book, and then it turns.
+    // 32 frames fill an impostor, then it repeats.
     constexpr int kStill = 56;
     for (const float lean : {0.0f, 0.2f, -0.2f}) {
         Mean shown;
         film(false, kStill, 0.85f, lean, 0, [&](int, const Mean& picture) { shown = picture; });
-        // Cells of a march reach half a pixel further: pixels are the means of many.
+        // Half-resolution pixels of a march reach half a pixel further, so means of many pixels
+        // count.
         gpu::VolumeFlame flame = flameAt(true, 1, 0.85f, lean);
         flame.record.key = ++key_;
         flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
@@ -1808,12 +1804,12 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
         EXPECT_NEAR(is.w / was.w, 1, 0.05f) << lean;
         EXPECT_LT(size, 0.03f) << lean;
         EXPECT_LT(off, 0.25f) << lean;
-        EXPECT_GT(off, 1e-3f) << "it is marched";
+        EXPECT_GT(off, 1e-3f) << "it is still marched";
     }
 
     struct Film {
         double light = 0, cover = 0;
-        float most = 0, turning = 0, last = 0;  // change of light from one frame to the next
+        float most = 0, turning = 0, last = 0;  // change of light between frames
         Mean mean = Mean(kSide * kSide, vec4(0.0f));
     } films[2];
     for (const bool marched : {false, true})
@@ -1850,17 +1846,16 @@ TEST_F(Volume, AFireShowsAnothersPagesAsItsOwn) {
     EXPECT_EQ(second, drawDirect(flames, FW_DEPTH_TEST));
 }
 
-// As the host's scene is seen through hot gas: bent above a flame, and there alone; nothing that
-// stands before the flame moves or smears; and none where the view, the tier or the frame wants
-// none.
-TEST_F(Volume, HazeBendsWhatIsBehindAndNothingElse) {
+// The scene is bent behind hot gas above a flame and nowhere else. Objects in front neither move
+// nor smear, and there is no haze where the view, the tier or the frame disables it.
+TEST_F(Volume, HazeBendsOnlyWhatIsBehindTheFlame) {
     if (!device_) return;
     makeRig();
     const float eye[3] = {0, 1.0f, 4}, at[3] = {0, 1.0f, 0};
     look(eye, at, 34);
     gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
-    flame.record.soot = flame.record.blue = 0;  // its heat alone is seen
-    // A chequered wall far behind; on the right a post of another colour, before the flame.
+    flame.record.soot = flame.record.blue = 0;  // only its heat shows
+    // A chequered wall far behind; on the right a post of another colour in front of the flame.
     scene_.assign(kSide * kSide, 30.0f);
     for (uint32_t i = 0; i < kSide * kSide; ++i) {
         const bool white = ((i % kSide / 2) ^ (i / kSide / 2)) & 1u;
@@ -1885,7 +1880,7 @@ TEST_F(Volume, HazeBendsWhatIsBehindAndNothingElse) {
     EXPECT_GT(moved(more, 6, 26), 1.5 * moved(bent, 6, 26));
     EXPECT_LT(moved(bent, 38, 40), 1e-4) << "below the flame";
     for (uint32_t i = 0; i < kSide * kSide; ++i) {
-        EXPECT_EQ(none[i], backdrop_[i]) << "no haze was wanted";
+        EXPECT_EQ(none[i], backdrop_[i]) << "haze is disabled";
         if (i % kSide < 4 || i % kSide >= 36) {
             EXPECT_EQ(more[i].y, backdrop_[i].y) << "beside the column";
         }
@@ -1902,18 +1897,17 @@ TEST_F(Volume, HazeBendsWhatIsBehindAndNothingElse) {
             near += posted[i] != backdrop_[i] ? 1 : 0;
         }
     }
-    EXPECT_GT(near, 100u) << "it would not be noticed";
+    EXPECT_GT(near, 100u) << "an error would go unnoticed";
     flame.record.tier = FW_FIRE_TIER_MARCH_LOW;
-    EXPECT_EQ(drawn(8), backdrop_) << "of few samples";
+    EXPECT_EQ(drawn(8), backdrop_) << "with few samples";
 }
 
-// More cards than are marched in a frame: what one shows goes over from each march to the next,
-// pixel by pixel, and does not stand still and jump. The worst change of a frame is at most 2.5
-// times the mean one; where cards jump every eighth frame it is 8 times.
-TEST_F(Volume, CardsBlendBetweenTheirMarches) {
+// With more billboards than marches per frame, each blends from march to march instead of jumping.
+// The largest change per frame is at most 2.5 times the mean; jumping every eighth frame gives 8.
+TEST_F(Volume, BillboardsBlendBetweenTheirMarches) {
     if (!device_) return;
     makeRig();
-    // One in the left half of the view, the others beside each other in the right.
+    // One in the left half of the view, the others side by side in the right half.
     std::vector<gpu::VolumeFlame> flames(96, flameOf(FW_FIRE_CAMP, 1.0f, FW_FIRE_NO_SMOKE));
     const float tall = 1.5f * flames[0].record.high.w;
     const auto moveBy = [](gpu::VolumeFlame& flame, vec3 by) {
@@ -1952,10 +1946,10 @@ TEST_F(Volume, CardsBlendBetweenTheirMarches) {
     EXPECT_LT(worst, 2.5 * mean);
 }
 
-// Why no frame is mixed with those before it: where samples lie changes from frame to frame, and
-// yet of a flame that stands still no frame differs from the next by 1 % of its light, nor in a
-// dolly by 2 % more than rays do that have no grain. Mixing would smear tongues for nothing.
-TEST_F(Volume, FramesNeedNoMixingWithThoseBefore) {
+// Temporal mixing is not needed, although sample offsets change each frame. A still flame changes
+// by less than 1 % per frame, and in a dolly by at most 2 % more than rays without grain. Mixing
+// would only smear tongues.
+TEST_F(Volume, FramesNeedNoTemporalMixing) {
     if (!device_) return;
     makeRig();
     for (const uint32_t preset : {FW_FIRE_TORCH, FW_FIRE_CAMP, FW_FIRE_HOUSE}) {
@@ -1991,9 +1985,8 @@ TEST_F(Volume, FramesNeedNoMixingWithThoseBefore) {
     }
 }
 
-// However many flames there are and however near: cells grow until they fit, each flame has its
-// own.
-TEST(VolumeMarch, FitsWhatThereIs) {
+// For any number and nearness of flames, pixels grow until all fit.
+TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
     const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = gpu::volumeRayWords(screen);
     std::vector<gpu::VolumeItem> items(gpu::kMaxVolumeFlames);
@@ -2032,9 +2025,9 @@ TEST(VolumeMarch, FitsWhatThereIs) {
             EXPECT_EQ(cell(0), 2.0f);
         }
     }
-    EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it cannot fit";
+    EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it must not fit";
 
-    // A small one keeps its fine cells, however many large ones crowd the memory.
+    // A small flame keeps fine pixels however many large ones crowd the memory.
     gpu::VolumeItem& small = items.back();
     small.draw.rect = {-0.01f, -0.02f, 0.01f, 0.02f};
     small.draw.wide = 0.05f;
@@ -2043,13 +2036,13 @@ TEST(VolumeMarch, FitsWhatThereIs) {
     const float alone = cell(0);
     EXPECT_LT(alone, 1.0f);
     ASSERT_GT(gpu::layVolumes(items, screen, 1, words, out).end, 0u);
-    EXPECT_GT(cell(0), 4.0f) << "there was room for all";
+    EXPECT_GT(cell(0), 4.0f) << "memory must be short";
     EXPECT_EQ(cell(items.size() - 1), alone);
 }
 
-// Where room is short smoke makes way: fire keeps cells as fine as if its flame smoked not, in a
-// window of its own that begins where the smoke's cells end.
-TEST(VolumeMarch, SmokeMakesWayForFire) {
+// When memory is short, smoke yields: fire keeps its resolution in its own window, which begins
+// where the smoke's ends.
+TEST(VolumeMarch, SmokeYieldsMemoryToFire) {
     const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = gpu::volumeRayWords(screen);
     std::array<gpu::VolumeItem, 24> items;
@@ -2067,7 +2060,7 @@ TEST(VolumeMarch, SmokeMakesWayForFire) {
     std::array<gpu::MarchedVolume, 2 * items.size()> out;
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     ASSERT_EQ(gpu::layVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
-    EXPECT_EQ(cell(0), 2.0f) << "there is room for one";
+    EXPECT_EQ(cell(0), 2.0f) << "there is memory for one";
     EXPECT_EQ(out[0].composite.window, vec4(0.0f));
     ASSERT_EQ(gpu::layVolumes(items, screen, 1, words, out).count, out.size());
     for (size_t i = 0; i < out.size(); i += 2) {
@@ -2089,8 +2082,8 @@ TEST(VolumeMarch, SmokeMakesWayForFire) {
     }
 }
 
-// That is the same flame: no line where its cells become others, no light lost or shown twice.
-TEST_F(Volume, SmokeThatMakesWayShowsTheSameFlame) {
+// It is the same flame: no line where the resolution changes, no light lost or counted twice.
+TEST_F(Volume, SmokeAtLowResolutionShowsTheSameFlame) {
     if (!device_) return;
     makeRig();
     const float eye[3] = {0.9f, 1.2f, 5.5f}, at[3] = {0, 1.1f, 0};
@@ -2105,14 +2098,14 @@ TEST_F(Volume, SmokeThatMakesWayShowsTheSameFlame) {
     std::printf("           mean %.4f of %.4f, cover %.4f of %.4f, difference %.4f\n",
                 double(meanOf(shared).x), double(meanOf(whole).x), double(meanOf(shared).w),
                 double(meanOf(whole).w), double(difference));
-    EXPECT_GT(difference, 1e-5f) << "there was room for all";
+    EXPECT_GT(difference, 1e-5f) << "memory must be short";
     EXPECT_LT(difference, 0.02f);
     EXPECT_NEAR(meanOf(shared).x / meanOf(whole).x, 1.0f, 0.02f);
     EXPECT_NEAR(meanOf(shared).w / meanOf(whole).w, 1.0f, 0.02f);
 }
 
-// What is in part behind the eye is on the screen where it is before it, and nowhere else.
-TEST(VolumeDraw, BesideTheEyeItIsWhereItIsSeen) {
+// A flame partly behind the camera covers the screen only where it is in front.
+TEST(VolumeDraw, IsDrawnOnlyWhereItIsInFrontOfTheCamera) {
     const float eye[3] = {0, 0, 0}, at[3] = {0, 0, -1};
     const FwView camera = testView(eye, at, 40, 1, false);
     gpu::ViewInput input;
@@ -2124,7 +2117,7 @@ TEST(VolumeDraw, BesideTheEyeItIsWhereItIsSeen) {
     gpu::VolumeDraw draw{};
     vec4 whole(1.0f);
     ASSERT_TRUE(gpu::volumeDraw(view, low, high, 1, draw, &whole));
-    EXPECT_EQ(whole, vec4(0.0f)) << "it is around the eye";
+    EXPECT_EQ(whole, vec4(0.0f)) << "it surrounds the camera";
     vec4 seen(1, 1, -1, -1);
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
@@ -2144,8 +2137,7 @@ TEST(VolumeDraw, BesideTheEyeItIsWhereItIsSeen) {
     EXPECT_FALSE(gpu::volumeDraw(view, vec4(1, 0, 1, 1), behind, 1, draw));
 }
 
-// Fires that burn, move and change: nothing is asked of the device or of the heap.
-TEST_F(Volume, SteadyFramesAskNothing) {
+TEST_F(Volume, SteadyFramesAllocateNothing) {
     if (!device_) return;
     core::Log log{FwCallbacks{}};
     makeRig(countingEntry());
@@ -2191,9 +2183,9 @@ TEST_F(Volume, SteadyFramesAskNothing) {
     EXPECT_EQ(after.work + after.barriers, 0u) << "no fire is left";
 }
 
-// A post whose edges are slanted and thin, before a flame with a wall close behind: of light that
-// is behind the post none shows on any of its pixels, as none does at full resolution.
-TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
+// A post with thin slanted edges in front of a flame, with a wall close behind: its pixels show no
+// light from behind, as at full resolution.
+TEST_F(Volume, NoLightLeaksOntoEdgesAtHalfResolution) {
     if (!device_) return;
     std::vector<Mean> pictures;
     std::vector<bool> post(kSide * kSide);
@@ -2209,7 +2201,7 @@ TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
         def.tier = FW_FIRE_TIER_MARCH_HIGH;
         gpu::VolumeFlame flame = flameAlone(def, 1.3f);
         flame.record.key = 1;
-        // The post is before the flame, the wall within it or behind it.
+        // The post is in front of the flame, the wall inside or behind it.
         for (const float behind : {1.26f, 2.0f}) {
             for (uint32_t i = 0; i < kSide * kSide; ++i) {
                 const uint32_t x = i % kSide, y = i / kSide;
@@ -2239,16 +2231,14 @@ TEST_F(Volume, AtHalfResolutionNoLightLeaksOntoEdges) {
     }
 }
 
-// All that is soft, at half resolution and at the picture's: a marched flame, a field, fire and
-// smoke of particles, each alone, all together, particles before the flame and behind it, and with
-// things before them. It has the same light
-// and hides as much; what stands before it keeps its edges, be it a wall that begins at an odd
-// pixel or a post a pixel wide, and beside them nothing is lost. It costs three bytes a
-// pixel.
-TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
+// Every soft effect at half and full resolution: a marched flame, a field, fire and smoke
+// particles, each alone, all together, particles on both sides of the flame, and objects in front.
+// Light and coverage agree. Objects in front keep their edges without halos, also a wall at an odd
+// pixel and a post one pixel wide. It costs three bytes per pixel.
+TEST_F(Volume, HalfResolutionKeepsBrightnessAndEdges) {
     if (!device_) return;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-    constexpr uint32_t kWall = 15, kPost = 22;  // px: columns before it, and its own
+    constexpr uint32_t kWall = 15, kPost = 22;  // px: columns in front of it; its own
     uint64_t bytes[2] = {};
     const auto film = [&](bool half) {
         half_ = half;
@@ -2339,7 +2329,7 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
         pictures.push_back(mean({&flame, 1}));
         scene_.clear();
         fields.drawn = {};
-        for (const float by : {-0.7f, 1.4f}) {  // the flame behind the particles, before them
+        for (const float by : {-0.7f, 1.4f}) {  // the flame behind the particles, in front of them
             for (gpu::FlameNode& node : flame.nodes) node.centre.z += by;
             for (vec4* moved : {&flame.record.low, &flame.record.high, &flame.record.glow})
                 moved->z += by;
@@ -2366,7 +2356,8 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
         EXPECT_GT(whole.w, 0.01f) << kNames[k];
         EXPECT_NEAR(light, 1.0f, 0.02f) << kNames[k];
         EXPECT_NEAR(cover, 1.0f, 0.02f) << kNames[k];
-        EXPECT_GT(differenceOf(films_[1][k], films_[0][k]), 1e-4f) << "the same picture";
+        EXPECT_GT(differenceOf(films_[1][k], films_[0][k]), 1e-4f)
+            << "half resolution makes no difference";
     }
     const auto column = [&](bool half, uint32_t x) {
         vec4 sum(0.0f);
@@ -2378,9 +2369,9 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
     for (uint32_t x = 0; x < kSide; ++x) {
         const vec4 whole = column(false, x), half = column(true, x);
         if (x < kWall || x == kPost) {
-            EXPECT_EQ(whole.w, 0.0f) << "nothing is before " << x;
+            EXPECT_EQ(whole.w, 0.0f) << "nothing is in front of " << x;
             EXPECT_LT(half.x, 0.01f * brightest) << "a halo at " << x;
-            // Where the flame stands is seen, and at half resolution as at the picture's.
+            // The flame's position shows equally at both resolutions.
             EXPECT_GT(differenceOf(films_[0][5], films_[0][6]), 0.2f);
             for (const size_t k : {5, 6})
                 EXPECT_LT(differenceOf(films_[1][k], films_[0][k]), 0.15f) << kNames[k];
@@ -2398,11 +2389,11 @@ TEST_F(Volume, AtHalfResolutionIsAsBrightAndKeepsEdges) {
     std::printf("[   FIGURE ] %llu bytes for %u pixels\n",
                 static_cast<unsigned long long>(bytes[1] - bytes[0]), kSide * kSide);
     EXPECT_GE(bytes[1] - bytes[0], least);
-    EXPECT_LE(bytes[1] - bytes[0], least + 8192) << "rows of tiles, and what images round up to";
+    EXPECT_LE(bytes[1] - bytes[0], least + 8192) << "rows of tiles, and rounding of images";
 }
 
-// Sparks are as fine as the picture: alone they are the same, bit for bit.
-TEST_F(Volume, SparksAreNotDrawnAtHalfResolution) {
+// Sparks are drawn at full resolution: alone they are equal bit for bit.
+TEST_F(Volume, SparksAreDrawnAtFullResolution) {
     if (!device_) return;
     const auto shot = [&](bool half) {
         half_ = half;

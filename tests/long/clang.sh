@@ -4,11 +4,11 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=${FW_LONG_FOLDER:?set FW_LONG_FOLDER to a folder for results}
 
-# Devices are the driver's work, and real meshes many seconds of our own code that others run, too.
+# Skips device tests, which test the driver, and slow real meshes, which other suites run.
 slow='Device|/device$|BothBackends|Backends(Agree|AndFrame)|^(AbiDrawn|AbiFuzz|NetModelCorner)\.|^Seeds/AbiFuzz'
-slow+='|^Mesh(Bake|Front)\.(Bunny|Models|TenRandom|P3_Seam|TenUnwraps)'
+slow+='|^Mesh(Bake|Front)\.(Bunny|BakesInstalled|TenRandom|SeamDelays|TenUnwraps)'
 
-# A build that was stopped goes on with the files that are left; a suite that passed is not run again.
+# An interrupted build resumes; a suite that passed is skipped.
 export FW_WARNINGS_AS_ERRORS=ON
 "$here/run" --clang --build
 for suite in unit abi; do

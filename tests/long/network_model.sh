@@ -5,7 +5,7 @@ set -euo pipefail
 binary="${FW_BUILD_FOLDER:?set FW_BUILD_FOLDER to a build folder}/tests/flamewright_abi_tests"
 folder=${FW_LONG_FOLDER:?set FW_LONG_FOLDER to a folder for results}
 
-# run_cell DELAY LOSS RATE: unless its line of a run before is there.
+# run_cell DELAY LOSS RATE: unless an earlier run has its line.
 run_cell() {
     local file="$folder/cell_$1_$2_$3" status=0
     [[ ! -s $file ]] || return 0

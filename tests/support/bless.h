@@ -1,4 +1,4 @@
-// Whether tests write what they expect anew instead of comparing: tests/run --bless.
+// True if tests write their expected results instead of comparing: tests/run --bless.
 #pragma once
 #include <cstdlib>
 #include <cstring>

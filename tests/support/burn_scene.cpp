@@ -73,7 +73,7 @@ BurnScene BurnScene::make(uint32_t seed, double scale) {
         object.mesh = i % meshes;
         const mesh::BurnDomain& domain = scene.domains[object.mesh];
         object.substepShift = i % 3;
-        // Half a link or so per iteration at the fastest.
+        // About half a link per iteration at the fastest.
         const double step = 1.0 / 32 / (1u << object.substepShift);
         const double gain = i % 4 == 0 ? 0 : 1.0;
         const double rate =
@@ -81,7 +81,7 @@ BurnScene BurnScene::make(uint32_t seed, double scale) {
         for (uint32_t m = 0; m < gpu::kMaterialsPerObject; ++m)
             object.materials[m] = plainMaterial(domain, rate, gain, i % 2 ? 1.5 : -1.0);
         object.window = std::max(512u, uint32_t(double(domain.texelSide) / rate * 4096));
-        if (i >= meshes) {  // painted: another map of slowness, with holes
+        if (i >= meshes) {  // painted: a different slowness map with holes
             object.slowness.assign(domain.slowness.begin(), domain.slowness.end());
             for (uint16_t& value : object.slowness) {
                 if (value && random() % 16 == 0) value = 0;
@@ -111,14 +111,14 @@ void BurnScene::addHeat() {
 }
 
 namespace {
-constexpr uint32_t kArpDepth = 2;
+constexpr uint32_t kReferenceDepth = 2;
 }
 
 void BurnScene::addPublished() {
     auto* memory = std::pmr::get_default_resource();
-    arp = std::make_shared<const mesh::ArpModel>(mesh::makeArpModel(
-        domains[0], mesh::bakeRefine(domains[0], mesh::arpOptions(kArpDepth), memory), kArpDepth,
-        memory));
+    referenceModel = std::make_shared<const mesh::ArpModel>(mesh::makeArpModel(
+        domains[0], mesh::bakeRefine(domains[0], mesh::arpOptions(kReferenceDepth), memory),
+        kReferenceDepth, memory));
 }
 
 gpu::ObjectInit BurnScene::init(uint32_t index) const {
@@ -142,11 +142,11 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     init.refine = object.refine;
     init.refineDepth = 4;
     init.refinePixelsPerEdge = object.refinePixelsPerEdge;
-    if (object.arp) {
+    if (object.reference) {
         init.refine = true;
-        init.refineDepth = kArpDepth;
-        init.arpModel = arp.get();
-        init.arp = mesh::arpSettings(*arp, 0, 0, 0.3f);
+        init.refineDepth = kReferenceDepth;
+        init.arpModel = referenceModel.get();
+        init.arp = mesh::arpSettings(*referenceModel, 0, 0, 0.3f);
     }
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
@@ -178,11 +178,11 @@ void BurnScene::create(gpu::Backend& backend) const {
             std::array<mesh::RefineHoles, 1>{{{0.4f, 2.6f, 0.8f, true}}});
         refined[object.mesh] = true;
     }
-    if (arp) {
+    if (referenceModel) {
         auto* memory = std::pmr::get_default_resource();
-        backend.createRefinement(0, kArpDepth, true, domains[0],
-                                 mesh::bakeRefine(domains[0], mesh::arpOptions(kArpDepth), memory),
-                                 {});
+        backend.createRefinement(
+            0, kReferenceDepth, true, domains[0],
+            mesh::bakeRefine(domains[0], mesh::arpOptions(kReferenceDepth), memory), {});
     }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));
 }
@@ -242,7 +242,7 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
             ball(texels, object, kind, 0.5f + reach * float(pick(1000)) / 1000.0f);
             if (chance(0.3)) ball(texels, object, kinds[pick(8)], 4.0f);
         }
-        if (chance(0.004)) {  // much goes out, so that much can burn again
+        if (chance(0.004)) {  // much is extinguished so that much can burn again
             const uint32_t object = pick(objects);
             ball(texels, object, gpu::kEventDry, 1000);
             ball(texels, object, gpu::kEventExtinguish, 1000);
@@ -252,7 +252,7 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
                          [](const gpu::TexelEvent& a, const gpu::TexelEvent& b) {
                              return a.object != b.object ? a.object < b.object : a.texel < b.texel;
                          });
-        // Some heat comes through holes, if there are any.
+        // Some heat passes through holes.
         const size_t sorted = texels.size();
         for (size_t i = 0; i < sorted; ++i) {
             if (texels[i].kind != gpu::kEventHeat || chance(0.3)) continue;
@@ -418,7 +418,7 @@ void VkRig::run(const gpu::FramePlan& plan) {
 
 std::vector<FrameAnswer> VkRig::finish() {
     frames.waitAll();
-    gpu::FramePlan nothing;  // a frame that only says that the others are done
+    gpu::FramePlan nothing;  // an empty frame that only completes the others
     run(nothing);
     frames.waitAll();
     return takeAnswers();

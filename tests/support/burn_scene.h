@@ -1,5 +1,5 @@
 // Several objects on several meshes, random plans for them, and a backend on a test device that
-// runs those plans: what the equality tests of the backends need.
+// runs these plans. For the equality tests of the backends.
 #pragma once
 #include "core/memory.h"
 #include "gpu/vk/vk_backend.h"
@@ -15,27 +15,29 @@ namespace fw::test {
 struct SceneObject {
     uint32_t mesh = 0;
     std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials{};
-    std::vector<uint16_t> slowness;  // empty: the mesh's
+    std::vector<uint16_t> slowness;  // empty: the mesh's own
     uint32_t window = 512, substepShift = 0;
-    uint32_t flags = 0;   // kObject..., beyond live
-    bool refine = false;  // down to 4 halvings
-    bool arp = false;     // as published, by the scene's model
+    uint32_t flags = 0;      // kObject..., beyond live
+    bool refine = false;     // down to 4 halvings
+    bool reference = false;  // refined as in the reference implementation, by the scene's model
     float refinePixelsPerEdge = 8;
-    gpu::DeformObject deform{};           // without flags: it does not
+    gpu::DeformObject deform{};           // without flags it does not deform
     std::vector<gpu::HeatMaterial> heat;  // empty: none
 };
 
 struct BurnScene {
     std::vector<mesh::BurnDomain> domains;
     std::vector<SceneObject> objects;
-    std::vector<mesh::DeformModel> models;      // of the domains, if an object deforms
-    std::shared_ptr<const mesh::ArpModel> arp;  // of the first, if one is refined as published
+    std::vector<mesh::DeformModel> models;  // one per domain if an object deforms
+    std::shared_ptr<const mesh::ArpModel>
+        referenceModel;  // of the first mesh, if an object refines as in the reference
+                         // implementation
 
-    // `densityScale` 1: some 2000 texels a mesh. With $FLAMEWRIGHT_ASSETS also two read ones.
+    // `densityScale` 1: some 2000 texels per mesh. With $FLAMEWRIGHT_ASSETS also two loaded meshes.
     static BurnScene make(uint32_t seed, double densityScale = 1);
     // Gives all objects heat: thick wood and thin cloth, damp and dry, at some 100 times the pace.
     void addHeat();
-    // Makes `arp`: of two halvings.
+    // Builds the reference refinement model of two halvings.
     void addPublished();
     void create(gpu::Backend& backend) const;
     [[nodiscard]] gpu::ObjectInit init(uint32_t object) const;
@@ -45,7 +47,7 @@ struct BurnScene {
 gpu::BurnMaterial plainMaterial(const mesh::BurnDomain& domain, double rate, double gain = 0,
                                 double burnTime = -1);
 
-// Owns what a FramePlan points to.
+// Owns the data that a FramePlan points to.
 struct OwnedPlan {
     gpu::FramePlan plan;
     std::vector<gpu::StepPlan> steps;
@@ -53,17 +55,17 @@ struct OwnedPlan {
     std::vector<std::vector<gpu::MaterialUpdate>> updates;
     std::vector<gpu::Probe> probes;
     std::vector<uint32_t> maps;
-    void point();  // spans at the vectors, after they are filled
+    void point();  // points the spans at the filled vectors
 };
 
-// Random ignitions, douses, dryings and wind latches; the fire is kept alive for ever.
+// Random ignitions, extinguishing, drying and wind latches; the fire never dies out.
 class PlanMaker {
  public:
     PlanMaker(const BurnScene& scene, uint32_t seed) : scene_(scene), random_(seed) {}
-    // `maps`: also read back every object's whole state.
+    // `maps`: also reads back every object's whole state.
     OwnedPlan next(uint32_t steps, bool maps, uint32_t switches = 0);
     [[nodiscard]] uint32_t now() const { return now_; }
-    double latches = 0.1, events = 0.25;  // chances per step
+    double latches = 0.1, events = 0.25;  // probabilities per step
 
  private:
     uint32_t pick(uint32_t count) { return uint32_t(random_() % count); }
@@ -76,16 +78,16 @@ class PlanMaker {
     uint64_t frame_ = 0;
 };
 
-// Tables, textures and view block of the components, as the C edge hands them to a backend.
+// Tables, textures and view block of the components as the C edge passes them to a backend.
 gpu::LookSources testLooks();
-// Looking from `eye` at `target`, vertical field of view in degrees; Vulkan clip space.
+// From `eye` to `target`, vertical field of view in degrees; Vulkan clip space.
 FwView testView(const float eye[3], const float target[3], float degrees, float aspect,
                 bool reversedDepth);
 
-// The first flame of a volumetric fire that is alone in still air, `seconds` after it was made.
+// The first flame of a lone volumetric fire in still air, `seconds` after creation.
 gpu::VolumeFlame flameAlone(const FwVolumetricFireDef& def, float seconds);
 
-// What a backend answered of one frame, copied.
+// A copy of a backend's answer about one frame.
 struct FrameAnswer {
     uint64_t frameIndex = 0;
     std::vector<std::vector<uint32_t>> maps;  // by object
@@ -97,7 +99,7 @@ struct FrameAnswer {
 };
 FrameAnswer copyAnswer(const gpu::Readback& readback);
 
-// A context and a backend on a test device, driven as a host drives them.
+// A context and a backend on a test device, driven like a host does.
 class VkRig {
  public:
     explicit VkRig(TestDevice& device, uint32_t inFlight = 2, uint64_t budget = 0,
@@ -105,10 +107,10 @@ class VkRig {
                    PFN_vkGetInstanceProcAddr entry = nullptr);
     // Records and submits one frame; its answers come some frames later.
     void run(const gpu::FramePlan& plan);
-    // Recorded inside the same command buffer, after the outside part.
+    // Recorded in the same command buffer, after the outside part.
     std::function<void(const FwVulkanFrame&)> alsoRecord;
     std::vector<FrameAnswer> takeAnswers() { return std::exchange(answers_, {}); }
-    // Waits and fetches what is still out.
+    // Waits and fetches the outstanding answers.
     std::vector<FrameAnswer> finish();
 
     FwVulkanHost host;

@@ -1,5 +1,5 @@
-// A burn domain, one object of it and a cpu backend, driven step by step: what the front tests
-// need beyond a mesh. Speeds in m/s, times in s; ticks where a name says so.
+// A burn domain, one object on it and a cpu backend, driven step by step, for the front tests.
+// Speeds in m/s, times in s; ticks where a name says so.
 #pragma once
 #include "fire/spread_law.h"
 #include "gpu/cpu/cpu_backend.h"
@@ -50,25 +50,25 @@ inline uint32_t texelNear(const mesh::BurnDomain& domain, Vec3 point) {
 
 constexpr uint32_t kStartTick = 4096;
 
-// One object on a backend of its own. The material is plain numbers, not a preset.
+// One object on its own backend. The material is plain numbers, not a preset.
 class FrontRig {
  public:
     struct Material {
         double rate = 0.02;  // m/s
         double headGain = 0, backGain = 0;
         double lengthToBreadth = 0;  // 0: no cap
-        double burnTime = -1;        // s; < 0: without end
+        double burnTime = -1;        // s; < 0: for ever
         double driveMax = 60;
     };
 
     FrontRig(const mesh::BurnDomain& domain, const Material& material, Vec3 drive = {},
              std::span<const uint16_t> slowness = {})
         : FrontRig(domain, material, nullptr, drive, slowness, 0) {}
-    // As it is: a record of the spread law. Its drive stays; flags are BurnObject's.
+    // A material record of the spread law, unchanged. Its drive stays; flags are BurnObject's.
     FrontRig(const mesh::BurnDomain& domain, const gpu::BurnMaterial& record,
              std::span<const uint16_t> slowness = {}, uint32_t flags = 0)
         : FrontRig(domain, {}, &record, {}, slowness, flags) {}
-    // Window, ticks; substeps per step. Take effect with the next latch, as the drive does.
+    // Window in ticks; substeps per step. Both take effect at the next latch, like the drive.
     void setTiming(uint32_t window, uint32_t substepShift = 0, uint32_t windowMax = 1u << 20) {
         window_ = window;
         windowMax_ = windowMax;
@@ -84,7 +84,7 @@ class FrontRig {
         events_.push_back({0, texel, kind, tick});
     }
 
-    // Ignitions at their ticks (any time ahead); kept sorted here, as a world does.
+    // Ignitions at their ticks, any time ahead; sorted here as a world does.
     void ignite(const std::function<double(uint32_t)>& secondsOf) {
         for (uint32_t i = 0; i < domain_.texelCount(); ++i) {
             if (!domain_.real(i)) continue;
@@ -142,7 +142,7 @@ class FrontRig {
     void runAll(double most = 1e5) { runUntil(most); }
 
     [[nodiscard]] std::span<const uint32_t> ticks() const { return backend_->state(0); }
-    // What the front has now, to run it ahead of itself. Lives as long as the rig.
+    // Input of the arrival prediction from the current front. Lives as long as the rig.
     [[nodiscard]] mesh::ArrivalInput arrivalInput() {
         makeRecords(drive_, records_);
         mesh::ArrivalInput input;

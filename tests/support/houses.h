@@ -1,5 +1,5 @@
-// A village of low-poly houses on fire, refined: walls of pine under thatch, each turned and lit
-// elsewhere, with a street for a camera through the middle. What its test and its bench row share.
+// A village of burning, refined low-poly houses: pine walls under thatch, each rotated and lit
+// elsewhere, with a street for the camera. Shared by its test and its bench row.
 #pragma once
 #include "flamewright/flamewright_debug.h"
 #include "support/mesh_def.h"
@@ -10,7 +10,7 @@
 
 namespace fw::test {
 
-// A house of `house()` by its sides: the roof's two and the gables are another material.
+// Materials of a house of `house()` by side: the two roof sides and the gables have their own.
 inline std::vector<uint8_t> houseMaterials(int ny, int nz) {
     const auto walls = size_t(8 * ny + 4 * ny * nz), roof = size_t(4 * nz), floor = size_t(4 * nz);
     std::vector<uint8_t> of(walls + roof + floor + 4, 0);
@@ -28,7 +28,7 @@ struct Village {
     Village& operator=(const Village&) = delete;
     ~Village() { fwDestroyWorld(world); }
 
-    // `count` houses in rows of ten; all of them burn from the first step on, for twenty seconds.
+    // `count` houses in rows of ten, all burning from the first step for twenty seconds.
     bool make(FwContext* context, uint32_t count, uint32_t maxTriangles, float pixelsPerEdge,
               bool refined = true) {
         FwWorldDef worldDef = fwDefaultWorldDef();
@@ -42,7 +42,7 @@ struct Village {
         meshDef.mapSize = 256;
         meshDef.texelsPerMetre = 12;
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-        // Fire crosses a house within twenty seconds; what it reached is gone after two and a half.
+        // Fire crosses a house within twenty seconds; burnt parts vanish after two and a half.
         FwMaterialDef walls = fwDefaultMaterialDef(), thatch = walls;
         if (materials.size() != mesh.triangleCount() ||
             fwInitMaterialPreset(&thatch, FW_MATERIAL_THATCH) != FW_OK)
@@ -73,7 +73,7 @@ struct Village {
             def.tint[0] = 0.8f + 0.2f * share();
             houses.emplace_back();
             if (fwWorld_CreateBurnableMesh(world, &def, &houses.back()) != FW_OK) return false;
-            for (uint32_t k = 0; k < 3; ++k) {  // at a wall, another one each
+            for (uint32_t k = 0; k < 3; ++k) {  // at a different wall each time
                 const float aside = 0.2f + 0.6f * share(), up = 0.4f + 1.4f * share();
                 const uint32_t wall = (i + k) % 4;
                 const glm::vec3 at0 = wall < 2

@@ -1,9 +1,8 @@
 #!/bin/bash
-# Runs the checks that are too long for every change: one row for each script in tests/long, whose
-# first comment is its title, and whose line "# build: TARGET..." says what is built for it. A row
-# has 20 minutes, and a folder in FW_LONG_FOLDER for results of its parts. Rows that are through for
-# this tree are not run again; one that was stopped goes on with what it kept. Called by
-# tests/run --long [ROW]; a row that is named runs again.
+# Runs the checks that are too long for every change, one row per script in tests/long. A script's
+# first comment is its title; its line "# build: TARGET..." names its targets. A row has 20 minutes and
+# a folder in FW_LONG_FOLDER for partial results. Rows that passed for this tree are skipped, and an
+# interrupted row resumes. Called by tests/run --long [ROW]; a named row always runs.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 # shellcheck source=../../third_party/setup.sh
@@ -43,7 +42,7 @@ for script in "$here"/long/${named:-*}.sh; do
         printf '%s|%d s\n' "$verdict" $((SECONDS - start)) >"$folder/verdict"
     fi
     verdict=$(cat "$folder/verdict")
-    # A row that failed is run again; its parts that passed are kept.
+    # A failed row runs again without the parts that passed.
     case $verdict in
         passed*) passed=$((passed + 1)) ;;
         skipped*) skipped=$((skipped + 1)) ;;

@@ -1,5 +1,5 @@
-// Linked into a test, whose host lends `losingEntry`; or, with FW_LOSING_LOADER (the path of the
-// real one), a libvulkan.so.1 of its own: the library's own device is lost then, too.
+// Linked into a test whose host provides `losingEntry`; or, with FW_LOSING_LOADER (path of the real
+// one), a libvulkan.so.1 of its own that also loses the library's own device.
 #define VK_NO_PROTOTYPES
 #include "support/losing_vulkan.h"
 
@@ -16,7 +16,7 @@ namespace {
 
 LosingVulkan vulkan;
 
-// Whether this call is to say that the device is lost.
+// True if this call must report the loss.
 bool loses(const char* name) {
     const int64_t call = vulkan.calls.fetch_add(1);
     if (call < LosingVulkan::kMostCalls) vulkan.names[size_t(call)] = name;
@@ -24,21 +24,21 @@ bool loses(const char* name) {
     return vulkan.lost;
 }
 
-// What a call makes, by its name.
-constexpr bool makes(const char* name) {
+// True if a call of this name creates an object.
+bool makes(const char* name) {
     return std::strncmp(name, "vkCreate", 8) == 0 || std::strcmp(name, "vkAllocateMemory") == 0;
 }
-// A device that goes while we wait for it has stopped working by then.
-constexpr bool waits(const char* name) {
+// After a loss during a wait the device no longer works.
+bool waits(const char* name) {
     return std::strcmp(name, "vkWaitForFences") == 0 || std::strcmp(name, "vkQueueWaitIdle") == 0 ||
            std::strcmp(name, "vkDeviceWaitIdle") == 0;
 }
 
 struct Kept {
     VkInstance instance = VK_NULL_HANDLE;
-    VkDevice device = VK_NULL_HANDLE;  // of pipelines; own: ours to destroy
+    VkDevice device = VK_NULL_HANDLE;  // owner of the pipelines; own: destroyed here
     bool own = false;
-    std::vector<VkPipeline> pipelines[2];  // for compute, and for drawing
+    std::vector<VkPipeline> pipelines[2];  // compute, graphics
     [[nodiscard]] bool has(VkPipeline one) const {
         return std::any_of(std::begin(pipelines), std::end(pipelines), [&](const auto& list) {
             return std::find(list.begin(), list.end(), one) != list.end();
@@ -95,7 +95,7 @@ FW_ALL_LOSING(FW_LOSING)
     };
 FW_ALL_DESTROYING(FW_DESTROYING)
 
-// One at a time, as the library makes them.
+// One at a time, as the library creates them.
 template <size_t kKind, class Info>
 struct LosingPipelines {
     using Entry = VkResult(VKAPI_PTR*)(VkDevice, VkPipelineCache, uint32_t, const Info*,

@@ -1,5 +1,5 @@
-// What is made and burnt while a device is lost at one call after another: little of much. A call
-// that fails ends it; what was saved until then is the mirror.
+// A scene with a little of every feature for the loss of a device at one call after another. A
+// failing call ends it; the last save is the mirror.
 #pragma once
 #include "abi/abi_support.h"
 #include "support/losing_vulkan.h"
@@ -16,16 +16,16 @@ using Bytes = std::vector<unsigned char>;
 class LossScene {
  public:
     static constexpr uint32_t kFrames = 9;
-    static constexpr uint32_t kSaves[] = {2, 5};  // wished before these frames
+    static constexpr uint32_t kSaves[] = {2, 5};  // requested before these frames
 
-    // Records a frame, or makes a picture; on a device of ours, of the host's, or on none.
+    // Records a frame or makes a picture, on an own device, a host device or none.
     std::function<FwResult(FwWorld*, float seconds)> step = fwWorld_Step;
     std::function<FwResult(FwWorld*)> picture;  // null: none
-    // Calls of Vulkan so far, and at which of them each mirror was there; null: nobody counts.
+    // Number of Vulkan calls so far, and the count when each mirror arrived; null: not counted.
     std::function<int64_t()> calls;
     std::vector<int64_t> mirroredAt;
 
-    // Of a context that the caller destroys.
+    // In a context that the caller destroys.
     FwResult make(FwContext* context) {
         FwWorldDef def = fwDefaultWorldDef();
         def.flags = FW_WORLD_RADIATION | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
@@ -55,7 +55,7 @@ class LossScene {
         return result;
     }
 
-    // From frame `from` to the end. Each save that comes is the mirror from then on.
+    // From frame `from` to the end. Each arriving save becomes the mirror.
     FwResult play(uint32_t from = 0) {
         FwResult result = FW_OK;
         for (uint32_t frame = from; frame < kFrames && result == FW_OK; ++frame) {
@@ -67,7 +67,7 @@ class LossScene {
                 result = fwWorld_Ignite(world, &ball, &texels);
             }
             if (const auto* one = std::find(std::begin(kSaves), std::end(kSaves), frame);
-                one != std::end(kSaves) && result == FW_OK && (wished = *one) > from)
+                one != std::end(kSaves) && result == FW_OK && (requested = *one) > from)
                 result = fwWorld_RequestSave(world);
             if (result == FW_OK) result = step(world, 1.0f / 16);
             takeSave();
@@ -75,19 +75,19 @@ class LossScene {
         }
         return result;
     }
-    // The save that is there, if one is new; FW_OK or what is right to say when none is.
+    // Takes a new save; FW_OK, or a valid result if there is none.
     FwResult takeSave() {
-        if (wished == 0) return FW_OK;
+        if (requested == 0) return FW_OK;
         uint64_t size = 0;
         FwResult result = fwWorld_FetchSave(world, nullptr, &size);
         if (result != FW_OK) return result == FW_NOT_READY ? FW_OK : result;
         mirror.resize(size);
         result = fwWorld_FetchSave(world, mirror.data(), &size);
-        if (mirrored != wished && calls) mirroredAt.push_back(calls());
-        mirrored = wished;
+        if (mirrored != requested && calls) mirroredAt.push_back(calls());
+        mirrored = requested;
         return result;
     }
-    // Of now, whatever it takes; empty: it cannot be had.
+    // A save of now, waiting as long as needed; empty if there is none.
     Bytes save() {
         Bytes bytes;
         uint64_t size = 0;
@@ -101,7 +101,7 @@ class LossScene {
 
     FwWorld* world = nullptr;
     Bytes mirror;
-    uint32_t wished = 0, mirrored = 0;  // frame of the last wish, and of `mirror`; 0: none
+    uint32_t requested = 0, mirrored = 0;  // frame of the last request, and of `mirror`; 0: none
 
  private:
     FwResult add(uint32_t preset, uint32_t flags, uint32_t i) {
@@ -120,7 +120,7 @@ class LossScene {
     }
 };
 
-// The same on the cpu backend, which has nothing to lose: saves as they must be, by frame.
+// The same scene on the cpu backend, which cannot be lost: the correct saves by frame.
 struct LossReference {
     std::map<uint32_t, Bytes> saves;
     Bytes end;
@@ -133,10 +133,10 @@ struct LossReference {
         scene.step = [&](FwWorld* world, float seconds) {
             const FwResult result = fwWorld_Step(world, seconds);
             uint64_t size = 0;
-            if (scene.wished && !saves.contains(scene.wished) &&
+            if (scene.requested && !saves.contains(scene.requested) &&
                 fwWorld_FetchSave(world, nullptr, &size) == FW_OK) {
-                saves[scene.wished].resize(size);
-                EXPECT_EQ(FW_OK, fwWorld_FetchSave(world, saves[scene.wished].data(), &size));
+                saves[scene.requested].resize(size);
+                EXPECT_EQ(FW_OK, fwWorld_FetchSave(world, saves[scene.requested].data(), &size));
             }
             return result;
         };
@@ -145,21 +145,21 @@ struct LossReference {
         EXPECT_EQ(std::size(LossScene::kSaves), saves.size());
         fwDestroyContext(context);
     }
-    // A world on `context` goes on from the mirror as if nothing had been lost.
+    // A world on `context` continues from the mirror as if no device had been lost.
     void expectRecovers(FwContext* context, LossScene& scene, const Bytes& mirror, uint32_t frame) {
         ASSERT_EQ(FW_OK, scene.make(context)) << lastMessage(context);
         ASSERT_EQ(FW_OK, fwWorld_Load(scene.world, mirror.data(), mirror.size()))
             << lastMessage(scene.world);
-        EXPECT_EQ(mirror, scene.save()) << "loaded and saved again";
+        EXPECT_EQ(mirror, scene.save()) << "saved after the load";
         ASSERT_EQ(FW_OK, scene.play(frame + 1)) << lastMessage(scene.world);
         EXPECT_EQ(end, scene.save()) << "from frame " << frame;
     }
 };
 
-// Which calls to lose the device at, of those that a whole run made. FLAMEWRIGHT_LOSE_EVERY in the
-// environment: that many calls apart, from the first on; 1: at each. Else every `apart`-th of those
-// from `frames` on, where the first frame begins, those at which a mirror had come, and of every
-// other entry the last; `odd`: of the other ones, so that two tests share them.
+// Chooses the calls at which to lose the device from those of a whole run. FLAMEWRIGHT_LOSE_EVERY
+// in the environment: every n-th call from the first; 1: each. Otherwise every `apart`-th from
+// `frames` (the first frame), those at which a mirror arrived, and the last call of every other
+// entry. `odd` selects the remaining entries, so that two tests share them.
 inline std::vector<int64_t> chooseLosses(const fw::test::LosingVulkan& vulkan, int64_t frames,
                                          int64_t calls, std::vector<int64_t> mirroredAt,
                                          int64_t apart, bool odd) {
@@ -181,13 +181,13 @@ inline std::vector<int64_t> chooseLosses(const fw::test::LosingVulkan& vulkan, i
     chosen.erase(std::unique(chosen.begin(), chosen.end()), chosen.end());
     return chosen;
 }
-// Times are read of a frame that is through: no reason to fail the next one, whoever reads them.
+// Timestamps are read from a completed frame, so their loss need not fail the next frame.
 inline bool mayPass(const char* name) { return std::strcmp(name, "vkGetQueryPoolResults") == 0; }
-// Whether `result` is right where the device was lost at the call `name`.
-inline bool tellsOfLoss(FwResult result, const char* name) {
+// True if `result` is valid after a loss at the call `name`.
+inline bool reportsLoss(FwResult result, const char* name) {
     return result == FW_ERROR_DEVICE_LOST || (result == FW_OK && mayPass(name));
 }
-// `mirrors`: how many went on from the mirror of a frame; 0: from none.
+// `mirrors`: how many runs continued from the mirror of each frame; 0: from none.
 inline void printLosses(size_t losses, int64_t calls, std::map<uint32_t, uint32_t>& mirrors) {
     std::printf("%zu of %lld calls; without a mirror %u, with the first %u, with the second %u\n",
                 losses, static_cast<long long>(calls), mirrors[0], mirrors[LossScene::kSaves[0]],

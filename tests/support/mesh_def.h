@@ -1,4 +1,4 @@
-// A generated or read mesh as a host gives it.
+// A generated or loaded mesh as a host passes it.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "support/meshes.h"

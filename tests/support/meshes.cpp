@@ -258,7 +258,7 @@ Mesh randomUnwrap(const Mesh& mesh, uint32_t seed, uint32_t islandTriangles) {
                 island[n] = seed0;
                 members.push_back(n);
             }
-        // Flatten along the axis, turn, set down in rows.
+        // Flattens along the axis, rotates, places in rows.
         const size_t least = std::abs(axis[0]) < std::abs(axis[1])
                                  ? (std::abs(axis[0]) < std::abs(axis[2]) ? 0 : 2)
                                  : (std::abs(axis[1]) < std::abs(axis[2]) ? 1 : 2);

@@ -1,5 +1,5 @@
-// Meshes for tests and benches: made from formulas, or read from glTF files of the machine.
-// Not part of the product; the editor and the samples have their own importer.
+// Meshes for tests and benches, generated or loaded from glTF files. The editor and the samples
+// have their own importer.
 #pragma once
 #include "mesh/bake.h"
 
@@ -24,28 +24,29 @@ struct Mesh {
     [[nodiscard]] mesh::BakeInput input(double texelsPerMetre = 128, uint32_t maxSide = 1024) const;
 };
 
-// width x height m in the plane z = 0, tilted about x; UVs turned and stretched (aspect `stretch`).
+// width x height m in the plane z = 0, tilted about x; UVs rotated and stretched (aspect
+// `stretch`).
 Mesh makePlane(double width, double height, double turnDegrees = 0, double stretch = 1,
                double tiltDegrees = 0, int cells = 1);
-// Six charts of cells x cells; `turned`: each by its own angle. As a sphere: equal-angle.
+// Six charts of cells x cells; `turned`: each rotated by its own angle. As a sphere: equal-angle.
 Mesh makeCube(double size, int cells, bool sphere = false, bool turned = true, double gap = 0.05);
-// Upright, its lower left corner at the origin, with diagonals in turns.
+// Upright, lower left corner at the origin, with alternating diagonals.
 Mesh makeSheet(double size, int cells);
-// Open cylinder side about y, in `cuts` charts.
+// Open cylinder side about y in `cuts` charts.
 Mesh makeCylinder(double radius, double height, int segments, int rows, int cuts, bool turned);
 // Square of cells x cells x 2 triangles, each its own chart, shuffled over the atlas.
 Mesh makeConfetti(double size, int cells, double gap);
 // Square of strips along y, each its own chart.
 Mesh makeStrips(double size, int strips, double gap);
-// Anything goes: degenerate, overlapping, non-manifold.
+// Degenerate, overlapping and non-manifold triangles.
 Mesh makeSoup(uint32_t seed);
-// The same surface under another unwrap: UVs cut along random edges into islands of about
-// `islandTriangles`, each flattened along its mean normal and turned at random.
+// The same surface with another unwrap: cut along random edges into islands of about
+// `islandTriangles`, each flattened along its mean normal and rotated at random.
 Mesh randomUnwrap(const Mesh& mesh, uint32_t seed, uint32_t islandTriangles);
 
-// First a file of $FLAMEWRIGHT_ASSETS, else an absolute path. False, with the reason in `error`.
+// A file of $FLAMEWRIGHT_ASSETS or an absolute path. False, with the reason in `error`.
 bool loadGlb(const std::string& nameOrPath, Mesh& mesh, std::string& error);
-// Empty if the assets are not there.
+// Empty without assets.
 std::string assetPath(const std::string& name);
 
 }  // namespace fw::test

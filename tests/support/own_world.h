@@ -1,5 +1,5 @@
-// Tests of pictures that need no host: a context of the library's own device, and one object that
-// burns. Skipped where there is no device.
+// Picture tests without a host: a context on its own device and one burning object. Skipped without
+// a device.
 #pragma once
 #include "golden/golden_image.h"
 #include "support/burnable.h"
@@ -14,9 +14,10 @@ namespace fw::test {
 
 class OwnDevice : public testing::Test {
  protected:
-    static constexpr float kNoSurface[4] = {0.10f, 0.0f, 0.30f, 1};  // linear, of no surface
+    static constexpr float kNoSurface[4] = {0.10f, 0.0f, 0.30f,
+                                            1};  // linear, the colour of no surface
 
-    // RGBA, over that.
+    // RGBA over that colour.
     static std::vector<uint8_t> shoot(FwWorld* world, const FwView& view, uint32_t width,
                                       uint32_t height, const float* background = kNoSurface) {
         std::vector<uint8_t> pixels(size_t{width} * height * 4);
@@ -79,7 +80,7 @@ class OwnWorld : public OwnDevice {
     }
 
     FwWorld* world_ = nullptr;
-    FwBurnableMeshId added_{};  // the last
+    FwBurnableMeshId added_{};  // the last one added
 };
 
 }  // namespace fw::test

@@ -1,4 +1,5 @@
-// Particles of one emitter on the CPU, by the shader's own text: what the `particles` pass must do.
+// Particles of one emitter on the CPU by the shader's own code, as the `particles` pass must
+// compute them.
 #pragma once
 #include "components/fire_emitter.h"
 #include "shared/particle.h"
@@ -14,7 +15,7 @@ class ParticleReference {
         emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
         particles.resize(emitter.ring);
     }
-    // False: nothing is left.
+    // False if no particle is left.
     bool step(float seconds) {
         air.now += double(seconds);
         const bool any = components::advanceEmitter(emitter, air, seconds, record);

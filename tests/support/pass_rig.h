@@ -1,5 +1,5 @@
-// Compute passes by themselves on a device: buffers that the host sees, one descriptor set, a
-// barrier after every dispatch. For comparing a pass with the library's text of it.
+// Runs single compute passes on a device: host-visible buffers, one descriptor set, a barrier after
+// every dispatch. Compares a pass with the library's code.
 #pragma once
 #include "support/vulkan_device.h"
 
@@ -15,8 +15,8 @@ namespace fw::test {
 
 class PassRig {
  public:
-    // `bindings`: what the passes bind; each gets a buffer from `make` before the first dispatch.
-    // `texels`: those of them that the passes read by texels; `uniforms`: those that are blocks.
+    // `bindings`: bound by the passes; each needs a buffer from `make` before the first dispatch.
+    // `texels`: those read as texel buffers; `uniforms`: those that are uniform blocks.
     PassRig(TestDevice& device, std::span<const uint32_t> bindings, uint32_t pushBytes,
             std::span<const uint32_t> texels = {}, std::span<const uint32_t> uniforms = {})
         : device_(device),
@@ -71,7 +71,7 @@ class PassRig {
         vkUpdateDescriptorSets(device_.device, 1, &write, 0, nullptr);
     }
 
-    // A number for dispatch.
+    // Returns an index for dispatch.
     uint32_t add(const char* name) {
         pipelines_.push_back(makePipeline(name));
         return uint32_t(pipelines_.size() - 1);

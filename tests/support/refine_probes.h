@@ -1,5 +1,5 @@
-// Points fixed on a refined surface, followed from frame to frame: where levels come and go, they
-// must not jump.
+// Points fixed on a refined surface, followed from frame to frame: they must not jump when levels
+// change.
 #pragma once
 #include "mesh/refine/table.h"
 #include "support/refine_scene.h"

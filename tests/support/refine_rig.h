@@ -1,5 +1,5 @@
-// The refinement passes on a device, for one object of a RefineScene: buffers the host can see, a
-// barrier after every phase. What frames come to is read back with of().
+// The refinement passes on a device for one object of a RefineScene: host-visible buffers, a
+// barrier after every phase. of() reads results back.
 #pragma once
 #include "mesh/refine/table.h"
 #include "support/pass_rig.h"
@@ -7,7 +7,7 @@
 
 namespace fw::test {
 
-// What the passes bind.
+// Bindings of the passes.
 constexpr uint32_t kRefineBindings[] = {
     FW_BIND_PREDICT,        FW_BIND_GRADIENT,         FW_BIND_REFINE_WORK,
     FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_EDGES,
@@ -18,7 +18,7 @@ constexpr uint32_t kRefineBindings[] = {
 
 class RefineRig {
  public:
-    // cutTriangles: room for; 0: nothing is cut. thick: it has an inner skin.
+    // cutTriangles: capacity; 0: nothing is cut. thick: with an inner skin.
     RefineRig(TestDevice& device, const RefineScene& scene, uint32_t cutTriangles = 0,
               bool thick = false)
         : device_(device),
@@ -79,7 +79,7 @@ class RefineRig {
         return rig_.of<T>(binding);
     }
 
-    bool morph = true;  // false: a mutant, new vertices are at once where they belong
+    bool morph = true;  // false: a mutant whose new vertices jump to their place
 
     void frame(gpu::RefineObject object, uint32_t nowTick, float dt, uint32_t budget) {
         const mesh::RefineModel& m = scene_.model;
@@ -140,7 +140,7 @@ class RefineRig {
     TestDevice& device_;
     const RefineScene& scene_;
     PassRig rig_;
-    std::vector<uint32_t> lists_;  // of the work plane, as a frame begins
+    std::vector<uint32_t> lists_;  // of the work buffer at the start of a frame
     gpu::RefinePush push_{};
     uint32_t cutTriangles_ = 0, inner_ = 0;
     bool fresh_ = true;

@@ -1,8 +1,8 @@
-// Meshes with chosen coarse triangle counts, a fire on them, and a closed-surface test: what the
-// refinement tests and benches share. The fire is a formula (distance over speed, with noise), so
-// that a test costs nothing but refinement.
+// Meshes with chosen coarse triangle counts, a fire on them, and a test for closed surfaces, shared
+// by refinement tests and benches. The fire is a formula (distance over speed, with noise), so a
+// test costs refinement only.
 #pragma once
-#include "mesh/refine/cut.h"
+#include "reference/refine_cut.h"
 #include "support/front_rig.h"
 
 #include <algorithm>
@@ -11,11 +11,11 @@
 
 namespace fw::test {
 
-// Flat sides, one chart each, laid out in a row.
+// Flat sides, one chart each, placed in a row.
 class SideBuilder {
  public:
     Mesh mesh;
-    // A grid of nx x ny quads from `origin` along `ux` and `uy`, turned in the atlas by degrees.
+    // A grid of nx x ny quads from `origin` along `ux` and `uy`, rotated in the atlas by degrees.
     void side(Vec3 origin, Vec3 ux, Vec3 uy, int nx, int ny, double turn = 0) {
         const uint32_t base = mesh.vertexCount();
         const double w = length(ux), h = length(uy), angle = turn * 3.14159265358979 / 180;
@@ -78,7 +78,7 @@ inline Mesh house(double X, double Y, double Z, double roof, int ny, int nz) {
     return s.mesh;
 }
 
-// Two boxes that share an edge of four owners.
+// Two boxes that share an edge with four owners.
 inline Mesh boxesOnAnEdge() {
     Mesh mesh = gridBox(1, 1, 1, 1, 1, 1);
     const Mesh other = mesh;
@@ -91,7 +91,7 @@ inline Mesh boxesOnAnEdge() {
     return mesh;
 }
 
-constexpr float kBurnSeconds = 4;  // of a wall
+constexpr float kBurnSeconds = 4;  // burn time of a wall
 
 struct RefineScene {
     mesh::BurnDomain domain;
@@ -114,7 +114,7 @@ struct RefineScene {
         return mesh::bake(input, std::pmr::new_delete_resource());
     }
 
-    // A disc of 1 cm at `start` (m) is lit at 0 s; speed m/s; noise: 60 mm lattice.
+    // A disc of 1 cm at `start` (m) is lit at 0 s; speed in m/s; noise: 60 mm lattice.
     void light(Vec3 start, double speed, double noise = 0) {
         sorted.clear();
         end = 0;
@@ -155,8 +155,8 @@ struct RefineScene {
     [[nodiscard]] float timeAt(double share) const {
         return sorted[std::min(sorted.size() - 1, size_t(share * double(sorted.size())))];
     }
-    // Tiles as the simulation lists them: on the front list from the moment fire is one texel away,
-    // on the burn list until the last texel has burnt out.
+    // Tile lists as in the simulation: on the front list from when fire is one texel away, on the
+    // burn list until the last texel burnt out.
     void flagsAt(float now, std::vector<uint32_t>& flags, bool keepBurnt = false) const {
         flags.assign(domain.tileCount(), 0);
         for (uint32_t t = 0; t < domain.tileCount(); ++t) {
@@ -172,10 +172,10 @@ struct RefineScene {
         tiles.resize(domain.tileCount());
         mesh::refineHeat(domain, flags, ahead, tiles);
     }
-    float warning = 0;  // s that fire takes over one texel
+    float warning = 0;  // s that fire takes for one texel
 };
 
-// One object's refinement being played. Change `settings` and `views` at will.
+// Plays one object's refinement. `settings` and `views` may change at any time.
 struct RefinePlayer {
     const RefineScene& scene;
     mesh::RefineSettings settings;
@@ -203,7 +203,7 @@ struct RefinePlayer {
         scene.heat(now, tiles, keepBurnt, ahead);
         mesh::refineFrame(scene.model, settings, frameAt(now, dt), state);
     }
-    // Levels only, over a stretch of time, then one frame.
+    // Levels only over a span of time, then one frame.
     void runTo(float from, float now, float dt) {
         for (float t = from; t < now; t += dt) {
             scene.heat(t, tiles, keepBurnt, ahead);
@@ -214,7 +214,7 @@ struct RefinePlayer {
     [[nodiscard]] uint32_t triangles() const { return state.starts.back(); }
 };
 
-// Coarse triangles as they are, without a first split.
+// Coarse triangles without a first split.
 inline mesh::RefineOptions unsplit(uint32_t depth, float cellTexels = 0) {
     mesh::RefineOptions o;
     o.depth = depth;
@@ -231,14 +231,14 @@ inline uint32_t levelOf(const mesh::RefineModel& model, const mesh::RefineState&
                            gpu::refineFit(top(0), top(1), top(2), interior));
 }
 
-// Random levels everywhere; the output edges that should have no partner.
+// Sets random levels; returns the number of output edges that must have no partner.
 inline uint32_t randomLevels(const mesh::RefineModel& model, std::mt19937& random,
                              mesh::RefineState& state) {
     uint32_t open = 0;
     for (uint32_t e = 0; e < model.edges.size(); ++e) {
         const uint32_t level = uint32_t(random()) % ((model.edges[e].flags & 15) + 1);
         state.edges[e].level = float(level);
-        int turns = 0;  // owners that run with the edge less those against it
+        int turns = 0;  // owners along the edge less those against it
         for (uint32_t o = model.ownerStart[e]; o < model.ownerStart[e + 1]; ++o)
             turns +=
                 gpu::refineFlipped(model.triangles[model.owners[o] >> 2].flags, model.owners[o] & 3)
@@ -255,13 +255,13 @@ inline uint32_t randomLevels(const mesh::RefineModel& model, std::mt19937& rando
     return open;
 }
 
-// Every directed edge once, its reverse once.
+// Each directed edge once, and its reverse once.
 struct Closedness {
     uint32_t open = 0;        // edges without their reverse
     uint32_t shared = 0;      // used more than twice
-    uint32_t degenerate = 0;  // triangles with a corner twice
+    uint32_t degenerate = 0;  // triangles with a repeated corner
 };
-// ids: 3 per triangle, any numbers.
+// ids: 3 per triangle, arbitrary numbers.
 inline Closedness closedness(std::span<const uint64_t> ids) {
     struct Use {
         uint64_t low, high;

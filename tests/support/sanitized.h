@@ -1,10 +1,10 @@
-// How much of a long test a sanitized build runs: the same code and fewer rounds, since the release
-// build runs all of it. Not for checks; those are the same everywhere.
+// Number of rounds of long tests in sanitized builds: the same code with fewer rounds, because the
+// release build runs all of them. Checks never change.
 #pragma once
 
 namespace fw::test {
 
-// By tests/CMakeLists.txt: the compiler's own macros say how the test is compiled, not the library.
+// Set by tests/CMakeLists.txt: compiler macros describe the test's build, not the library's.
 #ifdef FW_SANITIZED
 constexpr bool kSanitized = true;
 #else

@@ -1,4 +1,4 @@
-// Sparks of one emitter on the CPU, by the shader's own text: what the `sparks` pass must show.
+// Sparks of one emitter on the CPU by the shader's own code, as the `sparks` pass must show them.
 #pragma once
 #include "components/sparks.h"
 #include "shared/particle.h"
@@ -43,7 +43,7 @@ class SparkRig {
         components::commitEmitter(emitter);
         return any;
     }
-    // A slope along x and waves along z, as a host's field has heights; no plane.
+    // A slope along x with waves along z, for the host's heightfield; no plane.
     static float hill(float x, float z) { return 0.6f * x + 0.4f * std::sin(1.1f * z); }
     void layHill() {
         emitter.def.flags &= ~uint32_t(FW_EMITTER_GROUND);
@@ -54,7 +54,7 @@ class SparkRig {
             record.cells[i] = {hill(x, z), hill(x + 1, z), hill(x, z + 1), hill(x + 1, z + 1)};
         }
     }
-    // As the pass has them.
+    // As the pass holds them.
     [[nodiscard]] std::vector<Spark> sparks() const {
         std::vector<Spark> out;
         gpu::SparkBounds bounds{};

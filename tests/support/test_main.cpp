@@ -1,5 +1,5 @@
-// Entry point of every GoogleTest suite. Writes one line per test to the file named by
-// FLAMEWRIGHT_TEST_RESULTS, at once, so that tests/run can count even when a test crashes.
+// Entry point of every GoogleTest suite. Writes a line per test immediately to the file
+// FLAMEWRIGHT_TEST_RESULTS, so that tests/run counts correctly even after a crash.
 #include <dlfcn.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -57,8 +57,8 @@ class ResultFile : public ::testing::EmptyTestEventListener {
 }  // namespace
 
 int main(int argc, char** argv) {
-    // The loader unloads driver and layers with the last instance. What they keep until exit would
-    // then look like leaks without a name, so they stay; where they are not installed, nothing is.
+    // The loader unloads driver and layers with the last instance, and their remaining memory would
+    // look like unnamed leaks. So they stay loaded if they are installed.
     if constexpr (fw::test::kSanitized) {
         for (const char* name : {"libVkLayer_khronos_validation.so", "libvulkan_lvp.so"})
             (void)dlopen(name, RTLD_LAZY | RTLD_NODELETE);

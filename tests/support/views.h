@@ -1,4 +1,4 @@
-// Views as tests and benches take them: Vulkan's clip space, y up in the world.
+// Views for tests and benches: Vulkan clip space, world y up.
 #pragma once
 #include "flamewright/flamewright.h"
 
@@ -10,7 +10,7 @@
 
 namespace fw::test {
 
-// In perspective, without a far plane. zoom: of half the height; aspect: width / height.
+// Perspective without a far plane. zoom: of half the height; aspect: width / height.
 inline FwView viewAt(glm::vec3 eye, glm::vec3 target, float aspect, float zoom = 3.4f,
                      float nearest = 0.05f) {
     FwView view = fwDefaultView();
@@ -25,7 +25,7 @@ inline FwView viewAt(glm::vec3 eye, glm::vec3 target, float aspect, float zoom =
     return view;
 }
 
-// Parallel, from 1 m in front of z = 0: `across` m wide and `up` m high around `middle`.
+// Orthographic from 1 m in front of z = 0: `across` m wide and `up` m high around `middle`.
 inline FwView frontView(glm::vec2 middle, float across, float up) {
     FwView view = fwDefaultView();
     const glm::mat4 look = glm::translate(glm::mat4(1.0f), glm::vec3(-middle, -1));

@@ -1,4 +1,4 @@
-// The counting shim: wraps the entries that a steady frame may not call, passes on the rest.
+// Counts the entry points that a steady frame may not call and forwards all others.
 #include "support/vulkan_device.h"
 
 #include <atomic>
@@ -10,7 +10,7 @@ namespace {
 std::atomic<uint64_t> submits, waits, memory, maps, pipelines, descriptorPools, objects, work,
     barriers, draws, passes;
 
-// Each wrapper counts and calls the loader's own function of that name.
+// Each wrapper counts and calls the loader's function of that name.
 #define FW_COUNTED(entry, counter)                                  \
     struct Counted##entry {                                         \
         template <class Result, class... Arguments>                 \

@@ -30,7 +30,7 @@ uint32_t testApiVersion() {
         }
         version = VK_MAKE_API_VERSION(0, 1, uint32_t(value[2] - '0'), 0);
     }
-    // 1.1 is what the layer itself needs.
+    // The layer itself needs 1.1.
     return gpuAssisted() ? std::max(version, VK_API_VERSION_1_1) : version;
 }
 
@@ -43,13 +43,12 @@ VKAPI_ATTR VkBool32 VKAPI_CALL TestDevice::listen(VkDebugUtilsMessageSeverityFla
                                                   VkDebugUtilsMessageTypeFlagsEXT type,
                                                   const VkDebugUtilsMessengerCallbackDataEXT* data,
                                                   void* user) {
-    // The loader's own remarks about drivers are no concern of ours; the drivers' about our shaders
-    // are.
+    // Ignores the loader's remarks about drivers, but not the drivers' about our shaders.
     if (!(type & (VK_DEBUG_UTILS_MESSAGE_TYPE_VALIDATION_BIT_EXT |
                   VK_DEBUG_UTILS_MESSAGE_TYPE_PERFORMANCE_BIT_EXT)) &&
         data->pMessageIdName && std::strstr(data->pMessageIdName, "Loader"))
         return VK_FALSE;
-    // Said by the layers about themselves when they instrument shaders.
+    // Messages of the layers about their own instrumentation.
     if (data->pMessageIdName && std::strstr(data->pMessageIdName, "UNASSIGNED-GPU-Assisted") &&
         data->pMessage && std::strstr(data->pMessage, "Validation Setup"))
         return VK_FALSE;
@@ -148,14 +147,14 @@ std::unique_ptr<TestDevice> TestDevice::make(const DeviceOptions& wanted, std::s
     queueInfo.queueFamilyIndex = out->queueFamily;
     queueInfo.queueCount = 1;
     queueInfo.pQueuePriorities = &priority;
-    if (out->options.apiVersion >= VK_API_VERSION_1_3) {  // all that the library wishes for
+    if (out->options.apiVersion >= VK_API_VERSION_1_3) {  // everything that the library can use
         VkPhysicalDeviceFeatures supported{};
         vkGetPhysicalDeviceFeatures(out->physicalDevice, &supported);
         out->options.independentBlend |= supported.independentBlend == VK_TRUE;
     }
     out->features_.features.independentBlend = out->options.independentBlend;
     VkPhysicalDeviceFeatures enabled = out->features_.features;
-    if (assisted) {  // for the layer's own writes; the library is not told
+    if (assisted) {  // for the layer's own writes; hidden from the library
         enabled.vertexPipelineStoresAndAtomics = VK_TRUE;
         enabled.fragmentStoresAndAtomics = VK_TRUE;
     }

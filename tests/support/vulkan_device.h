@@ -1,7 +1,6 @@
-// A Vulkan device for tests, the way a host would make it: by default API 1.0 with no feature and
-// no extension; FLAMEWRIGHT_API=1.3 runs the same tests on a device of that version with every
-// feature that the library wishes for. Validation and synchronization validation listen; any
-// message fails the test.
+// A Vulkan device made as a host would: by default API 1.0 without features or extensions.
+// FLAMEWRIGHT_API=1.3 runs the same tests on that version with every feature that the library can
+// use. Validation and synchronization validation are on; any message fails the test.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -19,7 +18,7 @@ namespace fw::test {
 
 struct DeviceOptions {
     uint32_t apiVersion = VK_API_VERSION_1_0;
-    bool declareDebugUtils = true;  // tell the library about VK_EXT_debug_utils
+    bool declareDebugUtils = true;  // declares VK_EXT_debug_utils to the library
     bool independentBlend = false;
 };
 
@@ -37,7 +36,7 @@ struct TestBuffer {
 
 class TestDevice {
  public:
-    // Null, with the reason, where there is no device or no validation layer.
+    // Null, with the reason, if there is no device or no validation layer.
     static std::unique_ptr<TestDevice> make(const DeviceOptions& options, std::string& reason);
     ~TestDevice();
     TestDevice(const TestDevice&) = delete;
@@ -51,7 +50,7 @@ class TestDevice {
     // A 2D image with one mip and layer; lives as long as the device.
     TestImage makeImage(VkFormat format, VkExtent2D extent, uint32_t samples,
                         VkImageUsageFlags usage);
-    // A buffer that the host sees, mapped, of unknown content; lives as long as the device.
+    // A mapped host-visible buffer of undefined content; lives as long as the device.
     TestBuffer makeBuffer(VkDeviceSize bytes, VkBufferUsageFlags usage);
 
     VkInstance instance = VK_NULL_HANDLE;
@@ -77,7 +76,7 @@ class TestDevice {
     std::vector<std::string> messages_;
 };
 
-// A host's frames: some in flight, each with a command buffer and a fence.
+// A host's frames: several in flight, each with a command buffer and a fence.
 class HostFrames {
  public:
     HostFrames(TestDevice& device, uint32_t inFlight);
@@ -87,7 +86,7 @@ class HostFrames {
 
     // Waits for the slot and begins its command buffer.
     FwVulkanFrame begin(float deltaTime = 0);
-    void submit();  // of the frame begun last
+    void submit();  // the frame begun last
     void waitAll();
     // A frame struct that says everything is complete, for use after waitAll.
     [[nodiscard]] uint64_t submitted() const { return index_; }
@@ -104,8 +103,7 @@ class HostFrames {
     uint64_t index_ = 0, completed_ = 0;
 };
 
-// Makes a device, skips (or fails, with FLAMEWRIGHT_REQUIRE_GPU) without one, and fails on
-// messages.
+// Creates a device, skips without one (with FLAMEWRIGHT_REQUIRE_GPU fails), and fails on messages.
 class GpuTest : public ::testing::Test {
  protected:
     void SetUp() override { makeDevice({}); }
@@ -116,30 +114,30 @@ class GpuTest : public ::testing::Test {
 };
 
 bool gpuRequired();
-bool gpuAssisted();  // GPU-assisted validation listens, too
-// Of devices made with the default options: 1.0, or FLAMEWRIGHT_API. GPU-assisted: 1.1 at least.
+bool gpuAssisted();  // GPU-assisted validation is on
+// Version of devices with default options: 1.0, or FLAMEWRIGHT_API. GPU-assisted: at least 1.1.
 uint32_t testApiVersion();
 
-// Counts what a library must not do in a steady frame. One at a time.
+// Counts calls that a steady frame may not make. One instance at a time.
 struct VulkanCounts {
     uint64_t submits = 0, waits = 0, memory = 0, maps = 0, pipelines = 0, descriptorPools = 0,
              objects =
                  0;  // objects: buffers, images, views, layouts, modules, passes, framebuffers
-    // Commands, by what they may be used for; not part of total.
+    // Commands by use; not part of total.
     uint64_t work = 0;  // dispatches, copies, fills
     uint64_t barriers = 0, draws = 0, passes = 0;
     [[nodiscard]] uint64_t total() const {
         return submits + waits + memory + maps + pipelines + descriptorPools + objects;
     }
 };
-// Puts itself between the library and the loader: use its entry as FwVulkanHost's.
+// Entry point between the library and the loader, to be used in FwVulkanHost.
 PFN_vkGetInstanceProcAddr countingEntry();
 VulkanCounts takeCounts();  // since the last take
 
-// Another entry to put between: storage buffers at this binding end one word early. One at a time.
+// An entry point that ends storage buffers of this binding one word early. One instance at a time.
 constexpr uint32_t kNoBinding = 0xFFFFFFFFu;
 PFN_vkGetInstanceProcAddr shorteningEntry(uint32_t binding);
-// And one with which the device has as few texels in a buffer as Vulkan allows.
+// An entry point whose device has the least texels per buffer that Vulkan allows.
 PFN_vkGetInstanceProcAddr fewTexelsEntry();
 
 }  // namespace fw::test

@@ -1,5 +1,5 @@
-// Shims between the library and the loader: one makes one storage buffer end too early, so that a
-// test can prove that an access past the end of a buffer is seen; one is a device with few texels.
+// Shims between library and loader. One ends one storage buffer too early, to prove that an access
+// past the end is noticed; the other limits the texels per buffer.
 #include "support/vulkan_device.h"
 
 #include <cstring>
@@ -8,8 +8,8 @@
 namespace fw::test {
 namespace {
 
-// The layer compares with the size of the buffer, not with the range of its descriptor: so shaders
-// get another buffer over the same memory, which is shorter by a word.
+// The layer compares with the buffer's size, not the descriptor's range. So shaders get another
+// buffer over the same memory that is a word shorter.
 struct Known {
     VkBufferCreateInfo info{};
     VkDeviceMemory memory = VK_NULL_HANDLE;
@@ -97,7 +97,7 @@ VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL instanceEntry(VkInstance instance, cons
 
 VKAPI_ATTR void VKAPI_CALL fewTexels(VkPhysicalDevice device, VkPhysicalDeviceProperties* out) {
     vkGetPhysicalDeviceProperties(device, out);
-    out->limits.maxTexelBufferElements = 65536;  // the least there is
+    out->limits.maxTexelBufferElements = 65536;  // the least that Vulkan allows
 }
 
 VKAPI_ATTR PFN_vkVoidFunction VKAPI_CALL fewTexelsEntryOf(VkInstance instance, const char* name) {

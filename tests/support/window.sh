@@ -1,5 +1,5 @@
-# Sourced by tests that run a program in a window, on a display of their own, and drive it with real
-# keys and clicks. Not run by itself.
+# Sourced by tests that run a program in a window on its own display and drive it with real keys and
+# clicks.
 # shellcheck shell=bash
 
 work=$(mktemp -d)
@@ -12,16 +12,16 @@ cleanup() {
 }
 trap cleanup EXIT
 
-# need TOOL...: leaves with 77 where one is not installed.
+# need TOOL...: exits with 77 if one is not installed.
 need() {
     local tool
     for tool in "$@"; do
-        command -v "$tool" >/dev/null || { echo "$tool is not here" && exit 77; }
+        command -v "$tool" >/dev/null || { echo "$tool is not installed" && exit 77; }
     done
 }
 
-# A screen of 1280 x 720 that nobody sees; DISPLAY names it. It does not begin anew when the last
-# window is gone: a program that starts just then would find no display.
+# Opens an invisible screen of 1280 x 720 and sets DISPLAY. -noreset keeps it when the last window
+# closes, so that the next program finds a display.
 open_display() {
     need Xvfb
     Xvfb -displayfd 3 -screen 0 1280x720x24 -nolisten tcp -noreset 3>"$work/display" 2>"$work/xvfb.log" &
@@ -35,14 +35,14 @@ open_display() {
     export DISPLAY
 }
 
-# start PROGRAM ARGUMENT...: until its window is there, in the corner, and hears keys. What it does it
-# reports to $work/log, as do the validation layers.
+# start PROGRAM ARGUMENT...: waits until its window is in the corner and accepts keys. The program and
+# the validation layers write to $work/log.
 start() {
     : >"$work/log"
     seen=0
     "$1" "${layers[@]}" --report "${@:2}" >"$work/log" 2>&1 &
     program=$!
-    # What is found may be the window of a program that was just killed, or one that is not there yet.
+    # The found window may belong to a program that was just killed, or may not be mapped yet.
     for _ in $(seq 600); do
         xdotool search --name Flamewright >"$work/window" 2>/dev/null || true
         window=$(head -1 "$work/window")
@@ -50,11 +50,11 @@ start() {
         sleep 0.1
     done
     cat "$work/log"
-    echo "it shows no window"
+    echo "the program shows no window"
     exit 1
 }
 
-# await EXPRESSION: until a line of the report matches; what came before is forgotten.
+# await EXPRESSION: waits for a matching line of the log and discards earlier lines.
 await() {
     for _ in $(seq 1800); do
         if tail -n +$((seen + 1)) "$work/log" | grep -q -E -- "$1"; then
@@ -65,24 +65,24 @@ await() {
         sleep 0.1
     done
     cat "$work/log"
-    echo "it never said: $1"
+    echo "the log never showed: $1"
     exit 1
 }
 
-# leave KEY: the program ends by it, in peace with the validation layers.
+# leave KEY: the program must quit on this key without validation messages.
 leave() {
     xdotool key "$1"
     local status=0
     wait "$program" || status=$?
     program=
     cat "$work/log"
-    [[ $status -eq 0 ]] || { echo "it left with status $status" && exit 1; }
+    [[ $status -eq 0 ]] || { echo "the program exited with status $status" && exit 1; }
     if grep -E -q 'VUID-|UNASSIGNED-|SYNC-HAZARD|validation:' "$work/log"; then
         echo "the validation layer complains" && exit 1
     fi
 }
 
-# picture NAME: a screenshot into the folder FW_KEEP_PICTURES, if there is one (ImageMagick).
+# picture NAME: saves a screenshot in the folder FW_KEEP_PICTURES, if set (ImageMagick).
 picture() {
     [[ -n ${FW_KEEP_PICTURES:-} ]] || return 0
     import -window root "$FW_KEEP_PICTURES/$1.png" || true

@@ -1,4 +1,4 @@
-// Defs for worlds that tests and benches make without the edge, whose defaults they lack.
+// Defs for worlds that tests and benches create without the C edge and its defaults.
 #pragma once
 #include "flamewright/flamewright.h"
 #include "support/meshes.h"
@@ -24,7 +24,7 @@ inline FwWorldDef plainWorldDef(uint32_t flags) {
     return def;
 }
 
-// Of positions and indices alone; it points into the mesh.
+// Positions and indices only; points into the mesh.
 inline FwMeshDef plainMeshDef(const Mesh& mesh, float texelsPerMetre) {
     FwMeshDef def{};
     def.structSize = sizeof def;

@@ -1,15 +1,17 @@
-// What several threads do with one library at the same time. A program of its own, so that the
-// thread sanitizer has little to build: tests/run --tsan --suite threads.
+// Several threads use one library at once. A program of its own, so that the thread sanitizer
+// builds little: tests/run --tsan --suite threads.
 #include "abi/abi_support.h"
 
 #include <thread>
 
 namespace {
 
+using host::created;
+using host::getState;
 using host::Host;
 using host::lastMessage;
 
-TEST(Threads, ContextsAndWorldsAreMadeAnywhere) {
+TEST(Threads, ContextsAndWorldsMayBeCreatedOnAnyThread) {
     Host host;
     FwContext* context = host::createCpuContext(host);
     ASSERT_NE(nullptr, context);
@@ -31,10 +33,8 @@ TEST(Threads, ContextsAndWorldsAreMadeAnywhere) {
             ASSERT_EQ(FW_OK, fwWorld_Ignite(world, &ignition, nullptr));
             for (int i = 0; i < 20; ++i) {
                 ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32));
-                FwContextInfo info{};
-                info.structSize = sizeof info;
-                ASSERT_EQ(FW_OK, fwContext_GetInfo(context, &info));
-                // Failures on one context from several threads: whole messages, no mixture.
+                (void)getState(fwContext_GetInfo, context);
+                // Failures in one context on several threads: whole messages, never mixed.
                 FwWorld* none = nullptr;
                 EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwCreateWorld(context, nullptr, &none));
                 EXPECT_EQ("FwWorldDef is null.\n - While calling fwCreateWorld.",
@@ -54,23 +54,20 @@ TEST(Threads, ContextsAndWorldsAreMadeAnywhere) {
     EXPECT_EQ(0, host.bytes);
 }
 
-// One thread makes, steps and destroys; the others call each function that is tagged [any].
+// One thread creates, steps and destroys; the others call every function tagged [any].
 void besideCreateDestroyAndStep(FwContext* context, int rounds) {
     const host::Sheet sheet(0.3f, 0.2f);
     const FwWorldDef worldDef = fwDefaultWorldDef();
     FwWorld* world = nullptr;
     ASSERT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &world)) << lastMessage(context);
     const FwMeshDef meshDef = sheet.def(48);
-    FwMeshId mesh{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world, &meshDef, &mesh));
+    const FwMeshId mesh = created(fwWorld_CreateMesh, world, meshDef);
     const FwMaterialDef materialDef = host::evenMaterial(0.02f, 3);
-    FwMaterialId material{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateMaterial(world, &materialDef, &material));
+    const FwMaterialId material = created(fwWorld_CreateMaterial, world, materialDef);
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = mesh;
     def.materials[0] = material;
-    FwBurnableMeshId object{};
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(world, &def, &object));
+    const FwBurnableMeshId object = created(fwWorld_CreateBurnableMesh, world, def);
 
     std::atomic<bool> stop{false};
     std::atomic<uint64_t> asked{0};
@@ -78,9 +75,7 @@ void besideCreateDestroyAndStep(FwContext* context, int rounds) {
         while (!stop) {
             FwMemoryRow rows[160];
             EXPECT_LT(0u, fwContext_GetMemoryReport(context, rows, 160));
-            FwContextInfo info{};
-            info.structSize = sizeof info;
-            EXPECT_EQ(FW_OK, fwContext_GetInfo(context, &info));
+            (void)getState(fwContext_GetInfo, context);
             (void)lastMessage(context);
             (void)lastMessage(world);
             EXPECT_EQ(FW_OK, fwContext_Prepare(context));
@@ -110,9 +105,9 @@ void besideCreateDestroyAndStep(FwContext* context, int rounds) {
             EXPECT_LE(0, fwWorld_ReadLights(world, lights, &count));
             FwEvent events[8];
             (void)fwWorld_PollEvents(world, events, 8);
-            FwVulkanWishes wishes{};
-            wishes.structSize = sizeof wishes;
-            EXPECT_EQ(FW_OK, fwQueryVulkanWishes(&wishes));
+            FwVulkanWishes requests{};
+            requests.structSize = sizeof requests;
+            EXPECT_EQ(FW_OK, fwQueryVulkanWishes(&requests));
             FwWorld* passing = nullptr;
             EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &passing));
             EXPECT_EQ(FW_OK, fwWorld_DestroyAfterFrame(passing, 0));
@@ -148,7 +143,6 @@ TEST(Threads, EveryAnyFunctionRunsBesideCreateDestroyAndStep) {
     EXPECT_EQ(0, host.blocks);
 }
 
-// The same on a device of the library's own.
 TEST(Threads, EveryAnyFunctionRunsBesideCreateDestroyAndStepOnADevice) {
     Host host;
     FwContextDef def = fwDefaultContextDef();

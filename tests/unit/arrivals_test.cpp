@@ -1,5 +1,5 @@
-// The front run ahead of itself: it says of each texel when the simulation will light it, whatever
-// slices it runs in, around seams and walls, before the wind, and what will never burn.
+// The predicted front: for each texel, when the simulation will light it or that it never will,
+// across time slices, seams, walls and wind.
 #include "mesh/front/arrivals.h"
 #include "support/front_rig.h"
 #include "support/sanitized.h"
@@ -22,17 +22,17 @@ mesh::Arrivals forecast(const mesh::ArrivalInput& input) {
 }
 
 struct Difference {
-    double worst = 0, mean = 0;      // of the time that was still to go
-    double ticks = 0;                // worst
-    uint32_t texels = 0, other = 0;  // other: lights in one of them alone
+    double worst = 0, mean = 0;      // relative to the remaining time
+    double ticks = 0;                // worst difference
+    uint32_t texels = 0, other = 0;  // other: lit in only one of the two
 };
 
 Difference differ(const mesh::Arrivals& arrivals, std::span<const uint32_t> burnt, uint32_t now) {
     Difference d;
     for (size_t i = 0; i < burnt.size(); ++i) {
-        const bool told = gpu::isSource(arrivals.ticks[i]), did = gpu::isSource(burnt[i]);
-        d.other += told != did;
-        if (!told || !did || burnt[i] < now + 1024) continue;
+        const bool predicted = gpu::isSource(arrivals.ticks[i]), burned = gpu::isSource(burnt[i]);
+        d.other += predicted != burned;
+        if (!predicted || !burned || burnt[i] < now + 1024) continue;
         const double off = std::abs(double(arrivals.ticks[i]) - double(burnt[i]));
         d.worst = std::max(d.worst, off / (double(burnt[i]) - now));
         d.ticks = std::max(d.ticks, off);
@@ -52,7 +52,7 @@ void lightMiddle(FrontRig& rig, const mesh::BurnDomain& d, Vec3 at) {
     rig.ignite([&](uint32_t i) { return i == start ? 0.0 : -1.0; });
 }
 
-TEST(Arrivals, ComeTrue) {
+TEST(Arrivals, MatchTheSimulation) {
     const struct {
         const char* name;
         mesh::BurnDomain domain;
@@ -91,7 +91,7 @@ TEST(Arrivals, ComeTrue) {
     }
 }
 
-TEST(Arrivals, SlicesDoNotMatter) {
+TEST(Arrivals, AreIndependentOfTimeSlices) {
     const mesh::BurnDomain d = bakeOf(makeCube(0.5, 8, true).input(64, 4096));
     FrontRig rig(d, {.rate = 0.02, .headGain = 0.5, .backGain = 0.2}, {1, 0, 0});
     lightMiddle(rig, d, {0.25, 0, 0});
@@ -108,7 +108,7 @@ TEST(Arrivals, SlicesDoNotMatter) {
         EXPECT_GE(settled, before);
         if (++slices % 50 == 0)
             for (size_t i = 0; i < sliced.ticks.size(); ++i) {
-                // What is settled stays, on both sides.
+                // Settled texels keep their ticks in both runs.
                 if (sliced.ticks[i] < settled)
                     ASSERT_EQ(sliced.ticks[i], whole.ticks[i]) << i;
                 else
@@ -120,8 +120,8 @@ TEST(Arrivals, SlicesDoNotMatter) {
     EXPECT_EQ(sliced.ticks, whole.ticks);
 }
 
-// Water is a wall as long as it is there: fire goes around it, and never into what it closes off.
-TEST(Arrivals, WallsAreGoneAround) {
+// Water blocks as long as it is present: fire goes around it and never into an enclosed area.
+TEST(Arrivals, GoAroundWalls) {
     const mesh::BurnDomain d = plane(1, 64);
     FrontRig rig(d, {.rate = 0.02});
     const auto wet = [&](uint32_t i) {
@@ -145,7 +145,7 @@ TEST(Arrivals, WallsAreGoneAround) {
     EXPECT_EQ(differ(arrivals, rig.ticks(), now).other, 0u);
 }
 
-TEST(Arrivals, NothingBurnsNothingComes) {
+TEST(Arrivals, AreNeverWithoutFire) {
     const mesh::BurnDomain d = plane(0.5, 64);
     FrontRig rig(d, {.rate = 0.02});
     const mesh::Arrivals arrivals = forecast(rig.arrivalInput());

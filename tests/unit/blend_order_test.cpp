@@ -1,4 +1,4 @@
-// Who brings what blends into order.
+// The device or the host sorts blended draws.
 #include "gpu/passes/blend_order.h"
 #include "shared/look.h"
 
@@ -13,29 +13,29 @@ namespace {
 using gpu::Orderer;
 using gpu::PlacedBy;
 
-TEST(BlendOrder, WhatTheDevicePlacesItOrdersItself) {
+TEST(BlendOrder, TheDeviceSortsWhatItPlaces) {
     for (const uint32_t hiding : {1u, 1000u, gpu::kMostQuads})
         EXPECT_EQ(Orderer::Device, gpu::ordererOf(PlacedBy::Device, hiding));
 }
 
-TEST(BlendOrder, WhatTheHostPlacesTheHostOrders) {
+TEST(BlendOrder, TheHostSortsWhatItPlaces) {
     for (const uint32_t hiding : {1u, 256u})
         EXPECT_EQ(Orderer::Host, gpu::ordererOf(PlacedBy::Host, hiding));
 }
 
-TEST(BlendOrder, WhatOnlyEmitsNobodyOrders) {
+TEST(BlendOrder, AdditiveDrawsAreNotSorted) {
     EXPECT_EQ(Orderer::None, gpu::ordererOf(PlacedBy::Device, 0));
     EXPECT_EQ(Orderer::None, gpu::ordererOf(PlacedBy::Host, 0));
 }
 
-// The sort's shared memory holds as many as it compares, whatever the device.
-TEST(BlendOrder, ADeviceComparesNoMoreThanItsGroupHolds) {
+// On every device the sort's shared memory holds as many items as it compares.
+TEST(BlendOrder, TheSortFitsInSharedMemory) {
     EXPECT_EQ(1024u, gpu::fewQuads(true));
     EXPECT_EQ(gpu::kMostFewQuads, gpu::fewQuads(false));
     EXPECT_LE(gpu::fewQuads(true), gpu::kMostFewQuads);
 }
 
-TEST(BlendOrder, TheHostsAreFarthestFirstAndAsFarByNumber) {
+TEST(BlendOrder, SortsFarthestFirstThenByIndex) {
     struct Thing {
         float depth;
         uint32_t number;

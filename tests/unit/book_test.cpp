@@ -1,5 +1,5 @@
-// Flipbooks: what lies between two frames is seen once, a loop has no seam, files that are not what
-// they say are refused by name, a bake that is cut off goes on.
+// Flipbooks: interpolated frames show one moving image, loops have no seam, invalid files are
+// refused by name, an interrupted bake resumes.
 #include "book/book.h"
 #include "book/own.h"
 #include "book/picture.h"
@@ -27,7 +27,7 @@ using gpu::vec4;
 
 std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
 
-// A soft spot at (x, y), texels.
+// A soft spot at (x, y) in texels.
 Frame spotAt(uint32_t side, float x, float y) {
     Frame frame;
     for (uint32_t j = 0; j < side; ++j)
@@ -51,11 +51,11 @@ book::Book spots(uint32_t side, vec2 first, vec2 by) {
     return fwtools::finishBook(facts, frames, 1, memory());
 }
 
-TEST(Flipbook, FlipbookBlob) {
+TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
     for (const vec2 by : {vec2(8, 0), vec2(0, 8), vec2(-5, 6)}) {
         const book::Book made = spots(64, vec2(by.x < 0 ? 44 : 20, 20), by);
         constexpr int kSide = 64;
-        const float time = 1.5f / 3;  // halfway from frame 1 to 2
+        const float time = 1.5f / 3;  // halfway between frames 1 and 2
         double sum = 0, x = 0, y = 0;
         std::vector<float> seen;
         for (int j = 0; j < kSide; ++j)
@@ -72,7 +72,7 @@ TEST(Flipbook, FlipbookBlob) {
             for (int i = 1; i + 1 < kSide; ++i) {
                 const float v = seen[size_t(j * kSide + i)];
                 bool peak = v > 0.25f;
-                for (int k = 0; peak && k < 9; ++k) {  // of equal ones the last
+                for (int k = 0; peak && k < 9; ++k) {  // of equal peaks the last
                     const float other = seen[size_t((j + k / 3 - 1) * kSide + i + k % 3 - 1)];
                     peak = k <= 4 ? v >= other : v > other;
                 }
@@ -82,7 +82,7 @@ TEST(Flipbook, FlipbookBlob) {
                     double(by.y), std::hypot(x / sum - wantX, y / sum - wantY), peaks);
         EXPECT_LT(std::hypot(x / sum - wantX, y / sum - wantY), 0.25);
         EXPECT_EQ(peaks, 1);
-        // Its height too: a mere cross-fade has 0.77 of it.
+        // Its height is kept too; a plain cross-fade reaches 0.77 of it.
         EXPECT_GT(*std::max_element(seen.begin(), seen.end()), 0.93f);
     }
 }
@@ -120,7 +120,7 @@ double seamOf(const book::Book& made, double& others, double& most) {
     return difference(f.frames - 1, 0);
 }
 
-TEST(Flipbook, EmitsAloneWhereNoTexelHides) {
+TEST(Flipbook, IsAdditiveIfNoTexelOccludes) {
     book::Book book(std::pmr::get_default_resource());
     book.texels = {10, 20, 0, 30, 40, 50, 0, 60};
     EXPECT_TRUE(book::emitsAlone(book));
@@ -128,7 +128,7 @@ TEST(Flipbook, EmitsAloneWhereNoTexelHides) {
     EXPECT_FALSE(book::emitsAlone(book));
 }
 
-TEST(Flipbook, LoopSeam) {
+TEST(Flipbook, LoopsWithoutASeam) {
     constexpr uint32_t kFrames = 20;
     const book::Book made = smallBook("campfire", 24, kFrames);
     double others = 0, most = 0;
@@ -136,12 +136,12 @@ TEST(Flipbook, LoopSeam) {
     std::printf("[   FIGURE ] last frame to first: %.2f; others %.2f, at most %.2f of 255\n", seam,
                 others, most);
     EXPECT_LE(seam, 1.1 * others);
-    EXPECT_LE(most, 1.7 * others);  // nor where it was closed
+    EXPECT_LE(most, 1.7 * others);  // nor at the loop's end
     EXPECT_GT(others, 1);
 }
 
-// Fire is in the frame, bright at its root, and nothing touches the border.
-TEST(Flipbook, OwnBooksAreWhatTheHeaderSays) {
+// Fire is in the frame, bright at its base, and nothing touches the border.
+TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
     size_t all = 0;
     for (uint32_t preset = 1; preset < FW_FLIPBOOK_PRESET_COUNT; ++preset) {
         const auto bytes = book::ownBook(preset, memory());
@@ -159,7 +159,7 @@ TEST(Flipbook, OwnBooksAreWhatTheHeaderSays) {
         std::printf("[   FIGURE ] own flame: last frame to first %.2f; others %.2f, at most %.2f\n",
                     seam, others, most);
         EXPECT_LE(seam, 1.1 * others);
-        // Its foot thins out: no row of it is all there where the one below is not.
+        // Its base fades out: no row is full where the one below is empty.
         for (uint32_t i = 0; i < made.facts.frames; ++i)
             for (uint32_t y = 1; y < made.facts.height / 4; ++y)
                 for (uint32_t x = 0; x < made.facts.width; ++x) {
@@ -175,8 +175,8 @@ TEST(Flipbook, OwnBooksAreWhatTheHeaderSays) {
     EXPECT_LT(all, size_t(3) << 20);
 }
 
-// Texel by texel: each where its record says, none in another one's place, nothing around frames.
-TEST(Flipbook, APictureHoldsAllBooks) {
+// Every texel is where its record says, no two overlap, and frames have an empty border.
+TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
     std::vector<book::Book> books;
     for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SPARK, FW_FLIPBOOK_HAZE}) {
         books.emplace_back(memory());
@@ -216,9 +216,9 @@ TEST(Flipbook, APictureHoldsAllBooks) {
     }
 }
 
-// Of each level a texel is the mean of four of the one before, all around is nothing, and no two
-// frames or levels share a texel: what is read at any of them is of its own frame.
-TEST(Flipbook, SmallerLevelsAreTheMeanAndDoNotBleed) {
+// Each texel of a level is the mean of four of the level before. Borders are empty and no two
+// frames or levels share a texel, so no lookup bleeds.
+TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
     book::Book one(memory());
     book::readBook(book::ownBook(FW_FLIPBOOK_FLAME, memory()), one);
     const book::Book* const laid[] = {&one};
@@ -254,7 +254,7 @@ TEST(Flipbook, SmallerLevelsAreTheMeanAndDoNotBleed) {
                     }
         }
     }
-    // As many texels as pixels, or fewer: all of them; then a level for each half.
+    // With as many texels as pixels or fewer, level 0; then one level per halving.
     EXPECT_EQ(0u, gpu::bookLevel(64, 128, 0.99f));
     EXPECT_EQ(0u, gpu::bookLevel(64, 64, 0.99f));
     EXPECT_EQ(1u, gpu::bookLevel(64, 32, 0.0f));
@@ -262,7 +262,7 @@ TEST(Flipbook, SmallerLevelsAreTheMeanAndDoNotBleed) {
     EXPECT_EQ(3u, gpu::bookLevel(64, 0.1f, 0.0f));
 }
 
-TEST(Flipbook, TooManyBooksAreRefusedByTheirRows) {
+TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
     book::Book huge(memory());
     huge.facts.width = huge.facts.height = 512;
     huge.facts.motionWidth = huge.facts.motionHeight = 512;
@@ -277,7 +277,7 @@ TEST(Flipbook, TooManyBooksAreRefusedByTheirRows) {
     }
 }
 
-TEST(Flipbook, BooksShowWhatTheySay) {
+TEST(Flipbook, ShowsTheStatedHeightAndLight) {
     const book::Book fire = smallBook("campfire", 24, 4);
     EXPECT_GT(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).y, 0.5f);
     EXPECT_GT(gpu::bookKelvin(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).x), 1200);
@@ -311,7 +311,7 @@ std::string saidOf(std::span<const std::byte> bytes) {
     return {};
 }
 
-TEST(Flipbook, BadFilesAreNamed) {
+TEST(Flipbook, RefusesBadFilesByName) {
     const book::Book made = spots(16, vec2(5, 5), vec2(1, 1));
     const auto whole = book::cookBook(made, memory());
     EXPECT_EQ(saidOf(whole), "");
@@ -339,7 +339,7 @@ TEST(Flipbook, BadFilesAreNamed) {
     EXPECT_NE(changed(60, 200).find("checksum"), std::string::npos);
 }
 
-TEST(Flipbook, ABakeThatIsCutOffGoesOn) {
+TEST(Flipbook, ResumesAnInterruptedBake) {
     const std::string path =
         (std::filesystem::temp_directory_path() / "flamewright_book_test.part").string();
     std::filesystem::remove(path);

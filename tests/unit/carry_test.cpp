@@ -1,4 +1,4 @@
-// Texels of one mesh that take the burn of another: which ones, and in how long.
+// Matching of texels between two meshes for a transferred burn: the matches and the search time.
 #include "mesh/carry.h"
 #include "mesh_checks.h"
 
@@ -13,8 +13,8 @@ double placeOf(const BurnDomain& d, uint32_t texel, int axis) {
     return double(d.origin[axis]) + double(d.quantum) * double(units[axis]);
 }
 
-// Every texel of the other mesh, one by one: the distance to the nearest that faces the same way.
-TEST(MatchTexels, FindsTheNearestThatFacesTheSameWay) {
+// Brute force: for every texel of the other mesh the nearest texel that faces the same way.
+TEST(MatchTexels, FindsTheNearestTexelOfTheSameFacing) {
     const BurnDomain from = bakeOf(makeCube(1.0, 32, true).input(24));
     const BurnDomain to = bakeOf(makeCube(1.0, 12, true).input(14));
     std::pmr::vector<uint32_t> match;
@@ -36,8 +36,8 @@ TEST(MatchTexels, FindsTheNearestThatFacesTheSameWay) {
     }
 }
 
-// Far parts of a mesh of another shape end the search as soon as near ones do.
-TEST(MatchTexels, EndsSoonWhereNothingIsNear) {
+// Distant parts of a differently shaped mesh end the search as early as near ones.
+TEST(MatchTexels, EndsEarlyWithoutANearTexel) {
     const BurnDomain from = bakeOf(makeCube(1.0, 32, true).input(150));
     const BurnDomain to = bakeOf(makeCube(1.5, 32, true).input(100));
     std::pmr::vector<uint32_t> match;

@@ -21,7 +21,7 @@ struct TestId {
     uint32_t index1 = 0, generation = 0;
 };
 
-TEST(HandlePool, ReusesTheLowestSlotAndTellsStaleFromWrong) {
+TEST(HandlePool, ReusesTheLowestSlotAndDistinguishesStaleFromWrong) {
     HandlePool<TestId, int> pool("Thing", std::pmr::new_delete_resource());
     TestId ids[5];
     for (int i = 0; i < 5; ++i) ids[i] = pool.create(i);
@@ -71,7 +71,7 @@ class Miser : public std::pmr::memory_resource {
     }
 };
 
-TEST(HandlePool, IsUnchangedWhenMemoryIsRefusedAndDestroyNeedsNone) {
+TEST(HandlePool, IsUnchangedByFailedAllocationsAndDestroysWithout) {
     for (int budget = 0; budget < 12; ++budget) {
         Miser miser;
         {
@@ -114,7 +114,7 @@ TEST(Owned, OwnsOnceAndMoves) {
     EXPECT_THROW((void)Owned<int>::make(&miser, 1), std::bad_alloc);
 }
 
-TEST(SlotSet, WalksInOrderAndLetsTheOneItIsAtGo) {
+TEST(SlotSet, WalksInOrderAndAllowsErasingTheCurrentSlot) {
     SlotSet set(std::pmr::new_delete_resource());
     const auto walked = [&] {
         std::vector<uint32_t> slots;
@@ -127,7 +127,7 @@ TEST(SlotSet, WalksInOrderAndLetsTheOneItIsAtGo) {
     EXPECT_TRUE(walked().empty());
     for (const uint32_t slot : {999u, 0u, 63u, 64u, 640u, 64u}) set.insert(slot);
     EXPECT_EQ((std::vector<uint32_t>{0, 63, 64, 640, 999}), walked());
-    set.atLeast(3);  // keeps what there is
+    set.atLeast(3);  // keeps its members
     EXPECT_TRUE(set.contains(999));
     EXPECT_FALSE(set.contains(998));
     EXPECT_FALSE(set.contains(100000));
@@ -136,7 +136,7 @@ TEST(SlotSet, WalksInOrderAndLetsTheOneItIsAtGo) {
     EXPECT_EQ((std::vector<uint32_t>{64}), walked());
 }
 
-TEST(Memory, CountsAndGivesBackWhatWasAskedFor) {
+TEST(Memory, CountsAndReturnsAllocations) {
     struct Host {
         size_t size = 0, alignment = 0;
         bool refuse = false;
@@ -171,7 +171,7 @@ TEST(Memory, CountsAndGivesBackWhatWasAskedFor) {
     EXPECT_EQ(0u, own.bytes());
 }
 
-TEST(Error, TextsAreCutNotOverrun) {
+TEST(Error, TruncatesLongTexts) {
     const std::string longText(2000, 'x');
     try {
         fail(FW_ERROR_BAD_DATA, "%s", longText.c_str());
@@ -181,7 +181,7 @@ TEST(Error, TextsAreCutNotOverrun) {
     }
 }
 
-TEST(Log, NeverFormatsWhenNobodyListens) {
+TEST(Log, DoesNotFormatWithoutACallback) {
     const Log silent{FwCallbacks{}};
     silent.write(FW_LOG_ERROR, "%s", "nothing");
     std::string heard;
@@ -194,7 +194,7 @@ TEST(Log, NeverFormatsWhenNobodyListens) {
     EXPECT_EQ("23 of them", heard);
 }
 
-TEST(Hash, WordsAreOrderedAndSpread) {
+TEST(Hash, DependsOnWordOrder) {
     const uint32_t a[] = {1, 2, 3}, b[] = {3, 2, 1};
     EXPECT_NE(hashWords(a), hashWords(b));
     EXPECT_EQ(hashWords(a), hashWords(a));

@@ -1,6 +1,6 @@
-// Deformation, tiers B and C: sheets that curl, shrink, tear and fall, and the published springs.
-// The CPU's text of the passes' maths.
-#include "mesh/deform/solver.h"
+// Deformation of sheets: curling, shrinking, tearing and falling (XPBD), and the springs of the
+// reference implementation. The CPU reads the maths of the passes.
+#include "reference/deform_solver.h"
 
 #include "support/sanitized.h"
 #include "unit/mesh_checks.h"
@@ -86,7 +86,7 @@ struct Sheet {
         }
         return sum;
     }
-    // All of it per unit mass: speeds, and what links and bends could still do.
+    // Energy per unit mass: kinetic, and stored in links and bends.
     double energy() const {
         const double perStep = 1 / double(drive.step) / double(drive.step);
         double sum = kinetic();
@@ -102,7 +102,8 @@ struct Sheet {
                 sum += double(gpu::kLinkRelax) / 8 * over * over * perStep;
             }
             const float stiff = std::max(object.materials[0].bend, 1e-3f);
-            for (int kind = 0; kind < 2; ++kind) {  // of the step before, arms of one direction
+            for (int kind = 0; kind < 2;
+                 ++kind) {  // bending constraints of one direction, previous step
                 const vec3 bend = self.bend[kind];
                 const float relax = stiff * (kind ? gpu::kArmRelax : gpu::kBendRelax);
                 sum += double(gpu::dot(bend, bend)) / 2 / double(relax) * perStep;
@@ -110,7 +111,7 @@ struct Sheet {
         }
         return sum;
     }
-    // Of links between nodes that hold, longest over rest.
+    // Largest ratio of length to rest length over intact links.
     double stretch() const {
         double worst = 0;
         for (const gpu::DeformNode& node : model.nodes)
@@ -135,8 +136,8 @@ TEST(DeformSheet, StaysFlatWithoutFireOrForce) {
         ASSERT_LT(gpu::length(s.at(node) - vec3(node.x, node.y, node.z)), 1e-4f);
 }
 
-// From a crumpled start and without any input, motion only ever fades.
-TEST(DeformSheet, EnergyNeverGrowsOver10000Steps) {
+// From a crumpled start without input, energy only falls.
+TEST(DeformSheet, EnergyNeverGrows) {
     for (const float bend : {0.0f, 0.3f, 0.9f}) {
         gpu::DeformObject object = paper(0);
         for (gpu::DeformMaterial& m : object.materials) m.bend = bend;
@@ -149,7 +150,7 @@ TEST(DeformSheet, EnergyNeverGrowsOver10000Steps) {
         }
         double before = 1e30;
         for (int window = 0; window < rounds(40, 8); ++window) {
-            double energy = 0;  // it swings between its forms
+            double energy = 0;  // it swings between its shapes
             for (int i = 0; i < 50; ++i) {
                 s.run(5);
                 energy = std::max(energy, s.energy());
@@ -158,16 +159,15 @@ TEST(DeformSheet, EnergyNeverGrowsOver10000Steps) {
             ASSERT_LE(energy, before * 1.001 + 1e-5) << "window " << window << " bend " << bend;
             before = energy;
         }
-        if (kSanitized) continue;  // too soon
+        if (kSanitized) continue;  // windows too short to judge
         EXPECT_LT(before, 0.05);
         EXPECT_LT(s.kinetic(), 1e-3);
         EXPECT_LT(s.stretch(), 1.02);
     }
 }
 
-// A sheet that chars towards one edge, held at the other: how much nearer that edge comes to the
-// middle of the sheet, as a share, whichever way the rest swings; m that nodes leave the plane, at
-// most.
+// A sheet held at one edge chars towards the other. `share`: how much nearer that edge comes to the
+// sheet's middle. `lift`: m that particles leave the plane, at most.
 struct Curl {
     double nearer = 0, most = 0;
 };
@@ -193,7 +193,7 @@ Curl curlOf(float step, float curl) {
     return made;
 }
 
-TEST(DeformSheet, CharredPaperCurlsAndTheStepDoesNotMatter) {
+TEST(DeformSheet, CharredPaperCurlsAtAnyTimeStep) {
     const Curl flat = curlOf(kSheetStep, 0), curled = curlOf(kSheetStep, 60),
                finer = curlOf(kSheetStep / 2, 60);
     std::printf(
@@ -213,7 +213,7 @@ TEST(DeformSheet, CharredClothShrinks) {
     EXPECT_NEAR(0.8 * kPaper, side, 0.02 * kPaper);
 }
 
-// A hanging cloth holds its length; what is cut off below falls.
+// A hanging cloth keeps its length; the part cut off below falls.
 TEST(DeformSheet, HangsAndFallsWhenBurntOff) {
     gpu::DeformObject object = paper(0);
     pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
@@ -232,7 +232,7 @@ TEST(DeformSheet, HangsAndFallsWhenBurntOff) {
     EXPECT_GT(s.nearest({0.1f, 0.18f, 0}).y, 0.15f);
 }
 
-// Nothing holds it any more, and each of its nodes has neighbours that think otherwise.
+// Nothing holds the sheet any more, although each particle's neighbours still report support.
 TEST(DeformSheet, FallsAtOnceWhenItsPinsHaveBurnt) {
     gpu::DeformObject object = paper(0);
     pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
@@ -247,7 +247,7 @@ TEST(DeformSheet, FallsAtOnceWhenItsPinsHaveBurnt) {
     EXPECT_GT(fallen, 0.9f);
 }
 
-// m that a sheet in a strong wind bends by within 5 cm, in the mean of its nodes and of 4 s.
+// Mean bend (m) within 5 cm of a sheet in a strong wind, over its particles and 4 s.
 double bendsInWind(int cells, float stiffness, bool arms) {
     gpu::DeformObject object = paper(0);
     pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
@@ -287,8 +287,8 @@ double bendsInWind(int cells, float stiffness, bool arms) {
     return sum / known;
 }
 
-// Whatever its mesh; and cloth does not.
-TEST(DeformSheet, PaperResistsBendingFarBeyondItsCells) {
+// For every mesh resolution; cloth does not resist.
+TEST(DeformSheet, PaperResistsBendingBeyondItsMeshResolution) {
     const double rag = bendsInWind(24, 0.8f, false), paper = bendsInWind(24, 0.8f, true);
     const double fine = bendsInWind(rounds(40, 32), 0.8f, true),
                  cloth = bendsInWind(24, 0.03f, true);
@@ -299,8 +299,7 @@ TEST(DeformSheet, PaperResistsBendingFarBeyondItsCells) {
     EXPECT_GT(cloth, 1.5 * paper);
 }
 
-// From the moment that it is made: it neither drops until word of its pins reaches it nor is flung
-// back up then.
+// From creation on, the sheet neither drops before its pins are known nor is flung back afterwards.
 TEST(DeformSheet, PinsHoldFromTheFirstStep) {
     gpu::DeformObject object = paper(0);
     pin(object, {0, float(kPaper), 0}, {float(kPaper), float(kPaper), 0}, 0.001f);
@@ -316,7 +315,7 @@ TEST(DeformSheet, PinsHoldFromTheFirstStep) {
     EXPECT_LT(worst, 0.02f * float(kPaper));
 }
 
-TEST(DeformSheet, UnburntLinksNeverPart) {
+TEST(DeformSheet, UnburntLinksNeverBreak) {
     for (uint32_t a = 0; a < 50; ++a)
         for (uint32_t b = 0; b < 50; ++b) {
             const uint32_t odds = gpu::linkOdds(a, b);
@@ -328,7 +327,7 @@ TEST(DeformSheet, UnburntLinksNeverPart) {
         }
 }
 
-TEST(DeformSheet, AbsurdMeshesAreSurvived) {
+TEST(DeformSheet, AcceptsDegenerateMeshes) {
     for (uint32_t seed = 0; seed < 16; ++seed) {
         const Mesh soup = makeSoup(seed);
         if (!refusal(soup.input(32)).empty()) continue;
@@ -342,15 +341,16 @@ TEST(DeformSheet, AbsurdMeshesAreSurvived) {
         drive.wind = {30, -20, 10};
         for (gpu::ShownVertex& v : state.shown) v.burnt = 0.7f;
         for (int i = 0; i < 300; ++i) mesh::sheetStep(model, object, drive, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (const gpu::ShownVertex& v : state.shown)
             ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << seed;
     }
 }
 
-// ---- tier C
+// ---- springs of the reference implementation
 
-// A row of nodes with a spring between neighbours: the bound on its fastest motion is sharp.
+// A row of particles with springs between neighbours: the stability bound on the fastest mode is
+// sharp.
 double springSpread(float share) {
     constexpr uint32_t kNodes = 64;
     constexpr float kRest = 0.0625f;
@@ -388,13 +388,13 @@ double springSpread(float share) {
     return worst;
 }
 
-TEST(DeformSprings, StableBelowTheBoundAndNotAbove) {
+TEST(DeformSprings, AreStableBelowTheBoundAndNotAbove) {
     EXPECT_LT(springSpread(0.7f), 0.01);
     EXPECT_LT(springSpread(0.98f), 0.02);
     EXPECT_GT(springSpread(1.03f), 1.0);
 }
 
-TEST(DeformSprings, DecayPushesInwardsByWhatIsLost) {
+TEST(DeformSprings, DecayMovesInwardsByTheLostDepth) {
     const Mesh ball = makeCube(0.2, 8, true);
     const BurnDomain domain = bakeOf(ball.input(64));
     const DeformModel model = mesh::makeDeformModel(domain, std::pmr::new_delete_resource());

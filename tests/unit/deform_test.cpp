@@ -1,6 +1,6 @@
-// Deformation, tier A: which points move together, which way and how far, what is left of solids,
-// and when walls open. The same maths as the passes.
-#include "mesh/deform/solver.h"
+// Recession of solids: which vertices move together, direction and depth, remaining volume, and
+// when walls open. Uses the maths of the passes.
+#include "reference/deform_solver.h"
 
 #include "unit/mesh_checks.h"
 
@@ -23,7 +23,8 @@ DeformState restOf(const DeformModel& model) {
 }
 vec3 placeOf(const gpu::ShownVertex& v) { return {v.x, v.y, v.z}; }
 
-// One material: consumed after `seconds`, `depth` m deep then; holes of `hole` look seconds.
+// One material: consumed after `seconds` s, `depth` m deep by then, holes after `hole` s of
+// appearance time.
 gpu::DeformObject objectOf(float seconds, float depth, float hole = 0) {
     gpu::DeformObject object{};
     for (gpu::DeformMaterial& m : object.materials) {
@@ -34,7 +35,7 @@ gpu::DeformObject objectOf(float seconds, float depth, float hole = 0) {
     }
     return object;
 }
-// All real texels caught at tick 1.
+// Every covered texel caught at tick 1.
 std::vector<uint32_t> allLit(const BurnDomain& domain) {
     std::vector<uint32_t> states(domain.texelCount(), gpu::kInert);
     for (uint32_t i = 0; i < domain.texelCount(); ++i)
@@ -53,7 +54,7 @@ double volumeOf(const BurnDomain& domain, const DeformState& state) {
     return sum;
 }
 
-TEST(DeformMaths, Equation9PicksTheMip) {
+TEST(DeformMaths, PicksTheMipByEquation9) {
     EXPECT_EQ(0u, gpu::mipOfRing(16, 16));
     EXPECT_EQ(3u, gpu::mipOfRing(1024, 16));
     EXPECT_EQ(0u, gpu::mipOfRing(63, 16));
@@ -61,7 +62,7 @@ TEST(DeformMaths, Equation9PicksTheMip) {
     EXPECT_EQ(0u, gpu::mipOfRing(0, 16));
 }
 
-TEST(DeformMaths, NormalsTurnWithTheirFaces) {
+TEST(DeformMaths, NormalsRotateWithTheirFaces) {
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
     EXPECT_EQ(z, gpu::turnedNormal(z, y, y));
     EXPECT_NEAR(0, gpu::length(gpu::turnedNormal(x, x, y) - y), 1e-6f);
@@ -75,7 +76,7 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
     const Mesh box = makeCube(0.4, 4);
     const BurnDomain domain = bakeOf(box.input(64));
     const DeformModel model = modelOf(domain);
-    EXPECT_EQ(98u, model.nodes.size());  // 6 * 25, less 12 edges * 3, less 8 corners * 2 ...
+    EXPECT_EQ(98u, model.nodes.size());  // 6 * 25, less 12 edges * 3, less 8 corners * 2
     ASSERT_EQ(domain.vertices.size(), model.coats.size());
     for (const gpu::DeformNode& node : model.nodes) {
         const float at[3] = {node.x, node.y, node.z}, out[3] = {node.outX, node.outY, node.outZ};
@@ -91,8 +92,9 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
     }
 }
 
-// Arms are mutual and about as long as each other; what closes has none; nodes of a run agree.
-TEST(DeformModel, ArmsReachBothWaysAndRunsAgree) {
+// Bending constraints are mutual and of similar length; closed ones have none; particles of a run
+// agree.
+TEST(DeformModel, BendingConstraintsAreMutualAndRunsAgree) {
     const Mesh sheet = makeSheet(0.3, 20), ball = makeCube(0.3, 10, true);
     for (const Mesh* mesh : {&sheet, &ball}) {
         const BurnDomain domain = bakeOf(mesh->input(64));
@@ -124,7 +126,7 @@ TEST(DeformModel, ArmsReachBothWaysAndRunsAgree) {
     }
 }
 
-TEST(DeformTierA, VerticesSplitBySeamsNeverPart) {
+TEST(DeformTierA, VerticesSplitBySeamsStayTogether) {
     const Mesh sphere = randomUnwrap(makeCube(0.4, 12, true), 7, 20);
     const BurnDomain domain = bakeOf(sphere.input(128));
     const DeformModel model = modelOf(domain);
@@ -136,7 +138,7 @@ TEST(DeformTierA, VerticesSplitBySeamsNeverPart) {
     const gpu::DeformObject object = objectOf(60, 0.02f);
     for (uint32_t now = 1; now < 200 * kTicksPerSecond; now += 9 * kTicksPerSecond) {
         mesh::recede(model, object, states, now, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (uint32_t v = 0; v < domain.vertices.size(); ++v) {
             const gpu::ShownVertex& a = state.shown[v];
             const gpu::ShownVertex& b = state.shown[model.nodes[model.nodeOf[v]].vertex];
@@ -145,7 +147,7 @@ TEST(DeformTierA, VerticesSplitBySeamsNeverPart) {
     }
 }
 
-TEST(DeformTierA, AtRestNothingChanges) {
+TEST(DeformTierA, UnburntMeshesDoNotChange) {
     const Mesh sphere = makeCube(0.4, 8, true);
     const BurnDomain domain = bakeOf(sphere.input(64));
     const DeformModel model = modelOf(domain);
@@ -157,8 +159,8 @@ TEST(DeformTierA, AtRestNothingChanges) {
     }
 }
 
-// What is gone is what the burnt skin held: exact on flat faces, nearly so on round ones.
-TEST(DeformTierA, VolumeGoneIsFuelGone) {
+// The lost volume equals the burnt skin: exact on flat faces, close on round ones.
+TEST(DeformTierA, LostVolumeEqualsBurntFuel) {
     for (const bool sphere : {false, true}) {
         const Mesh mesh = makeCube(0.4, 16, sphere);
         const BurnDomain domain = bakeOf(mesh.input(64));
@@ -168,27 +170,27 @@ TEST(DeformTierA, VolumeGoneIsFuelGone) {
         const double depth = 0.004;
         mesh::recede(model, objectOf(60, float(depth)), allLit(domain), 1 + 60 * kTicksPerSecond,
                      state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         const double gone = before - volumeOf(domain, state);
         const double expected = domain.report.meshArea * depth;
         EXPECT_NEAR(expected, gone, (sphere ? 0.10 : 0.05) * expected) << sphere;
     }
 }
 
-TEST(DeformTierA, NeverThroughTheWallBehindAndNeverBack) {
+TEST(DeformTierA, NeverRecedesThroughTheFarWallOrBack) {
     const Mesh sphere = makeCube(0.2, 16, true);
     const BurnDomain domain = bakeOf(sphere.input(128));
     const DeformModel model = modelOf(domain);
     DeformState state = restOf(model);
     mesh::recede(model, objectOf(10, 1.0f), allLit(domain), 100 * kTicksPerSecond, state);
-    mesh::drape(model, state);
+    mesh::skinVertices(model, state);
     EXPECT_LT(0, volumeOf(domain, state));
     for (size_t i = 0; i + 2 < domain.indices.size(); i += 3) {
         const auto& n = domain.indices;
         const vec3 a = placeOf(state.shown[n[i]]);
         const vec3 face =
             gpu::cross(placeOf(state.shown[n[i + 1]]) - a, placeOf(state.shown[n[i + 2]]) - a);
-        ASSERT_LT(0, gpu::dot(face, a)) << i;  // still looks outwards
+        ASSERT_LT(0, gpu::dot(face, a)) << i;  // still faces outwards
     }
     const vec3 before = placeOf(state.shown[0]);
     std::vector<uint32_t> out(domain.texelCount(), gpu::kOut);
@@ -196,8 +198,8 @@ TEST(DeformTierA, NeverThroughTheWallBehindAndNeverBack) {
     EXPECT_EQ(before, placeOf(state.shown[0]));
 }
 
-// A slab that both sides eat at 0.65 mm/min: through in half the time, on both sides alike.
-TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
+// A slab eaten from both sides at 0.65 mm/min opens in half the time, on both sides together.
+TEST(DeformTierA, SlabsOpenOnBothSidesTogether) {
     constexpr float kSlab = 0.010f, kCharRate = 0.65e-3f / 60;
     Mesh mesh;
     constexpr int kCells = 12;
@@ -246,7 +248,7 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
     const size_t half = model.nodes.size() / 2;
     for (size_t i = 0; i < half; ++i) {
         ASSERT_NE(kNone, model.nodes[i].opposite);
-        // The rule itself, with both sides' own ticks.
+        // The rule, from both sides' own ticks.
         const float a = seconds(states[model.nodes[i].texels[0]]);
         const float b = seconds(states[model.nodes[i].opposite]);
         const float rule = std::max((whole + a + b) / 2, std::max(a, b));
@@ -255,7 +257,7 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
     }
     EXPECT_EQ(half, opened);
     EXPECT_LT(worst, 0.05);
-    // Both lit at once: 462 s on either side.
+    // Both lit together: 462 s on either side.
     const std::vector<uint32_t> together = allLit(domain);
     for (const gpu::DeformNode& node : model.nodes) {
         state = restOf(model);
@@ -267,7 +269,7 @@ TEST(DeformTierA, SlabOpensFromBothSidesAtOnce) {
     }
 }
 
-TEST(DeformModel, AbsurdMeshesAreSurvived) {
+TEST(DeformModel, AcceptsDegenerateMeshes) {
     for (uint32_t seed = 0; seed < 24; ++seed) {
         const Mesh soup = makeSoup(seed);
         if (!refusal(soup.input(32)).empty()) continue;
@@ -276,7 +278,7 @@ TEST(DeformModel, AbsurdMeshesAreSurvived) {
         DeformState state = restOf(model);
         std::vector<uint32_t> states = allLit(domain);
         mesh::recede(model, objectOf(5, 0.1f, 5), states, 50 * kTicksPerSecond, state);
-        mesh::drape(model, state);
+        mesh::skinVertices(model, state);
         for (const gpu::ShownVertex& v : state.shown)
             ASSERT_TRUE(std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z)) << seed;
     }

@@ -1,4 +1,4 @@
-// Every embedded shader is valid SPIR-V 1.0 and asks for no device feature: the Vulkan 1.0 floor.
+// Every embedded shader is valid SPIR-V 1.0 that needs no device feature (Vulkan 1.0).
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -19,7 +19,7 @@ constexpr std::uint32_t kMagic = 0x07230203u;
 constexpr std::uint32_t kVersion10 = 0x00010000u;
 constexpr std::size_t kHeaderWords = 5;
 constexpr std::uint32_t kOpCapability = 17;
-// Capabilities that Vulkan 1.0 gives without any feature enabled.
+// Capabilities of Vulkan 1.0 without any feature.
 const std::set<std::uint32_t> kFreeCapabilities{
     0,   // Matrix
     1,   // Shader
@@ -34,7 +34,7 @@ const std::set<std::uint32_t> kFreeCapabilities{
 TEST(EmbeddedShaders, NamesAreUniqueAndFound) {
     std::set<std::string> names;
     for (const ShaderCode& shader : embeddedShaders()) {
-        EXPECT_TRUE(names.insert(shader.name).second) << shader.name << " is there twice";
+        EXPECT_TRUE(names.insert(shader.name).second) << shader.name << " is embedded twice";
         EXPECT_EQ(fw::gpu::findShader(shader.name), &shader);
     }
     EXPECT_EQ(fw::gpu::findShader("no such shader.comp"), nullptr);
@@ -55,7 +55,7 @@ TEST(EmbeddedShaders, NeedNoDeviceFeature) {
     }
 }
 
-// Drivers warn of each when they make a pipeline, though the validator allows some of them.
+// Drivers warn about each at pipeline creation, though the validator accepts some.
 TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
     // SpecId, Block, BufferBlock, ArrayStride, GLSLShared, GLSLPacked, CPacked, Invariant,
     // Restrict, Aliased, Constant, Index, Binding, DescriptorSet, LinkageAttributes, NoContraction,
@@ -79,7 +79,7 @@ TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
 TEST(EmbeddedShaders, PassTheValidator) {
     if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
     if (std::system("command -v spirv-val >/dev/null") != 0)
-        GTEST_SKIP() << "spirv-val is not here";
+        GTEST_SKIP() << "spirv-val is not installed";
     const std::filesystem::path file =
         std::filesystem::path(::testing::TempDir()) / "flamewright_shader.spv";
     for (const ShaderCode& shader : embeddedShaders()) {

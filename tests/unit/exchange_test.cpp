@@ -1,5 +1,5 @@
-// What flames send across a distance: radiation and plume against their formulas, boxes in the way,
-// who may light whom, embers, and the contacts of two meshes.
+// Heat transfer between objects: radiation and plume against their formulas, occluder boxes, spread
+// limits, embers, contacts.
 #include "components/remote.h"
 #include "fire/presets.h"
 #include "flamewright/flamewright_debug.h"
@@ -35,7 +35,7 @@ gpu::FireSource sourceOf(uint32_t watts, uint32_t diameter) {
     return s;
 }
 
-TEST(Exchange, ThePowerOfTwoFifths) {
+TEST(Exchange, ComputesThePowerOfTwoFifths) {
     EXPECT_EQ(0u, gpu::power04(0));
     double worst = 0;
     for (double x = 1; x < 4.2e9; x *= 1.037) {
@@ -46,7 +46,7 @@ TEST(Exchange, ThePowerOfTwoFifths) {
     EXPECT_LT(worst, 0.006);
 }
 
-TEST(Exchange, AFlameIsAsTallAsHeskestadSays) {
+TEST(Exchange, FlameHeightMatchesHeskestad) {
     for (const double kilowatts : {2.0, 30.0, 500.0, 20000.0}) {
         for (const double diameter : {0.05, 0.3, 1.0}) {
             const double tall = 0.235 * std::pow(kilowatts, 0.4);
@@ -59,7 +59,7 @@ TEST(Exchange, AFlameIsAsTallAsHeskestadSays) {
     EXPECT_NEAR(1128.4, double(gpu::fireDiameter(1000000)), 1.0);
 }
 
-TEST(Exchange, RadiationFallsWithTheSquareAndTheCosine) {
+TEST(Exchange, RadiationFollowsInverseSquareAndCosine) {
     const gpu::FireSource s = sourceOf(100000, 400);
     for (const double metres : {3.0, 5.0, 10.0, 20.0}) {
         const double half = s.place.w / 2000.0;
@@ -75,7 +75,7 @@ TEST(Exchange, RadiationFallsWithTheSquareAndTheCosine) {
         EXPECT_NEAR(expected, gpu::radiantFlux(s, kUp, at, ivec3(4096, 0, 0), true),
                     3 + expected * 0.02);
     }
-    // Near, a row of four: bounded by the least distance.
+    // Near the fire, a row of four points, bounded by the least distance.
     double sum = 0;
     const double x = 0.35;
     for (int i = 0; i < 4; ++i) {
@@ -89,7 +89,7 @@ TEST(Exchange, RadiationFallsWithTheSquareAndTheCosine) {
     EXPECT_EQ(0u, gpu::radiantFlux(s, kUp, ivec3(40000, 0, 0), ivec3(-4096, 0, 0), false));
 }
 
-TEST(Exchange, APlumeIsAsHotAsMcCaffreySays) {
+TEST(Exchange, PlumeTemperatureMatchesMcCaffrey) {
     for (const double kilowatts : {1.0, 30.0, 1000.0}) {
         const uint32_t scale = gpu::power04(uint32_t(kilowatts * 1000));
         double before = 1e9;
@@ -104,7 +104,7 @@ TEST(Exchange, APlumeIsAsHotAsMcCaffreySays) {
             before = rise;
         }
     }
-    // It is as wide as it should be, cools who is hotter not at all, and stays above the fire.
+    // The plume has the right width, never cools a hotter surface, and stays above the fire.
     const gpu::FireSource s = sourceOf(50000, 300);
     const uint32_t ambient = 293 * 16;
     const auto flux = [&](int x, int y, uint32_t heat) {
@@ -139,7 +139,7 @@ components::Pose randomPose(std::mt19937& random, float reach) {
     return pose;
 }
 
-TEST(Exchange, ABoxCutsTheWayAsInRealNumbers) {
+TEST(Exchange, OccluderBoxesAgreeWithRealArithmetic) {
     std::mt19937 random(5);
     uint32_t cut = 0, open = 0, near = 0;
     for (int i = 0; i < 20000; ++i) {
@@ -151,9 +151,9 @@ TEST(Exchange, ABoxCutsTheWayAsInRealNumbers) {
         int end[2][3];
         for (auto& p : end)
             for (int& value : p) value = int(random() % 8000) - 4000;
-        const bool told = gpu::blockerCuts(blocker, ivec3(end[0][0], end[0][1], end[0][2]),
-                                           ivec3(end[1][0], end[1][1], end[1][2]));
-        // Clipped in doubles, with the ends taken off; `slack` widens or shrinks the box.
+        const bool isCut = gpu::blockerCuts(blocker, ivec3(end[0][0], end[0][1], end[0][2]),
+                                            ivec3(end[1][0], end[1][1], end[1][2]));
+        // Clipped in doubles without the ray's ends; `slack` grows or shrinks the box.
         const auto cuts = [&](double slack) {
             double a[3], d[3], length = 0;
             for (int k = 0; k < 3; ++k) {
@@ -187,15 +187,15 @@ TEST(Exchange, ABoxCutsTheWayAsInRealNumbers) {
             ++near;
             continue;
         }
-        EXPECT_EQ(surely, told) << i;
-        ++(told ? cut : open);
+        EXPECT_EQ(surely, isCut) << i;
+        ++(isCut ? cut : open);
     }
     EXPECT_GT(cut, 3000u);
     EXPECT_GT(open, 3000u);
     EXPECT_LT(near, 3000u);
 }
 
-TEST(Exchange, WhoLitItDoesNotDependOnOrder) {
+TEST(Exchange, TheReportedSourceDoesNotDependOnOrder) {
     EXPECT_EQ(0u, gpu::hopsOf(0));
     EXPECT_EQ(gpu::kNoneTexel, gpu::giverOf(gpu::kLitByHand));
     std::mt19937 random(7);
@@ -217,12 +217,12 @@ TEST(Exchange, WhoLitItDoesNotDependOnOrder) {
     EXPECT_NEAR(5000, may, 250);
 }
 
-TEST(Exchange, AContactTakesItsTimeFromTheLaterOfFireAndTouch) {
+TEST(Exchange, ContactTimeStartsAtTheLaterOfFireAndTouch) {
     const uint32_t now = 100000, never = gpu::kNever;
     EXPECT_EQ(never, gpu::contactTick(gpu::kNever, 8192, 400, 0, now));
     EXPECT_EQ(never, gpu::contactTick(gpu::kOutWet, 8192, 400, 0, now));
     EXPECT_EQ(99480u + 500, gpu::contactTick(99480, 8192, 500, 0, now));
-    EXPECT_EQ(now, gpu::contactTick(99000, 8192, 400, 0, now));  // it might have long ago
+    EXPECT_EQ(now, gpu::contactTick(99000, 8192, 400, 0, now));  // long overdue
     EXPECT_EQ(99550u + 400, gpu::contactTick(99000, 8192, 400, 99550, now));
     EXPECT_EQ(never, gpu::contactTick(99480, 8192, 600, 0, now));  // not yet
     EXPECT_EQ(never, gpu::contactTick(99500, 8192, 100, 0, now));  // lit since the last exchange
@@ -230,9 +230,9 @@ TEST(Exchange, AContactTakesItsTimeFromTheLaterOfFireAndTouch) {
     EXPECT_EQ(never, gpu::contactTick(10000, 8192, 400, 99550, now));  // touched too late
 }
 
-TEST(Exchange, EmbersComeAtTheirRateAndLandDownwind) {
+TEST(Exchange, EmbersFollowTheirRateAndLandDownwind) {
     const gpu::FireSource s = sourceOf(30000, 300);
-    // 0.06 a second: of 1/16 W and eight times a second, Q32.
+    // 0.06 per second, from 1/16 W eight times a second, in Q32.
     const double perExchange = 0.06 / 8;
     const auto brands = uint32_t(perExchange / (30000.0 * 16) * 4294967296.0);
     uint32_t sent = 0;
@@ -280,7 +280,7 @@ struct Placed {
     }
 };
 
-TEST(Exchange, PlacesAreRightToAMillimetre) {
+TEST(Exchange, PlacesAreExactToAMillimetre) {
     std::mt19937 random(3);
     for (int i = 0; i < 40; ++i) {
         components::Pose pose = randomPose(random, 100);
@@ -305,17 +305,17 @@ TEST(Exchange, PlacesAreRightToAMillimetre) {
     }
 }
 
-TEST(Exchange, TilesKnowTheirMiddlesNormalsAndCells) {
+TEST(Exchange, TilesHaveCentresNormalsAndCells) {
     const Placed placed(makeCube(0.6, 3), 64, {});
     std::pmr::vector<gpu::RemoteTile> tiles;
     const uint32_t cells = mesh::remoteTiles(placed.domain, tiles);
     EXPECT_EQ(cells, mesh::sourceCells(placed.domain));
     EXPECT_GE(cells, 20u);
-    EXPECT_LE(cells, 27u);  // a grid of 3, hollow
+    EXPECT_LE(cells, 27u);  // a hollow grid of 3 x 3 x 3
     uint32_t texels = 0, seen = 0;
     for (const gpu::RemoteTile& tile : tiles) {
         texels += tile.texels;
-        if (tile.texels < 64) continue;  // inside one face
+        if (tile.texels < 64) continue;  // tiles that lie within one face
         ++seen;
         EXPECT_LT(gpu::tileCell(tile), cells);
         const ivec3 n = gpu::decodeNormal(tile.normal);
@@ -329,7 +329,7 @@ TEST(Exchange, TilesKnowTheirMiddlesNormalsAndCells) {
     EXPECT_GT(seen, 10u);
 }
 
-// Two sheets of one mesh that face each other, and a third one far away.
+// Two facing sheets of one mesh, and a third far away.
 Mesh facing(double gap) {
     Mesh mesh = makePlane(0.4, 0.3, 0, 1, 0, 3);
     const auto add = [&](double z, double v) {
@@ -345,7 +345,7 @@ Mesh facing(double gap) {
     return mesh;
 }
 
-TEST(Exchange, PartsOfAMeshKnowWhereTheyAreNear) {
+TEST(Exchange, PartsOfAMeshFindTheirNearParts) {
     for (const double density : {24.0, 64.0, 200.0})
         for (const double gap : {0.001, 0.02, 0.045, 0.06}) {
             const Placed placed(facing(gap), density, {});
@@ -380,21 +380,21 @@ TEST(Exchange, PartsOfAMeshKnowWhereTheyAreNear) {
                 EXPECT_NEAR(gap, std::fabs(p.z - q.z), 2e-3);
                 EXPECT_LT(glm::length(p - q), gap + 0.5 / density + 2e-3) << density << " " << gap;
             }
-            EXPECT_EQ(blocks, links) << density << " " << gap;  // every one of both sheets
+            EXPECT_EQ(blocks, links) << density << " " << gap;  // one link per block of both sheets
             EXPECT_GT(links, 15u);
         }
-    // One part alone has nobody to light, however near its own sides are.
+    // A single part links to nothing, however near its own sides are.
     EXPECT_TRUE(Placed(makeCube(0.03, 2), 200, {}).domain.partLinks.empty());
 }
 
-TEST(Exchange, FireIsPastAGapOnceAnOrdinaryLinkWouldBe) {
+TEST(Exchange, FireCrossesAGapInTheTimeOfAnOrdinaryLink) {
     const uint32_t now = 100 * gpu::kExchangeTicks;
     EXPECT_FALSE(gpu::partCrossed(gpu::kNever, 9999, 10, now));
-    EXPECT_FALSE(gpu::partCrossed(now - gpu::kExchangeTicks, 9999, 10, now));  // lit too lately
+    EXPECT_FALSE(gpu::partCrossed(now - gpu::kExchangeTicks, 9999, 10, now));  // lit too recently
     EXPECT_TRUE(gpu::partCrossed(now - gpu::kExchangeTicks - 1, 9999, 10, now));
     EXPECT_FALSE(gpu::partCrossed(now - 2000, 9999, 2001, now));
     EXPECT_TRUE(gpu::partCrossed(now - 2000, 9999, 2000, now));
-    EXPECT_FALSE(gpu::partCrossed(now - 2000, 1999, 2000, now));  // out by then
+    EXPECT_FALSE(gpu::partCrossed(now - 2000, 1999, 2000, now));  // burnt out by then
     for (const uint32_t delay : {0u, 1u, 511u, 512u, 513u, 5000u})
         for (uint32_t lit = now; lit < now + 1024; lit += 37) {
             uint32_t at = now;
@@ -403,11 +403,11 @@ TEST(Exchange, FireIsPastAGapOnceAnOrdinaryLinkWouldBe) {
         }
 }
 
-TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
+TEST(Exchange, ContactsAreTheNearestTexelsWithinTheGap) {
     std::mt19937 random(11);
     for (const float gap : {0.0f, 0.02f, 0.045f, 0.06f}) {
         components::Pose a = randomPose(random, 3), b = a;
-        // Beside it along its own z.
+        // Next to it along its own z.
         for (int r = 0; r < 3; ++r) b.translation[r] = a.translation[r] + a.rotation[r][2] * gap;
         const Placed one(makePlane(0.4, 0.3), 64, a), two(makePlane(0.4, 0.3), 64, b);
         mesh::Contacts search(std::pmr::get_default_resource());
@@ -426,19 +426,19 @@ TEST(Exchange, ContactsAreNearestTexelsWithinTheGap) {
             EXPECT_NEAR(double(gap) * 1000, contact.gap, 8);
         }
         mesh::findContacts({{&one.domain, &one.place, 0}, {&two.domain, &two.place, 1}}, search);
-        EXPECT_TRUE(contacts.empty());  // it cannot burn
+        EXPECT_TRUE(contacts.empty());  // noncombustible
     }
 }
 
-// Each block of 4 x 4 texels has the nearest pair: of equals the first texel of the block, then of
-// the other's texels the one in the first cell of 50 mm, then the first.
+// Each block of 4 x 4 texels has its nearest pair. Ties: the first texel of the block, then the
+// first 50 mm cell of the other mesh, then its first texel.
 TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
     std::mt19937 random(17);
     const auto cellOf = [](int mm) { return mm >= 0 ? mm / 50 : -((49 - mm) / 50); };
     size_t contacts = 0, ties = 0;
     for (int round = 0; round < 8; ++round) {
         components::Pose poses[2];
-        if (round < 4) {  // side by side, so that many pairs are equally near
+        if (round < 4) {  // side by side, with many equally near pairs
             poses[1].translation[0] = 0.05f * float(round) - 0.02f;
         } else {
             for (components::Pose& pose : poses) pose = randomPose(random, 0.1f);
@@ -455,13 +455,13 @@ TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
                 const mesh::TexelPosition& p = box.domain.texels[texel];
                 return gpu::remotePlace(box.place, ivec3(p.x, p.y, p.z));
             };
-            std::map<uint32_t, mesh::Contact> found;  // by its texel's block
+            std::map<uint32_t, mesh::Contact> found;  // by block of its texel
             const auto blockOf = [&](uint32_t texel) {
                 return texel / to.domain.width / 4 * 4096 + texel % to.domain.width / 4;
             };
             for (const mesh::Contact& contact : search.found[side])
                 found[blockOf(contact.texel)] = contact;
-            EXPECT_EQ(search.found[side].size(), found.size()) << "one for each block";
+            EXPECT_EQ(search.found[side].size(), found.size()) << "one contact per block";
             std::map<uint32_t, std::array<int64_t, 6>> nearest;  // square, texel, cell, texel
             for (uint32_t a = 0; a < to.domain.texelCount(); ++a) {
                 if (!to.domain.real(a) || to.domain.slowness[a] == 0) continue;
@@ -491,7 +491,7 @@ TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
     EXPECT_GT(ties, 100u);
 }
 
-// Twelve sheets that burn fiercely, upwind of coarse ones on which many embers come down at once.
+// Twelve fiercely burning sheets upwind of coarse ones on which many embers land at once.
 class EmberRain {
  public:
     explicit EmberRain(uint32_t switches) {
@@ -526,7 +526,7 @@ class EmberRain {
     void add(const Mesh& mesh, float texels, FwMaterialId material, float x, float y, float z) {
         FwBurnableMeshDef def = plainBurnableDef(world_->createMesh(plainMeshDef(mesh, texels)));
         def.materials[0] = material;
-        def.transform[0] = def.transform[9] = def.transform[15] = 1;  // lies, face up
+        def.transform[0] = def.transform[9] = def.transform[15] = 1;  // lies face up
         def.transform[6] = -1;
         def.transform[12] = x, def.transform[13] = y, def.transform[14] = z;
         (void)world_->createBurnableMesh(def);
@@ -539,8 +539,9 @@ class EmberRain {
     uint64_t frame_ = 0;
 };
 
-// Devices run the threads of a dispatch in any order, and hosts hear of who lit what, and where.
-TEST(Exchange, EmbersDoTheSameInWhateverOrderTheyComeDown) {
+// Devices run the threads of a dispatch in any order, and hosts hear the source and place of each
+// ember.
+TEST(Exchange, EmbersDoNotDependOnTheirOrder) {
     EmberRain inOrder(0), shuffled(FW_DEBUG_SHUFFLE);
     uint32_t spots = 0;
     for (int step = 0; step < 320; ++step) {

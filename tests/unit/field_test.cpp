@@ -1,7 +1,6 @@
-// Particle fields, by the numbers: nothing is lost or made, forces and spreading move particles as
-// far as they say, nothing prefers a side, a flat field stays flat.
-#include "field/field.h"
+// Particle fields: conservation, displacement by forces and spreading, isotropy, flatness.
 #include "core/error.h"
+#include "reference/field_scene.h"
 #include "support/sanitized.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +30,7 @@ FieldRules stillRules(uint32_t width, uint32_t height) {  // nothing moves, dies
 }
 
 struct Moments {
-    double x = 0, y = 0, variance = 0;  // of both axes together, cells^2
+    double x = 0, y = 0, variance = 0;  // variance over both axes, cells^2
 };
 Moments momentsOf(const Field& field) {
     Moments m;
@@ -60,8 +59,8 @@ double deviationOf(const Field& field) {
     return std::sqrt(squares / count - sum / count * sum / count);
 }
 
-// All that moves at once, among walls, with two open sides: every particle is somewhere.
-TEST(Field, NoParticleIsLostOrMade) {
+// Everything moves at once among walls, with two open sides: every particle is accounted for.
+TEST(Field, ConservesParticles) {
     for (const uint32_t preset : {0u, 1u, 2u}) {
         FieldDef def;
         def.width = 12, def.height = 16;
@@ -75,7 +74,7 @@ TEST(Field, NoParticleIsLostOrMade) {
         std::vector<uint8_t> masks(field.masks.size());
         for (uint8_t& mask : masks) mask = random() % 7 == 0 ? fw::gpu::kFieldWall : 0;
         maskField(field, masks);
-        const uint32_t steps = rounds(34000u, 300u);  // 10^5 of all three
+        const uint32_t steps = rounds(34000u, 300u);  // 10^5 over all three
         for (uint32_t s = 0; s < steps; ++s) {
             if (s % 100 == 0) rules.forceX = int(random() % 800) - 400;
             stepField(field, rules);
@@ -91,23 +90,23 @@ TEST(Field, NoParticleIsLostOrMade) {
     }
 }
 
-TEST(Field, ClosedFieldsKeepWhatTheyHold) {
+TEST(Field, ClosedFieldsConserveTheirContent) {
     FieldDef def;
     def.width = def.height = 32;
     def.open = 0;
     FieldRules rules = fieldRules(def);
     rules.death = 0;
     Field field = fieldOf(32, 32);
-    for (uint32_t i = 0; i < 4; ++i) fillCell(field, 5, 5 + i, 32000 + i);  // next to no room
+    for (uint32_t i = 0; i < 4; ++i) fillCell(field, 5, 5 + i, 32000 + i);  // nearly full cells
     for (int s = 0; s < 1000; ++s) stepField(field, rules);
     EXPECT_EQ(total(field), 128006u);
     EXPECT_EQ(field.left, 0u);
-    // It rises: half of the field holds nearly all of it.
+    // It rises: the upper half holds nearly all of it.
     EXPECT_GT(momentsOf(field).y, 20);
 }
 
-// A force of one cell a step, in any direction.
-TEST(Field, ForcesMoveAsFarAsTheySay) {
+// A force of one cell per step in any direction.
+TEST(Field, ForcesMoveByTheStatedDistance) {
     const std::pair<double, double> expected[] = {{0, 0.99},  {11.25, 0.94}, {22.5, 0.93},
                                                   {45, 0.99}, {135, 0.99},   {270, 0.99}};
     for (const auto& [degrees, speed] : expected) {
@@ -129,9 +128,10 @@ TEST(Field, ForcesMoveAsFarAsTheySay) {
     }
 }
 
-// A blob in emptiness: its variance grows by what flows to the eight times their distance squared.
+// A blob in an empty field: its variance grows by the flow to eight neighbours times their squared
+// distance.
 TEST(Field, SpreadingWidensABlob) {
-    for (const uint32_t spread : {2048u, 4096u}) {  // a 16th, an 8th
+    for (const uint32_t spread : {2048u, 4096u}) {  // 1/16, 1/8
         FieldRules rules = stillRules(64, 64);
         rules.spread = spread;
         Field field = fieldOf(64, 64);
@@ -143,8 +143,8 @@ TEST(Field, SpreadingWidensABlob) {
     }
 }
 
-// The trap of shares that are normalised to 1: a flat field must not grow peaks.
-TEST(Field, FlatStaysFlat) {
+// Shares normalised to 1 must not make peaks in a flat field.
+TEST(Field, FlatFieldsStayFlat) {
     for (const uint32_t spread : {1024u, 2048u, 4096u}) {
         FieldRules rules = stillRules(32, 32);
         rules.spread = spread;
@@ -161,9 +161,8 @@ TEST(Field, FlatStaysFlat) {
     }
 }
 
-// A symmetric start stays where it is, but for what chance does to so many particles; over ten
-// seeds there is no side that it prefers.
-TEST(Field, NoSideIsPreferred) {
+// A symmetric start stays centred but for random fluctuation; over ten seeds no side is preferred.
+TEST(Field, IsIsotropic) {
     double meanX = 0, meanY = 0;
     constexpr int kSteps = 50;
     constexpr uint32_t kCount = 6250;
@@ -188,7 +187,7 @@ TEST(Field, NoSideIsPreferred) {
     EXPECT_LT(std::hypot(meanX, meanY), bound / std::sqrt(10.0));
 }
 
-TEST(Field, ChanceHasNoDirection) {
+TEST(Field, RandomMotionIsUnbiased) {
     double x = 0, y = 0, shortest = 1e9, longest = 0;
     uint32_t count = 0, octants[8] = {};
     for (uint32_t step = 0; step < 400; step += 4)
@@ -210,8 +209,8 @@ TEST(Field, ChanceHasNoDirection) {
     for (const uint32_t octant : octants) EXPECT_NEAR(octant, count / 8.0, 0.06 * count / 8.0);
 }
 
-// What motion remembers carries a puff on when nothing pushes it any longer.
-TEST(Field, MotionIsRemembered) {
+// Remembered motion carries a puff on after the force ends.
+TEST(Field, RemembersMotion) {
     double way[2] = {};
     for (const uint32_t memory : {0u, 1u}) {
         FieldRules rules = stillRules(64, 16);
@@ -230,7 +229,7 @@ TEST(Field, MotionIsRemembered) {
     EXPECT_LT(way[1], 19);
 }
 
-// Where each preset's particles are after a while: fire and smoke above their source, water below.
+// Fire and smoke end above their source, water below.
 TEST(Field, PresetsRiseAndFall) {
     double height[kFieldPresets], lit[kFieldPresets];
     for (uint32_t p = 0; p < kFieldPresets; ++p) {
@@ -250,30 +249,6 @@ TEST(Field, PresetsRiseAndFall) {
     EXPECT_GT(height[1], height[0] + 5);
     EXPECT_LT(height[2], 32);
     for (const double sum : lit) EXPECT_GT(sum, 1000);
-}
-
-TEST(Field, BadDefsAreNamed) {
-    const auto said = [](FieldDef def) {
-        try {
-            checkField(def);
-        } catch (const fw::core::Error& error) {
-            return std::string(error.message);
-        }
-        return std::string();
-    };
-    FieldDef def;
-    EXPECT_EQ(said(def), "");
-    def.width = 3;
-    EXPECT_EQ(said(def), "width is 3; it must lie in [4, 256].");
-    def = {};
-    def.look.life = 0;
-    EXPECT_EQ(said(def), "look.life is 0; it must lie in [0.01, 1e+06].");
-    def = {};
-    def.look.chaos = std::nanf("");
-    EXPECT_NE(said(def).find("look.chaos is"), std::string::npos);
-    def = {};
-    def.open = 32;
-    EXPECT_EQ(said(def), "open is 32; it holds five bits, up to 31.");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The flames that volumetric fires burn as, below the world: room, divisions, frames that fail, and
-// as what a view shows each of them.
+// Flames of volumetric fires: capacity, division, failed frames, and the tier that a view gives
+// each of them.
 #include "components/fire_flames.h"
 #include "gpu/passes/draw.h"
 #include "gpu/passes/volume_books.h"
@@ -42,12 +42,12 @@ struct Burning {
     }
 };
 
-TEST(FireFlames, AFrameThatFailsChangesNothing) {
+TEST(FireFlames, AFailedFrameChangesNothing) {
     Burning once(60, 0.6f), twice(60, 0.6f);
     for (Burning* b : {&once, &twice}) b->flames.findRoom(1);
     for (int k = 0; k < 20; ++k) {
         once.frame(1.0f / 32);
-        twice.plan(0.4f);  // not taken
+        twice.plan(0.4f);  // planned and not committed
         twice.frame(1.0f / 32);
     }
     ASSERT_EQ(1u, once.flames.now().size());
@@ -55,7 +55,7 @@ TEST(FireFlames, AFrameThatFailsChangesNothing) {
     EXPECT_EQ(once.fire.state.intensity, twice.fire.state.intensity);
 }
 
-TEST(FireFlames, FlamesWithoutRoomAreLeftOut) {
+TEST(FireFlames, FlamesBeyondTheCapacityAreOmitted) {
     Burning b(10, 2);
     ASSERT_LT(8u, b.fire.partCount);
     EXPECT_EQ(5u, b.flames.findRoom(5));
@@ -66,9 +66,9 @@ TEST(FireFlames, FlamesWithoutRoomAreLeftOut) {
     EXPECT_EQ(b.fire.partCount, b.flames.now().size());
 }
 
-// Where one flame becomes many, the new ones grow while the old one dies down, and the sum of their
-// power never leaps.
-TEST(FireFlames, ADivisionIsNoLeap) {
+// When one flame divides, the new ones grow while the old one dies down, and the total power never
+// jumps.
+TEST(FireFlames, DivisionKeepsThePowerContinuous) {
     Burning b(600, 1.3f);
     b.flames.findRoom(128);
     b.frame(1.0f / 32);
@@ -87,8 +87,8 @@ TEST(FireFlames, ADivisionIsNoLeap) {
     EXPECT_NEAR(before, 8, 0.1f);
 }
 
-// A view marches 32 flames at most and shows small ones as cards; what a flame is it stays while
-// its size wavers about a border, and it goes over in steps.
+// A view marches at most 32 flames and shows small ones as billboards. A flame keeps its tier while
+// its size wavers about a limit and changes by steps.
 TEST(VolumeTiers, AFlameKeepsItsTier) {
     gpu::TierLives lives{};
     std::vector<gpu::TierItem> items(256);
@@ -106,7 +106,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
     EXPECT_EQ(224u, count(FW_FIRE_TIER_IMPOSTOR));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[255]].tier);
-    // Others become a little larger: none changes.
+    // Others grow a little: no tier changes.
     for (uint32_t i = 0; i < items.size(); ++i) items[i].covers = 1.0f - 0.0005f * float(i);
     frame();
     for (uint32_t i = 224; i < 256; ++i)
@@ -136,7 +136,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
         EXPECT_NEAR(part, life.part(), 1.01f / float(gpu::kTierFrames));
         part = life.part();
     }
-    // What is asked for it is; without room for its card it is marched.
+    // A requested tier is used; without room for its billboard the flame is marched.
     items[0].asked = FW_FIRE_TIER_MARCH_LOW;
     for (int k = 0; k < 40; ++k) frame();
     EXPECT_EQ(gpu::kLowSteps, lives[places[0]].steps);
@@ -145,9 +145,9 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     EXPECT_TRUE(lives[places[0]].marched());
 }
 
-// Flames that are alike and too many to be marched, or of few pixels, show a book of one of them;
-// what has none, or alone, is as it was.
-TEST(VolumeTiers, FlamesAlikeShareABook) {
+// Similar flames that are too many to march, or small ones, share an impostor atlas. A flame alone
+// or without an atlas is unchanged.
+TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
     gpu::TierLives lives{};
     std::vector<gpu::TierItem> items(64);
     std::vector<uint32_t> places(items.size());
@@ -166,12 +166,12 @@ TEST(VolumeTiers, FlamesAlikeShareABook) {
     EXPECT_EQ(16u, count(FW_FIRE_TIER_FLIPBOOK));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_IMPOSTOR));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
-    // The device's budget is theirs, too.
+    // The device's budget limits them too.
     for (int k = 0; k < 40; ++k)
         gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {4, 8}, lives, places);
     EXPECT_EQ(28u, count(FW_FIRE_TIER_FLIPBOOK));
 
-    // By size: a book from 24 px on down, kept up to 31; a card below 10, kept up to 13.
+    // By size: an impostor below 24 px, kept up to 31; a billboard below 10, kept up to 13.
     items.resize(2);
     const auto settle = [&](float wide) {
         items[0].wide = items[1].wide = wide;
@@ -181,25 +181,25 @@ TEST(VolumeTiers, FlamesAlikeShareABook) {
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookInside + 1));
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookInside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[1]].tier) << "it has none";
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[1]].tier) << "it has no impostor";
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookOutside - 1));
     EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardInside - 1));
     EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardOutside - 1));
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
-    items[0].shared = false;  // it keeps what it has, and takes none anew
+    items[0].shared = false;  // it keeps its impostor and takes no other
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kCardOutside + 1));
-    // What asks for one gets it, or a card.
+    // A flame that requests an impostor gets it, or a billboard.
     items[0].asked = FW_FIRE_TIER_FLIPBOOK;
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(100));
     items[0].booked = false;
     EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(100));
 }
 
-// Which flames are alike, and how each reads its book: late by an amount of its own, page by page,
-// and over to another flame's pages little by little.
-TEST(VolumeTiers, ABookIsReadPageByPage) {
+// Similar flames read one atlas, each delayed by its own amount, frame by frame, and fade over to
+// another flame's frames.
+TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     constexpr uint32_t kFlames = 12;
     auto books = std::make_unique<gpu::VolumeBookShelf>();
     std::vector<gpu::BookItem> items(kFlames);
@@ -225,20 +225,20 @@ TEST(VolumeTiers, ABookIsReadPageByPage) {
     };
     for (uint32_t i = 0; i < kFlames; ++i) readers[i].key = items[i].key;
     frame();
-    EXPECT_EQ(103u, (*books)[0].key) << "the largest";
+    EXPECT_EQ(103u, (*books)[0].key) << "the largest flame";
     EXPECT_EQ(8u, (*books)[0].shares);
     EXPECT_EQ(gpu::kNoBook, out[11]);
-    // Of two books the second goes to the first that has none.
+    // With two impostors the second goes to the first flame without one.
     EXPECT_EQ(108u, (*books)[1].key);
-    EXPECT_EQ(gpu::kNoBook, out[9]) << "there are but two";
+    EXPECT_EQ(gpu::kNoBook, out[9]) << "there are only two";
     for (int k = 0; k < 40; ++k) frame();
     std::set<uint64_t> late;
     for (uint32_t i = 0; i < 8; ++i) late.insert((*books)[0].written - 1 - readers[i].at);
     EXPECT_GE(late.size(), 6u);
-    EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own pages as they come";
+    EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own frames as they are written";
     EXPECT_LE(*late.rbegin() + gpu::kBookTurn, gpu::kBookPages);
 
-    // Another flame's pages: each of the others comes to them when it is its turn.
+    // Another flame's frames: each reader switches to them in turn.
     items[3].wants = false;
     items[4].covers = 1.5f;
     uint32_t turns = 0;
@@ -251,7 +251,7 @@ TEST(VolumeTiers, ABookIsReadPageByPage) {
             if (i == 3) continue;
             if (r.turned == 1) {
                 ++turns;
-                EXPECT_EQ(last[i].at, r.before) << "from what it showed";
+                EXPECT_EQ(last[i].at, r.before) << "from the frame it showed";
             } else {
                 EXPECT_EQ(last[i].at + 1, r.at) << i;
             }
@@ -259,7 +259,7 @@ TEST(VolumeTiers, ABookIsReadPageByPage) {
         }
     }
     EXPECT_EQ(7u, turns) << "each once";
-    items[0].kind.facing += 0.2f;  // seen from higher up; what has it keeps it for a while
+    items[0].kind.facing += 0.2f;  // seen from higher up; a flame keeps its impostor for a while
     frame();
     EXPECT_EQ(0u, out[0]);
     items[0].kind.facing += 0.2f;
@@ -267,7 +267,7 @@ TEST(VolumeTiers, ABookIsReadPageByPage) {
     EXPECT_NE(0u, out[0]);
 }
 
-TEST(FireFlames, AViewGivesItsSamplesToWhatCoversMost) {
+TEST(FireFlames, ViewsGiveSamplesToTheLargestFlames) {
     std::vector<gpu::VolumeItem> items(40);
     for (uint32_t i = 0; i < items.size(); ++i) {
         items[i].flame = i;

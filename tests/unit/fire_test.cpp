@@ -1,4 +1,5 @@
-// The spread law, its presets and the wind filter: P9, P15; the published kernel: P16.
+// The spread law, its material presets, the wind filter, and the 16-tap kernel of the reference
+// implementation.
 #include "core/error.h"
 #include "fire/presets.h"
 #include "shared/front.h"
@@ -30,7 +31,7 @@ fire::SpreadFacts factsOf(const mesh::BurnDomain& d) {
     return facts;
 }
 
-// Front speed along +x of a preset on a level sheet, m/s, measured over the second half.
+// Front speed (m/s) along +x of a preset on a level sheet, over the second half.
 double measuredSpeed(const mesh::BurnDomain& d, const FwMaterialDef& def, const float wind[3]) {
     const fire::SpreadFacts facts = factsOf(d);
     const fire::WindVector units = fire::windUnits(wind);
@@ -50,7 +51,8 @@ double measuredSpeed(const mesh::BurnDomain& d, const FwMaterialDef& def, const 
     return (texelPosition(d, b).x - texelPosition(d, a).x) / (rig.arrival(b) - rig.arrival(a));
 }
 
-TEST(Fire, P9_PaperRates) {
+// 0.35 to 0.56 g/m/s per width: Stott; Atallah, in Thomas and Law (1965).
+TEST(Fire, PaperSpreadsAtMeasuredRates) {
     const float still[3] = {};
     const mesh::BurnDomain d = bakePlane(0.4, 0.15, 128);
     struct Case {
@@ -60,10 +62,10 @@ TEST(Fire, P9_PaperRates) {
     for (const Case& c :
          {Case{45, 7.8, 12.4}, Case{80, 4.4, 7.0}, Case{160, 2.2, 3.5}, Case{300, 1.2, 1.9}}) {
         FwMaterialDef def = fire::presetDef(FW_MATERIAL_PAPER);
-        def.spreadRate = fire::paperSpreadRate(c.mass);
+        def.spreadRate = 0.44f / c.mass;  // paper burns 0.44 g/m/s (0.35 to 0.56 measured)
         def.burnTime = 0;
         const double speed = measuredSpeed(d, def, still) * 1000;
-        std::printf("P9 paper %3.0f g/m^2: %.2f mm/s\n", double(c.mass), speed);
+        std::printf("paper %3.0f g/m^2: %.2f mm/s\n", double(c.mass), speed);
         EXPECT_GE(speed, c.low);
         EXPECT_LE(speed, c.high);
     }
@@ -74,19 +76,20 @@ TEST(Fire, P9_PaperRates) {
     }
 }
 
-TEST(Fire, P15_GrassFollowsTheWind) {
+// Head fires at 20 % of the 10 m wind: Cruz, Alexander, Kilinc (2022).
+TEST(Fire, GrassFollowsTheWind) {
     const mesh::BurnDomain d = bakePlane(60, 30, 4);
     for (double kilometresPerHour : {20.0, 40.0, 62.0}) {
         const double metres = kilometresPerHour / 3.6;
         const float wind[3] = {float(metres), 0, 0};
         const double speed = measuredSpeed(d, fire::presetDef(FW_MATERIAL_DRY_GRASS), wind);
-        std::printf("P15 grass, wind %2.0f km/h: head %.2f m/s, %.1f %% of the wind\n",
+        std::printf("grass, wind %2.0f km/h: head %.2f m/s, %.1f %% of the wind\n",
                     kilometresPerHour, speed, speed / metres * 100);
         EXPECT_NEAR(speed / metres, 0.2, 0.02);
     }
 }
 
-TEST(Fire, PaceSpeedsUp) {
+TEST(Fire, SpreadScalesWithThePace) {
     const mesh::BurnDomain d = bakePlane(0.3, 0.1, 128);
     const fire::SpreadFacts facts = factsOf(d);
     fire::SpreadFacts fast = facts;
@@ -100,7 +103,7 @@ TEST(Fire, PaceSpeedsUp) {
     EXPECT_EQ(b.timeScale, 10.0f);
 }
 
-TEST(Fire, MoistureDampsAndStops) {
+TEST(Fire, MoistureSlowsAndStopsSpread) {
     EXPECT_FLOAT_EQ(fire::moistureFactor(0, 0.3f), 1);
     EXPECT_FLOAT_EQ(fire::moistureFactor(0.3f, 0.3f), 0);
     EXPECT_FLOAT_EQ(fire::moistureFactor(2, 0.3f), 0);
@@ -131,7 +134,7 @@ TEST(Fire, PresetsAreValidAndNamed) {
     EXPECT_EQ(fire::presetDef(FW_MATERIAL_NONCOMBUSTIBLE).spreadRate, 0);
 }
 
-TEST(Fire, BadMaterialsAreNamed) {
+TEST(Fire, RefusesBadMaterialsByName) {
     const auto message = [](auto&& change) -> std::string {
         FwMaterialDef def = fire::presetDef(FW_MATERIAL_PINE);
         change(def);
@@ -154,8 +157,8 @@ TEST(Fire, BadMaterialsAreNamed) {
     EXPECT_NE(message([](FwMaterialDef& d) { d.look = 14; }).find("look is 14"), std::string::npos);
 }
 
-// Whatever a host may ask for stays within what the kernel can take.
-TEST(Fire, RecordsStayInRange) {
+// Every valid material stays within the kernel's ranges.
+TEST(Fire, MaterialRecordsStayInRange) {
     std::mt19937 random(9);
     const auto real = [&](double low, double high) {
         return float(low + (high - low) * double(random()) / 4294967295.0);
@@ -207,11 +210,11 @@ TEST(Fire, WindFilterSettles) {
     for (int i = 0; i < 1000; ++i) fire::filterWind(filter, wind, tau);
     EXPECT_TRUE(fire::latchWind(filter));
     EXPECT_EQ(filter.latched, wind);
-    fire::filterWind(filter, {0, 0, 0}, 0);  // faster than a step: at once
+    fire::filterWind(filter, {0, 0, 0}, 0);  // longer than a step: applies at once
     EXPECT_EQ(fire::filteredWind(filter), (fire::WindVector{0, 0, 0}));
 }
 
-// Planar speed of a pulled front: least over q of ln(1 + k M(q)) / q, texels per step.
+// Planar speed of a pulled front: least over q of ln(1 + k M(q)) / q, in texels per step.
 double theorySpeed(double k) {
     double best = 1e9;
     for (double q = 0.01; q < 4; q += 0.001) {
@@ -223,7 +226,7 @@ double theorySpeed(double k) {
     return best;
 }
 
-TEST(Fire, P16_PublishedKernelSpeeds) {
+TEST(Fire, ReferenceKernelHasItsTheoreticalSpeed) {
     const double table[][2] = {
         {0.01, 0.0180}, {0.05, 0.0870}, {0.1, 0.167}, {0.3, 0.434}, {1.0, 0.986}};
     for (const auto& row : table) EXPECT_NEAR(theorySpeed(row[0]) / row[1], 1, 0.02) << row[0];
@@ -246,14 +249,14 @@ TEST(Fire, P16_PublishedKernelSpeeds) {
         ASSERT_GE(rig.arrival(b), 0);
         const double speed = (texelPosition(d, b).x - texelPosition(d, a).x) * density /
                              ((rig.arrival(b) - rig.arrival(a)) * 32);
-        std::printf("P16 published, k %.3f: %.4f texels/step, theory %.4f (%+.2f %%)\n", k, speed,
+        std::printf("published, k %.3f: %.4f texels/step, theory %.4f (%+.2f %%)\n", k, speed,
                     theorySpeed(k), (speed / theorySpeed(k) - 1) * 100);
         EXPECT_NEAR(speed / theorySpeed(k), 1, 0.02);
     }
 }
 
-// The kernel as one would write it down, in doubles, on a map whose slowness varies twofold.
-TEST(Fire, P16_PublishedKernelKeepsItsPrecision) {
+// The reference kernel in doubles on a map whose slowness varies twofold.
+TEST(Fire, ReferenceKernelKeepsItsPrecision) {
     const double density = 128;
     const mesh::BurnDomain d = bakePlane(110 / density, 60 / density, density);
     std::vector<uint16_t> slowness(d.texelCount());
@@ -305,13 +308,13 @@ TEST(Fire, P16_PublishedKernelKeepsItsPrecision) {
         worst = std::max(worst, std::abs(rig.arrival(i) - at[i]));
         ++lit;
     }
-    std::printf("P16 published against doubles: %u arrivals within %.4f s, the last at %.2f s\n",
-                lit, worst, at[last]);
+    std::printf("published against doubles: %u arrivals within %.4f s, the last at %.2f s\n", lit,
+                worst, at[last]);
     EXPECT_GT(lit, 3000u);
     EXPECT_LE(worst, 1.0 / 32 + 1e-9);  // one step
 }
 
-TEST(Fire, P16_PublishedSpread) {
+TEST(Fire, ReferenceSpreadConvertsSlowness) {
     for (uint32_t slow : {1u, 3u, 24u, 128u, 255u, 256u, 257u, 1000u, 65535u})
         for (int fall : {-4096, -1000, 0, 777, 4096}) {
             const double wanted = double(gpu::kPublishedRate) / 32 * 128 / slow *

@@ -1,5 +1,5 @@
-// The front's exactness and its states: P7 (sparse equals dense), P18 (mutants), P19 (gusts), P20
-// (doused bands). P17 (confetti) and other unwraps: mesh_front_test.cpp.
+// Exactness of the front: sparse equals dense updates, mutants are caught, gusts are filtered, wet
+// bands hold. mesh_front_test.cpp covers other unwraps.
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "support/front_rig.h"
@@ -39,8 +39,8 @@ std::vector<uint16_t> roughSlowness(const mesh::BurnDomain& d, uint32_t seed) {
     for (uint32_t i = 0; i < d.texelCount(); ++i) {
         const uint32_t h = core::hash32(i + seed * 7919);
         slow[i] = uint16_t(98 + h % 61);
-        if (h % 997 == 0) slow[i] = 0;      // cannot burn
-        if (h % 991 == 0) slow[i] = 60000;  // almost cannot
+        if (h % 997 == 0) slow[i] = 0;      // noncombustible
+        if (h % 991 == 0) slow[i] = 60000;  // nearly noncombustible
     }
     return slow;
 }
@@ -52,9 +52,9 @@ struct Chaos {
     bool douses = true;
 };
 
-// The same story for every rig, one step at a time. False at the first difference from rigs[0].
-bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const uint32_t> switchesOf,
-               uint32_t& failedAt) {
+// Runs the same commands on every rig, step by step. False at the first difference from rigs[0].
+bool sameBurn(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const uint32_t> switchesOf,
+              uint32_t& failedAt) {
     const double g =
         chaos.lengthToBreadth + std::sqrt(chaos.lengthToBreadth * chaos.lengthToBreadth - 1) - 1;
     const std::vector<uint16_t> slow = roughSlowness(d, chaos.seed);
@@ -106,7 +106,7 @@ bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const ui
             ball(5, [&](uint32_t i) {
                 all([&](FrontRig& rig) {
                     rig.push(i, gpu::kEventExtinguish);
-                    if (i % 2) rig.push(i, gpu::kEventIgnite, rig.now + 1);  // order matters
+                    if (i % 2) rig.push(i, gpu::kEventIgnite, rig.now + 1);  // the order matters
                 });
             });
         all([](FrontRig& rig) { rig.step(); });
@@ -126,14 +126,14 @@ bool sameStory(const mesh::BurnDomain& d, const Chaos& chaos, std::span<const ui
     for (uint32_t t : rigs[0]->ticks()) sources += gpu::isSource(t);
     EXPECT_EQ(rigs[0]->counters().ignited, sources);
     uint64_t runs[2] = {rigs[0]->totalRunTiles, rigs[1]->totalRunTiles};
-    std::printf("P7 seed %u: %u steps equal, %.0f %% burn, dense/sparse %.1fx, hash %016llx\n",
+    std::printf("seed %u: %u steps equal, %.0f %% burn, dense/sparse %.1fx, hash %016llx\n",
                 chaos.seed, chaos.steps, 100.0 * sources / double(reals.size()),
                 double(runs[0]) / double(std::max<uint64_t>(1, runs[1])),
                 (unsigned long long)core::hashWords(rigs[0]->ticks()));
     return true;
 }
 
-TEST(Front, P7_SparseEqualsDenseEqualsShuffled) {
+TEST(Front, SparseDenseAndShuffledUpdatesAreEqual) {
     constexpr uint32_t variants[] = {FW_DEBUG_DENSE, 0, FW_DEBUG_SHUFFLE,
                                      FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE};
     std::vector<std::pair<const char*, mesh::BurnDomain>> domains;
@@ -146,32 +146,32 @@ TEST(Front, P7_SparseEqualsDenseEqualsShuffled) {
     uint32_t failedAt = 0, seed = 1;
     for (const auto& [name, d] : domains) {
         const double lb = seed % 3 == 0 ? 1.0 : seed % 3 == 1 ? 2.0 : 3.0;
-        EXPECT_TRUE(sameStory(d, {.lengthToBreadth = lb, .seed = seed}, variants, failedAt))
+        EXPECT_TRUE(sameBurn(d, {.lengthToBreadth = lb, .seed = seed}, variants, failedAt))
             << name << " differs at step " << failedAt;
         ++seed;
-        EXPECT_TRUE(sameStory(d, {.lengthToBreadth = lb, .burnTime = 1.5, .seed = seed}, variants,
-                              failedAt))
+        EXPECT_TRUE(
+            sameBurn(d, {.lengthToBreadth = lb, .burnTime = 1.5, .seed = seed}, variants, failedAt))
             << name << ", finite burn, differs at step " << failedAt;
         ++seed;
-        // Fuel so short-lived that sources die before they light anyone, until a wind comes.
-        EXPECT_TRUE(sameStory(d, {.lengthToBreadth = lb, .burnTime = 0.25, .seed = seed}, variants,
-                              failedAt))
+        // Fuel so short-lived that sources die before they light a neighbour, until wind comes.
+        EXPECT_TRUE(sameBurn(d, {.lengthToBreadth = lb, .burnTime = 0.25, .seed = seed}, variants,
+                             failedAt))
             << name << ", short burn, differs at step " << failedAt;
         ++seed;
     }
 }
 
-// Fires lit at a tick within a step that has substeps: texels already lit are corrected by them.
-TEST(Front, P7_SourcesBeginWithinAStep) {
+// Fires lit within a step that has substeps correct texels that are already lit.
+TEST(Front, SourcesMayBeginWithinAStep) {
     constexpr uint32_t variants[] = {FW_DEBUG_DENSE, 0};
     const mesh::BurnDomain d = bakeOf(makeConfetti(0.5, 12, 0.05), 96);
     uint32_t failedAt = 0;
-    EXPECT_TRUE(sameStory(d, {.lengthToBreadth = 2, .seed = 1}, variants, failedAt)) << failedAt;
-    EXPECT_TRUE(sameStory(d, {.lengthToBreadth = 3, .seed = 5}, variants, failedAt)) << failedAt;
+    EXPECT_TRUE(sameBurn(d, {.lengthToBreadth = 2, .seed = 1}, variants, failedAt)) << failedAt;
+    EXPECT_TRUE(sameBurn(d, {.lengthToBreadth = 3, .seed = 5}, variants, failedAt)) << failedAt;
 }
 
-// The equality test has teeth: each forgotten wake shows.
-TEST(Front, P18_MutantsAreCaught) {
+// The equality test must notice every omitted tile wake-up.
+TEST(Front, EqualityTestCatchesMutants) {
     const mesh::BurnDomain d = bakeOf(makeCube(1, 24, true, true), 64);
     uint32_t failedAt = 0;
     const auto differs = [&](uint32_t mutant, bool latches) {
@@ -179,19 +179,19 @@ TEST(Front, P18_MutantsAreCaught) {
         Chaos chaos{.lengthToBreadth = 2, .seed = 3, .steps = 400};
         chaos.latches = latches;
         chaos.douses = false;
-        return !sameStory(d, chaos, pair, failedAt);
+        return !sameBurn(d, chaos, pair, failedAt);
     };
     EXPECT_FALSE(differs(0, true));
     EXPECT_TRUE(differs(FW_DEBUG_NO_SEAM_WAKE, false));
-    std::printf("P18 no seam wake: differs at step %u\n", failedAt);
+    std::printf("no seam wake: differs at step %u\n", failedAt);
     EXPECT_TRUE(differs(FW_DEBUG_WRONG_READERS, false));
-    std::printf("P18 wrong readers: differs at step %u\n", failedAt);
+    std::printf("wrong readers: differs at step %u\n", failedAt);
     EXPECT_TRUE(differs(FW_DEBUG_NO_WIND_WAKE, true));
-    std::printf("P18 no wake on a wind key: differs at step %u\n", failedAt);
+    std::printf("no wake on a wind key: differs at step %u\n", failedAt);
 }
 
-// Gusts on a slow front: filtered wind gives the mean, raw wind far more.
-TEST(Front, P19_Gusts) {
+// Gusts on a slow front: filtered wind gives the mean speed, raw wind far more.
+TEST(Front, GustsAverageToTheMeanWind) {
     const mesh::BurnDomain d = bakeOf(makePlane(0.2, 0.05), 128);
     const double rate = 0.0003, gain = 4;
     const uint32_t tau = uint32_t(double(d.texelSide) / rate * 4096);
@@ -227,15 +227,14 @@ TEST(Front, P19_Gusts) {
     for (const Case& c : {Case{0.02, 2}, Case{0.1, 10}}) {
         const double raw = speed(c.duty, c.period, false), filtered = speed(c.duty, c.period, true);
         const double mean = rate * (1 + gain * c.duty) * 1000;
-        std::printf("P19 duty %.2f period %2.0f s: raw %.2f, filtered %.2f, time mean %.2f mm/s\n",
+        std::printf("duty %.2f period %2.0f s: raw %.2f, filtered %.2f, time mean %.2f mm/s\n",
                     c.duty, c.period, raw, filtered, mean);
         EXPECT_GT(raw, 1.5 * mean);
         EXPECT_NEAR(filtered, mean, 0.08 * mean);
     }
 }
 
-// A doused band holds.
-TEST(Front, P20_WetBandsAreWatertight) {
+TEST(Front, WetBandsStopTheFront) {
     struct Case {
         double degrees, texels;
     };
@@ -285,8 +284,8 @@ TEST(Front, P20_WetBandsAreWatertight) {
     EXPECT_GT(burnt, 500);
 }
 
-// A fire long dead must not cross a band that dries; a live one must.
-TEST(Front, P20_DryingBands) {
+// A fire that died long ago must not cross a band that dries; a live one must.
+TEST(Front, OnlyLiveFireCrossesADryingBand) {
     const mesh::BurnDomain d = bakeOf(makePlane(0.4, 0.4, 20), 128);
     const double h = double(d.texelSide);
     for (double burnTime : {-1.0, 4.0}) {
@@ -312,8 +311,7 @@ TEST(Front, P20_DryingBands) {
             ++lit;
             first = std::min(first, rig.arrival(i));
         }
-        std::printf("P20 burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit,
-                    beyond);
+        std::printf("burn time %.0f s: %d of %d beyond the band burnt\n", burnTime, lit, beyond);
         if (burnTime > 0) {
             EXPECT_EQ(lit, 0);  // cold
         } else {
@@ -323,7 +321,7 @@ TEST(Front, P20_DryingBands) {
     }
 }
 
-TEST(Front, P20_ExtinguishedReignites) {
+TEST(Front, ExtinguishedTexelsReignite) {
     const mesh::BurnDomain d = bakeOf(makePlane(0.4, 0.4, 20), 128);
     FrontRig rig(d, {.rate = 0.02});
     const auto band = [&](uint32_t i) { return std::abs(texelPosition(d, i).x - 0.1) < 0.03; };

@@ -1,5 +1,4 @@
-// The front's accuracy on known surfaces: P1 to P6, P8, P14. Expectations are those of the kernel's
-// design: errors of arrival against exact travel times.
+// Accuracy of the front on known surfaces: errors of arrival against exact travel times.
 #include "shared/front.h"
 #include "support/front_rig.h"
 #include "support/sanitized.h"
@@ -32,7 +31,7 @@ struct Error {  // relative errors
     [[nodiscard]] double mean() const { return count ? sum / count : 1; }
 };
 
-// Travel time over a displacement in a plane: head and back speed, drive direction.
+// Travel time over a displacement in a plane from head speed, back speed and drive direction.
 struct Ellipse {
     double head, back;
     Vec3 along;
@@ -41,7 +40,7 @@ struct Ellipse {
     }
 };
 
-// Gain g with head = R (1 + g), back = R / (1 + g) for a length to breadth.
+// Gain g with head = R (1 + g) and back = R / (1 + g) for a length to breadth.
 double gainOf(double lengthToBreadth) {
     return lengthToBreadth + std::sqrt(lengthToBreadth * lengthToBreadth - 1) - 1;
 }
@@ -54,11 +53,11 @@ TEST(Front, IsqrtIsExact) {
     const auto check = [](uint32_t n) {
         const double exact = std::sqrt(double(n));
         const uint32_t r = gpu::isqrtNear(n);
-        // Nearest: |r - sqrt n| <= 1/2; a tie is not possible for integers.
+        // |r - sqrt n| <= 1/2; integers have no tie.
         ASSERT_LE(std::abs(double(r) - exact), 0.5) << n;
     };
     for (uint32_t n = 0; n < 70000; ++n) check(n);
-    // Around every square and every half-way point up to the kernel's largest argument.
+    // Around every square and half-way point up to the kernel's largest argument.
     for (uint64_t r = 2; r < 65535; ++r)
         for (int64_t d = -1; d <= 1; ++d) {
             check(uint32_t(int64_t(r * r) + d));
@@ -80,7 +79,7 @@ TEST(Front, NormalDecodesAxesExactly) {
     EXPECT_EQ(gpu::decodeNormal(1023u << 11), gpu::ivec3(0, 16384, 0));
 }
 
-// Extreme records and slowness must neither trap nor stop time: sanitizers watch this.
+// Extreme records and slowness must neither trap nor stop time; sanitizers check this.
 TEST(Front, KernelSurvivesExtremes) {
     std::mt19937 random(5);
     for (int i = 0; i < 20000; ++i) {
@@ -105,10 +104,10 @@ TEST(Front, KernelSurvivesExtremes) {
             const auto unit = [&] { return int(random() % 9458) - 4729; };
             ring.link[k] = {unit(), unit(), unit()};
         }
-        uint32_t wake = gpu::kNever, news = gpu::kNever;
+        uint32_t wake = gpu::kNever, nextWake = gpu::kNever;
         const uint32_t counts = random() & 0xFF;
         const uint32_t t = gpu::frontArrival(ring, counts, p, 1 << 20, 0x7FFFFFFF, 1000, random(),
-                                             true, wake, news);
+                                             true, wake, nextWake);
         if (t == gpu::kNever) continue;
         uint32_t least = gpu::kNever;
         for (int k = 0; k < 8; ++k)
@@ -118,9 +117,9 @@ TEST(Front, KernelSurvivesExtremes) {
     }
 }
 
-// Of a ring of the shape that a bake makes: sources no sooner than `news` change nothing, sooner
-// ones sometimes do.
-TEST(Front, NewsOfLaterSourcesChangesNothing) {
+// On a ring of a baked shape, sources no sooner than `nextWake` change nothing and sooner ones
+// sometimes do.
+TEST(Front, SourcesAfterTheNextWakeChangeNothing) {
     std::mt19937 random(29);
     uint32_t asked = 0, early = 0, changed = 0;
     for (int i = 0; i < 400000; ++i) {
@@ -145,20 +144,20 @@ TEST(Front, NewsOfLaterSourcesChangesNothing) {
             ring.link[k] = {-x * unit + y * skew + jitter(), -y * unit + jitter(), jitter()};
         }
         const uint32_t counts = random() & 0xFF & random(), texel = random();
-        uint32_t wake = gpu::kNever, news = gpu::kNever, unused = gpu::kNever;
+        uint32_t wake = gpu::kNever, nextWake = gpu::kNever, unused = gpu::kNever;
         const auto arrival = [&](uint32_t sources, bool settles, uint32_t& out) {
             return gpu::frontArrival(ring, sources, p, 1 << 20, now, floorTick, texel, settles,
                                      wake, out);
         };
-        const uint32_t t = arrival(counts, true, news);
+        const uint32_t t = arrival(counts, true, nextWake);
         ASSERT_EQ(t, arrival(counts, false, unused));
         ASSERT_EQ(unused, gpu::kNever);
-        if (news == gpu::kNever) continue;
+        if (nextWake == gpu::kNever) continue;
         const bool soon = i % 2 != 0;
         const uint32_t others = random() & 0xFF & ~counts;
         for (int k = 0; k < 8; ++k) {
             if ((others >> k & 1) == 0) continue;
-            ring.tick[k] = soon ? news - 1 - random() % 200 : news + random() % 100;
+            ring.tick[k] = soon ? nextWake - 1 - random() % 200 : nextWake + random() % 100;
             ring.burn[k] = gpu::kNoneTexel;
         }
         const uint32_t after = arrival(counts | others, false, unused);
@@ -172,10 +171,10 @@ TEST(Front, NewsOfLaterSourcesChangesNothing) {
     }
     EXPECT_GT(asked, 50000u);
     EXPECT_GT(changed, early / 20);
-    std::printf("news: %u rings, and %u of %u that came sooner changed\n", asked, changed, early);
+    std::printf("wake: %u rings, and %u of %u that came sooner changed\n", asked, changed, early);
 }
 
-TEST(Front, P1_PlanarFrontSpeed) {
+TEST(Front, PlanarFrontSpeedIsExact) {
     struct Case {
         double density, degrees, stretch, speedLimit, arrivalLimit;
     };
@@ -215,7 +214,7 @@ TEST(Front, P1_PlanarFrontSpeed) {
         const double speed = (n * sxx - sx * sx) / (n * sxt - sx * st) / rate;
         EXPECT_NEAR(speed, 1, c.speedLimit) << c.density << "/m " << c.degrees;
         EXPECT_LT(e.most, c.arrivalLimit) << c.density << "/m " << c.degrees;
-        std::printf("P1 %4.0f/m %2.0f deg stretch %.0f: speed %+.3f %%, worst arrival %.2f %%\n",
+        std::printf("%4.0f/m %2.0f deg stretch %.0f: speed %+.3f %%, worst arrival %.2f %%\n",
                     c.density, c.degrees, c.stretch, (speed - 1) * 100, e.most * 100);
         if (c.stretch == 1) {
             slowest = std::min(slowest, speed);
@@ -230,7 +229,7 @@ struct PointStart {
     uint32_t late = 0;
 };
 
-// A disc on a plane, all texels at once; errors farther than 25 texels from it.
+// A disc on a plane, all texels lit together; errors farther than 25 texels from it.
 PointStart pointStart(const mesh::BurnDomain& d, double lengthToBreadth, double degrees,
                       double rate) {
     const double g = lengthToBreadth > 1 ? gainOf(lengthToBreadth) : 0;
@@ -267,17 +266,17 @@ PointStart pointStart(const mesh::BurnDomain& d, double lengthToBreadth, double 
     return result;
 }
 
-TEST(Front, P2_PointStart) {
+TEST(Front, PointStartGrowsAsACircle) {
     const mesh::BurnDomain d = bakeOf(makePlane(1, 1), 128);
     const PointStart r = pointStart(d, 1, 0, 0.02);
-    std::printf("P2 point start: max %.2f %%, mean %.2f %%, late %u\n", r.all.most * 100,
+    std::printf("point start: max %.2f %%, mean %.2f %%, late %u\n", r.all.most * 100,
                 r.all.mean() * 100, r.late);
     EXPECT_LT(r.all.most, 0.011);
     EXPECT_LT(r.all.mean(), 0.004);
     EXPECT_EQ(r.late, 0u);
 }
 
-TEST(Front, P5_Ellipses) {
+TEST(Front, WindDrivenFrontsAreEllipses) {
     const mesh::BurnDomain d = bakeOf(makePlane(1.2, 1.2), 128);
     struct Case {
         double lb, degrees, most, mean, head;
@@ -285,16 +284,15 @@ TEST(Front, P5_Ellipses) {
     for (const Case& c : {Case{1.5, 20, 0.038, 0.009, 0.038}, Case{2, 20, 0.052, 0.012, 0.046},
                           Case{2, 0, 0.055, 0.012, 0.046}, Case{3.43, 20, 0.155, 0.026, 0.075}}) {
         const PointStart r = pointStart(d, c.lb, c.degrees, 0.02);
-        std::printf("P5 LB %.2f %2.0f deg: max %.1f %%, mean %.2f %%, head %.1f %%, late %u\n",
-                    c.lb, c.degrees, r.all.most * 100, r.all.mean() * 100, r.head.most * 100,
-                    r.late);
+        std::printf("LB %.2f %2.0f deg: max %.1f %%, mean %.2f %%, head %.1f %%, late %u\n", c.lb,
+                    c.degrees, r.all.most * 100, r.all.mean() * 100, r.head.most * 100, r.late);
         EXPECT_LT(r.all.most, c.most) << c.lb;
         EXPECT_LT(r.all.mean(), c.mean) << c.lb;
         EXPECT_LT(r.head.most, c.head) << c.lb;
     }
 }
 
-TEST(Front, P5_StraightHeadFire) {
+TEST(Front, HeadFiresHaveTheirSpeed) {
     for (double degrees : {0.0, 10.0, 20.0, 33.0}) {
         const mesh::BurnDomain d = bakeOf(makePlane(0.6, 0.6, degrees), 128);
         for (double lb : {1.0, 2.0, 3.43}) {
@@ -315,7 +313,7 @@ TEST(Front, P5_StraightHeadFire) {
                 if (p.x < 25 * h || std::min(p.y, 0.6 - p.y) < 8 * h) continue;
                 e.add(rig.arrival(i) / (p.x / head) - 1);
             }
-            std::printf("P5 straight head %2.0f deg LB %.2f: worst %.3f %%\n", degrees, lb,
+            std::printf("straight head %2.0f deg LB %.2f: worst %.3f %%\n", degrees, lb,
                         e.most * 100);
             EXPECT_LT(e.most, lb > 3 ? 0.006 : 0.005) << degrees << " " << lb;
         }
@@ -323,7 +321,7 @@ TEST(Front, P5_StraightHeadFire) {
 }
 
 // Arrival against great circles, from a chart's middle and from a seam.
-TEST(Front, P3_Sphere) {
+TEST(Front, ArrivalOnASphereMatchesGreatCircles) {
     const double rate = 0.02;
     for (double density : {64.0, 128.0}) {
         const mesh::BurnDomain d = bakeOf(makeCube(1, 48, true, true), density);
@@ -377,7 +375,7 @@ TEST(Front, P3_Sphere) {
                 }
             }
             std::printf(
-                "P3 sphere %3.0f/m: antipode %+.2f %%, mean %.2f %%, worst %.2f %%, "
+                "sphere %3.0f/m: antipode %+.2f %%, mean %.2f %%, worst %.2f %%, "
                 "seam jump %.2f links\n",
                 density, antipode * 100, e.mean() * 100, e.most * 100, worstJump);
             EXPECT_EQ(unburnt, 0u);
@@ -388,8 +386,8 @@ TEST(Front, P3_Sphere) {
     }
 }
 
-// A cylinder cut into charts burns as the one in one piece.
-TEST(Front, P4_CylinderCuts) {
+// A cylinder cut into charts burns like an uncut one.
+TEST(Front, ChartsDoNotChangeABurningCylinder) {
     const double radius = 0.2, rate = 0.02;
     for (int cuts : {1, 2, 4}) {
         const mesh::BurnDomain d = bakeOf(makeCylinder(radius, 0.8, 192, 8, cuts, cuts > 1), 128);
@@ -413,20 +411,19 @@ TEST(Front, P4_CylinderCuts) {
         for (uint32_t i = 0; i < d.texelCount(); ++i) {
             if (!d.real(i)) continue;
             const double s = exact(i);
-            if (cuts == 1 && s > 0.4 * radius * kPi) continue;  // an open seam: no way round
+            if (cuts == 1 && s > 0.4 * radius * kPi) continue;  // an open seam: no path around
             ASSERT_GE(rig.arrival(i), 0);
             if (s < 25 * h) continue;
             e.add(rig.arrival(i) / (s / rate) - 1);
             worst = std::max(worst, std::abs(rig.arrival(i) * rate - s) / h);
         }
-        std::printf("P4 cylinder in %d: mean %.2f %%, max %.2f %%, %.2f links\n", cuts,
-                    e.mean() * 100, e.most * 100, worst);
+        std::printf("cylinder in %d: mean %.2f %%, max %.2f %%, %.2f links\n", cuts, e.mean() * 100,
+                    e.most * 100, worst);
         EXPECT_LT(worst, 1.0) << cuts;
     }
 }
 
-// The step does not matter, nor do substeps.
-TEST(Front, P6_TimeStep) {
+TEST(Front, ArrivalIsIndependentOfTheTimeStep) {
     const mesh::BurnDomain d = bakeOf(makePlane(0.8, 0.8), 128);
     const double h = double(d.texelSide);
     struct Case {
@@ -455,7 +452,7 @@ TEST(Front, P6_TimeStep) {
                 if (d.real(i) && reference[i] > kStartTick + 512)
                     most = std::max(most, std::abs(double(rig.ticks()[i]) - reference[i]) /
                                               (reference[i] - double(kStartTick)));
-            std::printf("P6 head %.2f gain %.2f, %u substeps against 8: %.4f %%\n", c.head, c.gain,
+            std::printf("head %.2f gain %.2f, %u substeps against 8: %.4f %%\n", c.head, c.gain,
                         1u << shift, most * 100);
             EXPECT_LE(most, c.limit) << c.head << " " << c.gain;
             if (c.limit == 0) {
@@ -465,7 +462,8 @@ TEST(Front, P6_TimeStep) {
     }
 }
 
-TEST(Front, P8_CottonPanel) {
+// Up 90, sideways 11, down 2 mm/s: Mathur, Vikas, Kale.
+TEST(Front, CottonPanelBurnsAtItsRate) {
     const double rate = 0.011;
     const mesh::BurnDomain d = bakeOf(makePlane(0.9, 0.9, 10, 1, 90), 128);
     const double h = double(d.texelSide);
@@ -492,21 +490,20 @@ TEST(Front, P8_CottonPanel) {
                 half[k] = std::max(half[k], std::abs(texelPosition(d, i).x - centre.x));
     }
     const double sideways = (half[1] - half[0]) / (top / 2) * 1000;
-    std::printf("P8 cotton: up %.1f, down %.2f, sideways %.1f mm/s\n", up, down, sideways);
+    std::printf("cotton: up %.1f, down %.2f, sideways %.1f mm/s\n", up, down, sideways);
     EXPECT_NEAR(up, 90, 9);
     EXPECT_NEAR(down, 2, 0.2);
     EXPECT_GE(sideways, 11);
     EXPECT_LE(sideways, 14);
 }
 
-// What a small fire costs does not depend on the map it is on.
-TEST(Front, P14_SmallFireOnLargeMap) {
+TEST(Front, CostOfASmallFireIsIndependentOfMapSize) {
     uint64_t tiles[2] = {};
     double milliseconds[2] = {1e9, 1e9};
     const double sides[2] = {248 / 128.0, 1016 / 128.0};
     const mesh::BurnDomain domains[2] = {bakeOf(makePlane(sides[0], sides[0]), 128),
                                          bakeOf(makePlane(sides[1], sides[1]), 128)};
-    // Processor time, taken in turns, the least of each: a shared machine's pauses hit both alike.
+    // Processor time, alternating, the least of each: pauses of a shared machine hit both.
     for (int repeat = 0; repeat < 6; ++repeat)
         for (int m = 0; m < 2; ++m) {
             const mesh::BurnDomain& d = domains[m];
@@ -522,9 +519,9 @@ TEST(Front, P14_SmallFireOnLargeMap) {
             tiles[m] = rig.totalRunTiles;
             milliseconds[m] = std::min(milliseconds[m], total);
         }
-    std::printf("P14 %llu and %llu tiles run, %.2f and %.2f ms\n", (unsigned long long)tiles[0],
+    std::printf("%llu and %llu tiles run, %.2f and %.2f ms\n", (unsigned long long)tiles[0],
                 (unsigned long long)tiles[1], milliseconds[0], milliseconds[1]);
-    // The same fire may lie a little otherwise on the two maps' tiles.
+    // The same fire may lie differently on the tiles of the two maps.
     EXPECT_NEAR(double(tiles[0]), double(tiles[1]), 0.02 * double(tiles[0]));
     if (!fw::test::kSanitized) {
         EXPECT_LT(milliseconds[1], 1.3 * milliseconds[0]);

@@ -1,4 +1,4 @@
-// glTF files made by tests: a quad in a GLB, any field of which may be replaced.
+// glTF files made by tests: a quad in a GLB whose every field can be replaced.
 #pragma once
 
 #include <gmock/gmock.h>
@@ -12,7 +12,7 @@
 
 namespace fw::test {
 
-// A GLB in the making: the JSON is written by the test, the binary chunk by the put functions.
+// A GLB under construction: the test writes the JSON, the put functions the binary chunk.
 struct Glb {
     std::vector<uint8_t> binary;
 
@@ -46,7 +46,7 @@ struct Glb {
     }
 };
 
-// One quad: four positions (48 bytes at 0), six 16-bit indices (12 bytes at 48), and room for more.
+// One quad: four positions (48 bytes at 0), six 16-bit indices (12 bytes at 48), and free space.
 struct Quad {
     Glb glb;
     std::string views, accessors, primitive = R"("attributes":{"POSITION":0},"indices":1)";
@@ -64,7 +64,7 @@ struct Quad {
         glb.put(std::vector<float>{0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0});
         glb.put(indices);
     }
-    // Appends an accessor with a view of its own; returns its number.
+    // Appends an accessor with its own view and returns its index.
     template <typename T>
     int add(const std::vector<T>& values, int componentType, const std::string& type, size_t count,
             const std::string& rest = "") {
@@ -96,7 +96,7 @@ inline ::testing::AssertionResult loads(const std::vector<uint8_t>& bytes,
     return ::testing::AssertionFailure() << error;
 }
 
-// The message of a refusal; a test fails on one that succeeds, and on a model that was touched.
+// The message of a refusal. Fails if the import succeeds or the model was changed.
 inline std::string importRefusal(const std::vector<uint8_t>& bytes) {
     fwimport::ImportedModel model;
     model.indices = {7};

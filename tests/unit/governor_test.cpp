@@ -1,5 +1,5 @@
-// The budget governor against loads as they come: it settles within 60 frames and stays, whatever
-// the noise; one hitch is none; what was given up comes back; and no limit means all detail.
+// The budget governor under varying load: it settles within 60 frames and stays under noise,
+// ignores single hitches, restores quality, and keeps full detail without a limit.
 #include "world/governor.h"
 
 #include <gtest/gtest.h>
@@ -15,12 +15,12 @@ using namespace fw;
 using world::FrameCost;
 using world::Governor;
 
-constexpr uint32_t kReadback = 3, kTurn = 16;  // frames until a level costs what it costs
+constexpr uint32_t kReadback = 3, kTurn = 16;  // frames until a level has its cost
 
-// A scene: what it costs at each level, ms. Measured late, and changes take a while.
+// Cost of a scene at each level, ms. Measured late; changes take a while.
 struct Scene {
     std::array<float, world::kDetailLevels> costs;
-    float fixed = 0;  // ms that no level saves
+    float fixed = 0;  // ms, independent of the level
     float from = -1, to = -1;
     uint32_t turned = kTurn;
     std::vector<float> late = std::vector<float>(kReadback, 0.0f);
@@ -61,7 +61,7 @@ struct Session {
             costs.push_back(cost);
         }
     }
-    // After `from` frames nothing changes any more.
+    // True if the level is constant after frame `from`.
     [[nodiscard]] bool steadyFrom(uint32_t from) const {
         for (size_t f = from; f < levels.size(); ++f)
             if (levels[f] != levels.back()) return false;
@@ -69,7 +69,7 @@ struct Session {
     }
 };
 
-TEST(Governor, LevelsOnlyGiveUp) {
+TEST(Governor, HigherLevelsOnlyReduceDetail) {
     for (uint32_t level = 1; level < world::kDetailLevels; ++level) {
         const gpu::Detail more = world::detailOf(level - 1), less = world::detailOf(level);
         EXPECT_LE(less.marched, more.marched);
@@ -87,7 +87,7 @@ TEST(Governor, LevelsOnlyGiveUp) {
     EXPECT_EQ(world::detailOf(1000), world::detailOf(world::kDetailLevels - 1));
 }
 
-TEST(Governor, ALoadStepSettlesWithinSixtyFramesAndStays) {
+TEST(Governor, SettlesWithinSixtyFramesAfterALoadStep) {
     for (const float ratio : {1.05f, 1.1f, 1.25f, 1.4f, 1.5f, 1.7f, 2.0f, 3.0f}) {
         for (const float load : {5.3f, 6.0f, 8.0f, 12.0f, 16.0f, 25.0f, 60.0f}) {
             Session run;
@@ -106,7 +106,7 @@ TEST(Governor, ALoadStepSettlesWithinSixtyFramesAndStays) {
     }
 }
 
-TEST(Governor, WhatWasGivenUpComesBackWhenTheLoadGoes) {
+TEST(Governor, RestoresDetailWhenTheLoadDrops) {
     Session run;
     Scene heavy = Scene::of(20, 1.4f);
     run.frames(heavy, 200);
@@ -117,7 +117,7 @@ TEST(Governor, WhatWasGivenUpComesBackWhenTheLoadGoes) {
     EXPECT_TRUE(run.steadyFrom(60));
 }
 
-TEST(Governor, OneHitchIsNone) {
+TEST(Governor, IgnoresASingleHitch) {
     Session run;
     Scene scene = Scene::of(4, 1.3f);
     run.frames(scene, 100);
@@ -128,7 +128,7 @@ TEST(Governor, OneHitchIsNone) {
     }
 }
 
-TEST(Governor, WhatNoLevelSavesEndsAtTheLeast) {
+TEST(Governor, StopsAtTheLowestDetail) {
     Session run;
     Scene scene = Scene::of(1, 1.3f, 9);
     run.frames(scene, 600);
@@ -136,13 +136,13 @@ TEST(Governor, WhatNoLevelSavesEndsAtTheLeast) {
     EXPECT_TRUE(run.steadyFrom(60));
 }
 
-TEST(Governor, TheProcessorsTimeCountsToo) {
+TEST(Governor, CountsProcessorTime) {
     Governor governor;
     for (uint32_t f = 0; f < 20; ++f) world::govern({0, 1}, {100, 3}, governor);
     EXPECT_GT(governor.level, 0u);
 }
 
-TEST(Governor, WithoutALimitAllDetailComesBack) {
+TEST(Governor, RestoresAllDetailWithoutALimit) {
     Governor governor;
     for (uint32_t f = 0; f < 60; ++f) world::govern({1, 0}, {9, 0}, governor);
     ASSERT_GT(governor.level, 3u);
@@ -150,8 +150,8 @@ TEST(Governor, WithoutALimitAllDetailComesBack) {
     EXPECT_EQ(governor.level, 0u);
 }
 
-// Loads that come and go at random: never beyond the ends, and no more changes than loads have.
-TEST(Governor, RandomLoadsAreFollowedWithoutHunting) {
+// Random loads: levels stay in range and change no more often than the loads.
+TEST(Governor, FollowsRandomLoadsWithoutHunting) {
     std::mt19937 random(3);
     for (uint32_t turn = 0; turn < 200; ++turn) {
         Session run;
@@ -173,8 +173,8 @@ TEST(Governor, RandomLoadsAreFollowedWithoutHunting) {
     }
 }
 
-// Bytes follow the level at once, but what frees them is seen later. Milliseconds have no limit.
-TEST(Governor, BytesSettleAndComeBack) {
+// Bytes follow the level at once, but freeing is measured late. Milliseconds have no limit here.
+TEST(Governor, RespectsAByteBudget) {
     for (const double limit : {0.9e6, 0.55e6, 0.3e6, 0.05e6}) {
         Governor governor;
         std::vector<uint32_t> levels;

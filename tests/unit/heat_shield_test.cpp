@@ -1,5 +1,5 @@
-// The shield's cells: that a way between two places meets those that it goes through and no other,
-// and which an object fills.
+// Cells of the heat-occlusion grid: a segment meets exactly the cells it crosses, and objects fill
+// the right cells.
 #include "components/heat_shield.h"
 
 #include "components/remote.h"
@@ -46,9 +46,9 @@ std::vector<uint32_t> walked(const ShieldShape& shape, ivec3 a, ivec3 b) {
     return cells;
 }
 
-// To 3 mm, with which it knows where it comes into the grid: by points of the way that are well
-// within a cell.
-TEST(HeatShield, AWayMeetsTheCellsItGoesThrough) {
+// Points well inside a cell (3 mm, the precision of the grid entry) say which cells a segment must
+// meet.
+TEST(HeatShield, SegmentsMeetTheCellsTheyCross) {
     std::mt19937 random(7);
     const auto below = [&](int most) { return int(random() % uint32_t(most)); };
     uint32_t met = 0, missed = 0;
@@ -61,12 +61,12 @@ TEST(HeatShield, AWayMeetsTheCellsItGoesThrough) {
                 const int size = int(shape.counts[size_t(k)] * shape.cell);
                 end[k] = shape.origin[size_t(k)] - size / 2 + below(2 * size + 2);
             }
-        if (i % 5 == 0) ends[1][i % 3] = ends[0][i % 3];  // along a plane of faces
+        if (i % 5 == 0) ends[1][i % 3] = ends[0][i % 3];  // in a plane of faces
         const std::vector<uint32_t> cells = walked(shape, ends[0], ends[1]);
         const std::set<uint32_t> all(cells.begin(), cells.end());
-        ASSERT_EQ(all.size(), cells.size()) << "twice, way " << i;
+        ASSERT_EQ(all.size(), cells.size()) << "a cell is met twice, segment " << i;
         for (const uint32_t cell : cells) ASSERT_LT(cell, shape.cells());
-        std::set<uint32_t> sure;  // that some point is well within
+        std::set<uint32_t> sure;  // cells that hold a point well inside
         for (int s = 0; s <= 4000; ++s) {
             uint32_t cell = 0;
             bool well = true;
@@ -82,10 +82,10 @@ TEST(HeatShield, AWayMeetsTheCellsItGoesThrough) {
             if (well) sure.insert(cell);
         }
         for (const uint32_t cell : sure) {
-            ASSERT_TRUE(all.count(cell)) << "way " << i << ", cell " << cell;
+            ASSERT_TRUE(all.count(cell)) << "segment " << i << ", cell " << cell;
             ++met;
         }
-        // What is met beside those are corners that it cuts.
+        // The other cells met are corners that it cuts.
         missed += uint32_t(all.size() - sure.size());
         for (size_t k = 1; k < cells.size(); ++k) {
             const uint32_t d =
@@ -97,8 +97,8 @@ TEST(HeatShield, AWayMeetsTheCellsItGoesThrough) {
     EXPECT_LT(missed, met / 5);
 }
 
-// Far from it, and at the ends of the world, nothing overflows (a sanitizer's business).
-TEST(HeatShield, WhatIsFarOffMeetsNothing) {
+// Far away and at the ends of the world nothing overflows; sanitizers check this.
+TEST(HeatShield, DistantSegmentsMeetNothing) {
     ShieldShape shape = shapeOf(256, 32, 256, 10000);
     shape.origin = {1000000000, -1000000000, 0};
     for (const int at : {-2000000000, -40000, 0, 40000, 2000000000})
@@ -107,8 +107,8 @@ TEST(HeatShield, WhatIsFarOffMeetsNothing) {
     EXPECT_TRUE(walked(ShieldShape{}, {0, 0, 0}, {100, 0, 0}).empty());
 }
 
-// A plane that lies askew has no gap, from whatever side: each way through it meets a cell of it.
-TEST(HeatShield, AnObjectFillsWhatItsTexelsReach) {
+// A slanted plane has no gap from either side: each segment through it meets one of its cells.
+TEST(HeatShield, ObjectsFillTheCellsOfTheirTexels) {
     const Mesh plane = makePlane(2, 2, 0, 1, 90);  // along x and z
     const mesh::BurnDomain domain = mesh::bake(plane.input(48), std::pmr::get_default_resource());
     for (const float turn : {0.0f, 0.3f, 0.78f}) {
@@ -151,7 +151,7 @@ TEST(HeatShield, AnObjectFillsWhatItsTexelsReach) {
             ASSERT_EQ(5u, shield.baked[i].what & gpu::kShieldSlot);
             ASSERT_TRUE(domain.real(shield.baked[i].texel));
         }
-        // About its area in cells, and a half more where it lies askew.
+        // About its area in cells, half as much more if slanted.
         EXPECT_LT(shield.baked.size(), size_t(2.2 * (2000.0 / 60) * (2000.0 / 60)));
         components::ShieldView view{shape, words, {}};
         std::mt19937 random(3);

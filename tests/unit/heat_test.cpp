@@ -1,5 +1,5 @@
-// Heat, fuel and water of a texel: P10 (char depth), P11 (time to ignite), P12 (energy adds up),
-// P13 (water), and that no input leads out of range.
+// Heat, fuel and water of a texel: char depth, ignition time, energy balance, extinction by water,
+// and ranges under any input.
 #include "fire/heat.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kHeatStep = 1.0 / 32;
 
-struct Story {
+struct TexelBurn {
     gpu::HeatTexel texel;
     gpu::HeatMaterial material;
     uint32_t texelIndex = 7;
@@ -23,18 +23,28 @@ struct Story {
     uint32_t run(uint32_t flux, bool pilot = true, uint32_t air = 256) {
         uint32_t gone = 0, water = 0;
         const uint32_t chance = gpu::hash32(texelIndex * 0x9E3779B9u + step++);
-        const uint32_t told = gpu::heatStep(texel, material, flux, air, pilot, chance, gone, water);
+        const uint32_t result =
+            gpu::heatStep(texel, material, flux, air, pilot, chance, gone, water);
         burnt += gone;
         evaporated += water;
-        return told;
+        return result;
     }
 };
 
-Story storyOf(const fire::HeatFacts& facts, double seconds = kHeatStep, float ambient = 293) {
-    return {fire::heatAtRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
+// A texel that has not been heated. `ambient`: K; `moisture`: kg/kg.
+gpu::HeatTexel atRest(float ambient, float moisture) {
+    gpu::HeatTexel x{};
+    x.fuel = gpu::kFuelFull;
+    x.heat = fire::fixed(double(ambient), 16, 16000);
+    x.moist = fire::fixed(double(moisture), 128, gpu::kMoistMost);
+    return x;
 }
 
-// No losses: what P11 asks for.
+TexelBurn texelOf(const fire::HeatFacts& facts, double seconds = kHeatStep, float ambient = 293) {
+    return {atRest(ambient, 0), fire::heatMaterial(facts, seconds, ambient)};
+}
+
+// Without losses, as the analytic ignition times assume.
 fire::HeatFacts insulated() {
     fire::HeatFacts facts;
     facts.emissivity = 0;
@@ -44,25 +54,25 @@ fire::HeatFacts insulated() {
 }
 
 double secondsToIgnite(const fire::HeatFacts& facts, uint32_t flux, double seconds) {
-    Story story = storyOf(facts, seconds);
+    TexelBurn burn = texelOf(facts, seconds);
     for (uint32_t i = 1; i < 2'000'000; ++i) {
-        if (story.run(flux) & gpu::kHeatIgnites) return i * seconds;
+        if (burn.run(flux) & gpu::kHeatIgnites) return i * seconds;
     }
     return -1;
 }
 
-// Depth that charred in an hour under a furnace's flux, mm.
+// Depth charred in an hour under a furnace's flux, mm.
 double charDepth(float density, double seconds) {
     fire::HeatFacts facts;
     facts.density = density;
     facts.thickness = 0.08f;
-    Story story = storyOf(facts, seconds);
-    for (uint32_t i = 0; i < uint32_t(3600 / seconds); ++i) story.run(50000);
-    return 80.0 * (1 - double(story.texel.fuel) / gpu::kFuelFull);
+    TexelBurn burn = texelOf(facts, seconds);
+    for (uint32_t i = 0; i < uint32_t(3600 / seconds); ++i) burn.run(50000);
+    return 80.0 * (1 - double(burn.texel.fuel) / gpu::kFuelFull);
 }
 
-TEST(Heat, P10_CharDepthOfAnHour) {
-    for (const double seconds : {kHeatStep, 30 * kHeatStep}) {  // pace 1 and pace 30
+TEST(Heat, CharDepthAfterAnHourMatchesEurocode5) {
+    for (const double seconds : {kHeatStep, 30 * kHeatStep}) {  // pace 1 and 30
         const double soft = charDepth(450, seconds), hard = charDepth(660, seconds);
         std::printf("char after an hour, step %.3f s: softwood %.1f mm, hardwood %.1f mm\n",
                     seconds, soft, hard);
@@ -71,7 +81,8 @@ TEST(Heat, P10_CharDepthOfAnHour) {
     }
 }
 
-TEST(Heat, P11_TimeToIgnite) {
+// Without losses: a half-space takes pi / 4 k rho c (dT / q)^2, a thin sheet rho c d dT / q.
+TEST(Heat, IgnitionTimeMatchesTheory) {
     fire::HeatFacts thick = insulated();
     thick.conductivity = 0.2222f;  // k rho c = 0.25 kW^2 s / m^4 K^2
     thick.ignition = 293 + 330;
@@ -97,66 +108,66 @@ TEST(Heat, P11_TimeToIgnite) {
     }
 }
 
-TEST(Heat, P12_WhatBurnsAddsUp) {
+TEST(Heat, BurntEnergyAddsUp) {
     std::mt19937 random(1);
     fire::HeatFacts facts;
     facts.thickness = 0.002f;
     uint64_t cells[16] = {}, texels = 0;
     for (uint32_t i = 0; i < 256; ++i) {
-        Story story = storyOf(facts, 4 * kHeatStep);
-        story.texelIndex = i;
-        const uint64_t worth = 1 + random() % 5000;  // mJ a unit
-        const uint32_t before = story.texel.fuel;
+        TexelBurn burn = texelOf(facts, 4 * kHeatStep);
+        burn.texelIndex = i;
+        const uint64_t worth = 1 + random() % 5000;  // mJ per unit
+        const uint32_t before = burn.texel.fuel;
         for (uint32_t k = 0; k < 4000; ++k) {
-            const uint64_t had = story.burnt;
-            story.run(20000 + uint32_t(random() % 30000));
-            cells[i % 16] += (story.burnt - had) * worth;
+            const uint64_t had = burn.burnt;
+            burn.run(20000 + uint32_t(random() % 30000));
+            cells[i % 16] += (burn.burnt - had) * worth;
         }
-        texels += uint64_t(before - story.texel.fuel) * worth;
-        EXPECT_EQ(story.burnt, before - story.texel.fuel);
-        EXPECT_LT(story.texel.fuel, before);
+        texels += uint64_t(before - burn.texel.fuel) * worth;
+        EXPECT_EQ(burn.burnt, before - burn.texel.fuel);
+        EXPECT_LT(burn.texel.fuel, before);
     }
     uint64_t sum = 0;
     for (const uint64_t cell : cells) sum += cell;
     EXPECT_EQ(sum, texels);
 }
 
-TEST(Heat, P13_WaterPutsClothOutAndMustGoFirst) {
+TEST(Heat, WaterExtinguishesClothAndMustEvaporateBeforeReignition) {
     fire::HeatFacts cloth;
     cloth.thick = false;
     cloth.thickness = 0.0005f;
     cloth.density = 400;
     cloth.specificHeat = 1400;
-    Story story = storyOf(cloth);
-    while (!(story.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(story.step, 3200u);
-    for (int i = 0; i < 32; ++i) story.run(0);
-    ASSERT_EQ(story.texel.phase, gpu::kPhaseBurning);
+    TexelBurn burn = texelOf(cloth);
+    while (!(burn.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(burn.step, 3200u);
+    for (int i = 0; i < 32; ++i) burn.run(0);
+    ASSERT_EQ(burn.texel.phase, gpu::kPhaseBurning);
 
-    gpu::heatWets(story.texel, 250, story.material);
-    EXPECT_EQ(story.texel.film, 200u) << "the surplus runs off";
-    uint32_t told = 0;
-    for (int i = 0; i < 8 && !(told & gpu::kHeatExtinguishes); ++i) told |= story.run(0);
-    EXPECT_TRUE(told & gpu::kHeatExtinguishes);
-    EXPECT_EQ(story.texel.phase, gpu::kPhaseOut);
-    EXPECT_GT(story.texel.film, 0u);
+    gpu::heatWets(burn.texel, 250, burn.material);
+    EXPECT_EQ(burn.texel.film, 200u) << "the surplus runs off";
+    uint32_t result = 0;
+    for (int i = 0; i < 8 && !(result & gpu::kHeatExtinguishes); ++i) result |= burn.run(0);
+    EXPECT_TRUE(result & gpu::kHeatExtinguishes);
+    EXPECT_EQ(burn.texel.phase, gpu::kPhaseOut);
+    EXPECT_GT(burn.texel.film, 0u);
 
-    // Under a flux again: not before the film is gone.
+    // Under a flux again, not before the film is gone.
     bool dry = false;
     for (int i = 0; i < 3200 && !dry; ++i) {
-        told = story.run(40000);
-        dry = (told & gpu::kHeatDries) != 0;
-        EXPECT_FALSE(told & gpu::kHeatIgnites);
-        EXPECT_LE(story.texel.heat, gpu::kBoiling);
+        result = burn.run(40000);
+        dry = (result & gpu::kHeatDries) != 0;
+        EXPECT_FALSE(result & gpu::kHeatIgnites);
+        EXPECT_LE(burn.texel.heat, gpu::kBoiling);
     }
     EXPECT_TRUE(dry);
-    told = 0;
-    for (int i = 0; i < 3200 && !(told & gpu::kHeatIgnites); ++i) told = story.run(40000);
-    EXPECT_TRUE(told & gpu::kHeatIgnites) << "dry again, it burns again";
-    EXPECT_EQ(story.texel.epoch, 1u);
-    EXPECT_EQ(story.texel.phase, gpu::kPhaseBurning);
+    result = 0;
+    for (int i = 0; i < 3200 && !(result & gpu::kHeatIgnites); ++i) result = burn.run(40000);
+    EXPECT_TRUE(result & gpu::kHeatIgnites) << "it reignites once dry";
+    EXPECT_EQ(burn.texel.epoch, 1u);
+    EXPECT_EQ(burn.texel.phase, gpu::kPhaseBurning);
 }
 
-TEST(Heat, P13_EvaporationTakesItsHeat) {
+TEST(Heat, EvaporationConsumesItsLatentHeat) {
     fire::HeatFacts cloth;
     cloth.thick = false;
     cloth.thickness = 0.0005f;
@@ -165,51 +176,51 @@ TEST(Heat, P13_EvaporationTakesItsHeat) {
     cloth.airDrying = 0;
     double joules = 0, grams = 0;
     for (uint32_t i = 0; i < 400; ++i) {
-        Story story = storyOf(cloth);
-        story.texelIndex = i;
-        story.texel.heat = gpu::kBoiling;
-        gpu::heatWets(story.texel, 200, story.material);
-        while (!(story.run(40000) & gpu::kHeatDries)) ASSERT_LT(story.step, 3200u);
-        // Net of what a surface at 373 K loses by radiation and convection.
+        TexelBurn burn = texelOf(cloth);
+        burn.texelIndex = i;
+        burn.texel.heat = gpu::kBoiling;
+        gpu::heatWets(burn.texel, 200, burn.material);
+        while (!(burn.run(40000) & gpu::kHeatDries)) ASSERT_LT(burn.step, 3200u);
+        // Net of the losses of a surface at 373 K by radiation and convection.
         const double net =
             230.0 / 256 * (40000 - 5.670374e-8 * (std::pow(373.125, 4) - std::pow(293, 4))) -
             15 * (373.125 - 293);
-        joules += net * story.step * kHeatStep;
-        grams += double(story.evaporated);
-        EXPECT_EQ(story.evaporated, 200u);
+        joules += net * burn.step * kHeatStep;
+        grams += double(burn.evaporated);
+        EXPECT_EQ(burn.evaporated, 200u);
     }
     std::printf("film: %.3f MJ/kg\n", joules / grams / 1000);
     EXPECT_NEAR(joules / grams / 1000, 2.26, 0.02);
 }
 
-TEST(Heat, MoistureDelaysIgnitionAndDampWoodDoesNotCatch) {
+TEST(Heat, MoistureDelaysOrPreventsIgnition) {
     fire::HeatFacts wood;
     double before = 0;
     for (const float moisture : {0.0f, 0.12f, 0.3f}) {
-        Story story = storyOf(wood);
-        story.texel = fire::heatAtRest(293, moisture);
-        while (!(story.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(story.step, 32u * 600);
-        const double seconds = story.step * kHeatStep;
+        TexelBurn burn = texelOf(wood);
+        burn.texel = atRest(293, moisture);
+        while (!(burn.run(30000) & gpu::kHeatIgnites)) ASSERT_LT(burn.step, 32u * 600);
+        const double seconds = burn.step * kHeatStep;
         std::printf("wood of moisture %.2f at 30 kW/m^2: %.1f s\n", double(moisture), seconds);
         EXPECT_GT(seconds, before * 1.1);
         before = seconds;
     }
 }
 
-TEST(Heat, ALonePlankNeedsItsFlamesFeedback) {
+TEST(Heat, AFreePlankNeedsHeatFeedback) {
     fire::HeatFacts feeds, starves;
     starves.ownFlux = 8000;
     for (const bool fed : {true, false}) {
-        Story story = storyOf(fed ? feeds : starves);
-        while (!(story.run(40000) & gpu::kHeatIgnites)) ASSERT_LT(story.step, 3200u);
-        for (int i = 0; i < 32 * 1800; ++i) story.run(0);
-        EXPECT_EQ(story.texel.phase, fed ? gpu::kPhaseBurning : gpu::kPhaseOut);
+        TexelBurn burn = texelOf(fed ? feeds : starves);
+        while (!(burn.run(40000) & gpu::kHeatIgnites)) ASSERT_LT(burn.step, 3200u);
+        for (int i = 0; i < 32 * 1800; ++i) burn.run(0);
+        EXPECT_EQ(burn.texel.phase, fed ? gpu::kPhaseBurning : gpu::kPhaseOut);
     }
 }
 
-TEST(Heat, ChanceNeitherMakesNorLosesHeat) {
-    // A thick block under a small flux warms by far less than a unit a step; the mean of many is
-    // the exact rise.
+TEST(Heat, RandomRoundingConservesHeat) {
+    // A thick block under a small flux warms by far less than a unit per step; the mean of many
+    // texels is the exact rise.
     fire::HeatFacts facts = insulated();
     facts.thick = false;
     facts.thickness = 0.05f;
@@ -217,10 +228,10 @@ TEST(Heat, ChanceNeitherMakesNorLosesHeat) {
     double rise = 0;
     constexpr int kTexels = 2000, kSteps = 320;
     for (int i = 0; i < kTexels; ++i) {
-        Story story = storyOf(facts);
-        story.texelIndex = uint32_t(i);
-        for (int k = 0; k < kSteps; ++k) story.run(1000);
-        rise += story.texel.heat / 16.0 - 293;
+        TexelBurn burn = texelOf(facts);
+        burn.texelIndex = uint32_t(i);
+        for (int k = 0; k < kSteps; ++k) burn.run(1000);
+        rise += burn.texel.heat / 16.0 - 293;
     }
     const double exact = 1000.0 * kSteps * kHeatStep / (0.05 * 700 * 2500);
     EXPECT_NEAR(rise / kTexels, exact, 0.02 * exact);
@@ -249,7 +260,7 @@ TEST(Heat, RadiationAndExponentsMatchFloats) {
     }
 }
 
-TEST(Heat, PointSources) {
+TEST(Heat, PointSourcesMatchTheFormula) {
     const auto share = uint32_t(0.33 / (4 * std::numbers::pi) * 65536);
     for (const double power : {1e3, 1e5, 1e7, 1e9}) {
         for (const double distance : {0.15, 1.0, 4.0, 30.0}) {
@@ -265,7 +276,7 @@ TEST(Heat, PointSources) {
     }
 }
 
-TEST(Heat, PackingIsWhole) {
+TEST(Heat, PackingRoundTrips) {
     std::mt19937 engine(3);
     const auto random = [&] { return uint32_t(engine()); };
     for (int i = 0; i < 1000; ++i) {
@@ -274,7 +285,7 @@ TEST(Heat, PackingIsWhole) {
     }
 }
 
-TEST(Heat, NoInputLeadsOutOfRange) {
+TEST(Heat, StaysInRangeForAnyInput) {
     std::mt19937 engine(5);
     const auto random = [&] { return uint32_t(engine()); };
     const auto upTo = [&](float most) { return float(random() % 10001) / 10000 * most; };
@@ -293,17 +304,17 @@ TEST(Heat, NoInputLeadsOutOfRange) {
         facts.charFloor = upTo(1);
         facts.filmMost = upTo(1023);
         const double seconds = kHeatStep / 128 * std::pow(2.0, double(random() % 18));
-        Story story = storyOf(facts, seconds, upTo(1000));
-        story.texelIndex = random();
-        story.texel = gpu::unpackHeat({random(), random()});
-        const gpu::HeatTexel first = story.texel;
+        TexelBurn burn = texelOf(facts, seconds, upTo(1000));
+        burn.texelIndex = random();
+        burn.texel = gpu::unpackHeat({random(), random()});
+        const gpu::HeatTexel first = burn.texel;
         uint32_t fuel = first.fuel;
         for (int k = 0; k < 200; ++k) {
-            if (random() % 32 == 0) gpu::heatWets(story.texel, random(), story.material);
-            const uint32_t film = story.texel.film, moist = story.texel.moist;
-            story.run(random() % 3 ? random() % 200000 : random(), (random() & 1) != 0,
-                      256 + random() % 257);
-            const gpu::HeatTexel& x = story.texel;
+            if (random() % 32 == 0) gpu::heatWets(burn.texel, random(), burn.material);
+            const uint32_t film = burn.texel.film, moist = burn.texel.moist;
+            burn.run(random() % 3 ? random() % 200000 : random(), (random() & 1) != 0,
+                     256 + random() % 257);
+            const gpu::HeatTexel& x = burn.texel;
             ASSERT_LE(x.fuel, fuel);
             ASSERT_LE(x.heat, 65535u);
             ASSERT_LE(x.film, film);

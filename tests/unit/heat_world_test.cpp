@@ -1,5 +1,5 @@
-// Heat over whole maps on the cpu backend: P11 (time to ignite under a flux from elsewhere), which
-// tiles are hot, and that what is not hot is at rest.
+// Heat on whole maps, on the cpu backend: ignition under an external flux, hot tiles, sleep of the
+// others.
 #include "fire/heat.h"
 #include "fire/presets.h"
 #include "gpu/cpu/cpu_backend.h"
@@ -86,7 +86,7 @@ fire::HeatFacts insulatedWood() {
     return facts;
 }
 
-TEST(HeatMap, P11_AFluxFromElsewhereIgnitesItsTileInTime) {
+TEST(HeatMap, ExternalFluxIgnitesItsTileInTime) {
     for (const double flux : {20e3, 30e3, 50e3}) {
         HotSheet sheet(insulatedWood(), 1e-4);
         const double inertia = 0.2222 * 450 * 2500;
@@ -94,7 +94,7 @@ TEST(HeatMap, P11_AFluxFromElsewhereIgnitesItsTileInTime) {
         const uint32_t tile = 2 * sheet.domain.tilesX + 2, start = sheet.now;
         const uint32_t corner = 2 * 8 * sheet.domain.width + 2 * 8;
         sheet.backend.setTileHeat(0, tile, {uint32_t(flux), 1});
-        // What a texel's heat is rounded by is its own, so not all catch in the same step.
+        // Heat is rounded per texel, so texels catch in different steps.
         double first = -1, last = -1;  // s
         while (last < 0 && sheet.now < start + 200 * 4096) {
             sheet.step();
@@ -112,13 +112,13 @@ TEST(HeatMap, P11_AFluxFromElsewhereIgnitesItsTileInTime) {
                     flux / 1000, first, last, exact);
         EXPECT_NEAR(first, exact, 0.05 * exact + 0.2);
         EXPECT_NEAR(last, exact, 0.05 * exact + 0.2);
-        // And no other yet.
+        // No other tile yet.
         sheet.step();
         EXPECT_EQ(64u, sheet.backend.counters(0).ignited);
     }
 }
 
-TEST(HeatMap, WithoutAPilotItWaitsForItsOwnTemperature) {
+TEST(HeatMap, WithoutAPilotAutoIgnitionIsLater) {
     HotSheet sheet(insulatedWood(), 1e-4);
     const uint32_t tile = 2 * sheet.domain.tilesX + 2;
     const uint32_t texel = (2 * 8 + 3) * sheet.domain.width + 2 * 8 + 3;
@@ -131,7 +131,7 @@ TEST(HeatMap, WithoutAPilotItWaitsForItsOwnTemperature) {
     EXPECT_TRUE(gpu::isSource(sheet.backend.state(0)[texel]));
 }
 
-TEST(HeatMap, HotTilesFollowTheFireAndTheRestIsAtRest) {
+TEST(HeatMap, HotTilesFollowTheFireAndOthersSleep) {
     fire::HeatFacts cloth;
     cloth.thick = false;
     cloth.thickness = 0.0005f;
@@ -149,7 +149,7 @@ TEST(HeatMap, HotTilesFollowTheFireAndTheRestIsAtRest) {
         sheet.step();
         most = std::max(most, sheet.hot);
         if (i % 320 != 0) continue;
-        // P12: the object's account is what its texels lost.
+        // The object's energy account equals the loss of its texels.
         energy = 0;
         for (uint32_t k = 0; k < sheet.domain.texelCount(); ++k)
             if (sheet.domain.real(k))
@@ -169,15 +169,14 @@ TEST(HeatMap, HotTilesFollowTheFireAndTheRestIsAtRest) {
     }
 }
 
-// What is only warm takes one step in kRests, one in four times as many where little or nothing
-// comes to it, and is as warm as if it took all of them: as long as something comes to it and after
-// that, and when more comes than it may rest under.
-TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
+// A warm texel takes one step in kRests, or one in four times as many where little arrives. Its
+// temperature must follow that of all steps, during and after the flux, and when the flux grows.
+TEST(HeatMap, WarmTilesTakeOneStepInEight) {
     HotSheet sheet(fire::HeatFacts{}, 1e-4);
     const uint32_t tile = 2 * sheet.domain.tilesX + 2;
     const uint32_t texel = (2 * 8 + 3) * sheet.domain.width + 2 * 8 + 3;
-    gpu::HeatTexel all = sheet.at(texel);  // of all steps
-    // Exchanges give a tile another flux where a rest of it ends.
+    gpu::HeatTexel all = sheet.at(texel);  // takes every step
+    // Exchanges give the tile another flux at the end of a skipped span.
     for (bool ends = false; !ends;) {
         const uint32_t now = sheet.now;
         sheet.step();
@@ -200,7 +199,7 @@ TEST(HeatMap, WhatIsOnlyWarmTakesOneStepInEight) {
         }
         std::printf("under %u W/m^2 for %d s: %u of %d steps, %.1f K, at most %.2f K apart\n", flux,
                     seconds, changes, seconds * 8, double(sheet.at(texel).heat) / 16, apart);
-        EXPECT_LT(apart, 4.0) << "a long step that begins cold is the worst of them";
+        EXPECT_LT(apart, 4.0) << "the worst case is a long step from cold";
         return changes;
     };
     const uint32_t warms = run(3000, 120);

@@ -1,5 +1,5 @@
-// Compressed glTF meshes: what this file packs, the importer unpacks; damaged data is refused in
-// words. Where the build lacks a codec, the refusal says how to convert.
+// Compressed glTF meshes: what this file packs, the importer unpacks. Damaged data is refused with
+// a message. Without a codec the message says how to convert.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -60,7 +60,7 @@ Quad packedQuad(const std::string& extension = "EXT_meshopt_compression") {
     quad.indexView =
         packedView(i, indices.size(), R"(,"byteStride":2,"count":6,"mode":"TRIANGLES")", 12);
     quad.extra = R"(,"extensionsRequired":[")" + extension + R"("])";
-    // The second buffer stands in for readers without the codec and has no bytes.
+    // The second buffer is for readers without the codec and has no bytes.
     quad.buffers =
         R"(,{"byteLength":60,"extensions":{"EXT_meshopt_compression":{"fallback":true}}})";
     return quad;
@@ -73,7 +73,7 @@ TEST(ImportMeshopt, CompressedViewsAreRead) {
     EXPECT_EQ(4u, model.vertexCount());
     EXPECT_FLOAT_EQ(5, model.low[2]);
     EXPECT_FLOAT_EQ(1, model.high[0]);
-    // The library may turn a triangle's corners round.
+    // The codec may rotate a triangle's corners.
     EXPECT_EQ(2u, model.triangleCount());
 
     Quad later = packedQuad("KHR_meshopt_compression");
@@ -89,7 +89,7 @@ TEST(ImportMeshopt, FiltersAreApplied) {
     std::vector<int8_t> octahedral(16);  // four of four bytes
     meshopt_encodeFilterOct(octahedral.data(), 4, 4, 8, normals.data());
     const auto packed = packVertices(octahedral, 4);
-    // Luma, two differences, alpha: red is 255, -, - in eight bits of which alpha's tell the scale.
+    // Luma, two differences, alpha: red is 255, -, - in eight bits scaled by alpha's range.
     const std::vector<int8_t> color{63, 63, 0, 127, 63, 63, 0, 127, 63, 63, 0, 127, 63, 63, 0, 127};
     const auto packedColor = packVertices(color, 4);
     Quad quad = packedQuad();
@@ -121,7 +121,7 @@ TEST(ImportMeshopt, FiltersAreApplied) {
     EXPECT_EQ(0u, model.colors[0] >> 16 & 255);
 }
 
-TEST(ImportMeshopt, DamagedDataIsRefused) {
+TEST(ImportMeshopt, RefusesDamagedData) {
     if (!fwimport::readsMeshopt()) GTEST_SKIP() << "this build reads no meshopt data";
     const auto refusal = [](const std::string& from, const std::string& to) {
         Quad quad = packedQuad();
@@ -193,10 +193,10 @@ TEST(ImportDraco, CompressedMeshIsRead) {
         area += 0.5 * double((p[1][0] - p[0][0]) * (p[2][1] - p[0][1]) -
                              (p[2][0] - p[0][0]) * (p[1][1] - p[0][1]));
     }
-    EXPECT_NEAR(1, area, 1e-3) << "and its outside is the outside";
+    EXPECT_NEAR(1, area, 1e-3) << "faces keep their winding";
     quad = dracoQuad(data, R"("POSITION":77)");
     EXPECT_THAT(importRefusal(quad.bytes()), HasSubstr("POSITION is attribute 77"));
-    // Any damage is a refusal or a sound model.
+    // Damaged data is refused or gives a valid model.
     for (size_t at = 0; at < data.size(); ++at) {
         for (const uint8_t flip : {0x01, 0x40, 0xff}) {
             std::vector<uint8_t> bad = data;
@@ -211,7 +211,7 @@ TEST(ImportDraco, CompressedMeshIsRead) {
 
 #endif
 
-TEST(ImportPacked, WhereACodecIsMissingTheRefusalSaysHowToConvert) {
+TEST(ImportPacked, RefusalWithoutACodecExplainsConversion) {
     if (!fwimport::readsDraco()) {
         EXPECT_THAT(importRefusal(dracoQuad({1, 2, 3}, R"("POSITION":0)").bytes()),
                     HasSubstr("export the file again without mesh compression"));

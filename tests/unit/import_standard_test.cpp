@@ -1,5 +1,5 @@
-// Rules of glTF 2.0 for a reader, one by one, on files made here: each comes out as the standard
-// says, and what is not shown has a note.
+// Rules of glTF 2.0 for a reader, one per test, on generated files: each gives what the standard
+// says, and features that are not shown give a note.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -36,7 +36,7 @@ std::vector<uint8_t> bytesOf(const fs::path& file) {
     return {std::istreambuf_iterator<char>(stream), {}};
 }
 
-// A picture of one pixel repeated, as the importer gets it from PNG, EXR or TIFF.
+// A one-pixel image as PNG, EXR or TIFF.
 std::vector<uint8_t> pictureOf(const std::string& name, const std::vector<float>& pixels,
                                uint32_t width, uint32_t height) {
     fwimport::FloatPicture picture;
@@ -54,7 +54,7 @@ std::vector<uint8_t> pictureOf(const std::string& name, const std::vector<float>
     return bytes;
 }
 
-// A quad with a picture, UVs and the material's fields given.
+// A quad with an image, UVs and the given material fields.
 Quad pictured(const std::vector<uint8_t>& picture, const std::string& material,
               const std::string& texture = R"({"source":0})") {
     Quad quad;
@@ -76,9 +76,9 @@ std::vector<float> repeated(std::vector<float> pixel, size_t count) {
     return result;
 }
 
-// ---- pictures and alpha -----------------------------------------------------------------------
+// ---- images and alpha
 
-TEST(ImportAlpha, OpaquePictureKeepsItsColourUnderAnyAlpha) {
+TEST(ImportAlpha, OpaqueMaterialsIgnoreAlpha) {
     for (const float alpha : {1.0f, 0.5f, 0.0f}) {
         ImportedModel model;
         ASSERT_TRUE(loads(
@@ -96,10 +96,10 @@ TEST(ImportAlpha, OpaquePictureKeepsItsColourUnderAnyAlpha) {
     }
 }
 
-TEST(ImportAlpha, ColoursThatAFileMultipliesByAlphaAreDivided) {
+TEST(ImportAlpha, UndoesPremultipliedAlpha) {
     fwimport::DecodedImage image;
     std::string error;
-    // EXR stores light, multiplied.
+    // EXR stores premultiplied linear light.
     ASSERT_TRUE(fwimport::decodeImage(pictureOf("b.exr", repeated({0.25f, 0.5f, 0, 0.5f}, 4), 2, 2),
                                       image, error))
         << error;
@@ -108,7 +108,7 @@ TEST(ImportAlpha, ColoursThatAFileMultipliesByAlphaAreDivided) {
     EXPECT_NEAR(128, image.rgba[3], 1);
 }
 
-TEST(ImportAlpha, PicturesAreWrittenWithTheAlphaTheyWereReadWith) {
+TEST(ImportAlpha, WritingKeepsAlpha) {
     const fs::path file = fs::path(testing::TempDir()) / "fw_straight.png";
     const auto bytes = pictureOf("straight.png", repeated({0.5f, 0.25f, 1, 0.25f}, 4), 2, 2);
     std::ofstream(file, std::ios::binary)
@@ -148,7 +148,7 @@ TEST(ImportAlpha, MaskAndBlendReachTheMaterial) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("BLEND is shown opaque")));
 }
 
-TEST(ImportAlpha, FactorsAndVerticesBelowTheCutOffLeaveNothing) {
+TEST(ImportAlpha, DropsTrianglesBelowTheCutoff) {
     std::vector<float> leaf = repeated({0, 1, 0, 1}, 16);
     for (size_t i = 0; i < 8; ++i) leaf[i * 4 + 3] = 0;
     const auto holes = pictureOf("leaf.png", leaf, 4, 4);
@@ -164,7 +164,7 @@ TEST(ImportAlpha, FactorsAndVerticesBelowTheCutOffLeaveNothing) {
     ImportedModel model;
     ASSERT_TRUE(loads(pictured(holes, faint + R"(BLEND")").bytes(), model));
     EXPECT_FLOAT_EQ(0.2f, model.materials[0].alphaCutoff) << "0.5 of the picture's alpha";
-    // Three corners of the first triangle have no alpha, of the second one has some.
+    // The first triangle's corners have no alpha, the second has one with alpha.
     Quad quad;
     const int colors =
         quad.add(std::vector<uint8_t>{255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 0, 255, 0, 0, 255},
@@ -179,7 +179,7 @@ TEST(ImportAlpha, FactorsAndVerticesBelowTheCutOffLeaveNothing) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("alpha of COLOR_0 is left out")));
 }
 
-TEST(ImportAlpha, WhatIsWhollyCutOutIsLeftOut) {
+TEST(ImportAlpha, DropsFullyCutOutPrimitives) {
     Quad quad;
     quad.primitive += R"(,"material":0},{"attributes":{"POSITION":0},"indices":1)";
     quad.extra = R"(,"materials":[{"alphaMode":"MASK","pbrMetallicRoughness":{"metallicFactor":0,)"
@@ -191,9 +191,9 @@ TEST(ImportAlpha, WhatIsWhollyCutOutIsLeftOut) {
                 Contains(HasSubstr("below its alphaCutoff (meshes[0].primitives[0])")));
 }
 
-// ---- skins, morph targets, instances ------------------------------------------------------------
+// ---- skins, morph targets, instances
 
-// Four corners, each with a joint.
+// Four corners, each with its joint.
 Quad skinned(const std::string& skin, const std::vector<float>& matrices,
              std::vector<uint8_t> joints, std::vector<float> weights) {
     Quad quad;
@@ -205,8 +205,9 @@ Quad skinned(const std::string& skin, const std::vector<float>& matrices,
     return quad;
 }
 
-TEST(ImportSkin, FigureStandsAsItsJointsPutIt) {
-    // Centimetres lying down, as rigs come: the armature scales by 0.01 and turns by -90 degrees.
+TEST(ImportSkin, PosesAreAppliedByJoints) {
+    // Centimetres, lying down, as rigs often are: the armature scales by 0.01 and turns by -90
+    // degrees.
     const std::vector<float> unit{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     Quad quad = skinned(R"("joints":[1])", unit, std::vector<uint8_t>(16, 0),
                         {1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0});
@@ -228,7 +229,7 @@ TEST(ImportSkin, FigureStandsAsItsJointsPutIt) {
 TEST(ImportSkin, WeightsMixJointsAndAreNormalised) {
     std::vector<float> matrices{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     matrices.insert(matrices.end(), matrices.begin(), matrices.end());
-    matrices[16 + 12] = -5;  // the second joint's inverse
+    matrices[16 + 12] = -5;  // the second joint's inverse bind matrix
     Quad quad =
         skinned(R"("joints":[1,2])", matrices, {0, 9, 9, 9, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 0, 0},
                 {1, 0, 0, 0, 1, 0, 0, 0, 2, 2, 0, 0, 0, 0, 0, 0});
@@ -240,7 +241,7 @@ TEST(ImportSkin, WeightsMixJointsAndAreNormalised) {
         return std::vector<float>(model.positions.begin() + long(3 * i),
                                   model.positions.begin() + long(3 * i) + 3);
     };
-    EXPECT_EQ((std::vector<float>{0, 0, 1}), corner(0)) << "a joint of no weight may be any number";
+    EXPECT_EQ((std::vector<float>{0, 0, 1}), corner(0)) << "a joint of weight 0 may be any number";
     EXPECT_EQ((std::vector<float>{11, 0, 0}), corner(1)) << "15 - 5 + 1";
     EXPECT_EQ((std::vector<float>{6, 1, 0.5f}), corner(2)) << "half of each";
     EXPECT_EQ((std::vector<float>{0, 1, 1}), corner(3)) << "no weights: the first joint";
@@ -262,7 +263,7 @@ TEST(ImportMorph, DefaultWeightsShapeTheMesh) {
     EXPECT_FLOAT_EQ(1, model.high[2]);
 }
 
-TEST(ImportInstancing, EveryInstanceIsThere) {
+TEST(ImportInstancing, ImportsEveryInstance) {
     Quad quad;
     std::vector<float> places, turns, sizes;
     for (int i = 0; i < 125; ++i) {
@@ -284,7 +285,7 @@ TEST(ImportInstancing, EveryInstanceIsThere) {
     EXPECT_NEAR(248, model.high[0], 1e-4);
     EXPECT_NEAR(9, model.low[1], 1e-5);
     EXPECT_NEAR(13, model.high[1], 1e-5);
-    // The mirrored instance keeps its outside.
+    // The mirrored instance keeps its winding.
     EXPECT_EQ(124u * 4 + 2, model.indices[124 * 6 + 1]);
     EXPECT_THAT(model.notes, IsEmpty());
 
@@ -297,9 +298,9 @@ TEST(ImportInstancing, EveryInstanceIsThere) {
     EXPECT_THAT(importRefusal(odd.bytes()), HasSubstr("SCALE has 2 elements; the others have 3"));
 }
 
-// ---- materials ----------------------------------------------------------------------------------
+// ---- materials
 
-TEST(ImportMaterial, SpecularGlossinessBecomesBaseColourAndRoughness) {
+TEST(ImportMaterial, ConvertsSpecularGlossiness) {
     const auto read = [](const std::string& fields) {
         Quad quad;
         quad.primitive += R"(,"material":0)";
@@ -331,7 +332,7 @@ TEST(ImportMaterial, SpecularGlossinessBecomesBaseColourAndRoughness) {
     EXPECT_EQ(255, model.images[0].rgba[0]);
 }
 
-TEST(ImportMaterial, EveryChannelThatIsNotShownHasOneNote) {
+TEST(ImportMaterial, NotesEveryUnsupportedChannelOnce) {
     Quad quad;
     quad.primitive += R"(,"material":0},{"attributes":{"POSITION":0},"indices":1,"material":1)";
     quad.extra = R"(,"materials":[{"normalTexture":{"index":0},"emissiveFactor":[1,0,0]},)"
@@ -349,7 +350,7 @@ TEST(ImportMaterial, EveryChannelThatIsNotShownHasOneNote) {
                                  "cameras (1) are left out"));
 }
 
-TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
+TEST(ImportMaterial, AppliesClampAndMirrorWrapModes) {
     // Four columns: 0, 80, 160, 240 of red.
     std::vector<float> columns;
     for (int y = 0; y < 2; ++y)
@@ -364,7 +365,7 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
         EXPECT_TRUE(loads(quad.bytes(), model));
         return model;
     };
-    // The nearest texel of a repeated picture at a place of the file's own.
+    // The nearest texel of the imported (repeating) image at a UV of the file.
     const auto redAt = [](const ImportedModel& model, double u, double from, double to) {
         const double share = (u - from) / (to - from);
         const double own = double(model.uvs[0]) + share * double(model.uvs[2] - model.uvs[0]);
@@ -373,7 +374,7 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
         return int(image.rgba[4 * size_t(column)]);
     };
     ImportedModel model = read(R"("wrapS":33071,"wrapT":33648)", 0, 1);
-    EXPECT_EQ(4u, model.images[0].width) << "nothing lies beyond the edge";
+    EXPECT_EQ(4u, model.images[0].width) << "no UV is beyond the edge";
     model = read(R"("wrapS":33071)", -1, 3);
     EXPECT_EQ(0, redAt(model, -0.9, -1, 3));
     EXPECT_EQ(80, redAt(model, 0.3, -1, 3));
@@ -396,7 +397,7 @@ TEST(ImportMaterial, PicturesAreClampedAndMirroredBeyondTheirEdge) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("samplers[0].wrapS is 7")));
 }
 
-TEST(ImportMaterial, TextureTransformScalesThenTurnsThenMoves) {
+TEST(ImportMaterial, TextureTransformScalesRotatesThenTranslates) {
     const auto picture = pictureOf("t.png", repeated({1, 0.5f, 0, 1}, 4), 2, 2);
     Quad quad = pictured(picture,
                          R"("pbrMetallicRoughness":{"baseColorTexture":{"index":0,"texCoord":3,)"
@@ -404,12 +405,12 @@ TEST(ImportMaterial, TextureTransformScalesThenTurnsThenMoves) {
                          R"("rotation":1.5707963267948966,"texCoord":0}}}})");
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
-    // (1, 1) scaled is (2, 4), a quarter turn makes it (4, -2).
+    // (1, 1) scaled is (2, 4); a quarter turn gives (4, -2).
     EXPECT_NEAR(14, model.uvs[4], 1e-5);
     EXPECT_NEAR(18, model.uvs[5], 1e-5);
 }
 
-TEST(ImportMaterial, TheImageThatCanBeDecodedIsShown) {
+TEST(ImportMaterial, UsesTheImageThatCanBeDecoded) {
     const auto picture = pictureOf("w.png", repeated({1, 0.5f, 0, 1}, 4), 2, 2);
     ImportedModel model;
     for (const char* texture : {R"({"extensions":{"EXT_texture_webp":{"source":0}}})",
@@ -430,7 +431,7 @@ TEST(ImportMaterial, TheImageThatCanBeDecodedIsShown) {
                 Contains("images[1] is left out: it is KTX; convert it to PNG or JPEG"));
 }
 
-TEST(ImportMaterial, SmallPicturesDoNotGrowBeyondProportion) {
+TEST(ImportMaterial, SmallImagesAreNotEnlargedWithoutLimit) {
     Quad quad = pictured(pictureOf("dot.png", {1, 0, 0, 1}, 1, 1), kTextured,
                          R"({"source":0,"sampler":0})");
     quad.extra += R"(,"samplers":[{"wrapS":33071,"wrapT":33071}])";
@@ -438,13 +439,13 @@ TEST(ImportMaterial, SmallPicturesDoNotGrowBeyondProportion) {
     std::memcpy(quad.glb.binary.data() + 60, uvs, sizeof uvs);
     ImportedModel model;
     ASSERT_TRUE(loads(quad.bytes(), model));
-    EXPECT_EQ(1u, model.images.at(0).width) << "256 MiB for one pixel";
+    EXPECT_EQ(1u, model.images.at(0).width) << "one pixel must not need 256 MiB";
     EXPECT_THAT(model.notes, Contains(HasSubstr("reach too far beyond the picture")));
 }
 
-// ---- extensions ---------------------------------------------------------------------------------
+// ---- extensions
 
-TEST(ImportExtensions, RequiredOnesThatDoNotShapeTheMeshAreNoReasonToRefuse) {
+TEST(ImportExtensions, AcceptsRequiredExtensionsThatDoNotShapeTheMesh) {
     for (const char* name :
          {"KHR_lights_punctual", "KHR_materials_clearcoat", "KHR_materials_emissive_strength",
           "KHR_materials_ior", "KHR_materials_pbrSpecularGlossiness", "KHR_materials_specular",
@@ -473,7 +474,7 @@ TEST(ImportExtensions, RequiredOnesThatDoNotShapeTheMeshAreNoReasonToRefuse) {
                 HasSubstr("VENDOR_triangles, which meshes[0].primitives[0] uses"));
 }
 
-TEST(ImportExtensions, HiddenNodesAreLeftOut) {
+TEST(ImportExtensions, OmitsHiddenNodes) {
     Quad quad;
     quad.node = R"({"mesh":0,"children":[1]},{"mesh":0,"translation":[5,0,0],"children":[2],)"
                 R"("extensions":{"KHR_node_visibility":{"visible":false}}},{"mesh":0})";
@@ -483,9 +484,9 @@ TEST(ImportExtensions, HiddenNodesAreLeftOut) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("KHR_node_visibility hides it (nodes[1] and 1")));
 }
 
-// ---- numbers ------------------------------------------------------------------------------------
+// ---- numbers
 
-TEST(ImportNumbers, WholeNumbersMayHaveAFractionOfZero) {
+TEST(ImportNumbers, AcceptsIntegersWrittenAsFloats) {
     Quad quad;
     quad.indexAccessor = R"({"bufferView":1.0,"componentType":5123.0,"count":6e0,"type":"SCALAR"})";
     ImportedModel model;
@@ -532,7 +533,7 @@ TEST(ImportNumbers, IndicesBeyond32BitsDoNotWrapAround) {
     EXPECT_THAT(model.notes, Contains(HasSubstr("bufferView is 4294967299")));
 }
 
-TEST(ImportNumbers, VerticesThatNoTriangleUsesAreDropped) {
+TEST(ImportNumbers, DropsUnusedVertices) {
     Quad quad({0, 1, 2, 0, 1, 2});
     const float far[] = {std::nanf(""), 900, 0};
     std::memcpy(quad.glb.binary.data() + 36, far, sizeof far);  // the fourth
@@ -543,7 +544,7 @@ TEST(ImportNumbers, VerticesThatNoTriangleUsesAreDropped) {
     EXPECT_THAT(model.indices, ::testing::ElementsAre(0, 1, 2, 0, 1, 2));
 }
 
-TEST(ImportNumbers, EmptyPrimitivesAndMeshesWithoutANodeAreNoted) {
+TEST(ImportNumbers, NotesEmptyPrimitivesAndUnusedMeshes) {
     Quad quad;
     const int empty = quad.add(std::vector<float>(3), 5126, "VEC3", 0);
     quad.primitive += R"(},{"attributes":{"POSITION":)" + std::to_string(empty) + "}";
@@ -562,7 +563,7 @@ TEST(ImportNumbers, EmptyPrimitivesAndMeshesWithoutANodeAreNoted) {
     EXPECT_THAT(model.notes, Contains("node is left out: no scene holds it (nodes[2])"));
 }
 
-TEST(ImportNumbers, NodesThatASceneNamesTwiceOrBesideTheirParentStandOnce) {
+TEST(ImportNumbers, RepeatedSceneNodesAreImportedOnce) {
     Quad quad;
     quad.node =
         R"({"mesh":0,"translation":[2,0,0]},{"mesh":0,"translation":[1,0,0],"children":[0]})";
@@ -584,7 +585,7 @@ TEST(ImportNumbers, AttributesWithoutValuesAreZero) {
     EXPECT_EQ(0xff000000u, model.colors[0]);
 }
 
-TEST(ImportNumbers, MissingNormalsAreComputedBesideThoseThatAreThere) {
+TEST(ImportNumbers, ComputesOnlyMissingNormals) {
     Quad quad;
     const int n = quad.add(std::vector<float>{1, 0, 0, 1, 0, 0, 1, 0, 0, 0, 0, 0}, 5126, "VEC3", 4);
     quad.primitive = R"("attributes":{"POSITION":0,"NORMAL":)" + std::to_string(n) +
@@ -593,13 +594,13 @@ TEST(ImportNumbers, MissingNormalsAreComputedBesideThoseThatAreThere) {
     ASSERT_TRUE(loads(quad.bytes(), model));
     EXPECT_TRUE(model.hasNormals);
     EXPECT_FLOAT_EQ(1, model.normals[0]);
-    EXPECT_FLOAT_EQ(1, model.normals[3 * 3 + 2]) << "the one without length";
-    EXPECT_FLOAT_EQ(1, model.normals[4 * 3 + 2]) << "of the primitive that has none";
+    EXPECT_FLOAT_EQ(1, model.normals[3 * 3 + 2]) << "the normal of zero length";
+    EXPECT_FLOAT_EQ(1, model.normals[4 * 3 + 2]) << "the primitive without normals";
     EXPECT_THAT(model.notes, Contains("1 normals have no length: they are computed"));
     EXPECT_THAT(model.notes, Contains("1 primitives have no normals: they are computed"));
 }
 
-TEST(ImportNumbers, NodesThatSqueezeAMeshOntoALineAreNoted) {
+TEST(ImportNumbers, NotesNodesThatFlattenAMeshToALine) {
     Quad quad;
     quad.node = R"({"mesh":0,"children":[1]},{"mesh":0,"scale":[0,0,0]})";
     ImportedModel model;
@@ -611,7 +612,7 @@ TEST(ImportNumbers, NodesThatSqueezeAMeshOntoALineAreNoted) {
     EXPECT_THAT(model.notes, IsEmpty()) << "flat is fine";
 }
 
-// ---- containers and URIs ------------------------------------------------------------------------
+// ---- containers and URIs
 
 std::vector<uint8_t> words(const std::vector<uint32_t>& values) {
     std::vector<uint8_t> bytes(values.size() * 4);
@@ -629,13 +630,13 @@ TEST(ImportGlb, ChunksMayBePaddedAndUnknownOnesAreSkipped) {
         return bytes;
     };
     ImportedModel model;
-    // A chunk of another kind before the binary one, and one behind it.
+    // A chunk of another kind before the binary chunk and one after it.
     std::vector<uint8_t> more = good;
     const std::vector<uint8_t> other = words({8, 0x12345678u, 1, 2});
     more.insert(more.begin() + 20 + long(json), other.begin(), other.end());
     more.insert(more.end(), other.begin(), other.end());
     EXPECT_TRUE(loads(sized(more), model));
-    // JSON whose padding is zeros, or is not counted, or is missing.
+    // JSON padded with zeros, with uncounted padding, without padding.
     std::vector<uint8_t> zeros = good;
     for (size_t i = 20 + json; zeros[--i] == ' ';) zeros[i] = 0;
     EXPECT_TRUE(loads(zeros, model));
@@ -646,11 +647,11 @@ TEST(ImportGlb, ChunksMayBePaddedAndUnknownOnesAreSkipped) {
         std::memcpy(&uncounted[12], &size, 4);
         EXPECT_TRUE(loads(sized(uncounted), model)) << padded;
     }
-    // Bytes behind the end that the header names are none of its own.
+    // Bytes after the end given by the header are ignored.
     std::vector<uint8_t> longer = good;
     longer.insert(longer.end(), 100, 0xff);
     EXPECT_TRUE(loads(longer, model));
-    // Names that are no UTF-8.
+    // Names that are not UTF-8.
     std::vector<uint8_t> latin = good;
     const std::string_view text(reinterpret_cast<const char*>(latin.data()), latin.size());
     latin[text.find("\"mesh\"") + 2] = 0xe9;
@@ -678,7 +679,7 @@ class ImportUri : public testing::Test {
     fs::path folder_;
 };
 
-TEST_F(ImportUri, NamesAreDecodedAsTheStandardSays) {
+TEST_F(ImportUri, DecodesUris) {
     for (const char* name : {"a b.png", "wood.png", "50%.png", "what?.png", "no#1.png", "%41.png",
                              "sub/in.png", "grün.png", "A.png"})
         put(name);
@@ -700,7 +701,7 @@ TEST_F(ImportUri, NamesAreDecodedAsTheStandardSays) {
     EXPECT_FALSE(fwimport::readUri("sub/../wood.png", folder_, "u").outside);
 }
 
-TEST_F(ImportUri, DataUrisOfEveryKindAreRead) {
+TEST_F(ImportUri, ReadsEveryKindOfDataUri) {
     EXPECT_EQ("Hi!", read("data:application/octet-stream;base64,SGkh"));
     EXPECT_EQ("Hi!", read("DATA:;Base64,SGkh"));
     EXPECT_EQ("Hi", read("data:image/png;name=x;base64,SGk="));
@@ -710,7 +711,7 @@ TEST_F(ImportUri, DataUrisOfEveryKindAreRead) {
     EXPECT_THAT(read("data:image/png;base64"), HasSubstr("without a comma"));
 }
 
-TEST_F(ImportUri, WhatIsNoFileBesideItIsRefusedInWords) {
+TEST_F(ImportUri, RefusesUrisOutsideTheFolder) {
     EXPECT_THAT(read("."), HasSubstr("images[0].uri \".\" is a folder"));
     EXPECT_THAT(read("sub/"), HasSubstr("is a folder"));
     EXPECT_THAT(read(""), HasSubstr("is empty"));
@@ -723,7 +724,7 @@ TEST_F(ImportUri, WhatIsNoFileBesideItIsRefusedInWords) {
     EXPECT_THAT(read("../../../../../../../../dev/zero"), HasSubstr("is no regular file"));
 }
 
-TEST(Import, AnImageThatIsAFolderIsLeftOut) {
+TEST(Import, OmitsAnImageThatIsAFolder) {
     Quad quad;
     quad.extra = R"(,"images":[{"uri":"."}])";
     ImportedModel model;

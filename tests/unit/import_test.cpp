@@ -1,5 +1,5 @@
-// The glTF importer: what must load, what must be refused and by what words, and bytes gone bad.
-// The files made here always run; those of assimp-testmodels run where that package is installed.
+// The glTF importer: files that must load or be refused, messages, damaged bytes. Files of
+// assimp-testmodels run where that package is installed.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -43,7 +43,7 @@ TEST(Import, QuadLoadsWithItsTransform) {
     EXPECT_EQ(model.triangleCount(), model.triangleMaterials.size());
 }
 
-TEST(Import, NodesStandWhereTheirParentsPutThem) {
+TEST(Import, AppliesParentTransforms) {
     Quad quad;
     quad.node = R"({"name":"root","translation":[1,2,3],"children":[1,2]},)"
                 R"({"name":"arm","mesh":0,"rotation":[0,0.70710678,0,0.70710678],"children":[3]},)"
@@ -66,7 +66,7 @@ TEST(Import, NodesStandWhereTheirParentsPutThem) {
     EXPECT_THAT(error,
                 HasSubstr("no node \"elsewhere\"; its nodes are #0 to #4: root, arm, left, #3"));
 
-    // A part alone, where it stands.
+    // A single node, at its place.
     ImportedModel part;
     ASSERT_TRUE(fwimport::importGltfBytes(quad.bytes(), "quad", "", part, error, "left")) << error;
     EXPECT_EQ(2u, part.triangleCount());
@@ -77,7 +77,7 @@ TEST(Import, NodesStandWhereTheirParentsPutThem) {
     EXPECT_THAT(error, HasSubstr("quad: there is no node \"right\""));
 }
 
-TEST(Import, WronglyTypedFieldsAreNamed) {
+TEST(Import, NamesFieldsOfTheWrongType) {
     const auto node = [](const char* text) {
         Quad quad;
         quad.node = text;
@@ -125,7 +125,7 @@ TEST(Import, WronglyTypedFieldsAreNamed) {
          "KHR_texture_transform.offset is an array of 1; it takes 2 numbers"},
     };
     for (const auto& one : cases) EXPECT_THAT(importRefusal(one.quad.bytes()), HasSubstr(one.says));
-    // What is not read may be anything, and so may the host's own.
+    // Fields that are not read, and the host's own, may have any type.
     Quad odd;
     odd.node = R"({"mesh":0,"camera":"w","extras":{"nodes":[{"mesh":"a \"[{ quoted\""}]}})";
     odd.extra = R"(,"extras":[1,"mesh",{"mesh":true}],"cameras":7)";
@@ -133,7 +133,7 @@ TEST(Import, WronglyTypedFieldsAreNamed) {
     EXPECT_TRUE(loads(odd.bytes(), model));
 }
 
-TEST(Import, MirroredNodeKeepsItsOutside) {
+TEST(Import, MirroredNodesKeepTheirWinding) {
     Quad quad;
     quad.node = R"({"mesh":0,"scale":[-1,1,1]})";
     ImportedModel model;
@@ -160,7 +160,7 @@ TEST(Import, StripFanAndUnindexedBecomeTriangles) {
     EXPECT_THAT(model.notes, ::testing::Contains(HasSubstr("4 indices")));
 }
 
-TEST(Import, IndicesOfEveryWidth) {
+TEST(Import, ReadsIndicesOfEveryWidth) {
     for (int type : {5121, 5123, 5125}) {
         Quad quad;
         size_t offset = 0;
@@ -178,7 +178,7 @@ TEST(Import, IndicesOfEveryWidth) {
     }
 }
 
-TEST(Import, SparseValuesReplace) {
+TEST(Import, AppliesSparseAccessors) {
     Quad quad;
     const size_t places = quad.glb.put(std::vector<uint16_t>{2});
     const size_t values = quad.glb.put(std::vector<float>{5, 6, 7});
@@ -210,7 +210,7 @@ TEST(Import, SparseValuesReplace) {
     EXPECT_THAT(importRefusal(quad.bytes()), HasSubstr("sparse.indices[0] is 16256"));
 }
 
-TEST(Import, ColoursAndQuantizedUvs) {
+TEST(Import, ReadsColoursAndQuantizedUvs) {
     Quad quad;
     const size_t colors = quad.glb.put(
         std::vector<uint8_t>{255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 128, 128, 128, 255});
@@ -231,7 +231,7 @@ TEST(Import, ColoursAndQuantizedUvs) {
     EXPECT_FLOAT_EQ(1.0f, model.uvs[2]);
 }
 
-TEST(Import, RefusalsNameTheThing) {
+TEST(Import, RefusalsNameTheCause) {
     struct Case {
         const char* expected;
         std::function<void(Quad&)> spoil;
@@ -309,7 +309,7 @@ TEST(Import, RefusalsNameTheThing) {
     }
 }
 
-TEST(Import, ContainersGoneWrong) {
+TEST(Import, RefusesBrokenContainers) {
     const std::vector<uint8_t> good = Quad().bytes();
     EXPECT_THAT(importRefusal({}), HasSubstr("empty"));
     EXPECT_THAT(importRefusal({'g', 'l', 'T', 'F'}), HasSubstr("need 20"));
@@ -332,7 +332,7 @@ TEST(Import, ContainersGoneWrong) {
     EXPECT_THAT(error, HasSubstr("/nowhere/at/all.glb"));
 }
 
-TEST(Import, ImagesThatCannotBeDecodedAreReported) {
+TEST(Import, ReportsImagesThatCannotBeDecoded) {
     Quad quad;
     const size_t offset =
         quad.glb.put(std::vector<uint8_t>{'n', 'o', 't', ' ', 'a', ' ', 'p', 'n'});
@@ -347,14 +347,14 @@ TEST(Import, ImagesThatCannotBeDecodedAreReported) {
     EXPECT_THAT(model.notes, ::testing::Contains(HasSubstr("none of PNG, JPEG, EXR")));
 }
 
-// ---- the files of assimp-testmodels -----------------------------------------------------------
+// ---- the files of assimp-testmodels
 
 #define REQUIRE_MODELS()                                                                   \
     if (!std::filesystem::exists(kModels)) {                                               \
         GTEST_SKIP() << "assimp-testmodels is not installed (" << kModels.string() << ")"; \
     }
 
-TEST(Import, TestModelsThatMustLoad) {
+TEST(Import, LoadsValidTestModels) {
     REQUIRE_MODELS();
     struct Row {
         const char* path;
@@ -387,7 +387,7 @@ TEST(Import, TestModelsThatMustLoad) {
     }
 }
 
-TEST(Import, TestModelsThatMustBeRefused) {
+TEST(Import, RefusesInvalidTestModels) {
     REQUIRE_MODELS();
     const std::pair<const char*, const char*> rows[] = {
         {"BoxWithInfinites-glTF-Binary/BoxWithInfinites.glb", "POSITION[0] is -inf"},
@@ -409,8 +409,8 @@ TEST(Import, TestModelsThatMustBeRefused) {
     }
 }
 
-// All that the package has, the broken ones too: a model or words, and never for long.
-TEST(Import, EveryTestModelIsAModelOrRefusedInWords) {
+// All files of the package, broken ones too: a model or a message, in bounded time.
+TEST(Import, EveryTestModelLoadsOrIsRefusedWithAMessage) {
     REQUIRE_MODELS();
     using Clock = std::chrono::steady_clock;
     int read = 0, refused = 0;
@@ -436,7 +436,7 @@ TEST(Import, EveryTestModelIsAModelOrRefusedInWords) {
     EXPECT_GT(refused, 10);
 }
 
-TEST(Import, EveryPrimitiveMode) {
+TEST(Import, ReadsEveryPrimitiveMode) {
     REQUIRE_MODELS();
     for (int i = 0; i <= 15; ++i) {
         char name[64];
@@ -445,7 +445,7 @@ TEST(Import, EveryPrimitiveMode) {
         std::string error;
         const bool good = fwimport::importGltf(
             kModels / "glTF-Asset-Generator/Mesh_PrimitiveMode" / name, model, error);
-        // 00..03 and 07..10 are points and lines, the rest triangles in every guise.
+        // 00..03 and 07..10 are points and lines, the rest triangles in all forms.
         const bool triangles = (i >= 4 && i <= 6) || i >= 11;
         EXPECT_EQ(triangles, good) << name << ": " << error;
         if (triangles) {
@@ -454,9 +454,9 @@ TEST(Import, EveryPrimitiveMode) {
     }
 }
 
-// ---- bytes gone bad -----------------------------------------------------------------------------
+// ---- damaged bytes
 
-// Whatever comes, the answer is a model with sound indices or a message; never a crash.
+// The answer is a valid model or a message, never a crash.
 void mustSurvive(const std::vector<uint8_t>& bytes) {
     ImportedModel model;
     std::string error;
@@ -482,9 +482,9 @@ void fuzz(const std::vector<uint8_t>& good, size_t step) {
     }
 }
 
-TEST(ImportFuzz, EveryByteOfAQuad) { fuzz(Quad().bytes(), 1); }
+TEST(ImportFuzz, SurvivesEveryByteOfAQuad) { fuzz(Quad().bytes(), 1); }
 
-TEST(ImportFuzz, TruncatedAndFlippedTestModel) {
+TEST(ImportFuzz, SurvivesATruncatedAndFlippedTestModel) {
     REQUIRE_MODELS();
     for (const char* name : {"BoxTextured-glTF-Binary/BoxTextured.glb",
                              "BoxBadNormals-glTF-Binary/BoxBadNormals.glb"}) {

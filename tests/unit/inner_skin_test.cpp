@@ -1,5 +1,5 @@
-// The inner skin of what is not refined: as deep as the wall is thick along every face, whatever
-// creases meet, one place for all vertices at one place; none where there is no inside.
+// The inner skin of unrefined objects: at wall thickness under every face at any crease, one place
+// per vertex position, none for open or solid parts.
 #include "mesh/refine/model.h"
 #include "support/refine_scene.h"
 
@@ -20,7 +20,8 @@ glm::vec3 restOf(const mesh::BurnDomain& domain, uint32_t vertex) {
     return {p[0], p[1], p[2]};
 }
 
-// Every corner of every face lies `wall` under that face, and vertices at one place stay together.
+// Every corner of every face lies `wall` m under that face, and vertices at one position stay
+// together.
 void expectDeep(const mesh::BurnDomain& domain, const std::pmr::vector<glm::vec3>& skin,
                 float slack) {
     ASSERT_EQ(domain.vertices.size(), skin.size());
@@ -38,15 +39,15 @@ void expectDeep(const mesh::BurnDomain& domain, const std::pmr::vector<glm::vec3
     }
 }
 
-TEST(InnerSkin, AWallsThicknessUnderEveryFace) {
+TEST(InnerSkin, LiesAtWallThicknessUnderEveryFace) {
     const mesh::BurnDomain box = RefineScene::bakeDomain(gridBox(1, 0.8, 0.6, 2, 3, 1, 11), 64);
     expectDeep(box, skinOf(box), 0.01f * kWall);
     const mesh::BurnDomain home = RefineScene::bakeDomain(house(1, 0.8, 1.5, 0.4, 1, 3), 64);
     expectDeep(home, skinOf(home), 0.01f * kWall);
 }
 
-// Along plain normals both sides of an edge that goes in would part there.
-TEST(InnerSkin, EdgesThatGoInStayClosed) {
+// Plain normals would open concave edges.
+TEST(InnerSkin, KeepsConcaveEdgesClosed) {
     constexpr double kAround[][2] = {{0, 0},     {0.4, 0}, {1, 0}, {1, 0.4},
                                      {0.4, 0.4}, {0.4, 1}, {0, 1}, {0, 0.4}};
     constexpr size_t kSides = std::size(kAround);
@@ -72,14 +73,14 @@ TEST(InnerSkin, EdgesThatGoInStayClosed) {
     expectDeep(domain, skinOf(domain), 0.01f * kWall);
 }
 
-// Triangles smaller than the wall is thick do not hold it back.
-TEST(InnerSkin, OfFineMeshesToo) {
+// Triangles smaller than the wall thickness do not limit it.
+TEST(InnerSkin, WorksOnFineMeshes) {
     const mesh::BurnDomain ball = RefineScene::bakeDomain(makeCube(0.3, 20, true), 128);
     expectDeep(ball, skinOf(ball), 0.1f * kWall);
 }
 
-// Two walls do not pass through each other.
-TEST(InnerSkin, ThinThingsAreNotTurnedInsideOut) {
+// Opposite walls do not pass through each other.
+TEST(InnerSkin, DoesNotInvertThinObjects) {
     const mesh::BurnDomain board = RefineScene::bakeDomain(gridBox(1, 1, 0.024, 4, 4, 1), 64);
     const std::pmr::vector<glm::vec3> skin = skinOf(board);
     ASSERT_EQ(board.vertices.size(), skin.size());
@@ -87,7 +88,7 @@ TEST(InnerSkin, ThinThingsAreNotTurnedInsideOut) {
         EXPECT_GT((skin[i].z - 0.012f) * (restOf(board, i).z - 0.012f), 0) << "vertex " << i;
 }
 
-TEST(InnerSkin, WhatHasNoInsideOrIsOpenHasNone) {
+TEST(InnerSkin, OpenMeshesHaveNone) {
     EXPECT_TRUE(skinOf(RefineScene::bakeDomain(makePlane(0.6, 0.4), 64)).empty());
     Mesh open = gridBox(1, 1, 1, 1, 1, 1);
     open.indices.resize(open.indices.size() - 6);  // without its floor

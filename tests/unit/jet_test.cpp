@@ -1,5 +1,5 @@
-// The stream of a jet: when it arrives, that all of its power arrives, and that neither depends on
-// the rate of frames or on what a mesh was stretched by.
+// The stream of a jet: arrival time, conservation of power, independence from frame rate and mesh
+// stretch.
 #include "components/jet.h"
 #include "fire/presets.h"
 #include "shared/exchange.h"
@@ -31,8 +31,8 @@ FwFireEmitterDef flamethrower() {
     return def;
 }
 
-// Half of the fire that is seen has come a way when the stream's heat has, give or take a twelfth.
-TEST(JetStream, FliesAsItsParticlesDo) {
+// Half of the visible fire has travelled as far as the stream's heat, within a twelfth.
+TEST(JetStream, MovesWithItsParticles) {
     for (const float power : {300.0f, 2000.0f, 20000.0f}) {
         FwFireEmitterDef def = flamethrower();
         def.power = power;
@@ -82,7 +82,7 @@ TEST(JetStream, ArrivesInOrderAndBeforeItsNextExchange) {
     }
 }
 
-TEST(JetStream, SharesAllOfItsPowerExactly) {
+TEST(JetStream, DistributesAllOfItsPower) {
     uint32_t seed = 1;
     const auto pick = [&](uint32_t below) { return (seed = gpu::hash32(seed)) % below; };
     for (int turn = 0; turn < 2000; ++turn) {
@@ -107,7 +107,7 @@ TEST(JetStream, SharesAllOfItsPowerExactly) {
     }
 }
 
-// Sums the heat that a world sends to its backend, as nW, while nothing has burnt through.
+// Sums the heat that a world sends to its backend, in nW, while nothing has burnt through.
 class HeatBook final : public gpu::Backend {
  public:
     void restore(std::span<const gpu::RestoredObject>, uint32_t) override {}
@@ -132,7 +132,7 @@ class HeatBook final : public gpu::Backend {
     std::span<const gpu::PassTime> passTimes() override { return {}; }
     void memoryRows(std::pmr::vector<gpu::MemoryRow>&) const override {}
 
-    // Every gate that it came through would have to be gone.
+    // Every gate it passed would have to be burnt through.
     static bool stands(std::span<const gpu::TexelEvent> batch, const gpu::TexelEvent& event) {
         const uint32_t gate = event.kind >> gpu::kEventKindBits;
         return gate == 0 || (batch[gate - 1].kind & gpu::kGateShut) != 0;
@@ -143,7 +143,7 @@ class HeatBook final : public gpu::Backend {
     std::vector<std::array<uint32_t, 4>> list;
 };
 
-// Walls across x, 2 m high from the floor and 2 m wide, of a sheet that its transform stretches.
+// Walls across x, 2 x 2 m, of a sheet stretched by its transform.
 struct Range {
     explicit Range(float texelsPerMetre = 40) {
         FwWorldDef worldDef = plainWorldDef(0);
@@ -162,7 +162,7 @@ struct Range {
         const float placed[16] = {1, 0, 0, 0, 0, high, 0, 0, 0, 0, wide, 0, x, 0, -wide / 2, 1};
         std::copy_n(placed, 16, def.transform);
         const FwBurnableMeshId id = world->createBurnableMesh(def);
-        // As the world has them: the mean of the axes is the scale, the rest is in the shape.
+        // The mean of the axes is the scale; the rest is in the shape.
         const float scale = components::makePose(placed, "placed").scale;
         std::vector<uint64_t>& areas = book.areas[id.index1 - 1];
         for (const float area : world->objectDomain(id).areas)
@@ -182,9 +182,9 @@ struct Range {
     FwMaterialId material{};
 };
 
-// Every ray's power, to the nanowatt, but for less than a texel's share of 1 W/m^2 that waits: over
-// few texels and over very many, at every distance, on meshes however stretched.
-TEST(JetStream, ConservesItsPowerOnStretchedMeshesToo) {
+// Conserves every ray's power to the nanowatt except a texel's pending share of 1 W/m^2. Over few
+// and very many texels, at every distance, on any stretch.
+TEST(JetStream, ConservesPowerOnStretchedMeshes) {
     struct Case {
         float x, wide, high, texels;
     };
@@ -199,19 +199,19 @@ TEST(JetStream, ConservesItsPowerOnStretchedMeshesToo) {
         r.world->fireEmitterState(jet, state);
         ASSERT_EQ(16u, state.struck) << c.x;
         r.world->setFireEmitterPower(jet, 0);
-        r.run(2.5, 1 / 32.0f);  // what flies arrives
+        r.run(2.5, 1 / 32.0f);  // the stream in flight arrives
         const uint64_t ray = uint64_t(2000000.0 * double(0.35f) / 16 * 1e9);
         const uint64_t all = ray * 16 * 12;  // exchanges in 1.5 s
         const uint64_t given = r.book.heat[id.index1 - 1];
         const auto& areas = r.book.areas[id.index1 - 1];
         EXPECT_LE(given, all);
         EXPECT_LT(all - given, *std::max_element(areas.begin(), areas.end())) << c.x;
-        EXPECT_EQ(0u, r.book.heat.count(1)) << "what is behind gets nothing";
+        EXPECT_EQ(0u, r.book.heat.count(1)) << "the wall behind gets nothing";
     }
 }
 
-// The heat's ticks and sizes are the same at any rate of frames that the steps divide.
-TEST(JetStream, IsTheSameAtEveryRateOfFrames) {
+// Ticks and amounts of heat are equal at every frame rate that the steps divide.
+TEST(JetStream, IsIndependentOfTheFrameRate) {
     std::optional<std::vector<std::array<uint32_t, 4>>> first;
     for (const float dt : {1 / 128.0f, 1 / 32.0f, 1 / 8.0f, 0.5f}) {
         Range r;
@@ -222,13 +222,13 @@ TEST(JetStream, IsTheSameAtEveryRateOfFrames) {
         first = r.book.list;
     }
     ASSERT_FALSE(first->empty());
-    // 3 m at 12 m/s, a little slower in the end.
+    // 3 m at 12 m/s, slightly slower at the end.
     EXPECT_GE(first->front()[0], uint32_t(4096 * 3 / 12.0f) - gpu::kStepTicks);
     EXPECT_LE(first->front()[0], uint32_t(4096 * 3 / 9.5f));
 }
 
-// A wall that comes between is met, one that goes no longer stops what has not reached it.
-TEST(JetStream, MeetsWhatIsThereAsItArrives) {
+// A wall that moves in between is hit; a removed wall no longer stops fuel still in flight.
+TEST(JetStream, HitsTheSceneAtArrivalTime) {
     for (const bool comes : {false, true}) {
         Range r;
         r.wall(5);
@@ -243,7 +243,7 @@ TEST(JetStream, MeetsWhatIsThereAsItArrives) {
         const FwFireEmitterId jet = r.world->createFireEmitter(flamethrower());
         r.run(0.125, 1 / 32.0f);
         r.world->setFireEmitterPower(jet, 0);
-        r.run(0.125, 1 / 32.0f);  // it has come some 2.8 m
+        r.run(0.125, 1 / 32.0f);  // it has travelled some 2.8 m
         if (comes)
             r.world->addBlocker(door);
         else

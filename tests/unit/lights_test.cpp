@@ -1,5 +1,4 @@
-// Lights for a host with a budget: as bright together as all fires are, however few they are, and
-// none of them jumps.
+// Lights within a host's budget: their sum is that of all fires for any count, and none jumps.
 #include "components/lights.h"
 
 #include <gtest/gtest.h>
@@ -53,7 +52,7 @@ std::vector<FwLight> manyFires(uint32_t count) {
     return fires;
 }
 
-TEST(Lights, FewShineForAll) {
+TEST(Lights, FewLightsCarryThePowerOfAll) {
     for (const uint32_t count : {0u, 1u, 5u, 64u, 300u}) {
         const std::vector<FwLight> fires = manyFires(count);
         for (const uint32_t most : {0u, 1u, 3u, 16u, 64u}) {
@@ -71,7 +70,7 @@ TEST(Lights, FewShineForAll) {
     }
 }
 
-TEST(Lights, NeighboursBecomeOneBetweenThem) {
+TEST(Lights, MergesNeighbours) {
     const FwLight fires[] = {lightAt(1, 0, 0, 3000), lightAt(2, 1, 0, 1000),
                              lightAt(3, 50, 0, 1000)};
     const std::vector<FwLight> lights = Gathering()(fires, 2);
@@ -79,15 +78,15 @@ TEST(Lights, NeighboursBecomeOneBetweenThem) {
     EXPECT_EQ(1u, lights[0].id);
     EXPECT_NEAR(lights[0].position[0], 0.25f, 1e-4f);
     EXPECT_NEAR(lights[0].power, 4000, 0.1f);
-    EXPECT_GT(lights[0].radius, 0.4f) << "it is as wide as both";
-    EXPECT_EQ(3u, lights[1].id) << "what is far away has its own";
-    // With a single one, what is too far to say where it is still counts.
+    EXPECT_GT(lights[0].radius, 0.4f) << "its radius covers both";
+    EXPECT_EQ(3u, lights[1].id) << "a distant fire keeps its own light";
+    // A single light includes fires too far to be merged.
     const std::vector<FwLight> one = Gathering()(fires, 1);
     EXPECT_NEAR(one[0].power, 5000, 0.1f);
     EXPECT_LT(one[0].position[0], 0.3f);
 }
 
-TEST(Lights, TwoOfLikeStrengthDoNotTakeTurns) {
+TEST(Lights, EqualFiresDoNotAlternate) {
     Gathering gather;
     std::vector<FwLight> fires = {lightAt(1, 0, 0, 1000), lightAt(2, 30, 0, 900)};
     const uint32_t first = gather(fires, 1)[0].id;
@@ -100,8 +99,8 @@ TEST(Lights, TwoOfLikeStrengthDoNotTakeTurns) {
     EXPECT_EQ(2u, gather(fires, 1)[0].id);
 }
 
-// Clusters of what burns come and go with readbacks: nothing pops, and no light is lost on the way.
-TEST(Lights, WhatIsShownFollows) {
+// Clusters change with readbacks: no light pops and none is lost.
+TEST(Lights, FollowsChangesContinuously) {
     std::pmr::vector<FwLight> shown;
     std::vector<FwLight> known = manyFires(10);
     constexpr float kFrame = 1.0f / 60;
@@ -109,7 +108,7 @@ TEST(Lights, WhatIsShownFollows) {
     ASSERT_EQ(10u, shown.size());
     const double all = powerOf(known);
     EXPECT_NEAR(powerOf(shown), all, 0.01 * all);
-    // The same fires, otherwise divided, under other names.
+    // The same fires in other clusters under other ids.
     for (FwLight& light : known) light.id += 100;
     std::rotate(known.begin(), known.begin() + 3, known.end());
     float most = 0;
@@ -119,7 +118,7 @@ TEST(Lights, WhatIsShownFollows) {
         components::followLights(shown, known, kFrame, 16);
         EXPECT_LE(shown.size(), 16u);
         EXPECT_NEAR(powerOf(shown), all, 0.01 * all) << frame;
-        if (frame == 0) continue;  // there was no room for all: six went to their neighbours
+        if (frame == 0) continue;  // six had no room and joined their neighbours
         for (const FwLight& light : shown)
             for (const FwLight& was : before)
                 if (was.id == light.id) {
@@ -131,7 +130,7 @@ TEST(Lights, WhatIsShownFollows) {
     EXPECT_TRUE(shown.empty()) << "nothing burns: nothing shines";
 }
 
-// What a host sees of a steady fire: bounded from frame to frame, right on the mean.
+// A steady fire: bounded from frame to frame, right on average.
 TEST(Lights, ASteadyFireFlickersWithinItsBound) {
     double sum = 0, steepest = 0;
     constexpr int kFrames = 60 * 60;

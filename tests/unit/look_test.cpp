@@ -1,4 +1,5 @@
-// The looks' data: presets, textures, the view's uniform block. How they look is in tests/golden.
+// Data of the appearance: presets, textures, the view's uniform block. tests/golden covers the
+// pictures.
 #include "components/look_table.h"
 #include "components/look_textures.h"
 #include "components/view_params.h"
@@ -17,12 +18,12 @@ namespace {
 
 using gpu::MaterialLook;
 
-TEST(LookTable, EveryPresetIsWhole) {
+TEST(LookTable, EveryPresetIsComplete) {
     for (uint32_t preset = 0; preset < kLookCount; ++preset) {
         const MaterialLook m = materialLook(preset);
         SCOPED_TRACE(preset);
         EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
-        // What shaders divide by.
+        // Shaders divide by these.
         for (const float divisor :
              {m.charTime, m.facePeak, m.faceDecay, m.crackLife, m.cellX, m.cellY, m.rimWidth,
               m.thickness, m.drip, m.ashEnd - m.ashStart})
@@ -31,14 +32,14 @@ TEST(LookTable, EveryPresetIsWhole) {
         if (m.crackDepth > 0) {
             EXPECT_GT(m.crackWidth, 0.0f);
         }
-        // Char is never blacker than soot and never brighter than slate.
+        // Char lies between soot and slate.
         EXPECT_GT(m.charColor.x, 0.01f);
         EXPECT_LT(m.charColor.x, 0.05f);
         EXPECT_LE(m.ashMax, 1.0f);
     }
 }
 
-TEST(LookTable, BeyondTheTableNothingBurns) {
+TEST(LookTable, OutOfRangePresetsDoNotBurn) {
     EXPECT_EQ(lookSpreadRate(kLookCount), 0.0f);
     EXPECT_EQ(lookSpreadRate(0xFFFFFFFFu), 0.0f);
     EXPECT_EQ(materialLook(kLookCount).base, gpu::kBaseStone);
@@ -68,13 +69,13 @@ class LookTextures : public testing::Test {
 };
 std::pmr::vector<std::byte>* LookTextures::bytes_ = nullptr;
 
-TEST_F(LookTextures, SizesAndOffsets) {
+TEST_F(LookTextures, HaveTheirSizesAndOffsets) {
     EXPECT_EQ(bytes_->size(), lookTextureOffset(kLookTextureLayers, 0));
     EXPECT_EQ(lookTextureOffset(0, 1), size_t{512 * 512 * 4});
     EXPECT_EQ(lookTextureOffset(1, 0), size_t{349525 * 4});
 }
 
-TEST_F(LookTextures, SameBytesEveryTime) {
+TEST_F(LookTextures, AreDeterministic) {
     const auto again = bakeLookTextures(std::pmr::new_delete_resource());
     EXPECT_EQ(again, *bytes_);
 }
@@ -105,14 +106,14 @@ TEST_F(LookTextures, MipsKeepTheMean) {
 }
 
 TEST_F(LookTextures, NoiseIsCentred) {
-    // fBm about 0.5: the shaders subtract it.
+    // fBm has mean 0.5, which the shaders subtract.
     EXPECT_NEAR(at(0, 9, 0, 0, 0), 128, 14);
     EXPECT_NEAR(at(0, 9, 0, 0, 2), 128, 14);
-    // Slopes of tiling reliefs sum to nothing.
+    // Slopes of tiling reliefs sum to zero.
     for (uint32_t c = 0; c < 4; ++c) EXPECT_NEAR(at(2, 9, 0, 0, c), 128, 3);
 }
 
-TEST(ViewParamsTest, PlacesAPointAsTheHostDoes) {
+TEST(ViewParamsTest, ProjectsPointsLikeTheHost) {
     FwView view{};
     const glm::vec3 eye(1000.0f, 3.0f, -2000.0f), target(1001.0f, 2.0f, -2004.0f);
     const glm::mat4 look = glm::lookAt(eye, target, glm::vec3(0, 1, 0));
@@ -142,7 +143,7 @@ TEST(ViewParamsTest, PlacesAPointAsTheHostDoes) {
     EXPECT_EQ(p.flameCapacity, gpu::kFlameCapacity);
 }
 
-TEST(ViewParamsTest, AViewThatLooksAlongPlusZ) {
+TEST(ViewParamsTest, AcceptsViewsAlongPlusZ) {
     FwView view{};
     glm::mat4 look(1.0f), projection(0.0f);
     projection[0][0] = projection[1][1] = projection[2][2] = projection[2][3] = 1.0f;
@@ -152,8 +153,9 @@ TEST(ViewParamsTest, AViewThatLooksAlongPlusZ) {
     EXPECT_NEAR(p.forward.z, 1.0f, 1e-6);
 }
 
-// Its number lies where a draw's own flags are: a house in the second room is drawn as any other.
-TEST(SurfaceDrawTest, KnowsNothingOfTheRoomThatAnObjectIsIn) {
+// The room's index shares bits with draw flags; a house in the second room must be drawn like any
+// other.
+TEST(SurfaceDrawTest, IgnoresTheRoomOfAnObject) {
     gpu::BurnObject object{};
     const gpu::BurnMaterial material{};
     const gpu::HeatMaterial heat{};

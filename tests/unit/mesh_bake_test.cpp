@@ -13,7 +13,7 @@ using namespace fw::test;
 
 struct Figures {
     uint32_t width, height, real, forced, open, lost, readerless;
-    double linkLow, linkHigh;  // 0.1 and 99.9 percent, in texel sides
+    double linkLow, linkHigh;  // 0.1 % and 99.9 %, in texel sides
 };
 
 void expectFigures(const BurnDomain& d, const Figures& f, double rimShare) {
@@ -79,7 +79,7 @@ TEST(MeshBake, Bunny4k) {
     }
 }
 
-TEST(MeshBake, SpotIsStretchedSoItIsCutAnew) {
+TEST(MeshBake, StretchedChartsOfSpotAreCutAgain) {
     Mesh mesh;
     FW_LOAD_OR_SKIP(mesh, "spot.glb");
     mesh::BakeInput input = mesh.input();
@@ -107,7 +107,7 @@ TEST(MeshBake, SpotIsStretchedSoItIsCutAnew) {
     EXPECT_EQ(0u, strangers);
 }
 
-// The whole bake, one thread, 1024^2 texels.
+// The whole bake on one thread, 1024^2 texels.
 void bakeLarge(const char* name) {
     Mesh mesh;
     FW_LOAD_OR_SKIP(mesh, name);
@@ -132,7 +132,7 @@ void bakeLarge(const char* name) {
 TEST(MeshBake, Bunny31kWithItsOwnUvsAt1024) { bakeLarge("bunny_31k.glb"); }
 TEST(MeshBake, Bunny35kWithoutUvsAt1024) { bakeLarge("bunny_35k_nouv.glb"); }
 
-TEST(MeshBake, FoldedUvsHaveNoLinksThroughSpace) {
+TEST(MeshBake, FoldedUvsGetNoLinksThroughSpace) {
     Mesh mesh;
     FW_LOAD_OR_SKIP(mesh, "bunny_31k.glb");  // 16 texel centres lie in two triangles
     const BurnDomain d = bakeOf(mesh.input());
@@ -142,7 +142,7 @@ TEST(MeshBake, FoldedUvsHaveNoLinksThroughSpace) {
     EXPECT_EQ(0u, neverReached(d, firstReal(d)));
 }
 
-TEST(MeshBake, ConfettiAtlas) {  // every triangle its own chart, legs down to half a texel
+TEST(MeshBake, ConfettiAtlas) {  // every triangle is its own chart, legs down to half a texel
     for (double leg : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5}) {
         if (kSanitized && leg < 2) continue;
         const int cells = int(std::min(100.0, 120 / leg));
@@ -155,7 +155,7 @@ TEST(MeshBake, ConfettiAtlas) {  // every triangle its own chart, legs down to h
         EXPECT_EQ(mesh.triangleCount(), d.report.charts);
         EXPECT_NEAR(1, d.report.texelArea / d.report.meshArea, 1e-6);
         EXPECT_EQ(0u, neverReached(d, firstReal(d)));
-        EXPECT_EQ(0u, d.report.readerless) << "a fire lit there would stay there";
+        EXPECT_EQ(0u, d.report.readerless) << "fire lit there could not spread";
         // Our own packing of the same pieces.
         input.trustUvs = false;
         input.uvs = {};
@@ -179,7 +179,7 @@ TEST(MeshBake, StripAtlas) {
     }
 }
 
-// Shortest ways over the links from the texel nearest to a point, at the texels nearest to others.
+// Shortest paths over the links from the texel nearest to a point to those nearest to others.
 std::vector<double> distances(const BurnDomain& d,
                               const std::vector<std::array<float, 3>>& points) {
     std::vector<double> best(d.texelCount(), 1e30);
@@ -227,7 +227,8 @@ TEST(MeshBake, TenRandomUnwrapsOfOneRealMesh) {
         EXPECT_NEAR(original.report.meshArea, d.report.meshArea, 1e-6);
         EXPECT_LT(d.report.linkMax, 5);
         EXPECT_GT(d.report.charts, 60u);
-        // Ways along 8 directions are up to 8 % longer than straight ones, by the turn of the UVs.
+        // Paths along 8 directions are up to 8 % longer than straight ones, depending on the UVs'
+        // rotation.
         const std::vector<double> found = distances(d, points);
         double sum = 0, sumReference = 0;
         for (size_t i = 0; i < points.size(); ++i) {
@@ -248,7 +249,7 @@ TEST(MeshBake, ThreeHundredTriangleSoups) {
     const uint32_t soups = rounds(300u, 60u);
     for (uint32_t seed = 0; seed < soups; ++seed) {
         Mesh mesh = makeSoup(seed);
-        for (int way = 0; way < 3; ++way) {  // own UVs if they will do; trusted; none
+        for (int way = 0; way < 3; ++way) {  // own UVs if usable; trusted; none
             mesh::BakeInput input = mesh.input(24, 512);
             input.trustUvs = way == 1;
             if (way == 2) input.uvs = {};
@@ -257,7 +258,7 @@ TEST(MeshBake, ThreeHundredTriangleSoups) {
                 const BurnDomain d = mesh::bake(input, std::pmr::new_delete_resource());
                 expectSound(d);
                 ++baked;
-            } catch (const core::Error& error) {  // only without any area
+            } catch (const core::Error& error) {  // refused only without any area
                 EXPECT_TRUE(std::string(error.message).find("degenerate") != std::string::npos ||
                             std::string(error.message).find("longest side") != std::string::npos)
                     << error.message;
@@ -270,8 +271,8 @@ TEST(MeshBake, ThreeHundredTriangleSoups) {
     EXPECT_LT(refused, soups / 6);
 }
 
-TEST(MeshBake, OverlappingUvsArePackedAnew) {
-    // Six faces of a cube, all with the same UVs: good islands, each on top of the others.
+TEST(MeshBake, RepacksOverlappingUvs) {
+    // Six faces of a cube with the same UVs: each island is valid, but they overlap.
     Mesh mesh = makeCube(0.5, 4, false, false);
     for (uint32_t v = 0; v < mesh.vertexCount(); ++v)
         for (uint32_t c = 0; c < 2; ++c) mesh.uvs[v * 2 + c] = mesh.uvs[(v % 25) * 2 + c];
@@ -279,11 +280,11 @@ TEST(MeshBake, OverlappingUvsArePackedAnew) {
     expectSound(d);
     EXPECT_EQ(0u, d.report.usedOwnUv);
     EXPECT_EQ(0u, d.report.overlaps);
-    EXPECT_EQ(0u, d.report.rechartedTriangles) << "islands that are good in themselves stay whole";
+    EXPECT_EQ(0u, d.report.rechartedTriangles) << "valid islands stay whole";
     EXPECT_EQ(6u, d.report.charts);
     EXPECT_EQ(0u, neverReached(d, firstReal(d)));
 
-    // An island that covers itself is cut: a strip wound twice over the same UVs.
+    // An island that overlaps itself is cut: a strip wound twice over the same UVs.
     Mesh wound = makeCylinder(0.1, 0.2, 64, 1, 1, false);
     for (uint32_t v = 0; v < wound.vertexCount(); ++v)
         wound.uvs[v * 2] = std::fmod(wound.uvs[v * 2], 0.3f);
@@ -294,9 +295,9 @@ TEST(MeshBake, OverlappingUvsArePackedAnew) {
     EXPECT_EQ(0u, neverReached(w, firstReal(w)));
 }
 
-// Every triangle over the whole unit square, each smaller than a texel: no centre tells that they
-// lie on each other, but they are more than the atlas holds.
-TEST(MeshBake, StackedUvsBelowATexelArePackedAnew) {
+// Every triangle covers the whole unit square and is smaller than a texel: no texel centre shows
+// the overlap, but the area exceeds the atlas.
+TEST(MeshBake, RepacksStackedUvsBelowATexel) {
     Mesh mesh;
     for (int i = 0; i < 2000; ++i) {
         const double x = i % 50 * 0.01, y = i / 50 * 0.01;
@@ -311,13 +312,13 @@ TEST(MeshBake, StackedUvsBelowATexelArePackedAnew) {
     EXPECT_EQ(2000u, d.report.realTexels);
 }
 
-TEST(MeshBake, ChartsOfOursKeepTwoTexelsApart) {
+TEST(MeshBake, PackedChartsAreTwoTexelsApart) {
     Mesh mesh = makeCube(0.5, 4);
     mesh.uvs.clear();
     const BurnDomain d = bakeOf(mesh.input());
     expectSound(d);
     EXPECT_EQ(6u, d.report.charts);
-    // A chart here is a face: texels of one share a coordinate at the cube's side.
+    // A chart is a face here: its texels share a coordinate at the cube's side.
     const auto faceOf = [&](uint32_t i) {
         const uint16_t at[3] = {d.texels[i].x, d.texels[i].y, d.texels[i].z};
         const long top = std::lround(0.5 / double(d.quantum));
@@ -342,7 +343,7 @@ TEST(MeshBake, ChartsOfOursKeepTwoTexelsApart) {
     EXPECT_EQ(0u, tooNear);
 }
 
-TEST(MeshBake, LinksAnswerEachOther) {
+TEST(MeshBake, LinksAreMutual) {
     for (const Mesh& mesh :
          {makeCube(1, 8), makeCube(1, 16, true), makeCylinder(0.2, 0.8, 96, 8, 4, true)}) {
         const BurnDomain d = bakeOf(mesh.input());
@@ -361,11 +362,11 @@ TEST(MeshBake, LinksAnswerEachOther) {
     }
 }
 
-TEST(MeshBake, DegenerateAndNonManifoldTrianglesAreBorne) {
+TEST(MeshBake, AcceptsDegenerateAndNonManifoldTriangles) {
     Mesh mesh = makePlane(1, 1, 0, 1, 0, 4);
     const uint32_t whole = mesh.triangleCount();
     mesh.addTriangle(0, 0, 1);
-    mesh.addTriangle(0, 1, 2);  // three points of one row: no area
+    mesh.addTriangle(0, 1, 2);  // three points in a row: no area
     const uint32_t fin = mesh.addVertex(0.5, 0.5, 0.4, 3, 3);
     const uint32_t other = mesh.addVertex(0.5, 0.5, -0.4, 4, 3);
     mesh.addTriangle(12, 13, fin);  // two more sheets on an inner edge
@@ -377,8 +378,8 @@ TEST(MeshBake, DegenerateAndNonManifoldTrianglesAreBorne) {
     EXPECT_EQ(1u, d.report.nonManifoldEdges);
 }
 
-// Small real files of Debian's assimp-testmodels, as their local positions stand.
-TEST(MeshBake, ModelsOfTheMachine) {
+// Small real files of Debian's assimp-testmodels, in local positions.
+TEST(MeshBake, BakesInstalledTestModels) {
     const std::string folder = "/usr/share/assimp/models/glTF2/";
     uint32_t baked = 0;
     for (const char* name :
@@ -407,7 +408,7 @@ TEST(MeshBake, ModelsOfTheMachine) {
     if (baked == 0) GTEST_SKIP() << "no models in " << folder;
 }
 
-// Shapes that make careless loops slow: none may take longer than a plain large mesh.
+// Shapes that are slow for careless loops: none may take longer than a large plain mesh.
 TEST(MeshBake, AwkwardShapesStayFast) {
     std::vector<std::pair<const char*, Mesh>> meshes;
     Mesh needles;  // long, diagonal, thinner than a texel
@@ -485,7 +486,7 @@ TEST(MeshBake, AMeshSmallerThanATexelKeepsItsShape) {
     }
 }
 
-TEST(MeshBake, TwoBakesAreTheSameBytes) {
+TEST(MeshBake, BakesAreDeterministic) {
     std::vector<Mesh> meshes{makeCube(1, 8), makeSoup(3), makeConfetti(0.3, 10, 0.02)};
     meshes.push_back(makeCube(1, 16, true));
     meshes.back().uvs.clear();

@@ -1,5 +1,5 @@
-// What nobody would model, and what a bake does with it: an answer, or a refusal in plain words,
-// in bounded work. Each of these took minutes, or never came back, when work grew with the square.
+// Extreme meshes: the bake answers or refuses with a message in bounded work. Each of these took
+// minutes or hung with quadratic work.
 #include <cmath>
 #include <random>
 
@@ -11,8 +11,8 @@ namespace {
 using namespace fw;
 using namespace fw::test;
 
-// Of a slow machine; work that grows with the square takes minutes, and many under a sanitizer.
-// There one bake took 10 s in one hour and 22 s in the next, on the same shared machine.
+// ms on a slow machine. Quadratic work takes minutes; under a sanitizer one bake varied from 10 to
+// 22 s on a shared machine.
 constexpr double kMostMilliseconds = rounds(20000.0, 60000.0);
 
 class Dice {
@@ -23,7 +23,7 @@ class Dice {
     std::mt19937 engine_{7};
 };
 
-// Triangles of random corners in a box of a metre, each with UVs of its own.
+// Triangles with random corners in a 1 m box, each with its own UVs.
 Mesh makeBoxSoup(uint32_t triangles) {
     Mesh mesh;
     Dice dice;
@@ -73,7 +73,7 @@ Mesh makeCoincident(uint32_t triangles) {
     return mesh;
 }
 
-// Square of cells of a metre, rolling; the unit square of UVs lies on every one of them.
+// A square of rolling 1 m cells, all of which use the whole unit square of UVs.
 Mesh makeTiledTerrain(int cells) {
     Mesh mesh;
     for (int i = 0; i < cells * cells; ++i) {
@@ -89,7 +89,7 @@ Mesh makeTiledTerrain(int cells) {
     return mesh;
 }
 
-// Sound, or refused for its many charts; and soon.
+// A valid domain or a refusal for too many charts, in time.
 void expectAnswer(const Mesh& mesh, bool trust, double texelsPerMetre = 128,
                   uint32_t maxSide = 256) {
     mesh::BakeInput input = mesh.input(texelsPerMetre, maxSide);
@@ -105,11 +105,11 @@ void expectAnswer(const Mesh& mesh, bool trust, double texelsPerMetre = 128,
     }
 }
 
-TEST(MeshBounds, SoupOfLongTriangles) {
+TEST(MeshBounds, BoundsASoupOfLongTriangles) {
     for (bool trust : {false, true}) expectAnswer(makeBoxSoup(2000), trust);
 }
 
-TEST(MeshBounds, Needles) {
+TEST(MeshBounds, BoundsNeedles) {
     for (bool trust : {false, true}) expectAnswer(makeNeedles(5000), trust);
     Mesh bare = makeNeedles(5000);
     bare.uvs.clear();
@@ -119,38 +119,37 @@ TEST(MeshBounds, Needles) {
         refusal(makeNeedles(20000).input(128, 256)));
 }
 
-// Its middle would be drawn once per needle: the density yields, the area stays.
-TEST(MeshBounds, DiscOfNeedles) {
+// Its middle would be drawn once per needle: the density is lowered, the area kept.
+TEST(MeshBounds, BoundsADiscOfNeedles) {
     const BurnDomain d = bakeOf(makeDisc(60000, 4).input(128, 1024));
     expectSound(d);
     EXPECT_LT(d.report.milliseconds, kMostMilliseconds);
-    // 60000 * 8 m of edges at 128 texels to the metre would be 61 million texels; 8.4 million may
-    // be.
+    // 60000 * 8 m of edges at 128 texels/m would be 61 million texels; 8.4 million are allowed.
     EXPECT_GT(double(d.texelSide) * 8388608, 60000 * 8.0);
     EXPECT_LT(double(d.texelSide) * 8388608, 60000 * 8.0 * 1.1);
     const BurnDomain few = bakeOf(makeDisc(64, 1).input(128, 1024));
-    EXPECT_EQ(1 / 128.0f, few.texelSide) << "an ordinary disc keeps what it asked for";
+    EXPECT_EQ(1 / 128.0f, few.texelSide) << "an ordinary disc keeps its density";
 }
 
-// 1.2 texels to a hundred triangles, all one surface: a walk over it crosses hundreds.
-TEST(MeshBounds, ConfettiFarBelowATexel) { expectAnswer(makeConfetti(5, 60, 0.2), true, 2); }
+// 1.2 texels per hundred triangles, all one surface: a walk crosses hundreds of them.
+TEST(MeshBounds, BoundsConfettiFarBelowATexel) { expectAnswer(makeConfetti(5, 60, 0.2), true, 2); }
 
-TEST(MeshBounds, TiledTerrainTrusted) {
+TEST(MeshBounds, BoundsTrustedTiledTerrain) {
     expectAnswer(makeTiledTerrain(100), true);
     expectAnswer(makeTiledTerrain(20), true);
 }
 
-// Ten thousand sheets: more than the box of the UVs holds, so nothing is drawn to find out.
-TEST(MeshBounds, TiledTerrainIsPackedAnew) {
+// Ten thousand sheets exceed the UV box, so no drawing is needed to find the overlap.
+TEST(MeshBounds, RepacksTiledTerrain) {
     const BurnDomain d = bakeOf(makeTiledTerrain(100).input(128, 256));
     expectSound(d);
     EXPECT_EQ(0u, d.report.usedOwnUv);
     EXPECT_LT(d.report.milliseconds, kMostMilliseconds);
 }
 
-TEST(MeshBounds, CoincidentTriangles) {
+TEST(MeshBounds, BoundsCoincidentTriangles) {
     expectAnswer(makeCoincident(5000), false);
-    // Trusted, they share their texels: few, drawn about four times the largest atlas.
+    // Trusted, they share texels: few, drawn about four times the largest atlas.
     const Mesh mesh = makeCoincident(100000);
     mesh::BakeInput input = mesh.input(128, 256);
     input.trustUvs = true;

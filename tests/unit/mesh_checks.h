@@ -1,4 +1,4 @@
-// What every burn domain must hold, and small tools to look at one. For the mesh tests.
+// Invariants of every burn domain, and small tools to inspect one, for the mesh tests.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ inline BurnDomain bakeOf(const mesh::BakeInput& input) {
     }
 }
 
-// The message of a refused bake, or "" if it was not refused.
+// The message of a refused bake; "" if it succeeded.
 inline std::string refusal(const mesh::BakeInput& input) {
     try {
         (void)mesh::bake(input, std::pmr::new_delete_resource());
@@ -48,7 +48,7 @@ inline bool isRim(const BurnDomain& d, uint32_t texel) {
     return (d.texels[texel].materialFlags & mesh::kTexelRim) != 0;
 }
 
-// The neighbour a texel reads in ring direction k, the way the simulation finds it.
+// The neighbour that a texel reads in ring direction k, found as the simulation does.
 inline uint32_t ringOf(const BurnDomain& d, uint32_t texel, uint32_t k) {
     const mesh::TileStatic& tile = d.tiles[tileOf(d, texel)];
     const uint64_t rim = maskOf(tile.rimMaskLow, tile.rimMaskHigh);
@@ -70,7 +70,7 @@ inline double linkMetres(const BurnDomain& d, uint32_t a, uint32_t b) {
     return linkUnits(d, a, b) * double(d.quantum);
 }
 
-// Promises of burn_domain.h. Counts what is wrong so that a broken bake prints one line per kind.
+// Invariants of burn_domain.h. Counts violations so that a broken bake prints one line per kind.
 inline void expectSound(const BurnDomain& d) {
     ASSERT_GT(d.texelCount(), 0u);
     ASSERT_EQ(0u, d.width % 8 + d.height % 8);
@@ -129,8 +129,8 @@ inline void expectSound(const BurnDomain& d) {
             unread += reads.count({t, d.readers[tile.readerStart + r]}) == 0;
         unread += maskOf(tile.seamMaskLow, tile.seamMaskHigh) != seam[t];
     }
-    EXPECT_EQ(reads.size(), listed) << "tiles that read others through links, and those listed";
-    EXPECT_EQ(0u, unread) << "readers or seam masks that no link explains";
+    EXPECT_EQ(reads.size(), listed) << "dependent tiles by links, and those listed";
+    EXPECT_EQ(0u, unread) << "dependent tiles or seam masks without a link";
     EXPECT_EQ(0u, badFlags);
     EXPECT_EQ(0u, badRing);
     EXPECT_EQ(0u, longLinks);
@@ -140,7 +140,7 @@ inline void expectSound(const BurnDomain& d) {
     for (uint32_t index : d.indices) ASSERT_LT(index, d.vertices.size());
 }
 
-// Texels that never hear of a fire lit at `seed`.
+// Texels that a fire lit at `seed` never reaches.
 inline uint32_t neverReached(const BurnDomain& d, uint32_t seed) {
     std::vector<std::vector<uint32_t>> heardBy(d.texelCount());
     uint32_t left = 0;
@@ -167,7 +167,7 @@ inline uint32_t firstReal(const BurnDomain& d) {
     return i;
 }
 
-// FLAMEWRIGHT_ASSETS mesh, or skip the test aloud.
+// Loads a mesh of FLAMEWRIGHT_ASSETS or skips the test with a message.
 #define FW_LOAD_OR_SKIP(mesh, name)                                           \
     do {                                                                      \
         std::string reason;                                                   \

@@ -1,4 +1,4 @@
-// The cooked form: what is written is read, and no file however broken does harm.
+// The cooked mesh: reading returns what was written, and no broken file does harm.
 #include <cstring>
 #include <random>
 
@@ -50,7 +50,7 @@ BurnDomain small() {
     return bakeOf(input);
 }
 
-TEST(MeshCooked, WhatIsWrittenIsRead) {
+TEST(MeshCooked, RoundTrips) {
     const BurnDomain a = small();
     const Bytes bytes = cook(a, 0x123456789ABCDEFull);
     EXPECT_EQ(0x123456789ABCDEFull, mesh::cookedKey(bytes));
@@ -117,7 +117,7 @@ TEST(MeshCooked, KeyChangesWithEveryInput) {
     EXPECT_TRUE(differs(mesh.input()));
 }
 
-TEST(MeshCooked, SaysWhatIsWrong) {
+TEST(MeshCooked, RefusesBadFilesByName) {
     const Bytes good = cook(small(), 7);
     EXPECT_EQ("The cooked mesh has 0 bytes; its header alone has 32.", refusalOf({}));
     Bytes bytes = good;
@@ -141,8 +141,8 @@ TEST(MeshCooked, SaysWhatIsWrong) {
         EXPECT_NE("", refusalOf(std::span(good).first(size))) << size;
 }
 
-// The integer products of the front hold links of 8191 units and unit normals, and no more.
-TEST(MeshCooked, RefusesWhatTheFrontCannotCompute) {
+// The front's integer products hold links of at most 8191 units and unit normals.
+TEST(MeshCooked, RefusesValuesBeyondTheFrontsRange) {
     const BurnDomain good = small();
     uint32_t texel = 0;
     while (!good.real(texel)) ++texel;
@@ -171,7 +171,7 @@ TEST(MeshCooked, RefusesWhatTheFrontCannotCompute) {
     EXPECT_EQ("", refused([](BurnDomain&) {}));
 }
 
-// Reads everything a simulation or a drawing would read by index.
+// Reads everything that simulation and drawing read by index.
 uint64_t touch(const BurnDomain& d) {
     uint64_t sum = 0;
     for (uint32_t i = 0; i < d.texelCount(); ++i) {
@@ -189,17 +189,17 @@ uint64_t touch(const BurnDomain& d) {
     return sum;
 }
 
-TEST(MeshCooked, AnyByteMayBeWrong) {
+TEST(MeshCooked, SurvivesAnyDamagedByte) {
     const Bytes good = cook(small(), 7);
     std::mt19937 random(11);
     constexpr uint32_t kRounds = rounds(4000, 1000);
     uint32_t refused = 0, read = 0;
     for (uint32_t round = 0; round < kRounds; ++round) {
         Bytes bytes = good;
-        const bool fixed = round % 8 != 0;  // with a right checksum the reader itself must see it
+        const bool fixed = round % 8 != 0;  // with a valid checksum the reader itself must refuse
         const size_t from = fixed ? kHeader : 0;
         for (uint32_t n = 1 + random() % 4; n > 0; --n) {
-            // Half the time in the scalars, where the harm is greatest.
+            // Half the time in the scalars, which do the greatest harm.
             const size_t range =
                 random() % 2 ? std::min<size_t>(300, bytes.size() - from) : bytes.size() - from;
             const size_t at = from + random() % range;

@@ -1,5 +1,4 @@
-// A mesh emitter's frame as its mesh burns more and more: how high its flames come, and how many of
-// its particles are there at once.
+// A mesh emitter while its mesh burns more and more: flame height and particle count.
 #include "components/fire_emitter.h"
 #include "shared/particle.h"
 
@@ -33,7 +32,7 @@ struct Frames {
     components::FireEmitter emitter;
     gpu::ParticleEmitter record{};
     double now = 0;
-    double births = 0;  // 1/s, of the last run
+    double births = 0;  // 1/s, in the last run
     explicit Frames(uint32_t shape) : emitter(emitterOf(shape)) {}
     void run(int count) {
         constexpr float kStep = 1.0f / 60;
@@ -46,13 +45,13 @@ struct Frames {
         }
         births = (emitter.births.serial - before) / (count * double(kStep));
     }
-    // m/s that it comes to, for as long as it burns.
+    // m/s at the end of its life.
     double height() const {
         return double(record.motion.y) * double(record.motion.z) * double(record.life.x);
     }
 };
 
-TEST(MeshEmitter, FlamesAreAsHighAsTheirPower) {
+TEST(MeshEmitter, FlameHeightFollowsThePower) {
     Frames all(FW_EMITTER_MESH);
     all.emitter.share = 1;
     all.run(60);
@@ -61,19 +60,19 @@ TEST(MeshEmitter, FlamesAreAsHighAsTheirPower) {
         some.emitter.share = share;
         some.run(60);
         EXPECT_NEAR(some.height() / all.height(), std::pow(double(share), 0.4), 0.02) << share;
-        // Its share of all are there at once.
+        // Its share of all particles exists at one time.
         const double there = some.births * double(some.record.life.x);
         EXPECT_NEAR(there / (all.births * double(all.record.life.x)), double(share),
                     0.15 * double(share))
             << share;
-        // Smoke has left the fire: it lasts as it does.
+        // Smoke has left the fire and keeps its lifetime.
         EXPECT_NEAR(double(some.record.life.x * some.record.life.z),
                     double(all.record.life.x * all.record.life.z), 1e-3);
     }
 }
 
-// Were life to grow faster than time passes, what has burnt out would burn again.
-TEST(MeshEmitter, NothingGetsYoungerAsTheFireGrows) {
+// If life grew faster than time passes, dead particles would burn again.
+TEST(MeshEmitter, ParticlesNeverGetYounger) {
     Frames fire(FW_EMITTER_MESH);
     fire.emitter.share = 0.001f;
     fire.run(30);
@@ -88,7 +87,7 @@ TEST(MeshEmitter, NothingGetsYoungerAsTheFireGrows) {
     EXPECT_LT(frames, 120);
 }
 
-TEST(MeshEmitter, OthersHaveTheirOwnPowerAlone) {
+TEST(MeshEmitter, FreeEmittersKeepTheirOwnPower) {
     Frames point(FW_EMITTER_POINT);
     point.run(60);
     EXPECT_FLOAT_EQ(point.record.life.x, 0.6f);

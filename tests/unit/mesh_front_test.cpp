@@ -1,5 +1,5 @@
-// The bake judged by what the front makes of its links: P17 (confetti), other unwraps of one mesh,
-// and how much later than its links say a seam is crossed on real meshes.
+// The bake judged by the front on its links: confetti atlases, other unwraps of one mesh, and delay
+// at seams of real meshes.
 #include "core/hash.h"
 #include "support/front_rig.h"
 #include "support/sanitized.h"
@@ -18,7 +18,7 @@ BurnDomain domainOf(const Mesh& mesh, double density, bool trust) {
     return bakeOf(input);
 }
 
-// A fire at texel `start`, laid as far as 3.1 texels so that its first texels are no matter.
+// Lights a disc of 3.1 texels around texel `start`, so that its first texels do not matter.
 void lightAt(FrontRig& rig, const BurnDomain& d, uint32_t start) {
     const Vec3 from = texelPosition(d, start);
     rig.ignite([&](uint32_t i) {
@@ -28,8 +28,8 @@ void lightAt(FrontRig& rig, const BurnDomain& d, uint32_t start) {
     rig.runAll();
 }
 
-// Every triangle its own chart, shuffled over the atlas: the front must not notice.
-TEST(MeshFront, P17_Confetti) {
+// Every triangle is its own chart, shuffled over the atlas: the front must not change.
+TEST(MeshFront, ConfettiAtlasesBurnLikeOneChart) {
     const double h = 1.0 / 128;
     for (double leg : {16.0, 8.0, 4.0, 2.0, 1.0, 0.5}) {
         if (kSanitized && leg < 2) continue;
@@ -54,16 +54,16 @@ TEST(MeshFront, P17_Confetti) {
             sum += e;
             ++count;
         }
-        std::printf("P17 confetti, legs %4.1f texels: unburnt %d, mean %+.2f %%, worst %.2f %%\n",
-                    leg, unburnt, sum / count * 100, worst * 100);
+        std::printf("confetti, legs %4.1f texels: unburnt %d, mean %+.2f %%, worst %.2f %%\n", leg,
+                    unburnt, sum / count * 100, worst * 100);
         EXPECT_EQ(unburnt, 0) << leg;
         EXPECT_LT(std::abs(sum / count), 0.001) << leg;
         EXPECT_LT(worst, 0.006) << leg;
     }
 }
 
-// The same from a point, over short ways, where a whole square has 0.5 and 1.1 %.
-TEST(MeshFront, P17_ConfettiFromAPoint) {
+// The same from a point over short paths, where a whole square has 0.5 and 1.1 %.
+TEST(MeshFront, ConfettiAtlasesBurnLikeOneChartFromAPoint) {
     for (int cells : {4, 8, 16, 32, 64}) {
         const BurnDomain d = domainOf(makeConfetti(0.5, cells, 0.02), 128, true);
         const double h = double(d.texelSide);
@@ -81,15 +81,15 @@ TEST(MeshFront, P17_ConfettiFromAPoint) {
             sum += e;
             ++count;
         }
-        std::printf("P17 from a point, legs %4.1f texels: mean %+.2f %%, worst %.2f %%\n",
+        std::printf("from a point, legs %4.1f texels: mean %+.2f %%, worst %.2f %%\n",
                     0.5 / cells / h, sum / count * 100, worst * 100);
         EXPECT_LT(std::abs(sum / count), 0.009) << cells;
         EXPECT_LT(worst, 0.02) << cells;
     }
 }
 
-// Arrival at a point near texel i: a plane laid through the arrivals of its ring. Samples of two
-// unwraps lie up to 0.7 texels apart, which is more than the fronts differ.
+// Arrival at a point near texel i: a plane fitted to the arrivals of its ring. Samples of two
+// unwraps lie up to 0.7 texels apart, more than the fronts differ.
 double arrivalAt(const BurnDomain& d, const FrontRig& rig, uint32_t i, Vec3 point) {
     std::vector<std::pair<Vec3, double>> samples{{texelPosition(d, i), rig.arrival(i)}};
     for (uint32_t k = 0; k < 8; ++k)
@@ -101,7 +101,7 @@ double arrivalAt(const BurnDomain& d, const FrontRig& rig, uint32_t i, Vec3 poin
         middle = middle + p * (1.0 / double(samples.size()));
         mean += t / double(samples.size());
     }
-    double m[3][4] = {};  // normal equations; a little ridge, as the samples have no depth
+    double m[3][4] = {};  // normal equations with a small ridge term: the samples have no depth
     for (const auto& [p, t] : samples) {
         const Vec3 e = p - middle;
         const double v[4] = {e.x, e.y, e.z, t - mean};
@@ -167,8 +167,8 @@ TEST(MeshFront, TenUnwrapsBurnAlike) {
     }
 }
 
-// How much longer than along the link itself a front takes from a texel to one that it reads or
-// is read by, in nominal links; the worst of all links of records.
+// Largest delay of the front, in nominal links, between texels that read each other across a seam,
+// over all link records.
 double worstSeamJump(const BurnDomain& d, const FrontRig& rig) {
     double worst = 0;
     for (uint32_t i = 0; i < d.texelCount(); ++i)
@@ -181,10 +181,10 @@ double worstSeamJump(const BurnDomain& d, const FrontRig& rig) {
     return worst;
 }
 
-TEST(MeshFront, P3_SeamJumpsOnRealMeshes) {
+TEST(MeshFront, SeamDelaysOnRealMeshesAreSmall) {
     struct Case {
         const char* name;
-        bool unwrap;  // with the mesh's own UVs; else with charts of ours
+        bool unwrap;  // with our charts in place of the mesh's UVs
         double density;
     };
     for (const Case& c : {Case{"bunny_4k.glb", true, 128}, Case{"bunny_4k.glb", true, 32},
@@ -196,11 +196,11 @@ TEST(MeshFront, P3_SeamJumpsOnRealMeshes) {
         if (!c.unwrap) mesh.uvs.clear();
         const BurnDomain d = domainOf(mesh, c.density, false);
         EXPECT_LE(d.report.aspectP99, 2.0);
-        EXPECT_EQ(0u, d.report.readerless) << "a fire lit there would stay there";
+        EXPECT_EQ(0u, d.report.readerless) << "fire lit there could not spread";
         FrontRig rig(d, {.rate = kRate});
         lightAt(rig, d, texelNear(d, {0, 0.6, 0.2}));
         const double jump = worstSeamJump(d, rig);
-        std::printf("P3 %s, %s UVs, %3.0f/m: worst seam jump %.2f links\n", c.name,
+        std::printf("%s, %s UVs, %3.0f/m: worst seam jump %.2f links\n", c.name,
                     d.report.usedOwnUv ? "its own" : "our", c.density, jump);
         EXPECT_LE(jump, 0.6) << c.name;
     }

@@ -1,5 +1,4 @@
-// What still hangs on what: boards that are cut through, cylinders cut around across their charts,
-// pieces that stand each for itself.
+// Support of parts: boards cut through, cylinders cut around across their charts, separate pieces.
 #include "mesh/bake.h"
 #include "mesh/hold.h"
 #include "support/meshes.h"
@@ -24,7 +23,7 @@ struct Held {
         return {double(domain.origin[0]) + q * p.x, double(domain.origin[1]) + q * p.y,
                 double(domain.origin[2]) + q * p.z};
     }
-    // Texels of the parts that hang on nothing where `gone` says what is no more.
+    // Texels of unsupported parts, where `gone` says what has burnt.
     std::vector<size_t> lost(const std::function<bool(double, double, double)>& gone,
                              const int32_t (&up)[3]) {
         scratch.marks.assign(domain.texelCount(), 0);
@@ -53,7 +52,7 @@ struct Held {
 
 constexpr int32_t kUp[3] = {0, 1024, 0}, kDown[3] = {0, -1024, 0};
 
-TEST(MeshHold, WhatIsCutOffIsLost) {
+TEST(MeshHold, CutOffPartsAreLost) {
     Held board(makeSheet(1, 4));
     EXPECT_EQ(1u, board.pieces.count);
     const double texels = board.domain.report.realTexels;
@@ -80,7 +79,7 @@ TEST(MeshHold, WhatIsCutOffIsLost) {
     EXPECT_TRUE(board.lost(feet, kDown).empty());
 }
 
-TEST(MeshHold, ChartsHangTogetherAcrossTheirSeams) {
+TEST(MeshHold, ChartsSupportEachOtherAcrossSeams) {
     for (const bool turned : {false, true}) {
         Held ring(makeCylinder(0.3, 1, 24, 8, 5, turned));
         EXPECT_EQ(1u, ring.pieces.count);
@@ -93,7 +92,7 @@ TEST(MeshHold, ChartsHangTogetherAcrossTheirSeams) {
     }
 }
 
-TEST(MeshHold, PiecesStandEachForItself) {
+TEST(MeshHold, PiecesAreSupportedIndependently) {
     Mesh mesh = makeSheet(1, 2);
     const Mesh upper = makeSheet(0.5, 2);
     const uint32_t first = mesh.vertexCount();

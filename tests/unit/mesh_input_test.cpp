@@ -1,4 +1,4 @@
-// Input that cannot be baked is refused in plain words; memory that runs out leaves nothing behind.
+// Unusable input is refused with a message; failed allocations leave nothing behind.
 #include <cstdio>
 #include <limits>
 #include <new>
@@ -15,13 +15,13 @@ class MeshInput : public testing::Test {
     Mesh mesh_ = makePlane(1, 1);
 };
 
-TEST_F(MeshInput, EmptyMeshes) {
+TEST_F(MeshInput, RefusesEmptyMeshes) {
     EXPECT_EQ("positions is empty; a mesh needs at least 3 vertices.", refusal({}));
     mesh_.indices.clear();
     EXPECT_EQ("indices is empty; a mesh needs at least 1 triangle.", refusal(mesh_.input()));
 }
 
-TEST_F(MeshInput, SizesThatDoNotFit) {
+TEST_F(MeshInput, RefusesMismatchedSizes) {
     mesh_.indices.pop_back();
     EXPECT_EQ("indices has 5 elements; it must be a multiple of 3.", refusal(mesh_.input()));
     mesh_ = makePlane(1, 1);
@@ -40,7 +40,7 @@ TEST_F(MeshInput, SizesThatDoNotFit) {
     EXPECT_EQ("triangleMaterials has 3 elements; the triangles need 2 (or none).", refusal(input));
 }
 
-TEST_F(MeshInput, NotFinite) {
+TEST_F(MeshInput, RefusesNonFiniteNumbers) {
     const float infinity = std::numeric_limits<float>::infinity();
     mesh_.positions[7] = std::nanf("");
     EXPECT_EQ("Position of vertex 2, component 1, is nan; it must be finite and within +-1e+06.",
@@ -67,7 +67,7 @@ TEST_F(MeshInput, NotFinite) {
         refusal(input));
 }
 
-TEST_F(MeshInput, IndicesAndMaterialsOutOfRange) {
+TEST_F(MeshInput, RefusesIndicesAndMaterialsOutOfRange) {
     mesh_.indices[4] = 4;
     EXPECT_EQ("Index 4 (corner 1 of triangle 1) is 4; the mesh has 4 vertices.",
               refusal(mesh_.input()));
@@ -80,7 +80,7 @@ TEST_F(MeshInput, IndicesAndMaterialsOutOfRange) {
     EXPECT_EQ("Material of triangle 1 is 8; it must be less than 8.", refusal(input));
 }
 
-TEST_F(MeshInput, NoAreaOrAbsurdSize) {
+TEST_F(MeshInput, RefusesZeroAreaAndExtremeSizes) {
     Mesh line;
     for (int i = 0; i < 3; ++i) line.addVertex(i, 0, 0);
     line.addTriangle(0, 1, 2);
@@ -99,7 +99,7 @@ TEST_F(MeshInput, NoAreaOrAbsurdSize) {
     EXPECT_EQ("", refusal(makePlane(2e-4, 2e-4).input()));
 }
 
-TEST_F(MeshInput, SettingsOutOfRange) {
+TEST_F(MeshInput, RefusesSettingsOutOfRange) {
     mesh::BakeInput input = mesh_.input();
     for (double bad : {0.0, -1.0, 5000.0, double(std::nanf("")), 1e300}) {
         input.texelsPerMetre = bad;
@@ -120,7 +120,7 @@ TEST_F(MeshInput, SettingsOutOfRange) {
     EXPECT_NE("", refusal(input));
 }
 
-TEST_F(MeshInput, MoreChartsThanTheAtlasHolds) {
+TEST_F(MeshInput, RefusesMoreChartsThanTheAtlasHolds) {
     Mesh soup;  // 400 separate triangles for 8 x 8 texels
     for (uint32_t i = 0; i < 400; ++i) {
         for (int k = 0; k < 3; ++k) soup.addVertex(i % 20 + (k == 1) * 0.5, i / 20, (k == 2) * 0.5);
@@ -132,7 +132,7 @@ TEST_F(MeshInput, MoreChartsThanTheAtlasHolds) {
     expectSound(bakeOf(soup.input(128, 128)));
 }
 
-TEST_F(MeshInput, UvsWithoutAreaAreNoUvs) {
+TEST_F(MeshInput, IgnoresUvsWithoutArea) {
     std::fill(mesh_.uvs.begin(), mesh_.uvs.end(), 0.5f);
     for (bool trust : {false, true}) {
         mesh::BakeInput input = mesh_.input(32);
@@ -144,7 +144,7 @@ TEST_F(MeshInput, UvsWithoutAreaAreNoUvs) {
     }
 }
 
-// Gives memory until the n-th allocation; counts what is not given back.
+// Fails from the n-th allocation on and counts unreturned bytes.
 class LimitedMemory final : public std::pmr::memory_resource {
  public:
     explicit LimitedMemory(uint64_t limit) : limit_(limit) {}
@@ -177,11 +177,11 @@ void cookAndRead(const mesh::BakeInput& input, std::pmr::memory_resource* memory
     mesh::texelsNear(again, d.boundsLow, 0.1f, near);
 }
 
-TEST_F(MeshInput, OutOfMemoryAtEveryAllocationInTurn) {
+TEST_F(MeshInput, SurvivesFailureAtEveryAllocation) {
     for (bool own : {true, false}) {
         Mesh mesh = makeCube(0.5, 2);
         if (!own) mesh.uvs.clear();
-        if (own)  // overlapping islands: the longest way through the bake
+        if (own)  // overlapping islands: the longest path through the bake
             for (uint32_t v = 0; v < mesh.vertexCount(); ++v)
                 for (uint32_t c = 0; c < 2; ++c) mesh.uvs[v * 2 + c] = mesh.uvs[(v % 9) * 2 + c];
         const mesh::BakeInput input = mesh.input(24);
@@ -199,7 +199,6 @@ TEST_F(MeshInput, OutOfMemoryAtEveryAllocationInTurn) {
     }
 }
 
-// Nothing is taken from anywhere but the given resource.
 TEST_F(MeshInput, AllMemoryComesFromTheGivenResource) {
     std::pmr::memory_resource* before =
         std::pmr::set_default_resource(std::pmr::null_memory_resource());

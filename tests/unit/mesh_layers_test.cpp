@@ -1,4 +1,4 @@
-// What a texel and a drawn vertex carry: thickness, slowness, normals, details; and queries.
+// Data of texels and drawn vertices: thickness, slowness, normals, details, queries.
 #include <cstdio>
 #include <random>
 
@@ -9,7 +9,7 @@ namespace {
 using namespace fw;
 using namespace fw::test;
 
-// As the shaders decode it; 1 is 1023, 1023, 511.
+// Decoded as the shaders do; 1 is 1023, 1023, 511.
 std::array<double, 3> decode(uint32_t n) {
     return {double(int32_t(n << 21) >> 21) / 1023, double(int32_t(n << 10) >> 21) / 1023,
             double(int32_t(n) >> 22) / 511};
@@ -59,7 +59,7 @@ TEST(MeshSlowness, ExactlyOneWithoutNoise) {
     for (uint32_t i = 0; i < d.texelCount(); ++i) ASSERT_EQ(d.real(i) ? 128 : 0, d.slowness[i]);
 }
 
-TEST(MeshSlowness, MeanPaysForTheShortcuts) {
+TEST(MeshSlowness, MeanCompensatesShortcuts) {
     const Mesh mesh = makePlane(2, 2, 20);
     mesh::BakeInput input = mesh.input();
     input.noiseAmplitude = 0.25f;
@@ -116,7 +116,7 @@ TEST(MeshNormals, TexelsPointOutwards) {
     }
 }
 
-TEST(MeshNormals, ComputedOnesKeepCreasesAndSmoothTheRest) {
+TEST(MeshNormals, ComputedNormalsKeepCreases) {
     const Mesh cube = makeCube(1, 4);
     for (const mesh::RenderVertex& v : bakeOf(cube.input(32)).vertices) {
         const auto n = decode(v.normal);  // one axis is 1: faces meet at 90 degrees
@@ -124,16 +124,16 @@ TEST(MeshNormals, ComputedOnesKeepCreasesAndSmoothTheRest) {
     }
     const Mesh sphere = makeCube(1, 16, true);
     for (const mesh::RenderVertex& v : bakeOf(sphere.input(32)).vertices) {
-        const auto n = decode(v.normal);  // also over the seams between its six charts
+        const auto n = decode(v.normal);  // also across the seams of its six charts
         double along = 0;
         for (size_t k = 0; k < 3; ++k) along += n[k] * double(v.position[k]) * 2;
         ASSERT_GT(along, 0.995);
     }
 }
 
-TEST(MeshDrawn, CarriesWhatItWasGiven) {
+TEST(MeshDrawn, KeepsTheGivenAttributes) {
     Mesh mesh = makePlane(1, 1);
-    mesh.normals = {1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0};  // one is missing its length
+    mesh.normals = {1, 0, 0, 1, 0, 0, 0, 0, 0, 1, 0, 0};  // one has zero length
     const std::vector<float> details{0, 1, 2, 3, 4, 5, 6, 7};
     const std::vector<uint32_t> tints{1, 2, 3, 4};
     const std::vector<uint8_t> materials{0, 5};
@@ -152,7 +152,7 @@ TEST(MeshDrawn, CarriesWhatItWasGiven) {
         EXPECT_EQ(mesh.uvs[source * 2], v.textureUv[0]);
         EXPECT_EQ(mesh.positions[source * 3 + 1], v.position[1]);
         EXPECT_NEAR(source == 2 ? 0 : 1, decode(v.normal)[0], 0.002);
-        EXPECT_NEAR(source == 2 ? 1 : 0, decode(v.normal)[2], 0.002) << "the face's own";
+        EXPECT_NEAR(source == 2 ? 1 : 0, decode(v.normal)[2], 0.002) << "the face normal";
     }
     for (uint32_t i = 0; i < d.texelCount(); ++i)
         if (d.real(i)) {
@@ -161,7 +161,7 @@ TEST(MeshDrawn, CarriesWhatItWasGiven) {
         }
 }
 
-TEST(MeshDrawn, AtlasUvLeadsToTheTexelsOwnPlace) {
+TEST(MeshDrawn, AtlasUvsMapBackToTheTexelsPlace) {
     for (bool own : {true, false}) {
         Mesh mesh = makeCube(1, 8);
         if (!own) mesh.uvs.clear();
@@ -192,7 +192,7 @@ TEST(MeshDrawn, AtlasUvLeadsToTheTexelsOwnPlace) {
     }
 }
 
-TEST(MeshQuery, AgreesWithASearchOfAllTexels) {
+TEST(MeshQuery, AgreesWithBruteForce) {
     const Mesh mesh = makeCube(1, 16, true);
     const BurnDomain d = bakeOf(mesh.input(64));
     std::mt19937 random(1);
@@ -226,7 +226,7 @@ TEST(MeshQuery, AgreesWithASearchOfAllTexels) {
     }
     const float nowhere[3] = {std::nanf(""), 1e30f, -1e30f};
     mesh::texelsNear(d, nowhere, std::nanf(""), found);
-    EXPECT_EQ(1u, found.size()) << "at least the nearest";
+    EXPECT_EQ(1u, found.size()) << "the nearest at least";
     EXPECT_EQ(kNone, mesh::nearestTexel(d, nowhere, 1));
 }
 

@@ -15,7 +15,7 @@ glm::dvec3 cornerOf(const mesh::BurnDomain& domain, size_t index) {
     return {p[0], p[1], p[2]};
 }
 
-TEST(MeshShaped, IsTheStretchedMesh) {
+TEST(MeshShaped, MatchesTheStretchedMesh) {
     auto* memory = std::pmr::get_default_resource();
     const Mesh cube = makeCube(1.0, 4, true, false);
     mesh::BakeInput input = cube.input(48, 512);

@@ -1,4 +1,4 @@
-// Parallax occlusion by the shader's own text, against meshes that the reliefs stand for.
+// Parallax occlusion by the shader's own code against the geometry that the reliefs represent.
 #include <gtest/gtest.h>
 
 #include "common/relief_maps.h"
@@ -27,7 +27,7 @@ using parallax::ReliefRay;
 
 constexpr float kDeep = 0.5f;  // m
 
-// A ray into a level relief: from `from`, on or below z = 0, along unit `way`.
+// A ray into a level relief from `from`, on or below z = 0, along unit `way`.
 ReliefRay rayOf(vec3 from, vec3 way) { return {vec2(from), vec2(way), -from.z, -way.z, 0, 1e3f}; }
 
 vec3 unitWay(float angle, float down) {
@@ -35,25 +35,25 @@ vec3 unitWay(float angle, float down) {
     return {flat * std::cos(angle), flat * std::sin(angle), -down};
 }
 
-// Half a ball of radius kDeep, on the floor of a relief of that depth.
+// Half a ball of radius kDeep on the floor of a relief of that depth.
 float dome(vec2 at) {
     const float square = kDeep * kDeep - glm::dot(at, at);
     return square > 0 ? 1 - std::sqrt(square) / kDeep : 1;
 }
-// m of way from z = 0 to the ball; negative: past it.
+// m from z = 0 to the ball; negative: misses.
 float domeHit(vec3 from, vec3 way) {
     const vec3 middle = from + vec3(0, 0, kDeep);
     const float b = glm::dot(middle, way), c = glm::dot(middle, middle) - kDeep * kDeep;
     return b * b >= c ? -b - std::sqrt(b * b - c) : -1;
 }
 
-TEST(Parallax, ADomeIsSeenAsTheBallItStandsFor) {
+TEST(Parallax, ADomeLooksLikeItsBall) {
     parallax::relief = dome;
     double squares = 0, hits = 0, both = 0, either = 0;
     for (float down : {0.35f, 0.5f, 0.7f, 0.95f})
         for (int j = -60; j <= 60; ++j)
             for (int i = -60; i <= 60; ++i) {
-                // Across a picture: rays side by side that pass around the ball's middle.
+                // Parallel rays across a picture, passing around the ball's middle.
                 const vec3 way = unitWay(0.4f, down), side(-std::sin(0.4f), std::cos(0.4f), 0);
                 const vec3 up = glm::cross(way, side);
                 const vec3 at = vec3(0, 0, -kDeep) + 0.011f * (float(i) * side + float(j) * up);
@@ -62,7 +62,7 @@ TEST(Parallax, ADomeIsSeenAsTheBallItStandsFor) {
                 const bool there = mesh >= 0 && (from + way * mesh).z > -kDeep;
                 const ReliefRay ray = rayOf(from, way);
                 const float hit = parallax::reliefHit(ray, kDeep, 48);
-                ASSERT_GE(hit, 0);  // there is always the floor
+                ASSERT_GE(hit, 0);  // the floor is always hit
                 const bool found = parallax::reliefBelow(ray, hit) < 0.999f * kDeep;
                 both += there && found;
                 either += there || found;
@@ -80,7 +80,7 @@ TEST(Parallax, ADomeIsSeenAsTheBallItStandsFor) {
     EXPECT_GT(both / either, 0.97);
 }
 
-TEST(Parallax, FewLayersAreEnoughFromAboveAndAreAllThatIsTaken) {
+TEST(Parallax, UsesFewLayersFromAbove) {
     EXPECT_EQ(8, parallax::reliefLayers(1, 1000, 8, 48));
     EXPECT_EQ(48, parallax::reliefLayers(0, 1000, 8, 48));
     EXPECT_EQ(7, parallax::reliefLayers(0.1f, 3, 8, 48));  // three texels hold no more
@@ -95,17 +95,17 @@ TEST(Parallax, FewLayersAreEnoughFromAboveAndAreAllThatIsTaken) {
 }
 
 // A round log whose relief is at its bottom everywhere looks like a thinner log.
-TEST(Parallax, OnACurvedSurfaceTheSilhouetteShrinks) {
+TEST(Parallax, SilhouettesShrinkOnCurvedSurfaces) {
     parallax::relief = [](vec2) { return 1.0f; };
     constexpr float kRound = 0.3f, kBark = 0.02f;
     for (float offset = 0.005f; offset < kRound; offset += 0.005f) {
-        // Along x, past the axis (y) at a height: enters where the surface has this height.
+        // Along x past the axis (y) at a height: enters where the surface has this height.
         const float rise = offset / kRound, flat = std::sqrt(1 - rise * rise);
         ReliefRay ray{vec2(0), vec2(rise, 0), 0, flat, 0, 1e3f};
         ray.sag = 0.5f / kRound * rise * rise;
         const float hit = parallax::reliefHit(ray, kBark, 32);
         const bool expected = offset < kRound - kBark;
-        // The parabola stands for the circle: a tenth of the bark may be wrong.
+        // A parabola approximates the circle: an error of a tenth of the bark is allowed.
         if (std::abs(offset - (kRound - kBark)) > 0.1f * kBark) {
             EXPECT_EQ(expected, hit >= 0) << offset;
         }
@@ -118,18 +118,18 @@ TEST(Parallax, OnACurvedSurfaceTheSilhouetteShrinks) {
     }
 }
 
-TEST(Parallax, TheBorderEndsIt) {
+TEST(Parallax, StopsAtTheBorder) {
     parallax::relief = dome;
     ReliefRay ray = rayOf({-2, 0, 0}, unitWay(0, 0.1f));
-    ray.most = 0.5f;  // before it is anywhere
+    ray.most = 0.5f;  // the ray ends before it reaches the relief
     EXPECT_LT(parallax::reliefHit(ray, kDeep, 48), 0);
-    // From a side, inside the stone: what is cut is there at once. Upwards out of it: nothing.
+    // From inside the stone sideways it hits at once; upwards out of it, nothing.
     EXPECT_EQ(0, parallax::reliefHit(rayOf({0, 0, -0.3f}, unitWay(0, 0.5f)), kDeep, 48));
     EXPECT_LT(parallax::reliefHit(rayOf({-0.9f, 0, -0.3f}, unitWay(3.1f, -0.5f)), kDeep, 48), 0);
 }
 
-TEST(Parallax, ShadowsGrowWithWhatCastsThem) {
-    // A wall at x = 0 as high as it says; the light comes over it from the left, 45 degrees high.
+TEST(Parallax, ShadowsGrowWithTheirCaster) {
+    // A wall at x = 0 of height `wall`; light comes over it from the left at 45 degrees.
     static float wall;
     parallax::relief = [](vec2 at) { return std::abs(at.x) < 0.05f ? 1 - wall : 1.0f; };
     const vec3 light = glm::normalize(vec3(-1, 0, 1));
@@ -148,7 +148,7 @@ TEST(Parallax, ShadowsGrowWithWhatCastsThem) {
             last = lit;
             dark += 1 - double(lit);
         }
-        EXPECT_EQ(1, last) << "far from it";
+        EXPECT_EQ(1, last) << "far from the wall";
         EXPECT_GT(dark, before) << "a wall of " << wall;
         before = dark;
     }
@@ -156,9 +156,9 @@ TEST(Parallax, ShadowsGrowWithWhatCastsThem) {
     EXPECT_EQ(0, parallax::reliefLit({0, 0}, vec2(-1, 0), -0.1f, 0.1f, kDeep, 2, 64));
 }
 
-// Round stones side by side on a picture of 1 m that repeats, joints between them.
+// Round stones side by side on a repeating picture of 1 m, with joints between.
 constexpr uint32_t kTexels = 128;
-constexpr float kStones = 6, kStoneDepth = 0.05f;  // a row; m
+constexpr float kStones = 6, kStoneDepth = 0.05f;  // stones per row; m
 float stones(vec2 at) {
     const vec2 cell = glm::fract(at * kStones) - 0.5f;
     return std::min(1.0f, 8 * glm::dot(cell, cell) * glm::dot(cell, cell) * 4);
@@ -175,7 +175,7 @@ struct StoneMaps {
         cones = sample::reliefCones(relief);
         horizonMap = sample::reliefHorizon(relief);
     }
-    // As a device reads: between four texels, round and round.
+    // Bilinear and repeating, like a device.
     template <class Read>
     static auto between(vec2 at, uint32_t side, Read read) {
         const vec2 p = at * float(side) - 0.5f, low = glm::floor(p), f = p - low;
@@ -202,7 +202,7 @@ const StoneMaps& stoneMaps() {
     return maps;
 }
 
-TEST(Parallax, ConesHoldNothing) {
+TEST(Parallax, ConesAreEmpty) {
     const StoneMaps& maps = stoneMaps();
     float narrowest = 1e9f, widest = 0;
     for (uint32_t i = 0; i < kTexels * kTexels; i += 37) {
@@ -223,7 +223,7 @@ TEST(Parallax, ConesHoldNothing) {
     EXPECT_EQ(sample::kWidestCone, widest);
 }
 
-TEST(Parallax, FewStepsByConesFindWhatManyLayersFind) {
+TEST(Parallax, ConeStepsMatchManyLayers) {
     parallax::relief = [](vec2 at) { return stoneMaps().read(at).x; };
     parallax::cones = [](vec2 at) { return stoneMaps().read(at); };
     for (const float down : {0.25f, 0.48f, 0.9f}) {
@@ -250,7 +250,7 @@ TEST(Parallax, FewStepsByConesFindWhatManyLayersFind) {
     }
 }
 
-TEST(Parallax, HorizonsShadeAsStepsDo) {
+TEST(Parallax, HorizonsMatchSteppedShadows) {
     parallax::relief = [](vec2 at) { return stoneMaps().read(at).x; };
     const StoneMaps& maps = stoneMaps();
     double off = 0, bias = 0, shaded = 0;
@@ -272,7 +272,7 @@ TEST(Parallax, HorizonsShadeAsStepsDo) {
     std::printf("shadows off by %.3f, their mean by %.3f, where %.3f is in shade\n", off / places,
                 bias / places, shaded / places);
     EXPECT_GT(shaded / places, 0.1);
-    EXPECT_LT(off / places, 0.16);  // four ways know little of what stands between them
+    EXPECT_LT(off / places, 0.16);  // four directions miss some of what lies between
     EXPECT_LT(std::abs(bias / places), 0.07);
 }
 

@@ -1,4 +1,4 @@
-// Fire emitters on the CPU: births, motion and looks of particles by the shader's own text.
+// Particles of fire emitters on the CPU by the shader's own code: births, motion, appearance.
 #include "support/particle_reference.h"
 
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ FwFireEmitterDef fireDef(float power) {
     return def;
 }
 
-TEST(Particles, EachSlotOfARingHasOneParticleTheNewestOnes) {
+TEST(Particles, EachRingSlotHoldsTheNewestParticle) {
     for (const uint32_t ring : {1u, 7u, 256u})
         for (uint32_t head = 0; head < ring; ++head) {
             std::set<uint32_t> ages;
@@ -63,15 +63,15 @@ Cloud fireOf(const ParticleReference& jet) {
     return cloud;
 }
 
-// 12 m/s is 0.4 m a frame at 30 Hz: births lie where they would be at any rate of frames.
-TEST(Particles, AreTheSameStreamAtAnyFrameRate) {
+// 12 m/s is 0.4 m per frame at 30 Hz: births lie where they would at any frame rate.
+TEST(Particles, AreIndependentOfTheFrameRate) {
     Cloud clouds[3];
     const float rates[3] = {30, 60, 120};
     for (int k = 0; k < 3; ++k) {
         ParticleReference jet(jetDef());
         for (int i = 0; i < int(2 * rates[k]); ++i) jet.step(1 / rates[k]);
         clouds[k] = fireOf(jet);
-        // No gap in the young part of the stream, where it is narrow.
+        // No gap in the young, narrow part of the stream.
         std::vector<float> along;
         for (uint32_t i = 0; i < jet.record.ring; ++i)
             if (jet.alive(i) && jet.particles[i].placeAge.w < 0.25f)
@@ -86,12 +86,12 @@ TEST(Particles, AreTheSameStreamAtAnyFrameRate) {
         EXPECT_NEAR(clouds[0].mean.x, clouds[k].mean.x, 0.06f * clouds[0].mean.x);
         EXPECT_NEAR(clouds[0].mean.y, clouds[k].mean.y, 0.15f);
     }
-    // As tuned: it comes 8 to 9.5 m far.
+    // Tuned reach: 8 to 9.5 m.
     EXPECT_GT(clouds[1].reach, 7.0f);
     EXPECT_LT(clouds[1].reach, 11.0f);
 }
 
-TEST(Particles, AreBornAlongTheWayOfAnEmitterButNotOfOneThatIsPutElsewhere) {
+TEST(Particles, AreBornAlongAMovingEmitterButNotAcrossATeleport) {
     FwFireEmitterDef def = fireDef(60);
     def.rate = 600;
     def.inherit = 0;
@@ -114,7 +114,7 @@ TEST(Particles, AreBornAlongTheWayOfAnEmitterButNotOfOneThatIsPutElsewhere) {
         }
 }
 
-TEST(Particles, PowerDrivesAllThatTheHostLeavesOpen) {
+TEST(Particles, PowerSetsUnspecifiedParameters) {
     components::EmitterLook last = components::emitterLook(fireDef(5));
     for (const float power : {50.0f, 500.0f, 5000.0f}) {
         const components::EmitterLook look = components::emitterLook(fireDef(power));
@@ -135,7 +135,7 @@ TEST(Particles, PowerDrivesAllThatTheHostLeavesOpen) {
     EXPECT_EQ(3, own.life);
 }
 
-TEST(Particles, RiseInStillAirLeanInTheWindAndTurnToSmoke) {
+TEST(Particles, RiseLeanInWindAndTurnToSmoke) {
     FwFireEmitterDef def = fireDef(200);
     def.sparks = 0;
     ParticleReference still(def), windy(def);
@@ -165,7 +165,7 @@ TEST(Particles, RiseInStillAirLeanInTheWindAndTurnToSmoke) {
     EXPECT_GT(highest, 1.3f * up.mean.y);
 }
 
-TEST(Particles, FadeInAndOutAndFromFireToSmokeWithoutAJump) {
+TEST(Particles, FadeContinuously) {
     ParticleReference jet(jetDef());
     jet.step(0.02f);
     float fire = 0, smoke = 0;
@@ -183,7 +183,7 @@ TEST(Particles, FadeInAndOutAndFromFireToSmokeWithoutAJump) {
     EXPECT_GT(gpu::particleSmoke(jet.record, 0.9f), 0.5f);
 }
 
-TEST(Particles, EddiesNeitherGatherNorThin) {
+TEST(Particles, EddiesPreserveDensity) {
     float most = 0, mean = 0;
     for (int i = 0; i < 200; ++i) {
         const vec3 x(float(i) * 0.37f, float(i) * 0.71f, float(i) * -0.53f);
@@ -203,7 +203,7 @@ TEST(Particles, EddiesNeitherGatherNorThin) {
     EXPECT_NEAR(mean, 1, 0.35f);
 }
 
-TEST(Particles, NothingGoesBelowTheGround) {
+TEST(Particles, StayAboveTheGround) {
     FwFireEmitterDef def = jetDef();
     def.flags |= FW_EMITTER_GROUND;
     def.direction[1] = -0.35f;
@@ -220,13 +220,12 @@ TEST(Particles, NothingGoesBelowTheGround) {
                 if (jet.particles[i].hit.w >= 0) far = std::max(far, jet.place(i).x);
             }
         }
-        EXPECT_GT(far, 4.0f) << "it fans out on the ground";
+        EXPECT_GT(far, 4.0f) << "it spreads on the ground";
     }
 }
 
-// Walls as a jet's rays find them, at any rate of frames: fire spreads there, none of it comes
-// through.
-TEST(Particles, AShieldStopsAStreamAtAnyFrameRate) {
+// Walls hit by a jet's rays, at any frame rate: fire spreads along them and none passes.
+TEST(Particles, WallsStopAStreamAtAnyFrameRate) {
     FwFireEmitterDef def = jetDef();
     def.sparks = 0;
     for (const float dt : {1 / 90.0f, 1 / 15.0f}) {
@@ -247,7 +246,7 @@ TEST(Particles, AShieldStopsAStreamAtAnyFrameRate) {
             }
         }
         EXPECT_LT(20, spread);
-        // What is on its way still meets a wall that no ray strikes any more.
+        // Particles in flight still hit a wall that no ray hits any more.
         wall.met = false;
         components::takeShield(jet.emitter, 0, wall, jet.air.now);
         jet.step(dt);
@@ -257,7 +256,7 @@ TEST(Particles, AShieldStopsAStreamAtAnyFrameRate) {
     }
 }
 
-TEST(Particles, AFrameOfAnyLengthKeepsThemFinite) {
+TEST(Particles, StayFiniteForAnyFrameLength) {
     ParticleReference jet(jetDef());
     for (const float dt : {0.0f, 1e-4f, 10.0f, 0.0f, 0.5f, 3.0f, 0.016f})
         if (jet.step(dt))
@@ -268,7 +267,7 @@ TEST(Particles, AFrameOfAnyLengthKeepsThemFinite) {
             }
 }
 
-TEST(Particles, BurnOutOnceThereIsNoPower) {
+TEST(Particles, EndWithoutPower) {
     ParticleReference fire(fireDef(60));
     for (int i = 0; i < 60; ++i) {
         const bool burns = fire.step(1 / 60.0f);

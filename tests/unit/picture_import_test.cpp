@@ -1,5 +1,5 @@
-// What artists paint: fire profiles and flipbook sheets from PNG, EXR and TIFF, and how bad ones
-// are refused.
+// Artists' files: fire profiles and flipbook sheets from PNG, EXR and TIFF, and refusals of bad
+// ones.
 #include "import/float_picture.h"
 #include "import/image_decode.h"
 #include "profile_picture.h"
@@ -70,7 +70,7 @@ std::string pictureRefusal(const FloatPicture& picture) {
     return error;
 }
 
-TEST_F(PictureImport, AProfileComesBackFromExrAsItWas) {
+TEST_F(PictureImport, ProfilesRoundTripThroughExr) {
     const volume::Profile before = bonfire();
     std::string error;
     ASSERT_TRUE(writePicture(file("p.exr"), fwtools::pictureOfProfile(before, false), error))
@@ -83,7 +83,7 @@ TEST_F(PictureImport, AProfileComesBackFromExrAsItWas) {
     EXPECT_EQ(before.texels, after.texels);
 }
 
-TEST_F(PictureImport, AProfileComesBackFromPngAndTiffWithinTheirSteps) {
+TEST_F(PictureImport, ProfilesRoundTripThroughPngAndTiffWithinQuantisation) {
     const volume::Profile before = bonfire();
     for (const char* name : {"p.png", "p.tif"}) {
         std::string error;
@@ -97,15 +97,15 @@ TEST_F(PictureImport, AProfileComesBackFromPngAndTiffWithinTheirSteps) {
         for (float y = 0.005f; y < 1; y += 0.02f)
             for (float rho = 0.01f; rho < 1.2f; rho += 0.02f) {
                 const gpu::vec2 a = before.sample(rho, y), b = after.sample(rho, y);
-                // A step of sixteen bits, and one of the profile's halfs.
+                // A step of sixteen bits and one of the profile's half floats.
                 EXPECT_NEAR(a.x, b.x, 0.0012f) << name;
                 EXPECT_NEAR(a.y, b.y, 0.0012f) << name;
             }
     }
 }
 
-// The picture's lowest row is the flame's base, its left column the axis.
-TEST_F(PictureImport, AProfileStandsAsItIsPainted) {
+// The lowest row of the picture is the flame's base, its left column the axis.
+TEST_F(PictureImport, ProfilesKeepTheirOrientation) {
     FloatPicture picture = flat(16, 32, {1200.0f, 0.0f, 0.0f}, {"R", "G", "B"});
     for (uint32_t x = 0; x < 16; ++x) picture.values[(31 * 16 + x) * 3 + 1] = 1.5f;  // low
     for (uint32_t y = 0; y < 32; ++y) picture.values[y * 16 * 3 + 0] = 2000.0f;      // left
@@ -118,7 +118,7 @@ TEST_F(PictureImport, AProfileStandsAsItIsPainted) {
     EXPECT_NEAR(profile.sample(1.2f, 0.5f).x, 1.2f, 0.01f);
 }
 
-TEST_F(PictureImport, NamedChannelsComeFirst) {
+TEST_F(PictureImport, NamedChannelsTakePrecedence) {
     const FloatPicture picture = flat(8, 8, {9.0f, 1.0f, 1500.0f}, {"R", "soot", "Temperature"});
     volume::Profile profile;
     std::string error;
@@ -127,7 +127,7 @@ TEST_F(PictureImport, NamedChannelsComeFirst) {
     EXPECT_NEAR(profile.sample(0.5f, 0.5f).y, 1.0f, 0.001f);
 }
 
-TEST_F(PictureImport, BadProfilesAreRefusedByName) {
+TEST_F(PictureImport, RefusesBadProfilesByName) {
     FloatPicture hot = flat(16, 16, {1500.0f, 0.5f, 0}, {"R", "G", "B"});
     hot.values[(3 * 16 + 5) * 3] = 4000.0f;
     EXPECT_EQ(pictureRefusal(hot),
@@ -144,7 +144,7 @@ TEST_F(PictureImport, BadProfilesAreRefusedByName) {
                 HasSubstr("neither soot nor hot"));
 }
 
-TEST_F(PictureImport, BadFilesAreRefusedByName) {
+TEST_F(PictureImport, RefusesBadFilesByName) {
     FloatPicture picture;
     std::string error;
     EXPECT_FALSE(readPicture(file("none.png"), picture, error));
@@ -153,7 +153,7 @@ TEST_F(PictureImport, BadFilesAreRefusedByName) {
     EXPECT_THAT(error, HasSubstr("none.what: "));
     EXPECT_FALSE(fs::exists(file("none.what")));
 
-    // Whatever happens to a file, there is an answer; most of what is cut or turned is refused.
+    // Every damaged file gets an answer; most truncated or flipped ones are refused.
     std::mt19937 random(7);
     for (const char* name : {"f.png", "f.exr", "f.tif"}) {
         ASSERT_TRUE(
@@ -185,9 +185,8 @@ TEST_F(PictureImport, BadFilesAreRefusedByName) {
 }
 
 // ---- sheets
-// ---------------------------------------------------------------------------------------
 
-// A disc of one colour, 2 texels further to the right in each of 4 x 2 frames of 32 texels.
+// A disc of one colour that moves 2 texels to the right in each of 4 x 2 frames of 32 texels.
 FloatPicture discs(std::vector<float> colour, bool whole) {
     FloatPicture p =
         flat(128, 64, std::vector<float>(colour.size(), 0.0f), {"R", "G", "B", "A"}, whole);
@@ -214,8 +213,8 @@ fwtools::SheetDef grid4x2() {
     return def;
 }
 
-// A mesh's pictures in whatever a painter saves: a row of white, half the light of it, and black.
-TEST_F(PictureImport, MeshesTakeTheirColoursFromEveryKindOfPicture) {
+// A mesh's images in every format: a row of white, half its light, and black.
+TEST_F(PictureImport, MeshesReadEveryImageFormat) {
     const auto bytesOf = [&](const std::string& name) {
         std::ifstream stream(file(name), std::ios::binary);
         const std::string text((std::istreambuf_iterator<char>(stream)), {});
@@ -232,12 +231,12 @@ TEST_F(PictureImport, MeshesTakeTheirColoursFromEveryKindOfPicture) {
             pictures[name] = bytesOf(name);
         }
     }
-    // Eight bits of each and the exponent that they have in common.
+    // Eight bits per channel and a shared exponent.
     std::string hdr = "#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 3\n";
     for (const int pixel : {0x81, 0x80, 0})
         hdr += std::string(3, pixel ? '\x80' : '\0') + static_cast<char>(pixel);
     pictures["a.hdr"] = {hdr.begin(), hdr.end()};
-    // The header says: caps, size and RGB of 32 bits, by masks.
+    // The header: caps, size, and masks of 32-bit RGB.
     std::vector<uint32_t> dds(32);
     dds[0] = 0x20534444u;
     dds[1] = 124;
@@ -263,12 +262,12 @@ TEST_F(PictureImport, MeshesTakeTheirColoursFromEveryKindOfPicture) {
         ASSERT_EQ(3u, image.width) << name;
         ASSERT_EQ(12u, image.rgba.size()) << name;
         EXPECT_EQ(255, image.rgba[0]) << name;
-        // Half the light is 188 of what is shown; a picture of bytes has them as they are.
+        // Half the light is 188 in sRGB; byte images store it directly.
         const bool light = name == "a.exr" || name == "a.hdr" || name == "a.tif";
         EXPECT_NEAR(light ? 188 : 128, image.rgba[4], 1) << name;
         EXPECT_EQ(0, image.rgba[8]) << name;
         EXPECT_EQ(255, image.rgba[11]) << name;
-        // Spoilt it is refused or a picture, never more.
+        // Damaged data is refused or gives an image.
         std::mt19937 random(3);
         for (int i = 0; i < 200; ++i) {
             std::vector<uint8_t> spoilt = bytes;
@@ -287,7 +286,7 @@ TEST_F(PictureImport, MeshesTakeTheirColoursFromEveryKindOfPicture) {
     EXPECT_THAT(error, HasSubstr("none of PNG, JPEG, EXR, TIFF, HDR, DDS and WebP"));
 }
 
-TEST(SheetImport, FramesRunToTheRightThenDown) {
+TEST(SheetImport, FramesRunRightThenDown) {
     fwtools::SheetDef def = grid4x2();
     std::vector<fwtools::Frame> frames;
     std::string error;
@@ -304,17 +303,17 @@ TEST(SheetImport, FramesRunToTheRightThenDown) {
                    texels.begin());
         EXPECT_EQ(best % 32, 8 + 2 * k) << "frame " << k;
         EXPECT_EQ(best / 32, 31u - 12u) << "rows are from the bottom";
-        EXPECT_NEAR(fw::gpu::bookKelvin(texels[best].x), 1780.0f, 1.0f) << "yellow";
+        EXPECT_NEAR(fw::gpu::bookKelvin(texels[best].x), 1780.0f, 1.0f) << "yellow in kelvin";
         EXPECT_NEAR(texels[best].y, 1.0f, 1e-5f);
     }
-    // The motion between them is found: 2 texels of 32 a frame.
+    // The motion between frames is found: 2 texels of 32 per frame.
     const auto book = fwtools::finishBook(def.facts, frames, 1, std::pmr::get_default_resource());
     const auto motion = fw::book::motionAt(book, 2, {(12.5f) / 32, 1 - 12.5f / 32});
     EXPECT_NEAR(motion.x, 2.0f / 32, 0.3f / 32);
     EXPECT_NEAR(motion.y, 0.0f, 0.3f / 32);
 }
 
-TEST(SheetImport, HueIsTemperatureAndAlphaIsSmoke) {
+TEST(SheetImport, HueSetsTemperatureAndAlphaSmoke) {
     std::vector<fwtools::Frame> frames;
     std::string error;
     const auto middle = [&](const FloatPicture& picture, fw::book::Kind kind) {
@@ -326,15 +325,15 @@ TEST(SheetImport, HueIsTemperatureAndAlphaIsSmoke) {
     using enum fw::book::Kind;
     EXPECT_NEAR(fw::gpu::bookKelvin(middle(discs({0.5f, 0, 0}, false), Fire).x), 1370.0f, 1.0f);
     EXPECT_NEAR(middle(discs({0.5f, 0, 0}, false), Fire).y, 0.5f, 1e-5f);
-    // Whole numbers are sRGB: 0.735 of them is half the light.
+    // Integer formats are sRGB: 0.735 is half the light.
     EXPECT_NEAR(middle(discs({0.7354f, 0, 0, 1}, true), Fire).y, 0.5f, 1e-3f);
     const auto smoke = middle(discs({0.2f, 0.2f, 0.2f, 0.6f}, false), Smoke);
     EXPECT_EQ(smoke.y, 0.0f) << "smoke does not glow";
     EXPECT_NEAR(smoke.z, 0.6f, 1e-5f);
     EXPECT_NEAR(smoke.w, 1 - std::pow(0.4f, 0.25f), 1e-4f) << "1 - exp(-tau / 4)";
     EXPECT_GT(middle(discs({1, 0.8f, 0.3f}, false), Fire).z, 0.99f)
-        << "without alpha black is nothing";
-    // Light that covers nothing anywhere emits alone; where any of it covers, all of it hides.
+        << "black without alpha is empty";
+    // Light without any coverage is additive; with coverage anywhere, all of it occludes.
     FloatPicture light = discs({1, 0.8f, 0.3f, 0}, false);
     for (uint32_t i = 3; i < light.values.size(); i += 4) light.values[i] = 0;
     EXPECT_EQ(middle(light, Fire).z, 0.0f);
@@ -361,7 +360,7 @@ TEST(SheetImport, ResamplingKeepsTheMean) {
     for (size_t k = 0; k < 8; ++k) EXPECT_NEAR(mean(small[k]), mean(whole[k]), 1e-4);
 }
 
-TEST(SheetImport, BadSheetsAreRefusedByName) {
+TEST(SheetImport, RefusesBadSheetsByName) {
     const auto refusal = [](const FloatPicture& picture, fwtools::SheetDef def) {
         std::vector<fwtools::Frame> frames;
         std::string error;
@@ -388,8 +387,8 @@ TEST(SheetImport, BadSheetsAreRefusedByName) {
                 HasSubstr("without R, G and B"));
 }
 
-// Whatever a sheet's values and its grid are: frames of sound values, or words.
-TEST(SheetImport, TenThousandSpoiltSheetsAreRefusedOrSound) {
+// Any values and grid give valid frames or a message.
+TEST(SheetImport, DamagedSheetsAreRefusedOrValid) {
     constexpr float kBad[] = {-1, 1e30f, -1e30f, std::numeric_limits<float>::infinity(),
                               std::numeric_limits<float>::quiet_NaN()};
     std::mt19937 random(11);

@@ -1,5 +1,5 @@
-// Objects that burn to nothing: the shell is closed at every step, its volume only falls, holes are
-// where the texels say, both walls of a slab open together.
+// Objects that burn away: the shell is closed at every step, its volume only falls, holes are where
+// the texels say, and both walls of a slab open together.
 #include "mesh/refine/table.h"
 #include "support/refine_scene.h"
 #include "support/sanitized.h"
@@ -11,14 +11,14 @@ namespace {
 
 using mesh::RefineOptions;
 
-// What is left of the outer skin, as it lay at rest, never grows, but for the rounding of floats
-// (1e-8 as measured): a hole never closes, whatever levels do.
+// The area left of the outer skin in its rest pose never grows, but for float rounding (1e-8
+// measured): a hole never closes, whatever the levels do.
 constexpr double kRounding = 1e-7;
-// As it lies now it may grow by so much of the whole in a step: what recedes becomes a slope, which
-// is longer than the flat that it was. Measured: 6e-4, of a sheet.
+// The current area may grow by this share in one step, because receding surfaces become slopes,
+// which are longer. Measured: 6e-4, for a sheet.
 constexpr double kSlopes = 2e-3;
 
-// Of a corner on the outer skin, cut or not.
+// Rest position of a corner on the outer skin, cut or not.
 glm::vec3 restOf(const mesh::RefineModel& model, const mesh::RefineState& state, float now,
                  const gpu::RefineCorner& corner) {
     const auto rest = [&](uint32_t slot) {
@@ -36,12 +36,12 @@ struct Burn {
     size_t triangles = 0, outer = 0;
     uint32_t mostRim = 0, mostAll = 0;
     double firstVolume = 0, lastVolume = 0;
-    double areaGrowth = 0;  // of the outer skin, most in a step, of what it was at first
-    double restGrowth = 0;  // the same of what it was at rest
+    double areaGrowth = 0;  // of the outer skin, largest in one step, relative to its first area
+    double restGrowth = 0;  // the same in the rest pose
 };
 
-// Outer triangles that are turned over, of which something is left: what has burnt through whole is
-// not drawn, and where its levels go down a corner of it may lie deeper than what is beside.
+// Flipped outer triangles with area left. Burnt-through triangles are not drawn; where their level
+// falls, a corner may lie deeper than its surroundings.
 uint32_t flipsOf(const RefineScene& scene, const mesh::RefineState& state, float now) {
     uint32_t flips = 0;
     for (size_t i = 0; i < scene.model.triangles.size(); ++i)
@@ -134,11 +134,11 @@ Burn expectConsumed(const char* name, const RefineScene& scene, int steps, bool 
     return b;
 }
 
-TEST(RefineBurn, ABoxBurnsToNothingClosed) {
+TEST(RefineBurn, ABoxStaysClosedWhileItBurnsAway) {
     RefineScene box(gridBox(1, 1, 1, 1, 1, 1), unsplit(5), 64);
     box.light({0.02, 0.45, 0.37}, 0.02);
     const Burn b = expectConsumed("box", box, 50, false);
-    // Six walls of 20 mm, mitred: 1 - 0.96^3.
+    // Six mitred walls of 20 mm: 1 - 0.96^3.
     EXPECT_NEAR(1 - 0.96 * 0.96 * 0.96, b.firstVolume, 0.0005);
     EXPECT_EQ(0u, b.flips);
     RefineScene split(gridBox(1, 1, 1, 1, 1, 1, 11), RefineOptions{}, 128);
@@ -147,7 +147,7 @@ TEST(RefineBurn, ABoxBurnsToNothingClosed) {
     EXPECT_EQ(0u, s.flips);
 }
 
-TEST(RefineBurn, AHouseToo) {
+TEST(RefineBurn, AHouseStaysClosedWhileItBurnsAway) {
     RefineScene scene(house(1, 0.8, 1.5, 0.4, 1, 3), unsplit(4), 64);
     scene.light({0.02, 0.45, 0.37}, 0.03, 0.15);
     EXPECT_EQ(0u, expectConsumed("house", scene, 40, false).flips);
@@ -160,8 +160,6 @@ TEST(RefineBurn, AnOpenSheetGetsWalls) {
     EXPECT_NEAR(0.6 * 0.4 * 0.02, b.firstVolume, 1e-4);
 }
 
-// Boxes, houses and slabs of any size, number and turn of sides, lit anywhere: closed at every
-// step.
 TEST(RefineBurn, FuzzedMeshesStayClosed) {
     std::mt19937 random(5);
     const auto of = [&](double low, double high) {
@@ -187,7 +185,7 @@ TEST(RefineBurn, FuzzedMeshesStayClosed) {
     std::printf("%d meshes, %zu shell triangles\n", meshes, triangles);
 }
 
-TEST(RefineBurn, TheBunnyToo) {
+TEST(RefineBurn, TheBunnyStaysClosedWhileItBurnsAway) {
     Mesh mesh;
     std::string reason;
     if (!loadGlb("bunny_4k.glb", mesh, reason)) GTEST_SKIP() << reason;
@@ -205,7 +203,7 @@ TEST(RefineBurn, TheBunnyToo) {
 }
 
 // The closedness test must notice missing rims and lost edge directions.
-TEST(RefineBurn, MutantsAreOpen) {
+TEST(RefineBurn, ClosednessTestCatchesMutants) {
     RefineScene scene(gridBox(1, 1, 1, 1, 1, 1, 11), unsplit(5), 64);
     scene.light({0.02, 0.45, 0.37}, 0.02, 0.15);
     RefinePlayer player(scene);
@@ -227,7 +225,7 @@ TEST(RefineBurn, MutantsAreOpen) {
     EXPECT_GT(closedness(shellIds(shell)).open, 100u) << "flip bits ignored";
 }
 
-// Triangles without a hole need no cut, and those with one are known.
+// Triangles without a hole need no cut, and those with a hole are marked.
 TEST(RefineBurn, OnlyHoledTrianglesAreCut) {
     RefineScene scene(gridBox(1, 1, 1, 2, 2, 2), unsplit(4), 64);
     scene.light({0.02, 0.45, 0.37}, 0.02);
@@ -248,7 +246,7 @@ TEST(RefineBurn, OnlyHoledTrianglesAreCut) {
     EXPECT_GT(marked, 0u);
 }
 
-TEST(RefineBurn, CharThatStaysNeverOpens) {
+TEST(RefineBurn, PermanentCharNeverOpens) {
     RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(3), 32);
     scene.light({0.02, 0.45, 0.37}, 0.05);
     std::fill(scene.burn.begin(), scene.burn.end(), -kBurnSeconds);
@@ -260,7 +258,7 @@ TEST(RefineBurn, CharThatStaysNeverOpens) {
     EXPECT_EQ(0u, shell.gone + shell.rim);
 }
 
-TEST(RefineBurn, HoleTimes) {
+TEST(RefineBurn, HoleTimesCombineBothSides) {
     const float never = gpu::kRefineNever;
     EXPECT_EQ(never, gpu::refineHole(never, never, 4));
     EXPECT_EQ(7, gpu::refineHole(3, never, 4));
@@ -271,7 +269,7 @@ TEST(RefineBurn, HoleTimes) {
     EXPECT_EQ(gpu::refineHole(2, 5.5f, 4), gpu::refineHole(5.5f, 2, 4));
 }
 
-// Both walls of a slab cut the same hole, though their charts are turned against each other.
+// Both walls of a slab cut the same hole although their charts are rotated against each other.
 TEST(RefineBurn, BothWallsOfASlabOpenTogether) {
     const double thick = 0.02;
     RefineScene scene(gridBox(1, 1, thick, 4, 4, 1, 13), unsplit(4), 128);
@@ -311,7 +309,7 @@ TEST(RefineBurn, BothWallsOfASlabOpenTogether) {
     }
     EXPECT_EQ(walls, opposed);
     EXPECT_EQ(0u, far);
-    EXPECT_EQ(0u, crossing) << "vertices that may recede beyond the middle";
+    EXPECT_EQ(0u, crossing) << "vertices that can recede past the middle";
     ASSERT_GT(pairs, 300u);
     std::printf(
         "slab: %u pairs of opposite vertices, holes %.2f mm apart on average, %.2f at most\n",

@@ -1,5 +1,5 @@
-// What a rasteriser makes of refined triangles: the background never shows through, whatever the
-// levels of the edges are. In integers, as devices do it: 1/256 of a pixel, top-left rule.
+// Rasterised refined triangles never show the background at any edge levels. In integers as devices
+// do it: 1/256 pixel, top-left rule.
 #include "mesh/refine/table.h"
 #include "support/refine_scene.h"
 #include "support/sanitized.h"
@@ -15,7 +15,7 @@ constexpr int kWide = 192, kHigh = 144, kSub = 256;
 
 using Point = std::array<int64_t, 2>;
 
-// Triangles over each pixel's middle: those that face us, and those that do not.
+// Triangles over each pixel's centre, front-facing and back-facing.
 struct Layers {
     std::vector<uint16_t> front = std::vector<uint16_t>(kWide * kHigh);
     std::vector<uint16_t> back = front;
@@ -53,8 +53,8 @@ struct Layers {
     }
 };
 
-// Where a slot is drawn: off its place at rest, each by its own amount, so that what does not meet
-// gapes.
+// Position of a drawn slot: its rest position moved by its own amount, so that unmatched slots
+// leave gaps.
 glm::dvec3 placeOf(const mesh::RefineModel& model, uint32_t slot) {
     const gpu::RefineSlot& s = model.slots[slot];
     const auto part = [&](uint32_t salt) {
@@ -63,7 +63,7 @@ glm::dvec3 placeOf(const mesh::RefineModel& model, uint32_t slot) {
     return {double(s.x) + part(0), double(s.y) + part(1), double(s.z) + part(2)};
 }
 
-// Parallel light on a screen: no point on a pixel's middle by design of the view.
+// Orthographic; the view puts no point on a pixel's centre.
 Point project(glm::dvec3 p) {
     const double u = 0.83 * p.x - 0.56 * p.z, v = -0.31 * p.x + 0.84 * p.y - 0.44 * p.z;
     return {std::llround((96.3 + 70.1 * u) * kSub), std::llround((92.7 + 70.1 * v) * kSub)};
@@ -80,9 +80,9 @@ void drawModel(const mesh::RefineModel& model, const mesh::RefineState& state, L
 }
 
 struct Gaps {
-    uint32_t cracks = 0;   // pixels over which the surface is not closed
+    uint32_t cracks = 0;   // pixels where the surface is not closed
     uint32_t covered = 0;  // pixels of the box
-    uint32_t bare = 0;     // of those that a somewhat smaller box covers, without a front
+    uint32_t bare = 0;     // uncovered among those that a slightly smaller box covers
 };
 
 Gaps gapsOf(const Layers& layers, const Layers& core) {
@@ -109,7 +109,7 @@ Layers coreOf(const RefineScene& scene, glm::dvec3 middle) {
     return layers;
 }
 
-TEST(RefineDrawn, NoBackgroundInABoxOverAThousandLevelSets) {
+TEST(RefineDrawn, NoBackgroundShowsThroughABox) {
     RefineScene scene(gridBox(1.1, 0.9, 1.3, 1, 1, 1, 11), unsplit(5), 16);
     const Layers core = coreOf(scene, {0.55, 0.45, 0.65});
     mesh::RefineState state(scene.model, std::pmr::new_delete_resource());
@@ -130,7 +130,7 @@ TEST(RefineDrawn, NoBackgroundInABoxOverAThousandLevelSets) {
     std::printf("%d level sets: %zu triangles over %zu pixels, no background within\n", sets,
                 triangles, covered);
 
-    // It must see what does gape: a level for each triangle instead of one for each edge.
+    // The test must notice gaps: one level per triangle instead of per edge.
     for (size_t i = 0; i < scene.model.triangles.size(); ++i) {
         const uint32_t l = uint32_t(i) % 6;
         state.levels[i] = gpu::refinePack(l, l, l, l);

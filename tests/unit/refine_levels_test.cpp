@@ -1,5 +1,4 @@
-// Levels on whole meshes: no crack whatever they are, no more triangles than there is room for,
-// nothing that jumps.
+// Levels on whole meshes: no cracks, no more triangles than the budget, no popping.
 #include "core/error.h"
 #include "mesh/refine/table.h"
 #include "support/refine_probes.h"
@@ -35,7 +34,7 @@ void expectTight(const char* name, const RefineScene& scene, int sets) {
         scene.model.slots.size(), scene.model.draws.size(), triangles);
 }
 
-TEST(RefineModel, ABoxIsNumberedAsEulerSays) {
+TEST(RefineModel, ABoxHasTheVertexCountsOfEulersFormula) {
     const RefineScene scene(gridBox(1.1, 0.9, 1.3, 1, 1, 1, 11), unsplit(5), 32);
     const mesh::RefineModel& m = scene.model;
     EXPECT_EQ(12u, m.triangles.size());
@@ -59,10 +58,10 @@ TEST(RefineModel, ABoxIsNumberedAsEulerSays) {
             worst = std::max(worst, double(std::abs(p - v.position[c])));
         }
     }
-    EXPECT_LT(worst, 1e-6) << "m between a draw vertex's slot and its place on its triangle";
+    EXPECT_LT(worst, 1e-6) << "m between a draw vertex's slot and its point on its triangle";
 }
 
-// Whoever draws a point, from whichever chart and at whichever level: the same bits.
+// The same bits from every chart and at every level.
 TEST(RefineModel, SharedVerticesAreBitwiseEqual) {
     RefineScene scene(gridBox(1.1, 0.9, 1.3, 1, 1, 1, 11), unsplit(5), 32);
     const mesh::RefineModel& m = scene.model;
@@ -74,7 +73,7 @@ TEST(RefineModel, SharedVerticesAreBitwiseEqual) {
     std::mt19937 random(3);
     for (int k = 0; k < 20; ++k) {
         (void)randomLevels(m, random, state);
-        // Per edge and level, the slots that its owners' triangles have on it.
+        // Per edge and level: the slots on it of its triangles.
         std::map<uint32_t, std::set<uint32_t>> seen;
         for (uint32_t i = 0; i < m.triangles.size(); ++i) {
             const uint32_t levels = state.levels[i];
@@ -93,7 +92,7 @@ TEST(RefineModel, SharedVerticesAreBitwiseEqual) {
     }
 }
 
-TEST(RefineModel, SplittingKeepsTheShapeAndTheBudget) {
+TEST(RefineModel, SplittingKeepsShapeAndBudget) {
     RefineOptions o;
     o.cellTexels = 2;
     const RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), o);
@@ -105,7 +104,7 @@ TEST(RefineModel, SplittingKeepsTheShapeAndTheBudget) {
     EXPECT_EQ(48u, RefineScene(gridBox(1, 1, 1, 1, 1, 1), o).model.triangles.size());
 }
 
-TEST(RefineModel, RefusesWhatCannotBe) {
+TEST(RefineModel, RefusesInvalidOptions) {
     const RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(1), 16);
     const auto refusal = [&](RefineOptions o) -> std::string {
         try {
@@ -135,7 +134,7 @@ TEST(RefineLevels, NoLevelSetOpensACrack) {
     expectTight("soup", RefineScene(makeSoup(3), unsplit(4), 32), 4);
 }
 
-TEST(RefineLevels, NorOnTheBunny) {
+TEST(RefineLevels, NoLevelSetOpensACrackOnTheBunny) {
     for (const char* name : {"bunny_4k.glb", "spot.glb"}) {
         Mesh mesh;
         std::string reason;
@@ -144,9 +143,8 @@ TEST(RefineLevels, NorOnTheBunny) {
     }
 }
 
-// The test above must notice a bake that loses the edges' direction, and a scheme that gives
-// triangles levels instead of edges.
-TEST(RefineLevels, MutantsCrack) {
+// The test must notice lost edge directions and levels per triangle instead of per edge.
+TEST(RefineLevels, CrackTestCatchesMutants) {
     RefineScene scene(house(1.2, 0.8, 1.6, 0.5, 1, 3), unsplit(5), 16);
     mesh::RefineState state(scene.model, std::pmr::new_delete_resource());
     std::mt19937 random(7);
@@ -174,7 +172,7 @@ TEST(RefineLevels, ASmallFireMidTriangleRefinesAtOnce) {
     RefinePlayer player(scene);
     player.frame(0.1f, 0.1f);
     EXPECT_GT(player.triangles(), 900u);
-    EXPECT_LT(player.triangles(), 1024u) << "the other triangle stays as it is";
+    EXPECT_LT(player.triangles(), 1024u) << "the other triangle is not refined";
     std::printf("a fire of 1 cm in the middle of a 2 m quad: %u triangles\n", player.triangles());
 }
 
@@ -186,11 +184,11 @@ TEST(RefineLevels, NothingIsRefinedWithoutFire) {
     EXPECT_EQ(12u, player.triangles());
     const float end = scene.end + kBurnSeconds + 3;
     player.runTo(0, end, 0.1f);
-    EXPECT_EQ(12u, player.triangles()) << "all burnt out, all relaxed";
+    EXPECT_EQ(12u, player.triangles()) << "nothing burns, nothing is refined";
 }
 
-// The budget holds whatever it is, down to one triangle each, and more budget never gives less.
-TEST(RefineLevels, TheBudgetHolds) {
+// The budget holds at any size, down to one triangle each, and a larger budget never gives less.
+TEST(RefineLevels, StayWithinTheBudget) {
     RefineScene scene(gridBox(0.6, 1, 1.6, 2, 4, 7), unsplit(4), 64);
     ASSERT_EQ(200u, scene.model.triangles.size());
     scene.light({0.02, 0.45, 0.37}, 0.02);
@@ -210,7 +208,7 @@ TEST(RefineLevels, TheBudgetHolds) {
                     double(player.state.bias));
     }
     EXPECT_GT(least, 15000u);
-    // While levels glide down the aim is over; the capacity is not.
+    // While levels fall the target may be exceeded, the capacity never.
     RefinePlayer player(scene);
     player.keepBurnt = true;
     player.views = {{{-1.5f, 0.5f, 0.5f}, 1000}};
@@ -224,8 +222,8 @@ TEST(RefineLevels, TheBudgetHolds) {
     EXPECT_EQ(0u, closedness(slotIds(scene.model, player.state)).open);
 }
 
-// A burning part of the same level keeps it longest.
-TEST(RefineLevels, WhatBurnsLosesLast) {
+// At equal levels a burning part keeps its level longest.
+TEST(RefineLevels, BurningPartsLoseDetailLast) {
     RefineScene scene(gridBox(0.6, 1, 1.6, 2, 4, 7), unsplit(4), 64);
     scene.light({0.02, 0.45, 0.37}, 0.02);
     const float now = scene.timeAt(0.3);
@@ -251,16 +249,15 @@ TEST(RefineLevels, WhatBurnsLosesLast) {
     EXPECT_GT(burning / burningCount, ahead / aheadCount + 0.3);
 }
 
-// ---- what the eye sees
+// ---- screen error
 
 struct Jumps {
-    double worst = 0;      // px
-    double reference = 0;  // px, of what is all fine
-    double beyond = 0;     // px that any point moved more than there
+    double worst = 0;      // px, worst movement
+    double reference = 0;  // px, of the fully refined surface
+    double beyond = 0;     // px, movement beyond that of the reference
     uint32_t changes = 0;
 };
-// Plays `frames` at 60 per s. setup(frame, player) returns the time. The reference is the same with
-// everything as fine as can be.
+// Plays `frames` at 60 Hz. setup(frame, player) returns the time. The reference is fully refined.
 template <typename Setup>
 Jumps play(const RefineScene& scene, bool morph, int frames, uint32_t perTriangle, Setup setup) {
     RefinePlayer player(scene), full(scene);
@@ -314,7 +311,7 @@ void print(const char* what, const Jumps& j) {
         what, j.worst, j.reference, j.beyond, j.changes);
 }
 
-TEST(RefineLevels, DistanceNeverPops) {
+TEST(RefineLevels, NothingPopsWithDistance) {
     RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), unsplit(5), 64);
     scene.light({0.02, 0.45, 0.37}, 0.02);
     const float now = scene.timeAt(0.4);
@@ -332,7 +329,7 @@ TEST(RefineLevels, DistanceNeverPops) {
     EXPECT_GT(without.worst, with.worst * 2);
 }
 
-TEST(RefineLevels, FireNeverPops) {
+TEST(RefineLevels, NothingPopsAsFireSpreads) {
     RefineScene scene(gridBox(1, 1, 1, 1, 1, 1), RefineOptions{}, 128);
     scene.light({0.02, 0.45, 0.37}, 0.02, 0.15);
     const Jumps jumps = play(scene, true, 150, 3, [&](int k, RefinePlayer& player) {
@@ -344,7 +341,7 @@ TEST(RefineLevels, FireNeverPops) {
     EXPECT_GT(jumps.changes, 5u);
 }
 
-// ---- what it saves
+// ---- triangles saved
 
 struct Saving {
     double kept, band;
@@ -362,7 +359,7 @@ Saving savingAt(const RefineScene& scene, double share) {
     return s;
 }
 
-TEST(RefineLevels, SavesTrianglesWhereNothingBurns) {
+TEST(RefineLevels, SaveTrianglesWhereNothingBurns) {
     const auto table = [](const char* name, const RefineScene& scene) {
         std::array<Saving, 4> row{};
         const double shares[4] = {0.05, 0.25, 0.5, 0.999};
@@ -424,7 +421,7 @@ TEST(RefineLevels, IndicesChangeInFewFrames) {
     EXPECT_GT(changes, 0u);
 }
 
-// A still vertex left alone lies where a placed one would.
+// A skipped still vertex lies where a placed one would.
 TEST(RefineLevels, SkippingStillPartsChangesNothing) {
     RefineScene scene(gridBox(1, 1, 1, 2, 2, 2), unsplit(3), 64);
     scene.light({0.02, 0.45, 0.37}, 0.05, 0.15);
@@ -435,7 +432,7 @@ TEST(RefineLevels, SkippingStillPartsChangesNothing) {
     for (float t = 0; t < scene.end + 8; t += 0.05f) {
         lazy.frame(t, 0.05f);
         diligent.frame(t, 0.05f);
-        diligent.state.emitted.clear();  // made anew
+        diligent.state.emitted.clear();  // forces a rebuild
         mesh::refineEmit(scene.model, diligent.state);
         ASSERT_EQ(lazy.state.indices, diligent.state.indices);
         saved += diligent.state.placed - lazy.state.placed;

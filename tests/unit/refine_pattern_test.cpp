@@ -1,4 +1,4 @@
-// Patterns: every triangulation that three edge levels and an interior level can ask for.
+// Patterns: the triangulation of every combination of three edge levels and an interior level.
 #include "mesh/refine/table.h"
 
 #include <gtest/gtest.h>
@@ -36,7 +36,7 @@ std::vector<Triple> patternOf(uint32_t levels) {
     return triples;
 }
 
-// What is wrong with a pattern; 0: nothing.
+// The number of faults of a pattern.
 uint32_t faults(uint32_t levels, const std::vector<Triple>& triples) {
     uint32_t wrong = 0;
     int area = 0;
@@ -62,7 +62,7 @@ uint32_t faults(uint32_t levels, const std::vector<Triple>& triples) {
     return wrong + uint32_t(outer != border.size());
 }
 
-// The strip as the walk is told, one triangle after the other: what random access must equal.
+// The strip walked triangle by triangle; random access must give the same.
 std::vector<glm::uvec3> walkedInOrder(uint32_t levels) {
     std::vector<glm::uvec3> out;
     const uint32_t m = gpu::refineInterior(levels), n = 1u << m, s = n - 3;
@@ -115,7 +115,7 @@ uint32_t everyPattern(Visit visit) {
     return count;
 }
 
-TEST(RefinePattern, AllEightHundredAndSeventyTwoAreSound) {
+TEST(RefinePattern, All872AreValid) {
     uint32_t wrong = 0;
     const uint32_t patterns = everyPattern([&](uint32_t levels) {
         const uint32_t f = faults(levels, patternOf(levels));
@@ -126,11 +126,11 @@ TEST(RefinePattern, AllEightHundredAndSeventyTwoAreSound) {
     EXPECT_EQ(0u, wrong);
 }
 
-TEST(RefinePattern, TheFaultCounterBites) {
+TEST(RefinePattern, FaultCounterCatchesMutants) {
     const uint32_t levels = gpu::refinePack(3, 2, 5, 4);
     std::vector<Triple> triples = patternOf(levels);
     ASSERT_EQ(0u, faults(levels, triples));
-    // Side 0 with another level: its segments are not those asked for.
+    // Side 0 with another level: its segments differ from the requested ones.
     EXPECT_NE(0u, faults(gpu::refinePack(2, 2, 5, 4), triples));
     std::vector<Triple> fewer(triples.begin() + 1, triples.end());
     EXPECT_NE(0u, faults(levels, fewer));
@@ -138,7 +138,7 @@ TEST(RefinePattern, TheFaultCounterBites) {
     EXPECT_NE(0u, faults(levels, triples));
 }
 
-TEST(RefinePattern, RandomAccessIsTheWalk) {
+TEST(RefinePattern, RandomAccessEqualsTheWalk) {
     uint32_t compared = 0, differ = 0;
     everyPattern([&](uint32_t levels) {
         if (gpu::refineInterior(levels) < 2) return;
@@ -151,7 +151,7 @@ TEST(RefinePattern, RandomAccessIsTheWalk) {
     EXPECT_EQ(0u, differ);
 }
 
-// With the same level all around the pattern is the regular lattice, so that levels nest.
+// With equal levels the pattern is the regular lattice, so levels nest.
 TEST(RefinePattern, EqualLevelsAreTheRegularLattice) {
     for (uint32_t m = 1; m <= 5; ++m) {
         const uint32_t levels = gpu::refinePack(m, m, m, m);
@@ -169,19 +169,19 @@ TEST(RefinePattern, EqualLevelsAreTheRegularLattice) {
     }
 }
 
-TEST(RefinePattern, Counts) {
+TEST(RefinePattern, HaveTheirTriangleCounts) {
     const auto count = [](uint32_t a, uint32_t b, uint32_t c, uint32_t m) {
         return gpu::refineCount(gpu::refinePack(a, b, c, gpu::refineFit(a, b, c, m)));
     };
     EXPECT_EQ(1024u, count(5, 5, 5, 5));
     EXPECT_EQ(38u, count(5, 0, 0, 0)) << "a cold neighbour of one hot edge";
-    EXPECT_EQ(962u, count(5, 0, 0, 5)) << "what it would cost with the edges' level inside";
+    EXPECT_EQ(962u, count(5, 0, 0, 5)) << "if the interior had the edges' level";
     EXPECT_EQ(931u, count(0, 0, 0, 5)) << "hot inside, cold edges";
     EXPECT_EQ(1u, count(0, 0, 0, 0));
     EXPECT_EQ(4u, count(1, 1, 1, 1));
 }
 
-TEST(RefinePattern, TheTableIsWhollyUsedAndSmall) {
+TEST(RefinePattern, TheTableIsFullyUsed) {
     std::set<uint32_t> entries;
     everyPattern([&](uint32_t levels) {
         for (uint32_t k = 0; k < gpu::refineCount(levels); ++k)

@@ -1,4 +1,5 @@
-// The published scheme: what its rules do as printed, and that the repaired ones come to rest.
+// The adaptive refinement of the reference implementation: its rules as printed, and the repaired
+// rules that reach a stable state.
 #include "mesh/refine/published.h"
 
 #include "core/error.h"
@@ -17,24 +18,24 @@ using Point = std::pair<int, int>;
 struct Outcome {
     uint32_t drawn = 0;
     double twice = 0, missing = 0;  // shares of the finest triangles
-    uint32_t junctions = 0;         // corners on another drawn triangle's side
+    uint32_t junctions = 0;         // corners on the side of another drawn triangle
 };
 
 Point cornerOf(const ArpTriangle& t, int k) { return {t.corner[k % 3][0], t.corner[k % 3][1]}; }
 
-Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>& status) {
+Outcome look(const std::pmr::vector<ArpTriangle>& pattern, const std::vector<int8_t>& status) {
     Outcome o;
     std::set<Point> corners, junctions;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
         if (!arpDrawn(status, i)) continue;
         ++o.drawn;
-        for (int k = 0; k < 3; ++k) corners.insert(cornerOf(arp[i], k));
+        for (int k = 0; k < 3; ++k) corners.insert(cornerOf(pattern[i], k));
     }
     uint32_t finest = 0, twice = 0, missing = 0;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
         if (arpDrawn(status, i))
             for (int k = 0; k < 3; ++k) {
-                const Point a = cornerOf(arp[i], k), b = cornerOf(arp[i], k + 1);
+                const Point a = cornerOf(pattern[i], k), b = cornerOf(pattern[i], k + 1);
                 const int n = std::max(std::abs(b.first - a.first), std::abs(b.second - a.second));
                 for (int q = 1; q < n; ++q) {
                     const Point p{a.first + (b.first - a.first) / n * q,
@@ -42,9 +43,9 @@ Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>
                     if (corners.count(p) != 0) junctions.insert(p);
                 }
             }
-        if (arp[i].setLevel != kArpLevels) continue;
+        if (pattern[i].setLevel != kArpLevels) continue;
         uint32_t covers = 0;
-        for (uint32_t k = i; k != kArpNone; k = arp[k].parent) covers += arpDrawn(status, k);
+        for (uint32_t k = i; k != kArpNone; k = pattern[k].parent) covers += arpDrawn(status, k);
         ++finest;
         twice += covers > 1;
         missing += covers == 0;
@@ -56,18 +57,18 @@ Outcome look(const std::pmr::vector<ArpTriangle>& arp, const std::vector<int8_t>
 }
 
 struct Growth {
-    std::pmr::vector<ArpTriangle> arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    std::vector<int8_t> status = std::vector<int8_t>(arp.size(), kArpInitial);
+    std::pmr::vector<ArpTriangle> pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    std::vector<int8_t> status = std::vector<int8_t>(pattern.size(), kArpInitial);
     uint32_t cycles = 0, mostSweeps = 0;
     std::vector<Outcome> at;  // radius 8, 20, 32, 44
 
     Growth(ArpRules rules, bool serial) {
-        std::vector<uint8_t> eligible(arp.size());
+        std::vector<uint8_t> eligible(pattern.size());
         for (int radius = 0; radius <= 60; radius += 4) {
-            arpMarkCircle(arp, 20, 14, float(radius), eligible);
+            arpMarkCircle(pattern, 20, 14, float(radius), eligible);
             std::set<std::vector<int8_t>> seen;
             uint32_t sweeps = 0;
-            while (arpSweep(arp, rules, eligible, serial, status,
+            while (arpSweep(pattern, rules, eligible, serial, status,
                             std::pmr::new_delete_resource()) != 0) {
                 if (++sweeps > 60) break;
                 if (!seen.insert(status).second) {
@@ -76,27 +77,29 @@ struct Growth {
                 }
             }
             mostSweeps = std::max(mostSweeps, sweeps);
-            if (radius % 12 == 8) at.push_back(look(arp, status));
+            if (radius % 12 == 8) at.push_back(look(pattern, status));
         }
     }
 };
 
-TEST(RefinePublished, TheTemplateIsFourWaySplits) {
-    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    ASSERT_EQ(1u + 4 + 16 + 64 + 256, arp.size());
+TEST(RefinePublished, TheTemplateSplitsInFour) {
+    const auto pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    ASSERT_EQ(1u + 4 + 16 + 64 + 256, pattern.size());
     int finest = 0;
-    for (uint32_t i = 0; i < arp.size(); ++i) {
-        const Point a = cornerOf(arp[i], 0), b = cornerOf(arp[i], 1), c = cornerOf(arp[i], 2);
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
+        const Point a = cornerOf(pattern[i], 0), b = cornerOf(pattern[i], 1),
+                    c = cornerOf(pattern[i], 2);
         const int area = (b.first - a.first) * (c.second - a.second) -
                          (b.second - a.second) * (c.first - a.first);
-        EXPECT_EQ(64 * 64 >> (2 * (arp[i].setLevel - 1)), area);
-        if (arp[i].setLevel == kArpLevels) finest += area;
-        EXPECT_TRUE(arp[i].firstChild == kArpNone || arp[arp[i].firstChild].parent == i);
+        EXPECT_EQ(64 * 64 >> (2 * (pattern[i].setLevel - 1)), area);
+        if (pattern[i].setLevel == kArpLevels) finest += area;
+        EXPECT_TRUE(pattern[i].firstChild == kArpNone ||
+                    pattern[pattern[i].firstChild].parent == i);
     }
     EXPECT_EQ(64 * 64, finest);
 }
 
-TEST(RefinePublished, PrintedRulesCycleAndDrawTwice) {
+TEST(RefinePublished, PrintedRulesCycleAndOverlap) {
     const Growth run(ArpRules::printed, true);
     EXPECT_EQ(15u, run.cycles) << "of 16 radii";
     const uint32_t drawn[4] = {99, 250, 314, 338}, junctions[4] = {46, 110, 136, 147};
@@ -122,35 +125,34 @@ TEST(RefinePublished, RepairedRulesCoverEverythingOnce) {
     }
 }
 
-std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& arp,
+std::set<uint32_t> finestDrawn(const std::pmr::vector<ArpTriangle>& pattern,
                                const std::pmr::vector<int8_t>& status) {
     std::set<uint32_t> drawn;
-    for (uint32_t i = 0; i < arp.size(); ++i)
-        if (arp[i].setLevel == kArpLevels && arpDrawn(status, i)) drawn.insert(i);
+    for (uint32_t i = 0; i < pattern.size(); ++i)
+        if (pattern[i].setLevel == kArpLevels && arpDrawn(status, i)) drawn.insert(i);
     return drawn;
 }
 
-// The published rules, run serially on one triangle while a fire grows over it, and what we draw:
-// the same finest triangles at every radius, and at the end the same picture, of finest triangles
-// alone.
-TEST(RefinePublished, StatusMachineEndsWhereTheSerialRulesDo) {
+// The rules run serially on one triangle while a fire grows over it, against the drawn triangles:
+// equal finest triangles at every radius and the same final picture of finest triangles.
+TEST(RefinePublished, ParallelRulesMatchSerialRules) {
     auto* memory = std::pmr::new_delete_resource();
-    const auto arp = makeArpTemplate(4, memory);
-    std::pmr::vector<int8_t> seeds(arp.size(), kArpInitial), ours = seeds, parallel = seeds;
-    std::vector<uint8_t> eligible(arp.size());
+    const auto pattern = makeArpTemplate(4, memory);
+    std::pmr::vector<int8_t> seeds(pattern.size(), kArpInitial), ours = seeds, parallel = seeds;
+    std::vector<uint8_t> eligible(pattern.size());
     for (int radius = 0; radius <= 96; radius += 4) {
-        arpMarkCircle(arp, 20, 14, float(radius), eligible);
-        for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules come to no rest
-            arpSweep(arp, ArpRules::printed, eligible, true, seeds, memory);
-            arpSweep(arp, ArpRules::repaired, eligible, false, parallel, memory);
+        arpMarkCircle(pattern, 20, 14, float(radius), eligible);
+        for (int sweep = 0; sweep < 12; ++sweep) {  // the printed rules reach no stable state
+            arpSweep(pattern, ArpRules::printed, eligible, true, seeds, memory);
+            arpSweep(pattern, ArpRules::repaired, eligible, false, parallel, memory);
         }
-        arpSweep(arp, ArpRules::repaired, eligible, true, ours, memory);
-        EXPECT_EQ(finestDrawn(arp, seeds), finestDrawn(arp, ours)) << radius;
+        arpSweep(pattern, ArpRules::repaired, eligible, true, ours, memory);
+        EXPECT_EQ(finestDrawn(pattern, seeds), finestDrawn(pattern, ours)) << radius;
         EXPECT_EQ(ours, parallel) << radius;
     }
-    EXPECT_EQ(256u, finestDrawn(arp, ours).size());
-    for (uint32_t i = 0; i < arp.size(); ++i)
-        EXPECT_EQ(arp[i].setLevel == kArpLevels, arpDrawn(ours, i)) << i;
+    EXPECT_EQ(256u, finestDrawn(pattern, ours).size());
+    for (uint32_t i = 0; i < pattern.size(); ++i)
+        EXPECT_EQ(pattern[i].setLevel == kArpLevels, arpDrawn(ours, i)) << i;
 }
 
 // The boundary's noise is absolute in R^2: a rough edge close in, a smooth one far out.
@@ -180,23 +182,24 @@ TEST(RefinePublished, PointsInsideMakeATriangleEligible) {
 }
 
 TEST(RefinePublished, TwoBurntChildrenHideTheirParent) {
-    const auto arp = makeArpTemplate(4, std::pmr::new_delete_resource());
-    std::vector<uint32_t> burn(arp.size(), 0);
+    const auto pattern = makeArpTemplate(4, std::pmr::new_delete_resource());
+    std::vector<uint32_t> burn(pattern.size(), 0);
     uint32_t parent = 0;
-    while (arp[parent].setLevel != kArpLevels - 1) ++parent;
-    burn[arp[parent].firstChild] = 3;
-    EXPECT_FALSE(arpHidden(arp, burn, parent));
-    burn[arp[parent].firstChild + 2] = 1;
-    EXPECT_TRUE(arpHidden(arp, burn, parent));
+    while (pattern[parent].setLevel != kArpLevels - 1) ++parent;
+    burn[pattern[parent].firstChild] = 3;
+    EXPECT_FALSE(arpHidden(pattern, burn, parent));
+    burn[pattern[parent].firstChild + 2] = 1;
+    EXPECT_TRUE(arpHidden(pattern, burn, parent));
     burn[parent] = 1;
-    EXPECT_FALSE(arpHidden(arp, burn, parent));
+    EXPECT_FALSE(arpHidden(pattern, burn, parent));
     burn.assign(burn.size(), 0);
-    burn[arp[0].firstChild] = burn[arp[0].firstChild + 1] = 9;
-    EXPECT_FALSE(arpHidden(arp, burn, 0)) << "coarse triangles are shown whatever burns";
-    EXPECT_FALSE(arpHidden(arp, burn, uint32_t(arp.size() - 1))) << "the finest have no children";
+    burn[pattern[0].firstChild] = burn[pattern[0].firstChild + 1] = 9;
+    EXPECT_FALSE(arpHidden(pattern, burn, 0)) << "coarse triangles are always shown";
+    EXPECT_FALSE(arpHidden(pattern, burn, uint32_t(pattern.size() - 1)))
+        << "the finest have no children";
 }
 
-// ---- on a whole mesh
+// ---- whole meshes
 
 glm::vec3 placeOf(const RefineModel& model, uint32_t draw) {
     const gpu::RefineSlot& slot = model.slots[model.draws[draw].slot];
@@ -214,7 +217,7 @@ struct Burning {
           settings(arpSettings(model, 0, 0, 0.05f)) {
         state.reset(model);
     }
-    // Times that each of a coarse triangle's finest is covered by the list; -1: not all the same.
+    // How often the list covers each finest triangle; -1: not uniform.
     [[nodiscard]] int covered() const {
         const uint32_t n = 1u << model.depth;
         std::vector<int> covers(size_t(model.triangles()) * n * n * 2, 0);
@@ -243,7 +246,7 @@ struct Burning {
     }
 };
 
-TEST(RefinePublished, WordsNameTheVerticesOfTheirTriangles) {
+TEST(RefinePublished, WordsEncodeTheVerticesOfTheirTriangles) {
     for (const uint32_t depth : {0u, 1u, 2u, 5u}) {
         const Burning b(depth);
         double worst = 0;
@@ -270,7 +273,7 @@ TEST(RefinePublished, WordsNameTheVerticesOfTheirTriangles) {
     }
 }
 
-TEST(RefinePublished, AMeshIsCoveredOnceAtEveryMomentAndDistance) {
+TEST(RefinePublished, AMeshIsCoveredOnceAtEveryTimeAndDistance) {
     Burning b(4);
     ASSERT_EQ(12u, b.model.triangles());
     EXPECT_TRUE(arpAdvance(b.model, b.settings, 1000, {}, false, b.state));
@@ -290,11 +293,11 @@ TEST(RefinePublished, AMeshIsCoveredOnceAtEveryMomentAndDistance) {
     EXPECT_EQ(b.model.most(), b.state.list.size()) << "all of it is finest";
     EXPECT_EQ(b.model.most(), b.state.listed[0]);
     EXPECT_GT(changes, 20u);
-    EXPECT_FALSE(arpAdvance(b.model, b.settings, 1e6, {}, false, b.state)) << "at rest";
+    EXPECT_FALSE(arpAdvance(b.model, b.settings, 1e6, {}, false, b.state)) << "stable";
 }
 
-// A fire of a centimetre in the middle of a triangle, far from its corners.
-TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
+// A fire of 1 cm in the middle of a triangle, far from its corners.
+TEST(RefinePublished, FindsAFireMidTriangleAtOnce) {
     Burning b(5), again(5);
     for (Burning* one : {&b, &again}) {
         arpIgnite(one->model, one->settings, {0.55f, 0.35f, 1.2f}, 4096, one->state);
@@ -305,7 +308,7 @@ TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
     EXPECT_EQ(b.state.list, again.state.list);
     arpIgnite(b.model, b.settings, {0, 0, 0}, 5000, b.state);
     EXPECT_EQ(4096u, b.state.litTick) << "one source";
-    // What is refined lies around the fire.
+    // The refined part lies around the fire.
     const float radius = arpRadius(b.settings, b.state, 4096 + gpu::kStepTicks);
     for (const uint32_t word : b.state.list) {
         if (gpu::arpHalvings(word) < 5) continue;
@@ -318,17 +321,17 @@ TEST(RefinePublished, TheHeatWaveFindsAFireMidTriangleAtOnce) {
     }
 }
 
-TEST(RefinePublished, ConsumedIsTwoOfFourChildren) {
+TEST(RefinePublished, TwoBurntChildrenConsumeTheirParent) {
     EXPECT_FALSE(gpu::arpConsumed(3, true));
     EXPECT_TRUE(gpu::arpConsumed(7, true));
     EXPECT_TRUE(gpu::arpConsumed(7, false));
     EXPECT_FALSE(gpu::arpConsumed(1 | 8 | 32, false)) << "one child";
-    EXPECT_TRUE(gpu::arpConsumed(1 | 8 | 16 | 32, false)) << "that and the middle";
+    EXPECT_TRUE(gpu::arpConsumed(1 | 8 | 16 | 32, false)) << "that child and the middle";
     EXPECT_TRUE(gpu::arpConsumed(1 | 2 | 8 | 16 | 32, false));
     EXPECT_FALSE(gpu::arpConsumed(1 | 2 | 8, false));
 }
 
-TEST(RefinePublished, RefusesWhatIsTooMuch) {
+TEST(RefinePublished, RefusesTooManyTriangles) {
     test::RefineScene scene(test::gridBox(1, 1, 1, 17, 17, 17), arpOptions(0), 16);
     try {
         (void)makeArpModel(scene.domain, scene.model, 5, std::pmr::new_delete_resource());

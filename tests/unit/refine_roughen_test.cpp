@@ -17,12 +17,12 @@ std::vector<gpu::RefineSlot> roughened(const RefineScene& scene,
     return slots;
 }
 
-// Of a slot's time to a hole.
+// Scale of a slot's burn-through time.
 double scaleOf(const RefineScene& scene, const std::vector<gpu::RefineSlot>& slots, size_t i) {
     return double(slots[i].reach >> 16) / double(scene.model.slots[i].reach >> 16);
 }
 
-TEST(RefineRoughen, DarkIsEarlierThanBrightIsLater) {
+TEST(RefineRoughen, DarkTexelsBurnThroughEarlier) {
     const RefineScene scene(gridBox(0.6, 0.5, 0.4, 1, 1, 1), {}, 64);
     const auto scales = [&](uint8_t level) {
         const auto slots = roughened(scene, std::vector<uint8_t>(kSide * kSide, level));
@@ -71,8 +71,8 @@ TEST(RefineRoughen, BothSidesOfAWallAgree) {
     EXPECT_GT(high, 1.05);
 }
 
-// Each wall alone, and details that are the other wall's mirror image: holes go by the place.
-TEST(RefineRoughen, WallsOfASolidAgreeWhateverTheirDetails) {
+// Each wall alone, and details that mirror the other wall's: hole times depend on the position.
+TEST(RefineRoughen, WallsOfASolidAgreeForAnyDetails) {
     RefineScene scene(gridBox(0.6, 0.5, 0.2, 2, 2, 1, 13), {}, 96);
     for (mesh::RenderVertex& v : scene.domain.vertices) {
         v.detail[0] = v.position[2] > 0.1f ? v.position[0] : 0.6f - v.position[0];
@@ -104,7 +104,7 @@ TEST(RefineRoughen, WallsOfASolidAgreeWhateverTheirDetails) {
         }
         EXPECT_GT(pairs, 20u);
         if (wood)
-            EXPECT_GT(differ, pairs / 2);  // planks have grain of their own
+            EXPECT_GT(differ, pairs / 2);  // planks have their own grain
         else
             EXPECT_EQ(differ, 0u);
     }

@@ -1,5 +1,5 @@
-// Rooms: who is in one, what fires take of its air and how it comes back, and what little of it
-// makes of a texel's fire. Whole numbers, so what is expected is exact or off by a named rounding.
+// Rooms: containment, oxygen use and recovery, and fire at low oxygen. Integers, so results are
+// exact or off by a stated rounding.
 #include "components/room.h"
 #include "core/error.h"
 #include "fire/heat.h"
@@ -38,7 +38,7 @@ bool holds(const FwRoomDef& def, float x, float y, float z) {
     return components::isIn(components::makeRoom(def), components::windPlace(place));
 }
 
-TEST(Room, IsABoxThatMayBeTurned) {
+TEST(Room, IsAnOrientedBox) {
     FwRoomDef def = roomDef(1);
     def.position[0] = 10;
     def.halfSize[2] = 3;
@@ -46,7 +46,7 @@ TEST(Room, IsABoxThatMayBeTurned) {
     EXPECT_FALSE(holds(def, 11.01f, 0, 0));
     EXPECT_FALSE(holds(def, 10, 0, 3.01f));
     EXPECT_FALSE(holds(def, -1e6f, 1e6f, 1e6f));
-    def.rotation[1] = def.rotation[3] = std::sqrt(0.5f);  // a quarter about y: z is along x now
+    def.rotation[1] = def.rotation[3] = std::sqrt(0.5f);  // a quarter about y: z runs along x now
     EXPECT_TRUE(holds(def, 12.9f, 0, 0.9f));
     EXPECT_FALSE(holds(def, 10, 0, 2));
     def.rotation[1] = std::sin(0.3927f), def.rotation[3] = std::cos(0.3927f);  // an eighth
@@ -55,8 +55,8 @@ TEST(Room, IsABoxThatMayBeTurned) {
     EXPECT_TRUE(components::plausible(components::makeRoom(def)));
 }
 
-// 13.1 MJ take a kilogram of oxygen, which are 0.752 m^3.
-TEST(Room, FireTakesItsOxygen) {
+// 13.1 MJ consume a kilogram of oxygen, 0.752 m^3.
+TEST(Room, FireConsumesOxygen) {
     for (const float volume : {0.1f, 3.0f, 40.0f, 1e6f}) {
         const gpu::Room room = components::roomRecord(components::makeRoom(roomDef(1, volume)), 1,
                                                       airOf(gpu::kAirOutside, 7));
@@ -79,8 +79,8 @@ TEST(Room, FireTakesItsOxygen) {
     }
 }
 
-// An open door brings it back, as fast at any pace of the same burn, and to the last bit.
-TEST(Room, AirComesBack) {
+// An open door restores it to the last bit, equally fast at any pace.
+TEST(Room, AirRecovers) {
     for (const float pace : {1.0f, 8.0f}) {
         const components::Room made = components::makeRoom(roomDef(1, 10, 0.5f));  // 20 s
         const gpu::Room room =
@@ -101,8 +101,8 @@ TEST(Room, AirComesBack) {
     EXPECT_GE(air.oxygen, gpu::kAirOutside);
 }
 
-// Thomas: 7.8 kW for each m^2 of its sides, 378 kW for each m^2.5 of A sqrt(h).
-TEST(Room, FlashesOverAtThePowerOfItsSidesAndDoor) {
+// Thomas (1981): 7.8 kW per m^2 of its sides, 378 kW per m^2.5 of A sqrt(h).
+TEST(Room, FlashesOverAtThomasPower) {
     FwRoomDef def = roomDef(1);
     def.halfSize[0] = 2, def.halfSize[1] = 1.25f, def.halfSize[2] = 2.5f;
     EXPECT_EQ(7800u * 85, components::makeRoom(def).flashPower());
@@ -114,7 +114,7 @@ TEST(Room, FlashesOverAtThePowerOfItsSidesAndDoor) {
     EXPECT_EQ(0u, components::roomRecord(components::makeRoom(def), 1, airOf(0, 1)).flashes);
 }
 
-TEST(Room, FlashesOverOnceUntilItHasBurntHalfAsMuch) {
+TEST(Room, FlashesOverAgainOnlyBelowHalfThePower) {
     gpu::Room room{};
     room.epoch = 1;
     room.flashes = 1000;
@@ -126,13 +126,13 @@ TEST(Room, FlashesOverOnceUntilItHasBurntHalfAsMuch) {
             gpu::roomBreathes(air, room, joules, now);
         }
     };
-    burn(990, 400);  // never as much
+    burn(990, 400);  // never reaches the power
     EXPECT_EQ(0u, air.flash);
     burn(1010, 400);
     EXPECT_EQ(1u, air.flash);
     const uint32_t when = air.flashTick;
     EXPECT_LT(when, now);
-    burn(700, 400);  // less, but no end of it
+    burn(700, 400);  // less, but above half of it
     burn(1100, 400);
     EXPECT_EQ(1u, air.flash);
     EXPECT_EQ(when, air.flashTick);
@@ -140,19 +140,19 @@ TEST(Room, FlashesOverOnceUntilItHasBurntHalfAsMuch) {
     EXPECT_EQ(2u, air.flash);
     burn(900, 400);
     EXPECT_EQ(2u, air.flash);
-    burn(1500, 1);  // one flare is none, two are
+    burn(1500, 1);  // a single flare does not count, two do
     EXPECT_EQ(2u, air.flash);
     burn(1500, 1);
     EXPECT_EQ(3u, air.flash);
     EXPECT_EQ(now, air.flashTick);
-    burn(0, 10000);  // and it comes to rest
+    burn(0, 10000);  // and it ends
     EXPECT_EQ(0u, air.power);
     EXPECT_EQ(0u, air.stirs);
     EXPECT_EQ(4u, air.flash);
-    burn(0xFFFFFFFFu, 10000);  // beyond all bounds nothing wraps
+    burn(0xFFFFFFFFu, 10000);  // extreme values do not wrap
     EXPECT_EQ(5u, air.flash);
     EXPECT_GT(air.power, gpu::kFlashMost * 6);
-    room.power = 7 * 900, room.flash = 5, room.epoch = 2;  // as a save has it
+    room.power = 7 * 900, room.flash = 5, room.epoch = 2;  // as a save holds it
     burn(900, 1);
     EXPECT_EQ(5u, air.flash);
     EXPECT_NEAR(7 * 900, air.power, 8);
@@ -163,7 +163,7 @@ TEST(Room, FlashesOverOnceUntilItHasBurntHalfAsMuch) {
     EXPECT_EQ(6u, air.flash);
 }
 
-TEST(Room, StrengthFallsEvenlyFrom15To12Percent) {
+TEST(Room, FlameStrengthFallsLinearlyFrom15To12Percent) {
     const auto at = [](double part) { return gpu::roomStrength(uint32_t(part * kWhole)); };
     EXPECT_EQ(256u, at(0.2095));
     EXPECT_EQ(256u, at(0.1501));
@@ -182,7 +182,7 @@ TEST(Room, StrengthFallsEvenlyFrom15To12Percent) {
     EXPECT_EQ(256u, gpu::airStrength(0xFFFFFFFFu));
 }
 
-TEST(Room, NoJouleIsLostBetweenPeriods) {
+TEST(Room, ConservesEnergyBetweenPeriods) {
     uint32_t drawnLow = 5, drawnHigh = 0;
     uint64_t energy = 5, joules = 0;
     uint32_t draw = 1;
@@ -197,7 +197,7 @@ TEST(Room, NoJouleIsLostBetweenPeriods) {
     EXPECT_GT(joules, 1u << 20);
 }
 
-// A texel that burns at an even strength, for as long as it does.
+// A texel that burns at constant strength until it ends.
 struct Burn {
     gpu::HeatMaterial material;
     gpu::HeatTexel texel;
@@ -218,8 +218,8 @@ struct Burn {
     bool burns() const { return gpu::isSource(state) && texel.phase == gpu::kPhaseBurning; }
 };
 
-// A sheet in half-strong fire burns for twice as long, and gives off all that it has.
-TEST(Room, ThinFuelBurnsSlowerInLittleAir) {
+// A sheet at half strength burns twice as long and releases all of its fuel.
+TEST(Room, ThinFuelBurnsSlowerInThinAir) {
     Burn well(FW_MATERIAL_PAPER), little(FW_MATERIAL_PAPER);
     int steps[2] = {};
     for (int k = 0; k < 2; ++k) {
@@ -231,7 +231,7 @@ TEST(Room, ThinFuelBurnsSlowerInLittleAir) {
     }
     EXPECT_GT(steps[0], 8);
     EXPECT_NEAR(2 * steps[0], steps[1], 2);
-    // What begins in little air goes on where it was when more comes.
+    // A burn that begins in thin air continues when air returns.
     Burn opened(FW_MATERIAL_PAPER);
     for (int i = 0; i < steps[0]; ++i) opened.step(128);
     const uint32_t left = opened.texel.fuel;
@@ -242,7 +242,7 @@ TEST(Room, ThinFuelBurnsSlowerInLittleAir) {
     EXPECT_EQ(gpu::kPhaseBurnt, opened.texel.phase);
 }
 
-TEST(Room, WoodGivesOffLessAndWithoutAirGoesOut) {
+TEST(Room, WoodReleasesLessAndGoesOutWithoutAir) {
     uint32_t burnt[3] = {};
     for (const uint32_t strength : {256u, 128u, 0u}) {
         Burn burn(FW_MATERIAL_PINE);
@@ -255,7 +255,7 @@ TEST(Room, WoodGivesOffLessAndWithoutAirGoesOut) {
         if (strength != 0) continue;
         EXPECT_EQ(gpu::kPhaseOut, burn.texel.phase);
         EXPECT_EQ(gpu::kOut, burn.state);
-        burn.step(256);  // hot as it is, it lights again
+        burn.step(256);  // hot enough, it reignites
         EXPECT_TRUE(burn.burns());
         for (int i = 0; i < 80; ++i) burn.step(256);
         EXPECT_TRUE(burn.burns());
@@ -266,7 +266,7 @@ TEST(Room, WoodGivesOffLessAndWithoutAirGoesOut) {
     EXPECT_LT(burnt[1], burnt[2] * 3 / 5);
 }
 
-TEST(Room, NamesWhatCannotBe) {
+TEST(Room, RefusesBadDefsByName) {
     const auto message = [](const FwRoomDef& def) -> std::string {
         try {
             (void)components::makeRoom(def);

@@ -1,5 +1,5 @@
-// Cost that follows what moves and what burns: boxes found by where they are, lists kept object by
-// object, balls over whole objects. Work is counted, never timed.
+// Cost must follow moving and burning objects: boxes found by place, lists per object, balls over
+// whole objects. Work is counted, never timed.
 #include "components/remote.h"
 #include "core/error.h"
 #include "core/growth.h"
@@ -25,7 +25,7 @@ std::pmr::memory_resource* memory() { return std::pmr::new_delete_resource(); }
 
 using Random = std::mt19937;
 
-// Of crates, houses and grounds, here and far away.
+// Boxes of the size of crates, houses and grounds, near and far.
 mesh::Box randomBox(Random& random) {
     const int sides[] = {1, 300, 8000, 400000};
     const int side = sides[random() % 4], around = random() % 8 == 0 ? 1900000000 : 60000;
@@ -49,7 +49,7 @@ bool near(const Placed& a, const Placed& b) {
     return mesh::gapOf(a.box, b.box) <= int64_t(std::max(a.reach, b.reach));
 }
 
-TEST(BoxGrid, FindsTheBoxesWithinReachOfAnother) {
+TEST(BoxGrid, FindsBoxesWithinReach) {
     Random random(5);
     world::BoxGrid grid(memory());
     std::vector<Placed> placed(600);
@@ -79,7 +79,7 @@ TEST(BoxGrid, FindsTheBoxesWithinReachOfAnother) {
     grid.each(randomBox(random), 2000000000, [&](uint32_t) { ADD_FAILURE(); });
 }
 
-TEST(BoxGrid, LooksAtFewOfManyBoxes) {
+TEST(BoxGrid, VisitsFewOfManyBoxes) {
     world::BoxGrid grid(memory());
     const auto boxAt = [](int x, int z) {
         mesh::Box box;
@@ -90,16 +90,16 @@ TEST(BoxGrid, LooksAtFewOfManyBoxes) {
     for (int i = 0; i < 10000; ++i) grid.place(uint32_t(i), boxAt(i % 100, i / 100), 0);
     uint32_t found = 0;
     grid.each(boxAt(50, 50), 1000, [&](uint32_t) { ++found; });
-    EXPECT_EQ(25u, found);  // two rows around it are 1 m away
+    EXPECT_EQ(25u, found);  // boxes two rows away are at 1 m
     EXPECT_LT(grid.examined(), 100u);
 }
 
-TEST(ListPool, KeepsListsApartAndSaysWhatChanged) {
+TEST(ListPool, KeepsListsApartAndReportsChanges) {
     Random random(11);
     world::ListPool<uint32_t> pool(memory(), ~0u);
     std::vector<world::ListPlace> places(40);
     std::vector<std::vector<uint32_t>> lists(places.size());
-    std::vector<uint32_t> copy;  // as a backend has it
+    std::vector<uint32_t> copy;  // as a backend holds it
     std::pmr::vector<gpu::RemoteUpdate::Range> ranges(memory());
     for (int turn = 0; turn < 4000; ++turn) {
         const size_t i = random() % lists.size();
@@ -140,7 +140,7 @@ TEST(ListPool, KeepsListsApartAndSaysWhatChanged) {
     EXPECT_LT(pool.all().size(), 40u * 400);
 }
 
-TEST(Neighbours, EqualAllPairsAfterEveryMove) {
+TEST(Neighbours, EqualBruteForceAfterEveryMove) {
     Random random(7);
     world::Neighbours neighbours(memory());
     std::vector<Placed> placed(150);
@@ -170,7 +170,7 @@ TEST(Neighbours, EqualAllPairsAfterEveryMove) {
     }
 }
 
-TEST(GrowTo, CopiesAVectorOnlyNowAndThen) {
+TEST(GrowTo, GrowsGeometrically) {
     std::pmr::vector<int> values(memory());
     size_t moves = 0;
     for (int i = 0; i < 10000; ++i) {
@@ -182,9 +182,9 @@ TEST(GrowTo, CopiesAVectorOnlyNowAndThen) {
     EXPECT_LT(moves, 20u);
 }
 
-// ---- worlds -------------------------------------------------------------------------------------
+// ---- worlds
 
-// Bytes that were asked of it.
+// Counts requested bytes.
 class CountingMemory : public std::pmr::memory_resource {
  public:
     uint64_t bytes = 0;
@@ -205,7 +205,7 @@ class CountingMemory : public std::pmr::memory_resource {
 constexpr uint32_t kAllWays =
     FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
 
-struct Square {  // of crates
+struct Square {  // a square of crates
     CountingMemory memory;
     core::Log log{FwCallbacks{}};
     gpu::cpu::CpuBackend backend{&memory, 4};
@@ -270,7 +270,7 @@ uint64_t pairsOfOneWalk(uint32_t count) {
     return square.world->pairsExamined() - before;
 }
 
-TEST(World, ComparesOneThatWalksWithThoseAroundItAlone) {
+TEST(World, ComparesAMovingObjectWithItsNeighboursOnly) {
     const uint64_t few = pairsOfOneWalk(400), many = pairsOfOneWalk(1600);
     std::printf("[   FIGURE ] 8 moves: %llu boxes compared among 400 crates, %llu among 1600\n",
                 static_cast<unsigned long long>(few), static_cast<unsigned long long>(many));
@@ -287,7 +287,7 @@ TEST(World, ComparesNothingWhileNothingMoves) {
     EXPECT_EQ(before, square.world->pairsExamined());
 }
 
-TEST(World, ExplainsAMissByTheCratesAroundItAlone) {
+TEST(World, ExplainsAMissByNearbyCratesOnly) {
     Square square(1600);
     const uint64_t before = square.world->placesExamined();
     FwIgnitionDef match{};
@@ -305,7 +305,7 @@ TEST(World, ExplainsAMissByTheCratesAroundItAlone) {
     EXPECT_LT(compared, 800u);
 }
 
-TEST(World, RainOverTwiceAsManyCratesTakesTwiceTheMemory) {
+TEST(World, MemoryOfRainIsProportionalToCrates) {
     uint64_t bytes[2];
     for (const bool twice : {false, true}) {
         Square square(twice ? 800 : 400, 0);
@@ -318,8 +318,7 @@ TEST(World, RainOverTwiceAsManyCratesTakesTwiceTheMemory) {
     EXPECT_LT(bytes[1], 3 * bytes[0] + 65536);
 }
 
-// Whatever a ball addresses of an object that it does not hold as a whole.
-TEST(World, TexelEventsOfPartsTakeMemoryInProportion) {
+TEST(World, MemoryOfPartialBallsIsProportionalToTexels) {
     uint64_t bytes[2];
     for (const bool twice : {false, true}) {
         Square square(1, 0);
@@ -331,8 +330,8 @@ TEST(World, TexelEventsOfPartsTakeMemoryInProportion) {
     EXPECT_LT(bytes[1], 3 * bytes[0]);
 }
 
-// A ball that holds an object is one event for all its texels, which is the same as one for each.
-TEST(World, BallAroundAnObjectDoesToItWhatEventsOfItsTexelsDo) {
+// A ball around an object is one event that equals one event per texel.
+TEST(World, ABallAroundAnObjectEqualsEventsOfItsTexels) {
     for (const uint32_t kind : {FW_IGNITE, FW_WET, FW_DRY, FW_EXTINGUISH})
         for (const uint32_t preset : {FW_MATERIAL_PINE, FW_MATERIAL_PAPER})
             for (const bool mixed : {false, true}) {
@@ -368,7 +367,7 @@ TEST(World, BallAroundAnObjectDoesToItWhatEventsOfItsTexelsDo) {
             }
 }
 
-TEST(World, BallReachesObjectsFarFromItsMiddle) {
+TEST(World, ABallReachesObjectsFarFromItsCentre) {
     for (const uint32_t kind : {FW_IGNITE, FW_WET, FW_DRY, FW_EXTINGUISH})
         for (const float away : {1.0f, 17.0f, 25.0f, 400.0f, 30000.0f, 900000.0f}) {
             Square square(1, 0);
@@ -379,8 +378,8 @@ TEST(World, BallReachesObjectsFarFromItsMiddle) {
         }
 }
 
-// Half of a crate, by a ball whose middle is many crates away.
-TEST(World, BallFarAwayReachesTheTexelsWithinItAlone) {
+// Half of a crate, by a ball whose centre is many crates away.
+TEST(World, ADistantBallReachesOnlyTheTexelsInside) {
     for (const float away : {20.0f, 300.0f}) {
         Square square(1, 0);
         const uint32_t all = square.world->objectDomain(square.ids[0]).report.realTexels;
@@ -411,13 +410,13 @@ TEST(BurnDomain, NearestTexelIsFoundFromAnyDistance) {
         const uint32_t texel = mesh::nearestTexel(domain, point, 1.01f * away);
         ASSERT_NE(mesh::kNone, texel) << away;
         EXPECT_EQ(mesh::kNone, mesh::nearestTexel(domain, point, 0.9f * away - 0.5f)) << away;
-        if (away > 1e6f) continue;  // a float that large knows no side of a crate
+        if (away > 1e6f) continue;  // at that distance floats cannot resolve a crate
         EXPECT_LT(domain.texels[texel].x * double(domain.quantum), 0.05) << away;
     }
 }
 
-// Lists kept object by object equal lists that a world makes in one go.
-TEST(World, BurnsOnAsALoadedWorldWhileCratesMoveComeAndGo) {
+// Lists updated per object must equal those that a world builds from a save.
+TEST(World, IncrementalListsEqualThoseOfALoadedWorld) {
     for (const uint32_t flags : {kAllWays, uint32_t(FW_WORLD_RADIATION | FW_WORLD_CONTACT)}) {
         constexpr uint32_t kCount = 36;
         Square first(kCount, flags, 0.42f, FW_MATERIAL_PAPER);
@@ -456,8 +455,8 @@ TEST(World, BurnsOnAsALoadedWorldWhileCratesMoveComeAndGo) {
     }
 }
 
-// 2^20 cells of 50 mm from the origin, where a cell's number has one bit more.
-TEST(Contacts, AreFoundWhereverInTheWorldObjectsTouch) {
+// 2^20 cells of 50 mm from the origin, where cell numbers gain a bit.
+TEST(Contacts, AreFoundAnywhereInTheWorld) {
     Square square(1, 0);
     const mesh::BurnDomain& domain = square.world->objectDomain(square.ids[0]);
     const auto count = [&](float at) {
@@ -478,7 +477,7 @@ TEST(Contacts, AreFoundWhereverInTheWorldObjectsTouch) {
         EXPECT_NEAR(double(here), double(count(at)), 0.5 * double(here)) << at;
 }
 
-TEST(World, RefusesABlockerThatItsScaleMakesTooLarge) {
+TEST(World, RefusesABlockerScaledTooLarge) {
     Square square(1, 0);
     FwBlockerDef def{};
     def.structSize = sizeof def;

@@ -1,5 +1,4 @@
-// Sparks of fire emitters on the CPU, by the shader's own text: a function of the clock and a
-// number.
+// Sparks of fire emitters on the CPU by the shader's own code: a function of clock and index.
 #include "support/spark_reference.h"
 
 #include <gtest/gtest.h>
@@ -22,8 +21,8 @@ void expectSame(const std::vector<Spark>& a, const std::vector<Spark>& b) {
     }
 }
 
-// Six seconds in frames, in one, and after a seek to there.
-TEST(Sparks, AreThoseOfTheirClockHoweverItCameThere) {
+// Six seconds in many frames, in one frame, and after a seek.
+TEST(Sparks, DependOnlyOnTheirClock) {
     SparkRig played(200), jumped(200), sought(200);
     for (int i = 0; i < 6 * 64; ++i) (void)played.step(1 / 64.0f);
     ASSERT_TRUE(jumped.step(6));
@@ -34,12 +33,12 @@ TEST(Sparks, AreThoseOfTheirClockHoweverItCameThere) {
     EXPECT_LT(150u, shown.size());
     expectSame(shown, jumped.sparks());
     expectSame(shown, sought.sparks());
-    // And there are others a moment later.
+    // A moment later there are others.
     ASSERT_TRUE(played.step(1.5f));
     EXPECT_GT(glm::length(played.sparks()[0].place - shown[0].place), 0.01f);
 }
 
-TEST(Sparks, NoneGoesBelowTheGroundAndSomeRestThere) {
+TEST(Sparks, StayAboveTheGroundAndSettleOnIt) {
     SparkRig rig(60);
     rig.air.wind[0] = 2;
     int bounced = 0, rest = 0, all = 0;
@@ -57,7 +56,7 @@ TEST(Sparks, NoneGoesBelowTheGroundAndSomeRestThere) {
     EXPECT_LT(all / 200, rest);
 }
 
-TEST(Sparks, MeetAFieldOfHeightsAndRestOnIt) {
+TEST(Sparks, SettleOnAHeightfield) {
     SparkRig rig(60);
     rig.air.wind[0] = -1;
     int bounced = 0, rest = 0, high = 0, all = 0;
@@ -65,7 +64,7 @@ TEST(Sparks, MeetAFieldOfHeightsAndRestOnIt) {
         ASSERT_TRUE(rig.step(1 / 30.0f));
         rig.layHill();
         for (const Spark& one : rig.sparks()) {
-            // Between corners a cell is bilinear.
+            // Cells are bilinear between corners.
             const vec3 p(glm::clamp(one.place.x, -4.0f, 4.0f), one.place.y,
                          glm::clamp(one.place.z, -4.0f, 4.0f));
             const float low = std::min({rig.hill(p.x, std::floor(p.z)), rig.hill(p.x, p.z),
@@ -85,8 +84,8 @@ TEST(Sparks, MeetAFieldOfHeightsAndRestOnIt) {
     EXPECT_LT(10, high);
 }
 
-// A spark flies on from frame to frame: it is never elsewhere all at once, at a bounce neither.
-TEST(Sparks, FlyWithoutAJump) {
+// A spark moves continuously from frame to frame, also at a bounce.
+TEST(Sparks, MoveContinuously) {
     SparkRig rig(100);
     constexpr float kStep = 1 / 240.0f;
     ASSERT_TRUE(rig.step(3));
@@ -105,7 +104,7 @@ TEST(Sparks, FlyWithoutAJump) {
     }
 }
 
-// Sparks born in a long time, at powers of 1 to 16.
+// Sparks born over a long time at powers of 1 to 16.
 TEST(Sparks, AreBornInProportionToPower) {
     double first = 0;
     for (const float power : {20.0f, 40.0f, 80.0f, 320.0f}) {
@@ -126,8 +125,8 @@ TEST(Sparks, AreBornInProportionToPower) {
     }
 }
 
-// What flies goes on as it did when the power changes, or its source moves.
-TEST(Sparks, RememberNothingButBelongToTheirBirth) {
+// Sparks in flight are unaffected by later changes of power or place.
+TEST(Sparks, DependOnTheirBirthOnly) {
     SparkRig rig(100), moved(100);
     for (SparkRig* one : {&rig, &moved})
         for (int i = 0; i < 200; ++i) ASSERT_TRUE(one->step(1 / 50.0f));
@@ -152,7 +151,7 @@ TEST(Sparks, RememberNothingButBelongToTheirBirth) {
     EXPECT_LT(young, 10u);
 }
 
-// Put elsewhere, nothing flies there yet; without power they go out.
+// After a teleport nothing flies there yet; without power sparks end.
 TEST(Sparks, BeginAndEndWithTheirSource) {
     SparkRig rig(100);
     ASSERT_TRUE(rig.step(1 / 60.0f));

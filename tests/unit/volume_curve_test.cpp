@@ -1,5 +1,5 @@
-// The curve of a volumetric flame: spline, arc length, frames, bisector coordinates, and every kind
-// of bad curve (T4.5).
+// The curve of a volumetric flame: spline, arc length, frames, bisector coordinates, degenerate
+// curves.
 #include "volume/curve.h"
 
 #include <gtest/gtest.h>
@@ -58,12 +58,12 @@ TEST(VolumeCurve, StartsAtTheBaseAndEndsAtTheLastPoint) {
     EXPECT_NEAR(glm::length(curve.at(0).position - points[0].position), 0.0f, 1e-5f);
     EXPECT_NEAR(glm::length(curve.at(curve.length()).position - points[3].position), 0.0f, 1e-5f);
     EXPECT_NEAR(curve.at(0).radius, 0.3f, 0.02f);
-    // Straight on beyond the end.
+    // The curve continues straight beyond its end.
     const CurveSample end = curve.at(curve.length()), beyond = curve.at(curve.length() + 0.5f);
     EXPECT_NEAR(glm::length(beyond.position - end.position - 0.5f * end.tangent), 0.0f, 1e-5f);
 }
 
-TEST(VolumeCurve, ArcLengthIsThatOfAFinePolyline) {
+TEST(VolumeCurve, ArcLengthMatchesAFinePolyline) {
     const auto points = helix(0.5f, 0.2f, 20);
     Curve curve;
     curve.set(points, kUp);
@@ -81,11 +81,11 @@ TEST(VolumeCurve, ArcLengthIsThatOfAFinePolyline) {
     EXPECT_LT(longest / shortest, 1.2f) << "equal steps of s are equal steps along the curve";
 }
 
-TEST(VolumeCurve, T4_5_FramesDoNotTwistOnAHelix) {
+TEST(VolumeCurve, FramesDoNotTwistOnAHelix) {
     const FlameNodes nodes = nodesOf(helix(0.5f, 0.25f, 20), 3.0f);
     expectSoundNodes(nodes);
     for (size_t k = 0; k + 1 < nodes.size(); ++k) {
-        // The least rotation that takes one tangent to the next, applied to the side.
+        // The side turned by the least rotation between the tangents.
         const vec3 a = vec3(nodes[k].along), b = vec3(nodes[k + 1].along), axis = glm::cross(a, b);
         const float c = glm::dot(a, b);
         const vec3 s = vec3(nodes[k].side);
@@ -95,7 +95,7 @@ TEST(VolumeCurve, T4_5_FramesDoNotTwistOnAHelix) {
     }
 }
 
-TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
+TEST(VolumeCurve, DegenerateCurvesGiveFiniteNumbers) {
     const float r = 0.3f;
     const std::vector<std::vector<ControlPoint>> curves{
         {},
@@ -104,7 +104,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
         {{{0, 0, 0}, r}, {{0, 0, 0}, r}},
         std::vector<ControlPoint>(16, {{5, 5, 5}, r}),
         {{{0, 0, 0}, r}, {{0, 1, 0}, r}, {{0, 2, 0}, r}, {{0, 3, 0}, r}},  // collinear
-        {{{0, 0, 0}, r}, {{0, 1, 0}, r}, {{0, 0, 0}, r}, {{0, 1, 0}, r}},  // to and fro
+        {{{0, 0, 0}, r}, {{0, 1, 0}, r}, {{0, 0, 0}, r}, {{0, 1, 0}, r}},  // back and forth
         {{{0, 0, 0}, r}, {{0, 0, 0}, r}, {{0, 0, 0}, r}, {{0, 1, 0}, r}},  // triple base
         {{{0, 0, 0}, r}, {{1, 0, 0}, r}, {{1, 1, 0}, r}, {{0, 1, 0}, r}, {{0, 0, 0}, r}},  // closed
         {{{0, 0, 0}, 0}, {{0, 1, 0}, 0}, {{0, 2, 0}, 0}},    // no radius
@@ -112,7 +112,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
         {{{0, 0, 0}, r}, {{1e-5f, 0, 0}, r}, {{0, 1e-5f, 0}, r}},
         {{{1e5f, 0, 0}, r}, {{1e5f, 1, 0}, r}, {{1e5f, 2, 1}, r}},
         helix(0.05f, 0.001f, 32),
-        std::vector<ControlPoint>(40, {{0, 1, 0}, r}),  // more than there is room for
+        std::vector<ControlPoint>(40, {{0, 1, 0}, r}),  // more points than the limit
     };
     for (size_t k = 0; k < curves.size(); ++k)
         for (const float length : {0.0f, 1e-6f, 0.5f, 20.0f}) {
@@ -126,7 +126,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
                             std::isfinite(at->angle));
             }
         }
-    // S-shaped and random, at every size.
+    // S-shaped and random curves of every size.
     std::mt19937 random(7);
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     for (int k = 0; k < 400; ++k) {
@@ -139,7 +139,7 @@ TEST(VolumeCurve, T4_5_NoBadCurveGivesABadNumber) {
     }
 }
 
-TEST(VolumeCurve, PlanesDoNotMeetInsideTheTube) {
+TEST(VolumeCurve, PlanesDoNotIntersectInsideTheTube) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(-1.0f, 1.0f);
     for (int trial = 0; trial < 200; ++trial) {
@@ -165,7 +165,7 @@ TEST(VolumeCurve, PlanesDoNotMeetInsideTheTube) {
     }
 }
 
-TEST(VolumeCurve, LocateIsTheInverseOfTheCurve) {
+TEST(VolumeCurve, LocateInvertsTheCurve) {
     Curve curve;
     const std::vector<ControlPoint> points{{{0, 0, 0}, 0.2f},
                                            {{0.1f, 0.4f, 0}, 0.2f},
@@ -188,7 +188,7 @@ TEST(VolumeCurve, LocateIsTheInverseOfTheCurve) {
         const vec3 x =
             centre + rho * radius * (std::cos(angle) * s + std::sin(angle) * glm::cross(t, s));
         const auto at = locate(nodes, x);
-        if (i == 0 && !at) continue;  // just below the base's plane
+        if (i == 0 && !at) continue;  // just below the base plane
         ASSERT_TRUE(at) << i << " " << w;
         EXPECT_NEAR(at->place.s, glm::mix(a.along.w, b.along.w, w), 0.02f);
         EXPECT_NEAR(at->rho, rho, 0.06f);

@@ -1,5 +1,5 @@
-// Measured flames: mean visible height against Heskestad (T4.2), centreline speed against McCaffrey
-// (T4.3), puffing against Cetegen and Ahmed (T4.4).
+// Flames against measurements: mean visible height (Heskestad 1984), centreline speed (McCaffrey
+// 1979), puffing (Cetegen and Ahmed 1993).
 #include "support/sanitized.h"
 #include "volume/flame.h"
 #include "volume_scene.h"
@@ -32,7 +32,7 @@ FlameDef defOf(FlamePreset preset, float power, float diameter) {
     return d;
 }
 
-// m, highest row in which any ray from the side sees flame.
+// m, highest row where a ray from the side meets flame.
 float tip(const BurningFlame& b) {
     const float height = b.flame.size.height, radius = 0.65f * b.flame.size.diameter;
     const float away = 10.0f * height;
@@ -60,7 +60,7 @@ float meanTip(BurningFlame& b, int frames, double seconds) {
     return float(sum / frames);
 }
 
-TEST(VolumeHeight, T4_2_MeanVisibleHeightIsHeskestads) {
+TEST(VolumeHeight, MeanVisibleHeightMatchesHeskestad) {
     for (const float d : {0.1f, 0.2f, 0.4f, 1.0f})
         for (const float q : {5.0f, 50.0f, 500.0f}) {
             if (kSanitized && (d != 0.2f || q != 50.0f)) continue;
@@ -78,7 +78,7 @@ TEST(VolumeHeight, T4_2_MeanVisibleHeightIsHeskestads) {
         }
 }
 
-TEST(VolumeHeight, T4_2_PresetsAtTheirOwnSize) {
+TEST(VolumeHeight, PresetsMatchHeskestadAtTheirOwnSize) {
     for (const FlamePreset preset : {FlamePreset::CampFire, FlamePreset::Torch,
                                      FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         if (kSanitized && preset != FlamePreset::CampFire) continue;
@@ -92,7 +92,7 @@ TEST(VolumeHeight, T4_2_PresetsAtTheirOwnSize) {
 TEST(VolumeHeight, WideWeakFiresAreManySmallFlames) {
     std::array<Flamelet, kMaxFlamelets> parts;
     EXPECT_EQ(splitFire(60.0f, 0.6f, parts), 1u);
-    EXPECT_NEAR(flameHeight(1690.0f, 1.6f), 2.96f, 0.02f);  // published check of the law
+    EXPECT_NEAR(flameHeight(1690.0f, 1.6f), 2.96f, 0.02f);  // the correlation's published example
     for (const float q : {0.0f, 0.01f, 1.0f, 5.0f, 20.0f, 100.0f})
         for (const float d : {0.0f, 0.05f, 0.5f, 1.0f, 3.0f, 30.0f}) {
             const uint32_t n = splitFire(q, d, parts);
@@ -115,7 +115,7 @@ TEST(VolumeHeight, WideWeakFiresAreManySmallFlames) {
     EXPECT_GT(splitFire(5.0f, 1.0f, parts), 4u);
 }
 
-TEST(VolumeHeight, T4_3_CentrelineSpeedIsMcCaffreys) {
+TEST(VolumeHeight, CentrelineSpeedMatchesMcCaffrey) {
     for (const auto& [q, d] : {std::pair{5.0f, 0.13f}, {60.0f, 0.6f}, {600.0f, 1.3f}}) {
         BurningFlame b(defOf(FlamePreset::CampFire, q, d));
         const float height = b.flame.size.height;
@@ -144,7 +144,7 @@ TEST(VolumeHeight, T4_3_CentrelineSpeedIsMcCaffreys) {
     EXPECT_LT(plumeExcess(60.0f, 3.0f), 100.0f);
 }
 
-// Light of the whole flame, were it thin.
+// Light of the whole flame as if optically thin.
 double luminousPower(const BurningFlame& b) {
     const Flame& f = b.flame;
     double sum = 0;
@@ -166,7 +166,7 @@ double luminousPower(const BurningFlame& b) {
     return sum;
 }
 
-TEST(VolumeHeight, T4_4_PuffsAtCetegensFrequency) {
+TEST(VolumeHeight, PuffingFrequencyMatchesCetegen) {
     for (const auto& [q, d] : {std::pair{15.0f, 0.2f}, {60.0f, 0.6f}, {600.0f, 1.3f}}) {
         if (kSanitized && q > 15) continue;
         BurningFlame b(defOf(FlamePreset::CampFire, q, d));

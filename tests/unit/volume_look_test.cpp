@@ -1,6 +1,6 @@
-// What a viewer sees of a flame over time, by numbers: tongues that rise with the gas and come off,
-// a foot that stays, light that is strongest low and white by exposure alone, nothing that repeats,
-// no edge of what it is drawn in. Pictures to be looked at: volume_pictures_test.
+// Appearance of a flame over time, in numbers: rising and detaching tongues, a steady base,
+// brightest low, white by exposure only, no repetition, no visible bounds. volume_pictures_test
+// writes the pictures.
 #include "shared/volume_draw.h"
 #include "support/sanitized.h"
 #include "volume_scene.h"
@@ -19,7 +19,7 @@ using namespace volume_scene;
 constexpr FlamePreset kTurbulent[] = {FlamePreset::CampFire, FlamePreset::Torch,
                                       FlamePreset::Bonfire, FlamePreset::HouseFire};
 
-// From the side, without perspective; rows from the base up.
+// Orthographic from the side; rows from the base up.
 struct Side {
     static constexpr int kWide = 25, kHigh = 48;
     float row = 0;  // m
@@ -48,11 +48,11 @@ struct Side {
         for (int k = from * kWide; k < to * kWide; ++k) all += double(light[size_t(k)]);
         return all;
     }
-    // Whether some of what is seen hangs in the air above the rest.
+    // True if a visible part hangs in the air above the rest.
     [[nodiscard]] bool hasTorn() const {
         std::vector<int> part(light.size(), 0);
         std::vector<int> stack;
-        for (int x = 0; x < kWide; ++x)  // all that hangs together with the lowest sixth
+        for (int x = 0; x < kWide; ++x)  // connected to the lowest sixth
             for (int y = 0; y < kHigh / 6; ++y) stack.push_back(y * kWide + x);
         const auto lit = [&](int k) { return seen(colour[size_t(k)]) > 0.1f; };
         while (!stack.empty()) {
@@ -90,8 +90,7 @@ Flame burning(FlamePreset preset, const FlameAir& air) {
     return f;
 }
 
-// By how many rows what is more or less than the mean of all pictures goes up from each to the
-// next.
+// Rows by which deviations from the mean picture rise from each picture to the next.
 double risen(const std::vector<Side>& all, int from, int to) {
     std::vector<double> mean(all[0].light.size(), 0.0);
     for (const Side& side : all)
@@ -113,12 +112,12 @@ double risen(const std::vector<Side>& all, int from, int to) {
     return rows;
 }
 
-TEST(VolumeLook, TonguesRiseWithTheGasAndComeOff) {
+TEST(VolumeLook, TonguesRiseWithTheGasAndDetach) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         Flame f = burning(preset, {});
         const double law = double(plumeSpeed(f.size.power, f.size.height));
-        const double step = 4.0 * 2.2 * double(f.size.height) / Side::kHigh / law;  // of four rows
+        const double step = 4.0 * 2.2 * double(f.size.height) / Side::kHigh / law;  // four rows
         const int frames = kSanitized ? 12 : 36;
         std::vector<Side> all;
         int torn = 0;
@@ -137,8 +136,8 @@ TEST(VolumeLook, TonguesRiseWithTheGasAndComeOff) {
     }
 }
 
-// Wind or not: what burns lowest burns over its bed, always; what is high comes and goes.
-TEST(VolumeLook, TheFootStays) {
+// In any wind, the lowest part always burns over its bed.
+TEST(VolumeLook, TheBaseStaysInPlace) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         for (const float wind : {0.0f, 3.0f}) {
@@ -146,7 +145,7 @@ TEST(VolumeLook, TheFootStays) {
             air.wind = vec3(wind * std::sqrt(presetDef(preset).diameter), 0, 0);
             Flame f = burning(preset, air);
             Spread foot, top;
-            double astray = 0;
+            double deviation = 0;
             for (int k = 0; k < (kSanitized ? 6 : 30); ++k) {
                 advanceFlame(f, air, 0.11);
                 const Side now(Shown(f), 1.8f, 1.6f);
@@ -158,13 +157,13 @@ TEST(VolumeLook, TheFootStays) {
                                   (double(x) - 0.5 * double(Side::kWide - 1)) * 1.6 / Side::kWide;
                 foot.add(now.sum(0, low));
                 top.add(now.sum(Side::kHigh * 6 / 10, Side::kHigh));
-                astray = std::max(astray, std::abs(moment / now.sum(0, low)));
+                deviation = std::max(deviation, std::abs(moment / now.sum(0, low)));
             }
-            std::printf("           %s, wind %.1f: foot %.3f, top %.3f, astray %.3f D\n",
+            std::printf("           %s, wind %.1f: foot %.3f, top %.3f, deviation %.3f D\n",
                         presetName(preset), double(air.wind.x), foot.relative(), top.relative(),
-                        astray);
+                        deviation);
             EXPECT_LT(foot.relative(), 0.2) << presetName(preset);
-            EXPECT_LT(astray, 0.2) << presetName(preset);
+            EXPECT_LT(deviation, 0.2) << presetName(preset);
             if (!kSanitized) {
                 EXPECT_GT(top.relative(), 1.5 * foot.relative()) << presetName(preset);
             }
@@ -172,7 +171,7 @@ TEST(VolumeLook, TheFootStays) {
     }
 }
 
-TEST(VolumeLook, BrightestLowAndWhiteByExposureAlone) {
+TEST(VolumeLook, IsBrightestLowAndWhiteByExposureOnly) {
     for (const FlamePreset preset : kTurbulent) {
         if (kSanitized && preset != FlamePreset::Torch) continue;
         Flame f = burning(preset, {});
@@ -185,7 +184,7 @@ TEST(VolumeLook, BrightestLowAndWhiteByExposureAlone) {
             for (int y = 0; y < Side::kHigh; ++y) rows[size_t(y)] += now.sum(y, y + 1);
             for (const vec3& c : now.colour) {
                 if (c.r > most) most = c.r, core = c;
-                // Fainter than that, the blue of the foot is seen.
+                // Below that brightness the blue base shows.
                 if (c.r > 0.3f) yellow = std::max(yellow, c.g / c.r);
             }
         }
@@ -215,7 +214,7 @@ double alike(const std::vector<float>& a, const std::vector<float>& b) {
     return both / std::sqrt(std::max(aa * bb, 1e-12));
 }
 
-TEST(VolumeLook, T4_7_NothingRepeatsWithinAMinute) {
+TEST(VolumeLook, DoesNotRepeatWithinAMinute) {
     std::mt19937 random(11);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (const FlamePreset preset : kTurbulent) {
@@ -234,7 +233,7 @@ TEST(VolumeLook, T4_7_NothingRepeatsWithinAMinute) {
             double mean = 0;
             for (const fw::gpu::FlamePlace& p : places) {
                 const auto look = fw::gpu::flameLookup(shown.record, p, 0.002f * f.size.diameter);
-                sheet.push_back(look.y - p.s / f.record.high.w);  // what the noise does, no more
+                sheet.push_back(look.y - p.s / f.record.high.w);  // the noise only
                 mean += double(sheet.back()) / double(places.size());
             }
             for (float& v : sheet) v -= float(mean);
@@ -255,12 +254,12 @@ TEST(VolumeLook, T4_7_NothingRepeatsWithinAMinute) {
                     presetName(preset), most, alike(all[0], sample(other)));
         EXPECT_LT(most, 0.75) << presetName(preset);
         EXPECT_LT(std::abs(alike(all[0], sample(other))), 0.5) << "instances are not in phase";
-        // It would be found: the same moment is wholly alike.
+        // The measure works: equal times correlate fully.
         EXPECT_GT(alike(all[3], all[3]), 0.999);
     }
 }
 
-// Crossings of the middle of a sheet, per metre.
+// Sign changes in the middle of a sheet per metre.
 double crossings(const Shown& f, float s) {
     int count = 0;
     const float reach = 0.35f * f.size.diameter;
@@ -279,7 +278,7 @@ double crossings(const Shown& f, float s) {
     return double(count) / double(length);
 }
 
-TEST(VolumeLook, T4_7_TonguesAreAsWideInMetresWhateverTheHeight) {
+TEST(VolumeLook, TongueWidthDoesNotDependOnTheHeight) {
     const FlameLook look = presetDef(FlamePreset::CampFire).look;
     const auto perMetre = [&](float diameter, float height) {
         double sum = 0;
@@ -296,8 +295,8 @@ TEST(VolumeLook, T4_7_TonguesAreAsWideInMetresWhateverTheHeight) {
     EXPECT_NEAR(taller / tall, 1.0, 0.15) << "not stretched with the flame";
 }
 
-// What a flame and its smoke are drawn in ends where they have ended.
-TEST(VolumeLook, NoEdgeOfTheTubeShows) {
+// Flame and smoke end before the bounds of the drawn tube.
+TEST(VolumeLook, BoundsOfTheTubeAreInvisible) {
     std::mt19937 random(4);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
@@ -317,7 +316,7 @@ TEST(VolumeLook, NoEdgeOfTheTubeShows) {
             edge = std::max(edge, medium(fw::gpu::kFlameReach - 0.01f, 1.8f * unit(random)).soot);
             edge = std::max(edge, medium(unit(random), fw::gpu::kFlameTop - 0.01f).soot);
             if (f.look.smoke <= 0) continue;
-            // Smoke's own reach is that where its body is worth 0.01.
+            // Smoke reaches to where its density falls to 0.01.
             const float y = 0.6f + (f.look.smokeTop - 0.6f) * unit(random);
             const float wide =
                 0.45f * f.size.diameter + 0.16f * std::max(y - 0.6f, 0.0f) * f.record.high.w;
@@ -332,9 +331,9 @@ TEST(VolumeLook, NoEdgeOfTheTubeShows) {
     }
 }
 
-// A flame's own colours go over into each other as its gas gets hotter; as bright as it was. With
-// one colour alone the hottest is a little paler.
-TEST(VolumeLook, OwnColoursGoFromTheEdgeToTheCore) {
+// A flame's custom colours blend from edge to core with the gas temperature, at equal brightness.
+// With one colour the hottest part is slightly paler.
+TEST(VolumeLook, CustomColoursBlendFromEdgeToCore) {
     FlameLook look = presetDef(FlamePreset::CampFire).look;
     const vec3 edge(0.05f, 0.1f, 0.9f), core(0.9f, 0.2f, 0.6f),
         kLuminance(0.2126f, 0.7152f, 0.0722f);
@@ -361,9 +360,9 @@ TEST(VolumeLook, OwnColoursGoFromTheEdgeToTheCore) {
     EXPECT_LT(between.r, core.r - 0.05f);
 }
 
-// Where in its steps a ray's samples lie leaves no layers: the same picture by and large, and no
-// row of it brighter.
-TEST(VolumeLook, NoLayersWhereSamplesLie) {
+// The offset of samples within a ray's step leaves no layers: the same picture on average, and no
+// row brighter.
+TEST(VolumeLook, SampleOffsetsLeaveNoLayers) {
     Flame f = burning(FlamePreset::CampFire, {});
     for (int k = 0; k < 20; ++k) advanceFlame(f, {}, 0.05);
     const Shown shown(f);
@@ -383,9 +382,9 @@ TEST(VolumeLook, NoLayersWhereSamplesLie) {
     for (const Side& side : all) EXPECT_NEAR(side.sum(0, Side::kHigh) / total, 1.0, 0.02);
 }
 
-// Cells beside each other begin their samples elsewhere in a step: what only some of them see of a
-// tip is a string of beads.
-TEST(VolumeLook, TipsAreNoBeads) {
+// Adjacent pixels offset their samples differently; a tip seen by only some of them would look like
+// beads.
+TEST(VolumeLook, TipsDoNotBreakIntoBeads) {
     for (const FlamePreset preset : {FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         Flame f = burning(preset, {});
         double light = 0, apart = 0;
@@ -416,7 +415,7 @@ TEST(VolumeLook, TipsAreNoBeads) {
         ASSERT_GT(light, 0.0);
         std::printf("%s: cells differ at its tips by %.3f of their light\n", presetName(preset),
                     apart / light);
-        // Of a house's fire 0.92 where eddies fold its tongues.
+        // 0.92 for a house fire, where eddies fold its tongues.
         EXPECT_LT(apart / light, preset == FlamePreset::Bonfire ? 0.65 : 0.88)
             << presetName(preset);
     }

@@ -1,5 +1,5 @@
-// Light along a ray: exact for a constant medium (T4.1), independent of the step count, confined to
-// the bounds, continuous where the published method was not; noise in metres (T4.7).
+// Light along a ray: exact for a constant medium, independent of the step count, confined to the
+// bounds, continuous; noise in metres.
 #include "support/sanitized.h"
 #include "volume_scene.h"
 
@@ -14,7 +14,7 @@ using namespace volume_scene;
 using fw::gpu::FlameMedium;
 using fw::gpu::FlameRay;
 
-TEST(VolumeMarch, T4_1_ConstantMediumForAnyNumberOfSteps) {
+TEST(VolumeMarch, ConstantMediumIsExactForAnyStepCount) {
     for (const float k : {0.0f, 1e-5f, 0.01f, 0.5f, 3.0f, 20.0f})
         for (const float chord : {0.05f, 0.6f, 4.0f})
             for (uint32_t n = 4; n <= 64; ++n) {
@@ -34,8 +34,8 @@ TEST(VolumeMarch, T4_1_ConstantMediumForAnyNumberOfSteps) {
             }
 }
 
-// Gas that emits and does not absorb must not lose its light to a small-number guard.
-TEST(VolumeMarch, T4_1_ClearGas) {
+// Gas that emits without absorbing must not lose its light to a small-number guard.
+TEST(VolumeMarch, EmittingGasWithoutAbsorptionIsExact) {
     FlameMedium m{0.0f, 0.0f, 0.5f, vec3(0.1f, 0.5f, 4.0f)};
     FlameRay ray{vec3(0.0f), vec3(1.0f)};
     for (int s = 0; s < 10; ++s) ray = fw::gpu::flameStep(ray, m, vec3(0), 0.03f);
@@ -57,7 +57,7 @@ double meanRadiance(const Shown& f, uint32_t steps, float detail) {
     return sum;
 }
 
-TEST(VolumeMarch, BrightnessDoesNotDependOnTheStepCount) {
+TEST(VolumeMarch, BrightnessIsIndependentOfTheStepCount) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(3.0);
     const float apart = rounds(0.03f, 0.08f);  // m between rays
@@ -68,7 +68,7 @@ TEST(VolumeMarch, BrightnessDoesNotDependOnTheStepCount) {
     }
 }
 
-TEST(VolumeMarch, NothingShowsOutsideTheBounds) {
+TEST(VolumeMarch, NothingIsVisibleOutsideTheBounds) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
@@ -93,7 +93,7 @@ TEST(VolumeMarch, NothingShowsOutsideTheBounds) {
     }
 }
 
-TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
+TEST(VolumeMarch, RaysFindEverythingInTheTube) {
     Shown f = Shown::preset(FlamePreset::Torch);
     f.run(0.9);
     std::mt19937 random(9);
@@ -114,8 +114,8 @@ TEST(VolumeMarch, RaysFindAllThatIsInTheTube) {
     }
 }
 
-// The knots of a ray take the place of its samples: no flame is left out, and none is elsewhere.
-TEST(VolumeMarch, KnotsShowTheFlameWhereItIs) {
+// Knots replace a ray's samples: no flame is missed or moved.
+TEST(VolumeMarch, KnotsKeepTheFlameInPlace) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     Curve bent;
     const float r = 0.5f * f.size.diameter, tall = f.size.height;
@@ -152,11 +152,11 @@ TEST(VolumeMarch, KnotsShowTheFlameWhereItIs) {
         }
     }
     ASSERT_GT(lit, 1000);
-    std::printf("           %d lit, %.0f astray\n", lit, off);
+    std::printf("           %d lit, %.0f displaced\n", lit, off);
     EXPECT_LT(off, 0.02 * lit);
 }
 
-TEST(VolumeMarch, FromInsideAndBehindAWall) {
+TEST(VolumeMarch, MarchesFromInsideAndUpToAWall) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(1.0);
     MarchRules rules;
@@ -164,7 +164,7 @@ TEST(VolumeMarch, FromInsideAndBehindAWall) {
     const FlameRay inside = marchRay(f.record, f.nodes, *f.profile, eye, vec3(0, 0, 1), rules);
     EXPECT_GT(inside.radiance.r, 0.05f);
     EXPECT_TRUE(std::isfinite(inside.radiance.r) && inside.through.r <= 1.0f);
-    // A wall that nears from behind takes the light away bit by bit.
+    // A wall approaching from behind removes the light gradually.
     float before = 1e9f;
     for (float wall = 2.0f; wall > 0.5f; wall -= 0.01f) {
         rules.farthest = wall, rules.steps = 128, rules.detail = 0.02f;
@@ -176,22 +176,21 @@ TEST(VolumeMarch, FromInsideAndBehindAWall) {
         }
         before = here;
     }
-    EXPECT_EQ(before, 0.0f) << "a wall before the flame hides it all";
+    EXPECT_EQ(before, 0.0f) << "a wall in front hides the flame";
 }
 
-TEST(VolumeMarch, T4_7_NoiseIsInMetres) {
-    // The same fire ten times as large is the same picture, seen from ten times as far.
+TEST(VolumeMarch, NoiseIsInMetres) {
+    // The same fire ten times as large looks the same from ten times the distance.
     const FlameLook look = presetDef(FlamePreset::CampFire).look;
     Shown small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
     EXPECT_NEAR(large.record.lambda / small.record.lambda, 10.0f, 1e-3f);
-    // A flame twice as high over the same bed has tongues as wide as before, not stretched ones.
+    // A flame twice as high over the same bed has tongues of the same width.
     Shown tall(look, 400.0f, 0.6f, 2.4f), taller(look, 1600.0f, 0.6f, 4.8f);
     EXPECT_NEAR(taller.record.lambda / tall.record.lambda, 1.0f, 1e-3f);
 }
 
-// A wall that stands in the flame: along the line where they meet no edge is harder than the
-// flame's own light is uneven without it.
-TEST(VolumeMarch, T4_6_NoHardEdgeWhereAWallCutsTheFlame) {
+// At the intersection with a wall no edge is harder than the flame's own unevenness.
+TEST(VolumeMarch, NoHardEdgeWhereAWallCutsTheFlame) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(1.3);
     MarchRules rules;
@@ -201,7 +200,7 @@ TEST(VolumeMarch, T4_6_NoHardEdgeWhereAWallCutsTheFlame) {
         for (float x = -0.4f; x < 0.4f; x += 0.005f) {
             const vec3 from(x, 0.2f, 2.0f);
             rules.farthest =
-                wall ? 2.0f - (0.3f - x) : 1e9f;  // a plane that leans away through the axis
+                wall ? 2.0f - (0.3f - x) : 1e9f;  // a plane through the axis, leaning away
             out.push_back(
                 marchRay(f.record, f.nodes, *f.profile, from, vec3(0, 0, -1), rules).radiance.r);
         }
@@ -217,8 +216,8 @@ TEST(VolumeMarch, T4_6_NoHardEdgeWhereAWallCutsTheFlame) {
     EXPECT_LT(cut, 1.5f * open + 0.02f);
 }
 
-// Faults of a known port: a mirror seam at the axis, a hollow core, a base cut straight.
-TEST(VolumeMarch, NoSeamAtTheAxisNoHollowCoreNoStraightBase) {
+// Faults of a known port: a mirror seam at the axis, a hollow core, a straight base.
+TEST(VolumeMarch, HasNoAxisSeamHollowCoreOrStraightBase) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     double core = 0, rim = 0, mirrored = 0, plain = 0;
     double across = 0, beside = 0;
@@ -240,10 +239,10 @@ TEST(VolumeMarch, NoSeamAtTheAxisNoHollowCoreNoStraightBase) {
             }
         }
     }
-    EXPECT_LT(across, 1.5 * beside) << "the axis is no seam";
+    EXPECT_LT(across, 1.5 * beside) << "no seam at the axis";
     EXPECT_GT(core, rim);
-    EXPECT_GT(mirrored / plain, 0.2) << "its halves are no mirror images";
-    // The foot fades in: the lowest lit soot is a small part of what is above it.
+    EXPECT_GT(mirrored / plain, 0.2) << "the halves are not mirrored";
+    // The base fades in: the lowest visible soot is a small part of that above.
     const auto mean = [&](float s) {
         double sum = 0;
         for (float x = -0.25f; x < 0.26f; x += 0.05f)
@@ -285,7 +284,7 @@ TEST(VolumeMarch, NoiseIsUnbiasedAndWraps) {
                         fw::gpu::flameNoise(vec3(3.3f, y + fw::gpu::kFlameWrap, 7.1f)));
 }
 
-// Eddies move fire no farther than they may, on no side more than on another, and smoothly.
+// Eddies displace fire within their limit, without bias and smoothly.
 TEST(VolumeMarch, EddiesAreUnbiasedAndLimited) {
     std::mt19937 random(6);
     std::uniform_real_distribution<float> unit(0.0f, 400.0f);

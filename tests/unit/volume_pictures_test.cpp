@@ -1,5 +1,5 @@
-// Pictures of every preset, marched on the CPU, to be looked at: FLAMEWRIGHT_FLAME_PICTURES names
-// the folder that gets them (.ppm). Small ones are always made and judged by numbers.
+// Pictures of every preset, marched on the CPU. FLAMEWRIGHT_FLAME_PICTURES names a folder for .ppm
+// files; small ones are always made and checked by numbers.
 #include "volume_scene.h"
 
 #include <gtest/gtest.h>
@@ -47,7 +47,7 @@ Camera cameraFor(const Shown& f, float heights = 2.0f) {
     return {vec3(0, 0.62f * tall, away), vec3(0, 0.46f * tall, 0), 0.56f * tall / away};
 }
 
-TEST(VolumePictures, EveryPresetIsItself) {
+TEST(VolumePictures, EveryPresetHasItsAppearance) {
     const char* folder = std::getenv("FLAMEWRIGHT_FLAME_PICTURES");
     const int width = folder ? 160 : 24, height = folder ? 320 : 48;
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
@@ -77,14 +77,14 @@ TEST(VolumePictures, EveryPresetIsItself) {
                 ASSERT_TRUE(std::isfinite(p.r + p.g + p.b)) << name;
                 sum += p;
                 const float l = p.r + p.g + p.b;
-                // Metres above the base, nearly.
+                // Approximate metres above the base.
                 const float up =
                     camera.target.y + camera.tangent * 4.0f * 2.0f * f.size.height *
                                           (1.0f - 2.0f * (float(y) + 0.5f) / float(height));
                 light += double(l), moment += double(l * up);
             }
         ASSERT_GT(light, 0.0) << name;
-        // Brightest low: half the height at most for what is turbulent.
+        // Turbulent flames are brightest in the lower half.
         if (f.look.painter == Painter::Fire) {
             EXPECT_LT(moment / light, 0.5 * double(std::max(f.size.height, f.size.diameter)))
                 << name;
@@ -99,9 +99,8 @@ TEST(VolumePictures, EveryPresetIsItself) {
     }
 }
 
-// Strips of what moves, only to be looked at: still, in wind, under a ceiling, at a wall, swung,
-// split.
-TEST(VolumePictures, Strips) {
+// Strips to look at: still, in wind, under a ceiling, at a wall, swung, split.
+TEST(VolumePictures, WritesStripsOfMovingFlames) {
     const char* folder = std::getenv("FLAMEWRIGHT_FLAME_PICTURES");
     const int frames = folder ? 5 : 1, width = folder ? 180 : 12, height = folder ? 200 : 14;
     Collider ceiling, wall;

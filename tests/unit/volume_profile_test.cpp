@@ -1,4 +1,4 @@
-// Fire-profiles: painting, lookups, the cooked file and how it fails.
+// Fire profiles: painting, lookups, the cooked file and its refusals.
 #include "core/error.h"
 #include "core/hash.h"
 #include "support/sanitized.h"
@@ -29,7 +29,7 @@ Profile painted() {
     return p;
 }
 
-TEST(VolumeProfile, LookupsGiveWhatWasPainted) {
+TEST(VolumeProfile, LookupsReturnPaintedValues) {
     std::vector<float> kelvin(64 * 128), soot(64 * 128);
     for (size_t y = 0; y < 128; ++y)
         for (size_t x = 0; x < 64; ++x)
@@ -43,7 +43,7 @@ TEST(VolumeProfile, LookupsGiveWhatWasPainted) {
         EXPECT_NEAR(v.x, 0.001f * kelvin[size_t(y * 64 + x)], 0.001f);
         EXPECT_NEAR(v.y, soot[size_t(y * 64 + x)], 0.001f);
     }
-    EXPECT_EQ(p.sample(0.3f, 1.0f).y, 0.0f) << "nothing burns above";
+    EXPECT_EQ(p.sample(0.3f, 1.0f).y, 0.0f) << "nothing burns above the profile";
     EXPECT_EQ(p.sample(0.3f, -0.1f).y, 0.0f);
 }
 
@@ -59,7 +59,7 @@ TEST(VolumeProfile, OtherSizesAreResampled) {
     EXPECT_NEAR(p.sample(1.0f, 0.2f).x, 1.5f, 0.001f);
 }
 
-TEST(VolumeProfile, CookedFormComesBackBitForBit) {
+TEST(VolumeProfile, CookedFormRoundTrips) {
     const Profile p = painted();
     const auto bytes = cookProfile(p, std::pmr::get_default_resource());
     EXPECT_EQ(bytes.size(), 24u + 4u * 64u * 128u);
@@ -68,7 +68,7 @@ TEST(VolumeProfile, CookedFormComesBackBitForBit) {
     EXPECT_EQ(back.texels, p.texels);
 }
 
-TEST(VolumeProfile, BadInputIsNamedWithItsValueAndLimit) {
+TEST(VolumeProfile, RefusesBadInputWithValueAndLimit) {
     std::vector<float> kelvin(64 * 128, 1500.0f), soot(64 * 128, 0.5f);
     Profile p = painted();
     const Profile before = p;
@@ -89,7 +89,7 @@ TEST(VolumeProfile, BadInputIsNamedWithItsValueAndLimit) {
     EXPECT_EQ(p.texels, before.texels) << "what failed changed nothing";
 }
 
-TEST(VolumeProfile, BadFilesAreRefusedWithAReason) {
+TEST(VolumeProfile, RefusesBadFilesWithAReason) {
     const auto good = cookProfile(painted(), std::pmr::get_default_resource());
     const auto read = [&](std::pmr::vector<std::byte> bytes) {
         Profile p;
@@ -108,7 +108,7 @@ TEST(VolumeProfile, BadFilesAreRefusedWithAReason) {
     EXPECT_THAT(read(b), HasSubstr("64 x 128 texels need 32792"));
     b = good, b[5000] ^= std::byte(1);
     EXPECT_THAT(read(b), HasSubstr("checksum"));
-    // No byte, whatever it becomes, passes unseen or does harm.
+    // Every changed byte is either refused or harmless.
     std::mt19937 random(1);
     for (int k = 0; k < 200; ++k) {
         b = good;
@@ -117,12 +117,12 @@ TEST(VolumeProfile, BadFilesAreRefusedWithAReason) {
     }
 }
 
-// Signed again, so that more than the checksum stands between them and the flames.
-TEST(VolumeProfile, TenThousandSpoiltFilesAreRefusedOrSound) {
+// With a valid checksum, so that the reader's other checks are tested.
+TEST(VolumeProfile, DamagedFilesAreRefusedOrValid) {
     constexpr size_t kHeader = 24, kSum = 16;
     constexpr uint32_t kSide = 8;
     auto good = cookProfile(painted(), std::pmr::get_default_resource());
-    good.resize(kHeader + 4 * size_t{kSide} * kSide);  // the smallest there may be
+    good.resize(kHeader + 4 * size_t{kSide} * kSide);  // the smallest size
     std::memcpy(good.data() + 8, &kSide, sizeof kSide);
     std::memcpy(good.data() + 12, &kSide, sizeof kSide);
     std::mt19937 random(2);

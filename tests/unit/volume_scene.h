@@ -1,7 +1,7 @@
-// A flame to look at and to measure, without a device: a straight or given curve, a preset, a
-// picture.
+// A flame for measurements without a device: a straight or given curve, a preset, a picture.
 #pragma once
 #include "core/error.h"
+#include "reference/flame_march.h"
 #include "volume/flame.h"
 
 #include <cmath>
@@ -19,7 +19,7 @@ inline FlameDef campFire() {
     return d;
 }
 
-// What `act` says as it fails.
+// The message with which `act` fails.
 template <typename Do>
 std::string failure(const Do& act) {
     try {
@@ -84,17 +84,17 @@ inline vec3 film(vec3 c) {  // the curve of lib/colour.glsl
     return glm::clamp(c, 0.0f, 1.0f);
 }
 
-inline float seen(vec3 radiance) {  // what T4.2 counts as flame: above 0.1
+inline float seen(vec3 radiance) {  // luminance, which counts as flame above 0.1
     const vec3 c = film(radiance * 1.5f * vec3(1.0f, 1.25f, 1.6f));
     return 0.3f * c.r + 0.6f * c.g;
 }
 
 struct Camera {
     vec3 eye{0.0f}, target{0.0f};
-    float tangent = 0.3f;  // of half the height of the picture
+    float tangent = 0.3f;  // of half the picture's height
 };
 
-// Linear radiance, rows top first.
+// Linear radiance, top row first.
 template <typename Background>
 std::vector<vec3> picture(const Shown& f, const Camera& camera, int width, int height,
                           const MarchRules& rules, const Background& background) {

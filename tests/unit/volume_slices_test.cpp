@@ -1,4 +1,5 @@
-// The sliced lattice: polygons of planes and hexahedra, and what slices of a flame add up to.
+// The sliced lattice of the reference implementation: polygons of planes and hexahedra, and the sum
+// over slices.
 #include "volume_scene.h"
 
 #include "shared/volume_slices.h"
@@ -27,14 +28,14 @@ float areaOf(const Shown& flame, uint32_t piece, vec3 eye, vec3 forward, float d
         const float signedArea =
             0.5f *
             glm::dot(glm::cross(corner[t + 1] - corner[t], corner[t + 2] - corner[t]), forward);
-        // All triangles of a fan turn one way only where the polygon is convex and in order.
+        // All triangles of a fan have one orientation only if the polygon is convex and in order.
         EXPECT_GE(signedArea * (area < 0 ? -1.0f : area > 0 ? 1.0f : signedArea), -1e-6f);
         area += signedArea;
     }
     return std::abs(area);
 }
 
-// A hexahedron by six tetrahedra around its diagonal.
+// A hexahedron as six tetrahedra around its diagonal.
 float volumeOf(const Shown& flame, uint32_t piece) {
     const gpu::FlameNode& a = flame.nodes[gpu::flameNodeOf(piece)];
     const gpu::FlameNode& b = flame.nodes[gpu::flameNodeOf(piece + 1)];
@@ -65,9 +66,9 @@ TEST(VolumeSlices, FillTheLattice) {
     }
 }
 
-// T4.1 for slices: a plane's sample stands for what lies between it and the next, so that their
-// number does not decide how bright a flame is.
-TEST(VolumeSlices, BrightnessDoesNotDependOnTheirSpacing) {
+// A slice's sample stands for the span to the next one, so the number of slices does not change the
+// brightness.
+TEST(VolumeSlices, BrightnessIsIndependentOfTheirSpacing) {
     Shown flame = Shown::preset(FlamePreset::CampFire);
     gpu::FlameRecord& r = flame.record;
     r.smoke = r.turbulence = r.radial = r.warp = r.columns = r.filament = r.erode = r.puff = 0;

@@ -1,6 +1,5 @@
-// Smoke in the sun: how much of it stands between a place and the sun is the integral of the
-// plume's body, and of what is seen of a plume by day one side is bright and the other is not. By
-// night it has the light of the flame below it, as much as comes there, and is seen by that.
+// Smoke in the sun: optical depth towards the sun is the integral of the plume, and by day one side
+// is brighter. By night the flame below lights the smoke.
 #include "volume_scene.h"
 
 #include <gtest/gtest.h>
@@ -14,8 +13,8 @@ namespace gpu = fw::gpu;
 
 Shown houseFire() { return Shown::preset(FlamePreset::HouseFire); }
 
-// The same by two thousand samples of a way to without, along which the plume is as it is at its
-// beginning.
+// The same from two thousand samples of a ray out of the plume, whose cross-section stays that of
+// the ray's start.
 double depthByHand(const gpu::FlameRecord& f, gpu::FlamePlace at, vec3 to) {
     double sum = 0;
     const double flat =
@@ -25,7 +24,7 @@ double depthByHand(const gpu::FlameRecord& f, gpu::FlamePlace at, vec3 to) {
     const double step = 8.0 * double(wide) / flat / 2000;
     gpu::FlamePlace axis = at;
     axis.p = vec2(0.0f);
-    // Its density on the axis, from a ray that passes the whole of it across.
+    // Density on the axis, from a ray across the whole plume.
     for (int i = 0; i < 2000; ++i) {
         const double t = step * (i + 0.5);
         const double x = double(at.p.x) + scale * double(to.x) * t,
@@ -37,7 +36,7 @@ double depthByHand(const gpu::FlameRecord& f, gpu::FlamePlace at, vec3 to) {
     return across * sum;
 }
 
-TEST(VolumeSmoke, WhatStandsBeforeTheSunIsTheIntegral) {
+TEST(VolumeSmoke, OpticalDepthToTheSunIsTheIntegral) {
     const Shown f = houseFire();
     ASSERT_GT(f.record.smoke, 0.0f);
     std::mt19937 random(7);
@@ -53,7 +52,7 @@ TEST(VolumeSmoke, WhatStandsBeforeTheSunIsTheIntegral) {
         const double hand = depthByHand(f.record, at, to);
         EXPECT_NEAR(hand, double(gpu::flameSmokeDepth(f.record, at, to)), 0.01 * hand + 1e-4);
     }
-    // Nothing below where smoke begins and above where it ends; finite with the sun on the axis.
+    // Nothing below and above the smoke; finite with the sun on the axis.
     gpu::FlamePlace at{vec2(0.0f), 0.5f * f.record.high.w, 1.0f};
     EXPECT_EQ(0.0f, gpu::flameSmokeDepth(f.record, at, vec3(1, 0, 0)));
     at.s = 1.01f * f.record.smokeTop * f.record.high.w;
@@ -63,7 +62,7 @@ TEST(VolumeSmoke, WhatStandsBeforeTheSunIsTheIntegral) {
     EXPECT_TRUE(std::isfinite(axis) && axis > 0.0f);
 }
 
-TEST(VolumeSmoke, ErfcIsAsGoodAsItSays) {
+TEST(VolumeSmoke, ErfcIsAccurate) {
     for (float x = 0; x < 5; x += 0.01f) EXPECT_NEAR(std::erfc(x), gpu::flameErfc(x), 3e-5f);
 }
 
@@ -85,11 +84,12 @@ void halves(const Shown& f, vec3 toSun, double& left, double& right) {
         }
 }
 
-TEST(VolumeSmoke, OneSideIsInTheSun) {
+TEST(VolumeSmoke, TheSunnySideIsBrighter) {
     Shown f = houseFire();
     const vec3 low = glm::normalize(vec3(1, 0.3f, 0));
     double sunny = 0, shady = 0, against = 0, along = 0;
-    for (int i = 0; i < 6; ++i, f.run(1.7)) {  // whose billows are thicker to a side
+    for (int i = 0; i < 6;
+         ++i, f.run(1.7)) {  // averaged: billows are thicker on one side at a time
         double left, right;
         halves(f, low, left, right);
         sunny += right, shady += left;
@@ -103,10 +103,11 @@ TEST(VolumeSmoke, OneSideIsInTheSun) {
     std::printf("the sunny side: %.2f of the other's light; against the sun: %.2f\n", sunny / shady,
                 against / along);
     EXPECT_GT(sunny, 1.15 * shady);
-    EXPECT_GT(against, along);  // smoke throws light forwards
+    EXPECT_GT(against, along);  // smoke scatters forwards
 }
 
-// Mean radiance that comes to a place from all sides, of the flame: what smoke there scatters.
+// Mean radiance of the flame that reaches a point from all directions, which the smoke there
+// scatters.
 vec3 comesTo(const Flame& flame, const Profile& profile, vec3 place) {
     MarchRules rules;
     rules.steps = 40, rules.smoke = false;
@@ -123,7 +124,7 @@ vec3 comesTo(const Flame& flame, const Profile& profile, vec3 place) {
 
 float luminance(vec3 c) { return glm::dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }
 
-TEST(VolumeSmoke, ByNightItHasTheLightThatComesFromTheFlame) {
+TEST(VolumeSmoke, ByNightTheFlameLightsTheSmoke) {
     for (const FlamePreset preset :
          {FlamePreset::CampFire, FlamePreset::Bonfire, FlamePreset::HouseFire}) {
         const FlamePresetDef p = presetDef(preset);
@@ -133,7 +134,7 @@ TEST(VolumeSmoke, ByNightItHasTheLightThatComesFromTheFlame) {
         paintLook(def.look, profile);
         Flame flame;
         startFlame(flame, def, {});
-        for (const float high : {1.0f, 1.5f, 2.0f}) {  // of what is seen of the flame
+        for (const float high : {1.0f, 1.5f, 2.0f}) {  // heights relative to the visible flame
             const vec3 place(0.25f * def.diameter, high * flame.size.height, 0.0f);
             float comes = 0.0f, said = 0.0f;
             Flame f = flame;
@@ -141,7 +142,8 @@ TEST(VolumeSmoke, ByNightItHasTheLightThatComesFromTheFlame) {
                 for (int k = 0; k < 9; ++k) advanceFlame(f, {}, 1.0 / 30.0);
                 comes += luminance(comesTo(f, profile, place));
                 const vec3 to = vec3(f.record.glow) - place;
-                // Of a shade between crest and hollow, and as even as the radiance it is told by.
+                // Between crest and hollow in brightness, and as even as the radiance it comes
+                // from.
                 const vec3 light = gpu::flameSmokeLight(f.record, glm::dot(to, to), 1.0f / 3.0f,
                                                         vec3(0.0f), 0.0f) /
                                    (f.record.smokeAlbedo * gpu::kSmokeAside);
@@ -155,8 +157,8 @@ TEST(VolumeSmoke, ByNightItHasTheLightThatComesFromTheFlame) {
     }
 }
 
-// Of the brightest of its flame, as film sees it: a veil above what burns, and brown, not red.
-TEST(VolumeSmoke, ByNightItIsAVeil) {
+// Relative to the brightest part of its flame on film: a veil above the flame, brown and not red.
+TEST(VolumeSmoke, ByNightSmokeIsADimBrownVeil) {
     const FlamePresetDef p = presetDef(FlamePreset::HouseFire);
     FlameDef def;
     def.look = p.look, def.power = p.power, def.diameter = p.diameter;

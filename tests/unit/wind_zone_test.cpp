@@ -1,5 +1,5 @@
-// Wind zones: where they are, how they flow and fade, and in which order they count. Whole numbers,
-// so what is expected is exact or off by a rounding that is named.
+// Wind zones: place, flow, fade and priority. Integers, so results are exact or off by a stated
+// rounding.
 #include "components/wind_zone.h"
 #include "core/error.h"
 #include "shared/wind.h"
@@ -52,7 +52,7 @@ TEST(WindZone, ABoxBlowsAlongItsAxisUpToItsEdge) {
     EXPECT_EQ(WindVector{}, blows(zones, 1e6f, -1e6f, 1e6f));
 }
 
-TEST(WindZone, ItFadesOverTheLastPartOfTheWay) {
+TEST(WindZone, FadesOverItsLastPart) {
     FwWindZoneDef def = zoneDef(FW_WIND_SPHERE, FW_WIND_ALONG, 4);
     def.falloff = 0.5f;
     const std::vector<WindZone> zones{makeWindZone(def)};
@@ -61,7 +61,7 @@ TEST(WindZone, ItFadesOverTheLastPartOfTheWay) {
     near(blows(zones, 0, 0, -3.5f), 2.5f, 0, 0);
     EXPECT_EQ(WindVector{}, blows(zones, 0, 4, 0));
     float before = 11;
-    for (float y = 0; y < 4; y += 0.01f) {  // and never jumps
+    for (float y = 0; y < 4; y += 0.01f) {  // without jumps
         const float now = float(blows(zones, 0, y, 0)[0]) / 128;
         EXPECT_LE(now, before);
         EXPECT_TRUE(before > 10.5f || before - now < 0.1f);
@@ -69,7 +69,7 @@ TEST(WindZone, ItFadesOverTheLastPartOfTheWay) {
     }
 }
 
-TEST(WindZone, RadialBlowsAwayAndAVortexGoesAround) {
+TEST(WindZone, RadialBlowsOutwardsAndVortexAround) {
     FwWindZoneDef def = zoneDef(FW_WIND_SPHERE, FW_WIND_RADIAL, 10);
     near(blows({makeWindZone(def)}, 3, 0, 4), 6, 0, 8);
     EXPECT_EQ(WindVector{}, blows({makeWindZone(def)}, 0, 0, 0));
@@ -101,14 +101,14 @@ TEST(WindZone, AFanIsACone) {
     EXPECT_LT(blows(zones, 5, -0.5f, 0)[1], 0);
 }
 
-TEST(WindZone, OnesOfHigherPriorityCountLater) {
+TEST(WindZone, AppliesHigherPrioritiesLater) {
     FwWindZoneDef add = zoneDef(FW_WIND_BOX, FW_WIND_ALONG, 5);
     FwWindZoneDef shelter = add;
     shelter.blend = FW_WIND_REPLACE;
     shelter.speed = 0;
     const WindVector around{0, 0, 256};
     std::vector<WindZone> zones{makeWindZone(shelter), makeWindZone(add)};
-    near(blows(zones, 0, 0, 0, around), 10, 0, 0);  // shelter, then a wind in it
+    near(blows(zones, 0, 0, 0, around), 10, 0, 0);  // shelter, then a wind inside it
     zones[0].priority = 1;
     components::sortWindZones(zones);
     EXPECT_EQ(WindVector{}, blows(zones, 0, 0, 0, around));
@@ -116,7 +116,7 @@ TEST(WindZone, OnesOfHigherPriorityCountLater) {
     shelter.falloff = 1;
     shelter.priority = 1;
     near(blows({makeWindZone(add), makeWindZone(shelter)}, 2.5f, 0, 0, around), 5, 0, 1);
-    // Of the same priority they count as they are listed.
+    // Equal priorities apply in list order.
     add.speed = 5;
     std::vector<WindZone> same{makeWindZone(add), makeWindZone(shelter), makeWindZone(add)};
     same[1].priority = 0;
@@ -125,7 +125,7 @@ TEST(WindZone, OnesOfHigherPriorityCountLater) {
     EXPECT_EQ(listed, same);
 }
 
-TEST(WindZone, NoSumLeavesItsLimits) {
+TEST(WindZone, SumsStayWithinLimits) {
     std::vector<WindZone> zones;
     FwWindZoneDef def = zoneDef(FW_WIND_SPHERE, FW_WIND_ALONG, 1000);
     def.speed = 120;
@@ -148,7 +148,7 @@ TEST(WindZone, NoSumLeavesItsLimits) {
                 }
 }
 
-TEST(WindZone, WhatIsPackedIsWithinAnEighth) {
+TEST(WindZone, PackingIsExactToAnEighth) {
     EXPECT_EQ(0u, components::packWind({}));
     EXPECT_EQ(0u, components::packWind({15, -15, 8}));
     for (int32_t v = -120 * 128; v <= 120 * 128; v += 37) {
@@ -160,7 +160,7 @@ TEST(WindZone, WhatIsPackedIsWithinAnEighth) {
     EXPECT_EQ(gpu::ivec3(0, 0, 0), gpu::unpackWind(0));
 }
 
-TEST(WindZone, NamesWhatCannotBe) {
+TEST(WindZone, RefusesBadDefsByName) {
     const auto message = [](const FwWindZoneDef& def) -> std::string {
         try {
             (void)makeWindZone(def);
@@ -186,7 +186,7 @@ TEST(WindZone, NamesWhatCannotBe) {
     def = good;
     def.size[2] = 0;
     EXPECT_EQ("FwWindZoneDef::size[2] is 0; the limits are [0.01, 1000].", message(def));
-    def.shape = FW_WIND_CONE;  // has but two
+    def.shape = FW_WIND_CONE;  // a cone has only two
     EXPECT_EQ("", message(def));
     def = good;
     def.axis[0] = 0;

@@ -1,4 +1,4 @@
-// The world's own parts: the clock, the event queue, poses, and plans as a backend gets them.
+// Parts of the world: clock, event queue, poses, and plans as a backend receives them.
 #include "world/world.h"
 #include "components/pose.h"
 #include "fire/presets.h"
@@ -28,7 +28,7 @@ TEST(Clock, SplitsTimeWithoutDrift) {
     }
 }
 
-TEST(Clock, DropsWhatIsTooMuchAndKeepsTheFraction) {
+TEST(Clock, DropsExcessTimeAndKeepsTheFraction) {
     world::Clock clock;
     const world::ClockAdvance step = world::advance(clock, 1.0f + 1.0f / 64, 8);
     EXPECT_EQ(8u, step.steps);
@@ -38,7 +38,7 @@ TEST(Clock, DropsWhatIsTooMuchAndKeepsTheFraction) {
     EXPECT_EQ(8u * 128 + 64, step.after.hostTick());
 }
 
-TEST(Clock, StopsBeforeTheCodesOfAState) {
+TEST(Clock, StopsBeforeTheReservedTicks) {
     world::Clock clock;
     clock.tick = world::Clock::kLastTick - 256;
     clock = world::advance(clock, 10, 64).after;
@@ -61,7 +61,7 @@ TEST(EventQueue, KeepsTheNewestInOrder) {
     while (const uint32_t count = queue.poll(out))
         for (uint32_t i = 0; i < count; ++i) EXPECT_EQ(next++, out[i].tag);
     EXPECT_EQ(world::EventQueue::kCapacity + 10, next);
-    // What was polled is there until others take its place.
+    // Polled events stay readable until others replace them.
     EXPECT_EQ(queue.end(), queue.next());
     EXPECT_EQ(10u, queue.oldest());
     EXPECT_EQ(10u, queue.at(10).tag);
@@ -73,7 +73,7 @@ TEST(EventQueue, KeepsTheNewestInOrder) {
     EXPECT_EQ(1u, queue.poll(out));
 }
 
-TEST(Pose, GoesThereAndBack) {
+TEST(Pose, TransformsThereAndBack) {
     const float c = std::cos(0.7f) * 2, s = std::sin(0.7f) * 2;
     const float matrix[16] = {c, 0, -s, 0, 0, 2, 0, 0, s, 0, c, 0, 5, -3, 1, 1};
     const components::Pose pose = components::makePose(matrix, "m");
@@ -87,7 +87,7 @@ TEST(Pose, GoesThereAndBack) {
     for (int i = 0; i < 3; ++i) EXPECT_NEAR(point[i], back[i], 1e-5f);
 }
 
-// Keeps what it was told; answers when a test says so, as a device would, frames later.
+// Records its input. Answers when the test says so, frames later, like a device.
 class Recorder final : public gpu::Backend {
  public:
     void restore(std::span<const gpu::RestoredObject>, uint32_t) override {}
@@ -110,7 +110,7 @@ class Recorder final : public gpu::Backend {
     bool fail = false;
     int images = 0, meshes = 0, objects = 0;
 
-    // Answers frame `index` (from the list) with these counters of object slot 0.
+    // Answers frame `index` with these counters of object slot 0.
     void answer(size_t frame, gpu::ObjectCounters counters, uint32_t front, uint32_t burning,
                 uint32_t code = gpu::kNever) {
         Answer made;
@@ -232,7 +232,7 @@ class PlannedWorld : public ::testing::Test {
     FwBurnableMeshId id{};
 };
 
-TEST_F(PlannedWorld, EventsAreSortedAndLieInTheStepOfTheirTick) {
+TEST_F(PlannedWorld, EventsAreSortedIntoTheStepOfTheirTick) {
     const uint32_t late = ignite(0.2f, 0.1f);  // tick 410: step 3
     const uint32_t early = ignite(0.8f);
     const uint32_t both = ignite(0.8f, 0, FW_WET);
@@ -250,7 +250,7 @@ TEST_F(PlannedWorld, EventsAreSortedAndLieInTheStepOfTheirTick) {
             const gpu::TexelEvent &a = frame.events[s][i - 1], &b = frame.events[s][i];
             EXPECT_LE(a.texel, b.texel);
             if (a.texel == b.texel) {
-                EXPECT_LE(a.kind, b.kind);  // in the order of the calls
+                EXPECT_LE(a.kind, b.kind);  // in call order
             }
         }
     }
@@ -273,7 +273,7 @@ TEST_F(PlannedWorld, AFailedFrameChangesNothing) {
     EXPECT_THROW(world->advance(9, NAN), core::Error);
 }
 
-TEST_F(PlannedWorld, WindIsLatchedAtMostFourTimesASecondAndOnlyForTouchedObjects) {
+TEST_F(PlannedWorld, WindIsLatchedFourTimesASecondForLitObjects) {
     const float wind[3] = {3, 0, 0};
     world->setWind(wind);
     for (int i = 0; i < 8; ++i) step(0.25f);
@@ -282,7 +282,7 @@ TEST_F(PlannedWorld, WindIsLatchedAtMostFourTimesASecondAndOnlyForTouchedObjects
     backend.frames.clear();
     ignite(0.5f);
     step(0.25f);
-    // Its first event brings the records of the wind that blows now.
+    // Its first event carries the current wind.
     ASSERT_EQ(1u, backend.frames[0].updates[0].size());
     EXPECT_NE(0, backend.frames[0].updates[0][0].materials[0].driveX);
     const float other[3] = {0, 0, 5};
@@ -322,7 +322,7 @@ TEST_F(PlannedWorld, WindIsLatchedAtMostFourTimesASecondAndOnlyForTouchedObjects
     EXPECT_EQ(1024, firstUpdate(4).materials[0].driveX);
 }
 
-TEST_F(PlannedWorld, LateReadbacksBecomeEventsAndIdleness) {
+TEST_F(PlannedWorld, LateReadbacksRaiseEventsAndEndInSleep) {
     ignite(0.5f);
     for (int i = 0; i < 3; ++i) step(1.0f / 32);
     EXPECT_TRUE(events().empty());
@@ -348,7 +348,7 @@ TEST_F(PlannedWorld, LateReadbacksBecomeEventsAndIdleness) {
     ASSERT_EQ(1u, heard.size());
     EXPECT_EQ(uint32_t(FW_EVENT_BURNT_OUT), heard[0].type);
     step(1.0f / 32);
-    EXPECT_EQ(0u, backend.frames.back().steps.size());  // idle, and time goes on
+    EXPECT_EQ(0u, backend.frames.back().steps.size());  // asleep, while time continues
     EXPECT_EQ(backend.frames[backend.frames.size() - 2].endTick + 128,
               backend.frames.back().endTick);
     ignite(0.1f);
@@ -356,9 +356,9 @@ TEST_F(PlannedWorld, LateReadbacksBecomeEventsAndIdleness) {
     EXPECT_EQ(1u, backend.frames.back().steps.size());
 }
 
-// Whatever a device has not reported yet when a burn is transferred: only the object that was lit
-// reports that, also if it is gone by then, and the other object's fire goes on as its.
-TEST_F(PlannedWorld, TransferredBurnsIgniteOnceHoweverLateReadbacksCome) {
+// At a transfer, readbacks may be outstanding. Only the lit object reports its ignition, also if it
+// is already destroyed. The target's fire continues as its own.
+TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
     for (const bool destroys : {false, true}) {
         const FwBurnableMeshId from = world->createBurnableMesh(object);
         const FwBurnableMeshId to = world->createBurnableMesh(object);
@@ -393,21 +393,21 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceHoweverLateReadbacksCome) {
     }
 }
 
-// Commands of a log or of a server: one shield names each object once.
-TEST_F(PlannedWorld, ShieldCommandsNameNoMoreObjectsThanThereAre) {
+// For commands of a log or a server: one occluder list names each object once.
+TEST_F(PlannedWorld, OccluderCommandsNameEachObjectOnce) {
     world->apply(world::AddShieldObject{id.index1, false});
     EXPECT_THROW(world->apply(world::AddShieldObject{id.index1, false}), core::Error);
     world->apply(world::AddShieldObject{0, true});
 }
 
-TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirOwnFrame) {
+TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirFrame) {
     const float point[3] = {0.7f, 0, 0.1f};
     world->tagPoint(id, point, 5);
     const FwQueryId query = world->requestPoint(id, point);
     step(1.0f / 32);
     step(1.0f / 32);
     ASSERT_EQ(2u, backend.frames[0].probes.size());
-    ASSERT_EQ(1u, backend.frames[1].probes.size());  // the tag only: the query was asked
+    ASSERT_EQ(1u, backend.frames[1].probes.size());  // only the tag: the query was asked already
     FwPointState state{};
     EXPECT_FALSE(world->fetchPoint(query, state));
     // The object is lit in between; the older frame still says no.
@@ -423,14 +423,14 @@ TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirOwnFrame) {
     EXPECT_EQ(uint32_t(FW_EVENT_TAG_REACHED), heard[0].type);
     EXPECT_EQ(5u, heard[0].tag);
     EXPECT_FLOAT_EQ(64.0f / 4096, heard[0].value);
-    // Once only, though another frame in flight says so as well.
+    // Once only, although another frame in flight reports it too.
     backend.answer(2, {}, 0, 0, 64);
     step(1.0f / 32);
     EXPECT_TRUE(events().empty());
     EXPECT_TRUE(backend.frames.back().probes.empty());
 }
 
-TEST_F(PlannedWorld, ReadbacksOfAnOlderObjectInTheSameSlotAreNotBelieved) {
+TEST_F(PlannedWorld, IgnoresReadbacksOfAnOlderObjectInTheSlot) {
     ignite(0.5f);
     step(1.0f / 32);
     world->destroyBurnableMesh(id);
@@ -447,7 +447,7 @@ TEST_F(PlannedWorld, ReadbacksOfAnOlderObjectInTheSameSlotAreNotBelieved) {
     EXPECT_EQ(0u, state.ignited);
 }
 
-TEST_F(PlannedWorld, EverythingIsGivenBack) {
+TEST_F(PlannedWorld, FreesEverything) {
     EXPECT_EQ(1, backend.objects);
     EXPECT_EQ(1, backend.meshes);
     world->setHidden(id, true);

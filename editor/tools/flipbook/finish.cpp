@@ -13,7 +13,7 @@ namespace {
 
 using namespace fw;
 
-struct Plane {  // of one number
+struct Plane {  // one scalar channel
     uint32_t width = 0, height = 0;
     std::vector<float> values;
     [[nodiscard]] float at(int x, int y) const {
@@ -31,7 +31,7 @@ struct Plane {  // of one number
 Plane seenOf(const Frame& frame, uint32_t width, uint32_t height) {
     Plane plane{width, height, {}};
     for (const vec4& t : frame.texels) {
-        const float shows = t.z > 0 ? t.z : t.y;  // what emits alone hides nothing
+        const float shows = t.z > 0 ? t.z : t.y;  // pure emission occludes nothing
         plane.values.push_back(shows * (0.4f + 0.6f * t.x) + 0.5f * t.w);
     }
     return plane;
@@ -48,7 +48,7 @@ Plane halved(const Plane& p) {
     return half;
 }
 
-constexpr int kBlock = 4;  // texels to each side
+constexpr int kBlock = 4;  // texels in each direction
 
 float difference(const Plane& a, const Plane& b, float x, float y, vec2 by) {
     float sum = 0;
@@ -67,7 +67,7 @@ float energy(const Plane& a, float x, float y) {
     return sum;
 }
 
-// A block's way from `guess`: the best of whole steps within `reach`, then between them.
+// Block matching from `guess`: best whole step within `reach`, then subtexel refinement.
 vec2 search(const Plane& a, const Plane& b, float x, float y, vec2 guess, int reach) {
     vec2 best = guess;
     float least = 1e30f;
@@ -88,8 +88,8 @@ vec2 search(const Plane& a, const Plane& b, float x, float y, vec2 guess, int re
     return best;
 }
 
-// Each part becomes the middle one of the nine around it: a block that went astray gives way.
-void settle(std::vector<vec2>& motion, int width, int height) {
+// Median filter over 3 x 3 blocks, against outliers.
+void removeOutliers(std::vector<vec2>& motion, int width, int height) {
     const std::vector<vec2> from = motion;
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
@@ -105,7 +105,7 @@ void settle(std::vector<vec2>& motion, int width, int height) {
             }
 }
 
-// Each becomes the mean of what is around it, by what is seen there.
+// Weighted mean of the neighbourhood; visible texels weigh more.
 void smooth(std::vector<vec2>& motion, const std::vector<float>& weights, int width, int height) {
     std::vector<vec2> out(motion.size());
     for (int y = 0; y < height; ++y)
@@ -122,7 +122,7 @@ void smooth(std::vector<vec2>& motion, const std::vector<float>& weights, int wi
     motion.swap(out);
 }
 
-// What nothing is known of takes the motion of what is next to it.
+// Unknown texels take the motion of their neighbours.
 void spread(std::vector<vec2>& motion, std::vector<float> known, int width, int height) {
     for (int turn = 0; turn < std::max(width, height); ++turn) {
         const std::vector<vec2> from = motion;
@@ -150,7 +150,7 @@ void spread(std::vector<vec2>& motion, std::vector<float> known, int width, int 
 void fade(const book::Facts& facts, std::vector<Frame>& frames) {
     const auto extra = uint32_t(frames.size()) - facts.frames;
     for (uint32_t i = 0; i < extra; ++i) {
-        // Frame 0 follows the last one as it burnt on.
+        // Frame 0 blends from the frame that follows the last one.
         const float part = (float(i) + 0.5f) / float(extra);
         Frame& frame = frames[i];
         const Frame& past = frames[facts.frames + i];
@@ -161,8 +161,8 @@ void fade(const book::Facts& facts, std::vector<Frame>& frames) {
     frames.resize(facts.frames);
 }
 
-// A loop may begin anywhere: where the least changes.
-void beginCalmly(std::vector<Frame>& frames) {
+// A loop may start anywhere: choose the frame with the smallest change.
+void startAtSmallestChange(std::vector<Frame>& frames) {
     size_t best = 0;
     double least = 1e30;
     for (size_t i = 0; i < frames.size(); ++i) {
@@ -192,9 +192,9 @@ book::Rect rectOf(const Frame& frame, uint32_t width, uint32_t height, book::Rec
     return rect;
 }
 
-// Where nothing glows the temperature is that of what glows beside it: a filter between texels
-// would else draw cold rims around all that is hot.
-void warmBorders(Frame& frame, uint32_t width, uint32_t height) {
+// Where nothing glows, copy the temperature of the nearest glowing texel. Otherwise filtering would
+// draw cold rims around hot regions.
+void extendTemperatures(Frame& frame, uint32_t width, uint32_t height) {
     std::vector<uint8_t> known;
     for (const vec4& t : frame.texels) known.push_back(t.y > 0.02f);
     for (int turn = 0; turn < 4; ++turn) {
@@ -250,7 +250,7 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
                     motion[k] = search(a, b, i, j, motion[k], level + 1 == as.size() ? 2 : 1);
             }
         spread(motion, weights, w, h);
-        settle(motion, w, h);
+        removeOutliers(motion, w, h);
         smooth(motion, weights, w, h);
     }
     for (vec2& m : motion) m /= vec2(float(width), float(height));
@@ -261,8 +261,8 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
 book::Book finishBook(const book::Facts& facts, std::vector<Frame>& frames, uint32_t threads,
                       std::pmr::memory_resource* memory) {
     fade(facts, frames);
-    if (facts.loops != 0) beginCalmly(frames);
-    for (Frame& frame : frames) warmBorders(frame, facts.width, facts.height);
+    if (facts.loops != 0) startAtSmallestChange(frames);
+    for (Frame& frame : frames) extendTemperatures(frame, facts.width, facts.height);
     book::Book made(memory);
     made.facts = facts;
     const uint32_t w = facts.width, h = facts.height, mw = facts.motionWidth,
@@ -307,14 +307,14 @@ book::Book finishBook(const book::Facts& facts, std::vector<Frame>& frames, uint
     return made;
 }
 
-Picture makeSheet(const std::vector<book::Book>& books) {
+Picture makeSheet(const std::vector<book::Book>& flipbooks) {
     constexpr uint32_t kShown = 8, kSide = 144;
     Picture picture;
     picture.width = kShown * kSide;
-    picture.height = uint32_t(books.size()) * kSide;
+    picture.height = uint32_t(flipbooks.size()) * kSide;
     picture.rgb.resize(size_t(3) * picture.width * picture.height);
-    for (size_t row = 0; row < books.size(); ++row) {
-        const book::Book& book = books[row];
+    for (size_t row = 0; row < flipbooks.size(); ++row) {
+        const book::Book& book = flipbooks[row];
         const bool smoke = book.facts.kind == book::Kind::Smoke;
         for (uint32_t k = 0; k < kShown; ++k)
             for (uint32_t y = 0; y < kSide; ++y)
@@ -322,7 +322,7 @@ Picture makeSheet(const std::vector<book::Book>& books) {
                     const vec2 uv((float(x) + 0.5f) / kSide, 1 - (float(y) + 0.5f) / kSide);
                     const float time = (float(k) + 0.37f) / float(kShown);
                     const vec4 t = book::showBook(book, time, uv);
-                    // What burns out cools.
+                    // Burnt-out parts cool.
                     const float cooled = book.facts.loops ? 0.0f : 160.0f * time;
                     vec3 light =
                         smoke ? vec3(0.16f, 0.19f, 0.24f) * (1 - t.z) +
@@ -334,7 +334,7 @@ Picture makeSheet(const std::vector<book::Book>& books) {
                     uint8_t* out =
                         &picture
                              .rgb[3 * ((row * kSide + y) * size_t(picture.width) + k * kSide + x)];
-                    // As film: what is brighter than it holds becomes white.
+                    // Like film: overexposed colours become white.
                     const float bright = 0.2126f * light.x + 0.7152f * light.y + 0.0722f * light.z;
                     if (!smoke) light += 0.22f * std::max(bright - 0.25f, 0.0f);
                     for (int c = 0; c < 3; ++c) {

@@ -1,5 +1,5 @@
-// Books of a volumetric flame: it burns for a turn and a bit, each frame keeps where its curve is,
-// and rays from the side go through it.
+// Flipbooks of a volumetric flame. It burns for slightly more than one loop. Each frame stores its
+// curve, and rays from the side sample it.
 #include "finish.h"
 #include "flame_book.h"
 
@@ -23,7 +23,7 @@ using namespace fw;
 struct Named {
     const char* name;
     volume::FlamePreset preset;
-    float width, height;  // of the frame, of the flame's height
+    float width, height;  // of the frame, relative to the flame's height
 };
 constexpr Named kFlames[] = {
     {"campfire", volume::FlamePreset::CampFire, 1.6f, 1.6f},
@@ -33,20 +33,20 @@ constexpr Named kFlames[] = {
 
 constexpr uint32_t kLastPreset = uint32_t(volume::FlamePreset::Count) - 1;
 
-struct Moment {
+struct RecordedFlame {
     gpu::FlameRecord record;
     volume::FlameNodes nodes;
 };
 
 class FlameScene final : public Scene {
  public:
-    // `view`: of the frame, of the flame's height.
+    // `view`: size of the frame relative to the flame's height.
     FlameScene(const BakeDef& def, const volume::FlamePresetDef& preset,
                const volume::Profile& profile, vec2 view)
         : def_(def), profile_(profile), diameter_(preset.diameter) {
         volume::FlameDef flame;
         flame.look = preset.look;
-        flame.look.smoke = 0;  // smoke is a book of its own
+        flame.look.smoke = 0;  // smoke has its own flipbook
         flame.power = preset.power;
         flame.diameter = preset.diameter;
         flame.seed = def.seed;
@@ -57,16 +57,16 @@ class FlameScene final : public Scene {
         volume::startFlame(now, flame, air);
         size_ = view * now.size.height;
         for (uint32_t i = 0; i < f.frames + faded_; ++i) {
-            moments_.push_back({now.record, now.nodes});
+            flames_.push_back({now.record, now.nodes});
             volume::advanceFlame(now, air, double(f.seconds) / f.frames);
         }
     }
 
-    [[nodiscard]] uint32_t frames() const override { return uint32_t(moments_.size()); }
+    [[nodiscard]] uint32_t frames() const override { return uint32_t(flames_.size()); }
 
     void render(uint32_t frame, Frame& out) const override {
         const book::Facts& f = def_.facts;
-        const Moment& moment = moments_[frame];
+        const RecordedFlame& flame = flames_[frame];
         out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
         out.motion.clear();
         const auto count = float(def_.samples);
@@ -74,13 +74,13 @@ class FlameScene final : public Scene {
             for (uint32_t x = 0; x < f.width; ++x) {
                 Seen sum;
                 for (uint32_t k = 0; k < def_.samples; ++k) {
-                    // Additive recurrence of the plastic number: even, for any count.
+                    // Additive recurrence with the plastic number: uniform for any count.
                     const float a = std::fmod(0.5f + 0.7548777f * float(k), 1.0f);
                     const float b = std::fmod(0.5f + 0.5698403f * float(k), 1.0f);
                     const vec2 uv((float(x) + a) / float(f.width),
                                   (float(y) + b) / float(f.height));
-                    const Seen one = look(moment, vec3((uv.x - 0.5f) * size_.x,
-                                                       (uv.y - 0.05f) * size_.y, 10 * size_.y));
+                    const Seen one = look(flame, vec3((uv.x - 0.5f) * size_.x,
+                                                      (uv.y - 0.05f) * size_.y, 10 * size_.y));
                     const float share = foot(uv);
                     sum.light += share * one.light, sum.soot += share * one.soot;
                     sum.hidden += share * one.hidden, sum.thin += share * one.thin;
@@ -96,23 +96,23 @@ class FlameScene final : public Scene {
     struct Seen {
         float light = 0, soot = 0, hidden = 0, thin = 0;
     };
-    // The temperature of soot that shines so much for what it hides.
+    // Returns the temperature of soot that emits `light` relative to its opacity.
     static float red(float light) {
         const float kelvin = 1 / (1 / 1600.0f - std::log2(std::max(light, 1e-9f)) / 34981.0f);
         return std::clamp((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), 0.0f, 1.0f);
     }
-    // What is shown stands on nothing: its foot is a bowl that thins out, not a cut.
+    // A free flame thins out at its foot instead of ending in a cut.
     [[nodiscard]] float foot(vec2 uv) const {
         const float out = (uv.x - 0.5f) * size_.x / (0.5f * diameter_);
         const float low = 0.02f + 0.07f * out * out;
         const float share = glm::smoothstep(low, low + 0.22f, uv.y);
         return share * share;
     }
-    [[nodiscard]] Seen look(const Moment& moment, vec3 from) const {
+    [[nodiscard]] Seen look(const RecordedFlame& flame, vec3 from) const {
         constexpr uint32_t kSteps = 56;
         const vec3 along(0, 0, -1);
         volume::RayKnots knots;
-        const vec2 chord = volume::flameChord(moment.record, moment.nodes, from, along, 1e9f,
+        const vec2 chord = volume::flameChord(flame.record, flame.nodes, from, along, 1e9f,
                                               gpu::kFlameIntervals, knots);
         Seen seen;
         if (!(chord.x < chord.y)) return seen;
@@ -122,10 +122,10 @@ class FlameScene final : public Scene {
             const float u = (chord.x + step * (float(k) + 0.5f) - knots.from) / knots.gap;
             if ((knots.broken >> uint32_t(u)) & 1u) continue;
             const gpu::FlamePlace at = gpu::flameAlong(knots.first, knots.delta, u);
-            const gpu::FlameLookup place = gpu::flameLookup(moment.record, at, 0.5f * step);
+            const gpu::FlameLookup place = gpu::flameLookup(flame.record, at, 0.5f * step);
             if (!(place.lit > 0)) continue;
             const vec2 texel = profile_.sample(place.rho, place.y);
-            const gpu::FlameMedium medium = gpu::flameMedium(moment.record, place, texel);
+            const gpu::FlameMedium medium = gpu::flameMedium(flame.record, place, texel);
             const float depth = medium.soot * step, share = through * (1 - std::exp(-depth));
             const vec3 glow = gpu::sootRadiance(1000 * texel.x);
             seen.soot += share;
@@ -140,9 +140,9 @@ class FlameScene final : public Scene {
 
     BakeDef def_;
     volume::Profile profile_;
-    std::vector<Moment> moments_;
+    std::vector<RecordedFlame> flames_;
     uint32_t faded_ = 0;
-    float diameter_ = 1;  // m, of its foot
+    float diameter_ = 1;  // m, at its foot
     vec2 size_{1.0f};
 };
 

@@ -1,4 +1,4 @@
-// flamewright_flipbook: bakes .fwbook files, and shows them. See --help.
+// flamewright_flipbook: bakes and shows .fwbook files. See --help.
 #include "finish.h"
 #include "sheet.h"
 #include "store.h"
@@ -23,33 +23,31 @@ using namespace fw;
 using namespace fwtools;
 
 constexpr const char* kHelp =
-    "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a book\n"
-    "flamewright_flipbook --import SHEET OUT.fwbook [options]   of an artist's sheet\n"
-    "flamewright_flipbook --sheet OUT.png BOOK...      a picture of eight moments of each\n"
+    "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a flipbook\n"
+    "flamewright_flipbook --import SHEET OUT.fwbook [options]   imports an artist's sheet\n"
+    "flamewright_flipbook --sheet OUT.png BOOK...      a picture with eight frames of each\n"
     "  --frames N      [2, 256], default 64\n"
-    "  --size N        texels a side, [8, 512], default 128\n"
-    "  --seconds S     a turn, (0, 600], default: 2 of what loops, 1 of what happens once\n"
+    "  --size N        texels per side, [8, 512], default 128\n"
+    "  --seconds S     duration, (0, 600], default: 2 for loops, 1 for one-shots\n"
     "  --samples N     rays per texel, [1, 16], default 2\n"
     "  --seed N        default 1\n"
-    "  --threads N     frames at a time, default: as many as there are processors\n"
+    "  --threads N     frames at a time, default: number of processors\n"
     "  --quiet         no progress\n"
-    "A bake that is cut off leaves OUT.fwbook.part and goes on from it the next time.\n"
+    "An interrupted bake leaves OUT.fwbook.part and resumes from it.\n"
     "A sheet (PNG, EXR, TIFF, ...) has its frames in a grid, to the right, then down:\n"
     "  --grid CxR      columns and rows, [1, 256] each, default 8x8\n"
     "  --kind KIND     fire, smoke or spark, default fire\n"
     "  --once          it does not loop\n"
-    "  --frames N      default: all of the grid;  --size N  default: as the sheet has it\n"
-    "Whole numbers are sRGB with alpha beside, floats linear and premultiplied; without alpha "
-    "black\n"
-    "is nothing; floats with an alpha of 0 throughout only emit, and hide nothing. A fire's hue "
-    "becomes\n"
-    "its temperature: red 1370 K, yellow 1780 K.\n";
+    "  --frames N      default: the whole grid;  --size N  default: the sheet's size\n"
+    "Integer images are sRGB with straight alpha; float images are linear and premultiplied.\n"
+    "Without alpha, black is empty. Float images with zero alpha everywhere are additive.\n"
+    "The hue of a fire becomes its temperature: red 1370 K, yellow 1780 K.\n";
 
 struct Options {
     std::string scene, out, sheet, picture;
-    std::vector<std::string> books;
+    std::vector<std::string> flipbooks;
     BakeDef bake;
-    SheetDef grid;  // of `picture`
+    SheetDef grid;  // for `picture`
     float seconds = 0;
     uint32_t threads = std::max(std::thread::hardware_concurrency(), 1u);
     bool quiet = false;
@@ -60,7 +58,7 @@ int refuse(const std::string& what) {
     return 2;
 }
 
-// A whole number of an option; false: it is none, or beyond the limits.
+// Parses an integer option. Returns false if it is invalid or out of range.
 bool number(const char* name, const char* text, uint32_t low, uint32_t high, uint32_t& value) {
     char* end = nullptr;
     const unsigned long read = std::strtoul(text, &end, 10);
@@ -73,7 +71,7 @@ bool number(const char* name, const char* text, uint32_t low, uint32_t high, uin
     return false;
 }
 
-// "8x4". False: it is none.
+// Parses "8x4". Returns false if it is invalid.
 bool grid(const std::string& text, SheetDef& def) {
     const size_t by = text.find('x');
     if (by == std::string::npos) {
@@ -95,7 +93,7 @@ bool kindOf(const std::string& text, book::Kind& kind) {
     return false;
 }
 
-// 0: go on; else the exit status.
+// Returns 0 to continue, otherwise the exit status.
 int parse(int count, char** words, Options& options) {
     book::Facts& facts = options.bake.facts;
     uint32_t side = 0;
@@ -152,8 +150,8 @@ int parse(int count, char** words, Options& options) {
         }
     }
     if (!options.sheet.empty()) {
-        options.books = plain;
-        return plain.empty() ? refuse("--sheet needs books; see --help") : 0;
+        options.flipbooks = plain;
+        return plain.empty() ? refuse("--sheet needs flipbooks; see --help") : 0;
     }
     if (!options.picture.empty()) {
         options.grid.side = side;
@@ -179,7 +177,7 @@ uint64_t settingsOf(const Options& o) {
         for (size_t i = 0; i < bytes; ++i)
             hash = (hash ^ static_cast<const uint8_t*>(data)[i]) * 1099511628211ull;
     };
-    constexpr uint32_t kBake = 2;  // another one for each change of what is baked
+    constexpr uint32_t kBake = 2;  // increase it with every change of the bake
     add(o.scene.data(), o.scene.size());
     for (const uint32_t word : {kBake, f.frames, f.width, f.height, o.bake.seed, o.bake.samples})
         add(&word, sizeof word);
@@ -212,12 +210,12 @@ class Progress {
     std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-// From frames to the file; the exit status.
+// Finishes the frames and writes the file. Returns the exit status.
 int finish(const Options& options, const book::Facts& facts, std::vector<Frame>& frames) {
     const book::Book made =
         finishBook(facts, frames, options.threads, std::pmr::get_default_resource());
     const auto bytes = book::cookBook(made, std::pmr::get_default_resource());
-    const std::string error = writeWhole(options.out, bytes);
+    const std::string error = replaceFile(options.out, bytes);
     if (!error.empty()) return refuse(error);
     std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
                 options.out.c_str(), facts.frames, facts.width, facts.height,
@@ -272,25 +270,25 @@ int import(const Options& options) {
 }
 
 int sheet(const Options& options) {
-    std::vector<book::Book> books;
-    for (const std::string& path : options.books) {
+    std::vector<book::Book> flipbooks;
+    for (const std::string& path : options.flipbooks) {
         std::vector<std::byte> bytes;
         const std::string error = readWhole(path, bytes);
         if (!error.empty()) return refuse(error);
-        books.emplace_back(std::pmr::get_default_resource());
+        flipbooks.emplace_back(std::pmr::get_default_resource());
         try {
-            book::readBook(bytes, books.back());
+            book::readBook(bytes, flipbooks.back());
         } catch (const core::Error& e) {
             return refuse(path + ": " + e.message);
         }
     }
-    const Picture picture = makeSheet(books);
+    const Picture picture = makeSheet(flipbooks);
     const auto out = OIIO::ImageOutput::create(options.sheet);
     const OIIO::ImageSpec spec(int(picture.width), int(picture.height), 3, OIIO::TypeDesc::UINT8);
     if (!out || !out->open(options.sheet, spec) ||
         !out->write_image(OIIO::TypeDesc::UINT8, picture.rgb.data()) || !out->close())
         return refuse(options.sheet + " cannot be written");
-    std::printf("%s: %zu books\n", options.sheet.c_str(), books.size());
+    std::printf("%s: %zu flipbooks\n", options.sheet.c_str(), flipbooks.size());
     return 0;
 }
 

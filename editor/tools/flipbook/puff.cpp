@@ -1,6 +1,6 @@
-// Books of what happens once: a ball of burning gas or smoke that a vortex ring rolls up and eddies
-// tear. Where each bit of it came from is carried along; its density is noise at that place, so
-// nothing blurs. Book space: [-1, 1], y along the way of the particle, z from the eye.
+// Flipbooks of one-shot effects: a ball of burning gas or smoke, rolled up by a vortex ring and
+// torn by eddies. Each point carries its origin, and its density is noise at that origin, so
+// nothing blurs. Book space: [-1, 1], y along the particle's motion, z away from the camera.
 #include "scene.h"
 
 #include "shared/volume.h"
@@ -21,12 +21,12 @@ struct Shape {
     const char* name;
     book::Kind kind;
     vec3 radii;
-    float offset;                              // of its middle, up
-    float ring, ringRadius, ringAt, ringCore;  // a vortex ring's strength and place
-    float eddies, eddySize, pull, swell;       // of the flow; drawn out along y, grown
-    float rough, frequency, streaks, billow;   // of its noise; streaks < 1: long along y
-    float eatenFirst, eatenLast, soft;         // what noise takes away over time
-    float depth, cooling, core, creases;       // optical; of temperature
+    float offset;                              // centre, upwards
+    float ring, ringRadius, ringAt, ringCore;  // strength and position of a vortex ring
+    float eddies, eddySize, pull, swell;       // of the flow; stretch along y, growth
+    float rough, frequency, streaks, billow;   // of its noise; streaks < 1: stretched along y
+    float eatenFirst, eatenLast, soft;         // erosion by noise over time
+    float depth, cooling, core, creases;       // optical depth; temperature
     float seed;
 };
 constexpr Shape kPuffs[] = {
@@ -174,7 +174,7 @@ constexpr Shape kPuffs[] = {
      .30f,
      .16f,
      91},
-    // A streak: hot at its head, ragged where it flew.
+    // A streak: hot head, ragged tail.
     {"spark",
      book::Kind::Spark,
      {.24f, .84f, .24f},
@@ -203,7 +203,7 @@ constexpr Shape kPuffs[] = {
 
 float noise(vec3 x) { return 1.25f * gpu::flameNoise(x); }
 
-// Of three noises, by differences: nothing flows together.
+// Curl of three noises: divergence-free.
 vec3 eddy(vec3 x) {
     constexpr float e = 0.12f;
     const auto potential = [](vec3 p) {
@@ -226,7 +226,7 @@ vec3 flow(const Shape& s, vec3 x, float t) {
     const float near = 1 / (glm::dot(a, a) + core), far = 1 / (glm::dot(b, b) + core);
     const float strength = s.ring * s.ringCore * (1 - 0.5f * t);
     const float out = strength * (a.y * near - b.y * far);
-    // The ring itself stays in the frame.
+    // Keeps the ring inside the frame.
     const float up =
         strength * (b.x * far - a.x * near) - 0.55f * strength / std::max(radius, 0.1f);
     vec3 u(out * w.x / r, up, out * w.z / r);
@@ -235,11 +235,11 @@ vec3 flow(const Shape& s, vec3 x, float t) {
     u += s.eddies *
          (wide / (1 + 0.5f * glm::length(wide)) + 0.55f * fine / (1 + 0.5f * glm::length(fine)));
     u += s.pull * vec3(-0.5f * x.x, x.y, -0.5f * x.z) + s.swell * x;
-    return u *
-           (1 - smoothstep(0.75f, 1.05f, glm::length(x)));  // still at the border: nothing is cut
+    return u * (1 - smoothstep(0.75f, 1.05f, glm::length(x)));  // zero velocity at the border, so
+                                                                // nothing is cut
 }
 
-// x: temperature's red; y: density. m: where what is at x began.
+// x: temperature's red; y: density. m: origin of the point x.
 vec2 mediumAt(const Shape& s, vec3 m, vec3 x, float t) {
     const vec3 q = vec3(m.x, m.y - s.offset, m.z) / s.radii;
     const float r = glm::length(q);
@@ -314,15 +314,15 @@ class PuffScene final : public Scene {
 
     void render(uint32_t frame, Frame& out) const override {
         const book::Facts& f = def_.facts;
-        const uint32_t deep = 24 * std::min(def_.samples, 4u);
-        const float t = (float(frame) + 0.5f) / float(f.frames), step = 2 / float(deep);
+        const uint32_t layers = 24 * std::min(def_.samples, 4u);
+        const float t = (float(frame) + 0.5f) / float(f.frames), step = 2 / float(layers);
         out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
         out.motion.assign(out.texels.size(), vec2(0.0f));
         for (uint32_t y = 0; y < f.height; ++y)
             for (uint32_t x = 0; x < f.width; ++x) {
                 float through = 1, soot = 0, red = 0, tau = 0, moving = 0;
                 vec2 motion(0.0f);
-                for (uint32_t k = 0; k < deep; ++k) {  // from the eye
+                for (uint32_t k = 0; k < layers; ++k) {  // from the camera
                     const vec3 at(2 * (float(x) + 0.5f) / float(f.width) - 1,
                                   2 * (float(y) + 0.5f) / float(f.height) - 1,
                                   1 - step * (float(k) + 0.5f));

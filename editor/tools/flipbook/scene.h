@@ -1,6 +1,5 @@
-// What a flipbook is baked from: a scene that any thread may render a frame of. Flames that loop
-// are the volumetric ones, marched; puffs that happen once are carried by a flow. No files, no
-// threads.
+// Source of a flipbook: a scene whose frames can be rendered on any thread. Looping flames are
+// ray-marched volumes; one-shot puffs are advected by a flow. No files, no threads.
 #pragma once
 #include "book/book.h"
 
@@ -16,13 +15,13 @@ using fw::gpu::vec3;
 using fw::gpu::vec4;
 
 struct Frame {                 // rows from the bottom
-    std::vector<vec4> texels;  // as Book's, not yet in bytes
-    std::vector<vec2> motion;  // uv per frame, by texel; empty: it has to be found
+    std::vector<vec4> texels;  // as in Book, before encoding
+    std::vector<vec2> motion;  // uv per frame, by texel; empty: unknown
 };
 
 struct BakeDef {
-    std::string_view scene = "campfire";  // a name of sceneNames
-    fw::book::Facts facts;                // motionMost is found
+    std::string_view scene = "campfire";  // one of sceneNames
+    fw::book::Facts facts;                // motionMost is computed
     uint32_t seed = 1;
     uint32_t samples = 2;  // rays per texel, [1, 16]
 };
@@ -30,15 +29,15 @@ struct BakeDef {
 class Scene {
  public:
     virtual ~Scene() = default;
-    // Frames to render: of a loop also those that its beginning is faded from.
+    // Number of frames to render, including those that fade into a loop's start.
     [[nodiscard]] virtual uint32_t frames() const = 0;
     virtual void render(uint32_t frame, Frame& out) const = 0;
 };
 
 std::vector<std::string_view> sceneNames();
-// Whether a scene of this name loops, and what it is of; false: there is none.
+// Fills kind and loop flag of a named scene. Returns false for an unknown name.
 bool sceneKind(std::string_view name, fw::book::Facts& facts);
-// Of a scene whose name sceneKind knows.
+// The name must be valid, see sceneKind.
 std::unique_ptr<Scene> makeScene(const BakeDef& def);
 
 std::unique_ptr<Scene> makeFlame(const BakeDef& def);  // flame.cpp

@@ -12,9 +12,9 @@ namespace {
 using namespace fw;
 using fwimport::FloatPicture;
 
-constexpr float kRed = 1370.0f, kYellow = 1780.0f;  // K, of the tips and cores of our own flames
-constexpr float kYellowGreen = 0.8f;                // green over red of the second
-constexpr uint32_t kMostCells = 256;                // a side
+constexpr float kRed = 1370.0f, kYellow = 1780.0f;  // K, tips and cores of the library's flames
+constexpr float kYellowGreen = 0.8f;                // ratio of green to red of kYellow
+constexpr uint32_t kMostCells = 256;                // per side
 
 template <typename... Parts>
 bool refused(std::string& error, const Parts&... parts) {
@@ -30,9 +30,9 @@ float linearOf(float v) {
 
 struct Reader {
     const FloatPicture& picture;
-    int red, green, blue, alpha;  // channels; alpha -1: none
+    int red, green, blue, alpha;  // channel indices; alpha -1: none
 
-    // Linear, premultiplied; w: how much it covers.
+    // Linear, premultiplied; w: coverage.
     [[nodiscard]] vec4 operator()(uint32_t x, uint32_t y) const {
         const float cover =
             alpha < 0 ? 1.0f : std::clamp(picture.at(x, y, uint32_t(alpha)), 0.0f, 1.0f);
@@ -47,7 +47,7 @@ struct Reader {
     }
 };
 
-// The mean over a texel of `side` in a cell of width x height pixels at (left, top).
+// Returns the mean over a texel of `side` in a cell of width x height pixels at (left, top).
 vec4 meanOver(const Reader& read, uint32_t left, uint32_t top, uint32_t width, uint32_t height,
               uint32_t side, uint32_t x, uint32_t y) {
     const float x0 = float(x) * float(width) / float(side),
@@ -63,7 +63,7 @@ vec4 meanOver(const Reader& read, uint32_t left, uint32_t top, uint32_t width, u
     return sum / ((x1 - x0) * (y1 - y0));
 }
 
-// `emits`: it hides nothing.
+// `emits`: occludes nothing.
 vec4 texelOf(const vec4& seen, book::Kind kind, bool emits) {
     const float hides = std::clamp(seen.w, 0.0f, 1.0f);
     const float depth = -std::log(1.0f - std::min(hides, 0.996f));
@@ -77,7 +77,7 @@ vec4 texelOf(const vec4& seen, book::Kind kind, bool emits) {
                 emits ? 0.0f : std::max(hides, glows), thick);
 }
 
-// Premultiplied light that nowhere covers anything is meant to be added.
+// Premultiplied light without any coverage is additive.
 bool emitsAlone(const FloatPicture& picture, const Reader& read) {
     if (picture.whole || read.alpha < 0) return false;
     for (uint32_t y = 0; y < picture.height; ++y)

@@ -1,5 +1,5 @@
-// A header (magic, settings, frames), then per frame a mark and its texels as halfs. A frame's mark
-// is written last.
+// Layout: a header (magic, settings, frames), then per frame a marker and its texels as half
+// floats. The marker is written last.
 #include "store.h"
 
 #include <cstdio>

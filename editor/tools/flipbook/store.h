@@ -1,5 +1,4 @@
-// Frames that are baked already, in a file next to the book: a bake that is cut off goes on from
-// them.
+// A file of finished frames beside the flipbook, from which an interrupted bake resumes.
 #pragma once
 #include "scene.h"
 
@@ -11,18 +10,17 @@ namespace fwtools {
 
 class FrameStore {
  public:
-    // Opens or begins `path`; what is there for other settings is forgotten. error: empty if it is
-    // open.
+    // Opens or creates `path`; frames of other settings are discarded. error: empty if it is open.
     FrameStore(const std::string& path, uint64_t settings, uint32_t frames, uint32_t texels,
                bool motion, std::string& error);
     ~FrameStore();
     FrameStore(const FrameStore&) = delete;
     FrameStore& operator=(const FrameStore&) = delete;
     [[nodiscard]] bool has(uint32_t frame) const { return done_[frame]; }
-    // false: it could not be written, or read.
+    // returns false if reading or writing fails
     bool put(uint32_t frame, const Frame& data);  // any thread
     bool get(uint32_t frame, Frame& data);        // any thread
-    void forget();                                // the file goes with the store
+    void forget();                                // deletes the file with the store
 
  private:
     [[nodiscard]] uint64_t at(uint32_t frame) const;

@@ -1,5 +1,5 @@
-// flamewright_profile: fire profiles between the pictures that artists paint, the files that games
-// load and the presets to begin with. See --help.
+// flamewright_profile: converts fire profiles between painted images, game files and presets. See
+// --help.
 #include "profile_picture.h"
 #include "whole_file.h"
 
@@ -21,11 +21,10 @@ constexpr const char* kHelp =
     "flamewright_profile IN OUT\n"
     "  IN   a .fwprofile, a picture (PNG, EXR, TIFF, ...), or the name of a preset\n"
     "  OUT  a .fwprofile, or a picture\n"
-    "A picture of a fire profile has temperature in red and soot in green; radius goes to the\n"
-    "right, from the axis to 1.25 radii, the lowest row is the base. Each side has 8 to 512 "
-    "pixels.\n"
-    "PNG and other whole numbers span 0 to 3000 K and 0 to 2 of soot; floats (EXR) are K and soot\n"
-    "as they are. Below 1000 K soot does not glow: K / 1000 is then how much clean gas burns "
+    "A picture of a fire profile has temperature in red and soot in green. x is the radius, from\n"
+    "the axis to 1.25 radii; the lowest row is the base. Each side has 8 to 512 pixels.\n"
+    "Integer images (PNG) span 0 to 3000 K and 0 to 2 of soot; float images (EXR) store K and\n"
+    "soot directly. Below 1000 K soot does not glow: K / 1000 is then how much clean gas burns\n"
     "(blue).\n";
 
 int refuse(const std::string& what) {
@@ -35,7 +34,7 @@ int refuse(const std::string& what) {
 
 bool isCooked(const fs::path& path) { return path.extension() == ".fwprofile"; }
 
-// False: told why.
+// Prints the reason on failure.
 bool read(const std::string& name, volume::Profile& profile) {
     for (uint32_t i = 0; i < uint32_t(volume::FlamePreset::Count); ++i)
         if (name == volume::presetName(volume::FlamePreset(i))) {
@@ -68,7 +67,7 @@ bool read(const std::string& name, volume::Profile& profile) {
     }
 }
 
-// False: told why.
+// Prints the reason on failure.
 bool write(const std::string& name, const volume::Profile& profile) {
     if (!isCooked(name)) {
         const std::string kind = fs::path(name).extension().string();
@@ -80,7 +79,7 @@ bool write(const std::string& name, const volume::Profile& profile) {
         return false;
     }
     const auto bytes = volume::cookProfile(profile, std::pmr::get_default_resource());
-    const std::string error = fwtools::writeWhole(name, bytes);
+    const std::string error = fwtools::replaceFile(name, bytes);
     if (!error.empty()) (void)refuse(error);
     return error.empty();
 }

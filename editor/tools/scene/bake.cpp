@@ -1,4 +1,4 @@
-// fw-bake: a scene's whole burn, run once: when each spot catches, and what happens when.
+// fw-bake: runs a scene's whole burn and writes ignition times and events.
 #include <algorithm>
 #include <cstdio>
 #include <span>
@@ -15,18 +15,18 @@ namespace fs = std::filesystem;
 constexpr const char* kHelp =
     "fw-bake FILE [options]\n"
     "  FILE            a .fwscene\n"
-    "  --out FOLDER    of MESH_arrival.exr (seconds; -1: never), default here, and of\n"
-    "                  MESH_baked.fwburn, which a game plays (fwWorld_CreateBurn)\n"
-    "  --part i/n      writes the i-th of n shares of the meshes\n"
-    "  --cache FOLDER  keeps bakes there\n"
-    "  --json          a line of JSON for each mesh and each event\n"
+    "  --out FOLDER    for MESH_arrival.exr (seconds; -1: never) and MESH_baked.fwburn, which a\n"
+    "                  game plays (fwWorld_CreateBurn); default: the current folder\n"
+    "  --part i/n      writes only part i of n of the meshes\n"
+    "  --cache FOLDER  caches baked maps there\n"
+    "  --json          a line of JSON per mesh and per event\n"
     "  --quiet         no progress, no notes\n"
-    "Exit code: 0 done, 1 refused (the reason is told), 2 the command line is wrong.\n";
+    "Exit code: 0 done, 1 failed (prints the reason), 2 the command line is wrong.\n";
 
 const char* eventName(uint32_t type) {
     switch (type) {
         case FW_EVENT_IGNITED:
-            return "catches fire";
+            return "ignites";
         case FW_EVENT_BURNT_OUT:
             return "has burnt out";
         case FW_EVENT_EXTINGUISHED:
@@ -65,7 +65,7 @@ int main(int count, char** words) {
     std::error_code ignored;
     fs::create_directories(options.out, ignored);
     for (size_t i = 0; i < record.fields.size(); ++i) {
-        if (!mine(options, i)) continue;
+        if (!isInPart(options, i)) continue;
         const ArrivalField& field = record.fields[i];
         const Mesh& mesh = *findIn(scene.meshes, field.mesh);
         const fwimport::FloatPicture picture = arrivalPicture(field);
@@ -77,7 +77,7 @@ int main(int count, char** words) {
         if (!fwimport::writePicture(file, picture, error)) return refuse(options, error);
         const fs::path baked = options.out / (name + "_baked.fwburn");
         if (!field.baked.empty())
-            error = writeWhole(baked.string(), std::as_bytes(std::span(field.baked)));
+            error = replaceFile(baked.string(), std::as_bytes(std::span(field.baked)));
         if (!error.empty()) return refuse(options, error);
         JsonLine line;
         line.text("mesh", mesh.name);

@@ -1,4 +1,4 @@
-// fw-cook: what a scene needs at run time, as the plugin's own files.
+// fw-cook: writes the runtime files of a scene.
 #include <cstdio>
 
 #include "scene/tool.h"
@@ -11,17 +11,16 @@ namespace fs = std::filesystem;
 
 constexpr const char* kHelp =
     "fw-cook FILE [options]\n"
-    "  FILE            a .fwscene, or a glTF file alone\n"
-    "  --out FOLDER    of NAME.fwburn (burn maps), NAME.multiplier.raw (paint), NAME.color.rgba\n"
-    "                  (pictures), NAME.fwprofile (flame shapes) and the code that loads them, in "
-    "C\n"
-    "                  and C++; default here\n"
-    "  --part i/n      the i-th of n shares of the meshes, for many machines; the first has the "
-    "rest\n"
-    "  --cache FOLDER  keeps bakes there\n"
-    "  --json          a line of JSON for each file\n"
+    "  FILE            a .fwscene or a glTF file\n"
+    "  --out FOLDER    for NAME.fwburn (burn maps), NAME.multiplier.raw (paint), NAME.color.rgba\n"
+    "                  (images), NAME.fwprofile (flame shapes) and the code that loads them, in C\n"
+    "                  and C++; default: the current folder\n"
+    "  --part i/n      writes only part i of n of the meshes, to split the work over machines;\n"
+    "                  part 1 also writes the other files\n"
+    "  --cache FOLDER  caches baked maps there\n"
+    "  --json          a line of JSON per file\n"
     "  --quiet         no progress, no notes\n"
-    "Exit code: 0 done, 1 refused (the reason is told), 2 the command line is wrong.\n";
+    "Exit code: 0 done, 1 failed (prints the reason), 2 the command line is wrong.\n";
 
 }  // namespace
 
@@ -42,8 +41,8 @@ int main(int count, char** words) {
     OutputPlan mineOf = plan;
     mineOf.meshes.clear();
     for (size_t i = 0; i < plan.meshes.size(); ++i)
-        if (mine(options, i)) mineOf.meshes.push_back(plan.meshes[i]);
-    const bool rest = mine(options, 0);
+        if (isInPart(options, i)) mineOf.meshes.push_back(plan.meshes[i]);
+    const bool rest = isInPart(options, 0);
     if (!rest) {
         mineOf.images.clear();
         mineOf.shapes.clear();
@@ -60,7 +59,7 @@ int main(int count, char** words) {
         const fs::path file =
             options.out / (plan.identifier + (language == SnippetLanguage::C ? ".c" : ".cpp"));
         const std::string text = snippetOf(plan, language);
-        error = writeWhole(file.string(), std::as_bytes(std::span(text)));
+        error = replaceFile(file.string(), std::as_bytes(std::span(text)));
         if (!error.empty()) return refuse(options, error);
         files.push_back(file);
     }

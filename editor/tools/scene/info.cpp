@@ -1,4 +1,4 @@
-// fw-info: what a file holds.
+// fw-info: prints the content of a file.
 #include <algorithm>
 #include <cstdio>
 #include <cstring>
@@ -12,8 +12,8 @@ namespace {
 constexpr const char* kHelp =
     "fw-info FILE [--json] [--quiet]\n"
     "  FILE  a .fwscene, a glTF file, or a .fwburn: a cooked burn map, or a baked burn\n"
-    "Of meshes: their size, what they are made of, and what of their file is left out.\n"
-    "Exit code: 0 fine, 1 refused (with the reason), 2 the command line is wrong.\n";
+    "Prints size, content and skipped features of meshes.\n"
+    "Exit code: 0 fine, 1 failed (prints the reason), 2 the command line is wrong.\n";
 
 }  // namespace
 
@@ -24,7 +24,7 @@ int main(int count, char** words) {
     int code = 0;
     if (!parseOptions(count, words, kHelp, options, code)) return code;
     ScriptHost host(std::filesystem::current_path());
-    // Notes are part of what is printed here.
+    // The notes are part of this tool's output.
     ToolOptions quiet = options;
     quiet.quiet = true;
     std::string error;
@@ -53,7 +53,7 @@ int main(int count, char** words) {
             FwBurnId burn{};
             if (fwWorld_CreateBurn(world, bytes.data(), bytes.size(), &burn) < 0)
                 return refuseFile();
-            uint32_t sides[2];  // behind magic, version, checksum and the mesh's hash
+            uint32_t sides[2];  // after magic, version, checksum and the mesh's hash
             std::memcpy(sides, bytes.data() + 24, sizeof sides);
             row("baked_width", sides[0]);
             row("baked_height", sides[1]);

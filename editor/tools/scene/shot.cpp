@@ -1,4 +1,4 @@
-// fw-shot: pictures of a scene at the times that are named.
+// fw-shot: renders pictures of a scene at given times.
 #include <algorithm>
 #include <cstdio>
 
@@ -8,15 +8,15 @@ namespace {
 
 constexpr const char* kHelp =
     "fw-shot FILE [options]\n"
-    "  FILE            a .fwscene, or a glTF file alone\n"
+    "  FILE            a .fwscene or a glTF file\n"
     "  --at T,T,...    seconds; default 0\n"
-    "  --out FOLDER    of the pictures, NAME_TIME.png; default here\n"
+    "  --out FOLDER    for the pictures, NAME_TIME.png; default: the current folder\n"
     "  --size WxH      pixels; default 640x360\n"
-    "  --part i/n      the i-th of n shares of the pictures, for many machines\n"
-    "  --cache FOLDER  keeps bakes there\n"
-    "  --json          a line of JSON for each picture\n"
+    "  --part i/n      renders only part i of n of the pictures, to split the work over machines\n"
+    "  --cache FOLDER  caches baked maps there\n"
+    "  --json          a line of JSON per picture\n"
     "  --quiet         no progress, no notes\n"
-    "Exit code: 0 done, 1 refused (the reason is told), 2 the command line is wrong.\n";
+    "Exit code: 0 done, 1 failed (prints the reason), 2 the command line is wrong.\n";
 
 }  // namespace
 
@@ -32,7 +32,7 @@ int main(int count, char** words) {
     if (!openInput(host, options, error)) return refuse(options, error);
     const std::string stem = std::filesystem::path(options.input).stem().string();
     for (size_t i = 0; i < options.times.size(); ++i) {
-        if (!mine(options, i)) continue;
+        if (!isInPart(options, i)) continue;
         showProgress(options, "Pictures", double(i) / double(options.times.size()));
         char name[64];
         std::snprintf(name, sizeof name, "_%07.2f.png", options.times[i]);

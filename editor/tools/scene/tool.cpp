@@ -58,14 +58,14 @@ bool parseOptions(int count, char** words, const char* help, ToolOptions& option
                 at = end + 1;
             }
         } else if (word.size() > 1 && word[0] == '-') {
-            return wrong("\"" + word + "\" is not known here");
+            return wrong("\"" + word + "\" is unknown");
         } else if (options.input.empty()) {
             options.input = word;
         } else {
-            return wrong("\"" + word + "\" is one file too many");
+            return wrong("\"" + word + "\" is an extra file");
         }
     }
-    return options.input.empty() ? wrong("No file is named") : true;
+    return options.input.empty() ? wrong("No file is given") : true;
 }
 
 bool openInput(fwedit::ScriptHost& host, const ToolOptions& options, std::string& error) {

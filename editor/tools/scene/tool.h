@@ -1,5 +1,4 @@
-// What the tools that take a scene share: their command line, progress, and how a file becomes a
-// scene.
+// Shared code of the scene tools: command line, progress, input.
 #pragma once
 
 #include <cstdint>
@@ -12,30 +11,30 @@
 
 namespace fwtools {
 
-// Exit codes of all of them.
+// Exit codes of all tools.
 enum Exit : int { ExitFine = 0, ExitRefused = 1, ExitUsage = 2 };
 
 struct ToolOptions {
     std::string input;
     std::filesystem::path out = ".", cache;
-    uint32_t part = 0, parts = 1;  // of --part i/n, i from 1
+    uint32_t part = 0, parts = 1;  // from --part i/n, i from 1
     uint32_t width = 640, height = 360;
-    std::vector<double> times;  // s, of --at
+    std::vector<double> times;  // s, from --at
     bool json = false, quiet = false;
 };
-// False: `code` is the exit code; help or what is wrong has been printed.
+// On false, `code` is the exit code, and help or the problem has been printed.
 bool parseOptions(int count, char** words, const char* help, ToolOptions& options, int& code);
 
-// Opens a .fwscene, or puts a glTF file alone into a new scene. False: `error`.
+// Opens a .fwscene, or imports a glTF file into a new scene. On failure returns false with `error`.
 bool openInput(fwedit::ScriptHost& host, const ToolOptions& options, std::string& error);
 // A bar on stderr; nothing with --quiet.
 void showProgress(const ToolOptions& options, const std::string& what, double share);
-// True: this item belongs to the part of the work that was asked for.
-inline bool mine(const ToolOptions& options, size_t item) {
+// Returns true if this item belongs to the requested part of the work.
+inline bool isInPart(const ToolOptions& options, size_t item) {
     return item % options.parts == options.part;
 }
 
-// {"a": "b", "n": 3}: one object a line, in the order given.
+// Builds one JSON object per line in the given order, such as {"a": "b", "n": 3}.
 class JsonLine {
  public:
     void text(const char* key, std::string_view value);

@@ -1,4 +1,4 @@
-// A mesh as it is drawn, with its place in the burn map.
+// A mesh with its burn map coordinates.
 #version 450
 layout(location = 0) in vec3 position;  // m, object space
 layout(location = 1) in vec2 place;     // texels

@@ -1,15 +1,26 @@
-/* flamewright/flamewright.h: the stable C ABI. C11 and C++20; no Vulkan and no C++ in here.
+/* flamewright/flamewright.h: the stable C ABI. Valid C11 and C++20. Contains no Vulkan and no C++.
  *
- * Units: second, kilogram, kelvin, degree Celsius only where a name says so. Lengths and speeds (m and m/s in comments) are
- * in the world's unit, metres by default: see FwWorldDef::metersPerUnit. Their limits and defaults are given in metres here,
- * in errors in that unit. All other numbers (m^2, m^3, 1/m, W/m^2, kg/m^3, N), and all of FwMaterialDef, are SI in every world.
- * Matrices: column-major, column vectors, not jittered. Colour: linear Rec.709, scene-referred.
- * Thread tags: [any] any thread; [world] one thread at a time per world; [record] as [world], and
- * the caller owns the command buffer. Callbacks may come from any thread and must not call back in.
- * Everything behind a pointer is copied before a call returns. Output goes to the caller's memory.
- * A negative result failed and changed nothing; fw*_GetLastMessage and the log say why.
- * Reserved fields are zero. Ids are null when zero. See plugin/docs for the host's checklist. */
-/* Laid out by hand, to be read. */
+ * Units: seconds, kilograms and kelvins (degrees Celsius only where a name says so). Lengths and speeds (m and m/s in
+ * comments) are in the world's unit, metres by default: see FwWorldDef::metersPerUnit. Comments give their limits and
+ * defaults in metres; error messages give them in the world's unit. All other numbers (m^2, m^3, 1/m, W/m^2, kg/m^3, N)
+ * and all of FwMaterialDef are SI in every world.
+ * Matrices: column-major, column vectors, without jitter. Colours: linear Rec.709, scene-referred.
+ * Field comments: unit, range, default, then the meaning. A field without a stated default starts at 0, null or identity.
+ * Reserved fields are 0. An id whose words are all 0 is null. A bare number, factor or share has no unit.
+ * Thread tags: [any] any thread; [world] one thread at a time per world; [record] as [world], and the caller owns the
+ * command buffer. Callbacks may run on any thread and must not call back into the library.
+ * Pointers: the library copies input before a call returns. Output goes to the caller's memory.
+ * Results: a negative result means that the call failed and changed nothing. fw*_GetLastMessage and the log say why.
+ *
+ * Terms (more in plugin/docs/glossary.md):
+ *   burn map    the surface of a mesh, unwrapped and cut into texels; a tile is 8 x 8 texels
+ *   front       the line along which fire spreads over a burn map
+ *   step, tick  the simulation advances in steps of 1/32 s; a tick is 2^-12 s
+ *   exchange    heat transfer between objects, eight times a second
+ *   rest pose   a mesh as it was created, without skinning or deformation
+ *   readback    results that the device copies to the CPU; they arrive 1 to 3 frames later
+ * Host checklist: plugin/docs/integration.md. */
+/* Laid out by hand. */
 /* clang-format off */
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_H
 #define FLAMEWRIGHT_FLAMEWRIGHT_H
@@ -21,7 +32,7 @@
 #else
 #define FW_CALL
 #endif
-#ifndef FW_API /* the build sets the export attribute; hosts need nothing */
+#ifndef FW_API /* the library's build sets the export attribute; hosts define nothing */
 #define FW_API
 #endif
 
@@ -29,18 +40,18 @@
 extern "C" {
 #endif
 
-#define FW_ABI_VERSION 1u /* grows only when an old host can no longer work */
+#define FW_ABI_VERSION 1u /* grows only when an older host can no longer work */
 #define FW_VERSION_MAJOR 0u
 #define FW_VERSION_MINOR 1u
 #define FW_VERSION_PATCH 0u
 
 /* ---- objects and ids --------------------------------------------------------------------- */
 
-typedef struct FwContext FwContext; /* few, heavy, owned by the host: opaque pointers */
+typedef struct FwContext FwContext; /* few and large: opaque pointers, which the host owns */
 typedef struct FwWorld FwWorld;
-struct FwVulkanHost; /* flamewright_vulkan.h */
+struct FwVulkanHost; /* see flamewright_vulkan.h */
 
-/* many: generational ids by value; all-zero is null */
+/* Many and small: generational ids, passed by value. All zero is null. */
 typedef struct FwMaterialId { uint32_t index1, generation; } FwMaterialId;
 typedef struct FwImageId { uint32_t index1, generation; } FwImageId;
 typedef struct FwMeshId { uint32_t index1, generation; } FwMeshId;
@@ -62,30 +73,30 @@ typedef struct FwBurnId { uint32_t index1, generation; } FwBurnId;
 /* ---- results, log, memory ------------------------------------------------------------------ */
 
 typedef enum FwResult {
-    FW_NOTHING_THERE = 2, /* the call is right and changes nothing: no texel is there for it */
-    FW_NOT_READY = 1, /* pipelines or readback still on their way; nothing was recorded */
+    FW_NOTHING_THERE = 2, /* the call is valid but changed nothing: no texel fits it */
+    FW_NOT_READY = 1, /* pipelines or a readback are still pending; nothing was recorded */
     FW_OK = 0,
     FW_ERROR_INVALID_ARGUMENT = -1,
-    FW_ERROR_STALE_ID = -2,
-    FW_ERROR_VERSION = -3, /* structSize or abiVersion that this library cannot serve */
+    FW_ERROR_STALE_ID = -2, /* the id is null, or its object was destroyed */
+    FW_ERROR_VERSION = -3, /* this library cannot serve the structSize, abiVersion or file version */
     FW_ERROR_OUT_OF_MEMORY = -4,
     FW_ERROR_UNSUPPORTED_DEVICE = -5,
     FW_ERROR_DEVICE_LOST = -6,
-    FW_ERROR_BAD_DATA = -7, /* a mesh or cooked file that cannot be used */
-    FW_ERROR_WRONG_BACKEND = -8, /* the call needs another backend */
+    FW_ERROR_BAD_DATA = -7, /* a mesh, file or packet is unusable */
+    FW_ERROR_WRONG_BACKEND = -8, /* the call needs another backend or another kind of device */
     FW_ERROR_INTERNAL = -9,
     FW_RESULT_FORCE32 = 0x7fffffff
 } FwResult;
 
-typedef struct FwErrorInfo { int32_t result; char message[508]; } FwErrorInfo; /* the caller's */
+typedef struct FwErrorInfo { int32_t result; char message[508]; } FwErrorInfo; /* frozen; the caller owns it */
 
 typedef enum FwLogLevel {
     FW_LOG_DEBUG = 0, FW_LOG_INFO = 1, FW_LOG_WARNING = 2, FW_LOG_ERROR = 3,
     FW_LOG_LEVEL_FORCE32 = 0x7fffffff
 } FwLogLevel;
 
-/* Frozen. Copied at context creation; null members take the library's own. `allocate` returns null
- * when there is no memory; `release` gets back what allocate was asked for. */
+/* Frozen. The library copies it at context creation and uses its own functions for null members. `allocate` returns null
+ * if there is no memory. `release` gets the size and alignment that were passed to `allocate`. */
 typedef struct FwCallbacks {
     void* userData;
     void (FW_CALL* log)(void* userData, int32_t level, const char* message);
@@ -93,15 +104,15 @@ typedef struct FwCallbacks {
     void (FW_CALL* release)(void* userData, void* memory, size_t size, size_t alignment);
 } FwCallbacks;
 
-/* Static text for a result, never null. [any] */
+/* Returns the name of a result as static text, never null. [any] */
 FW_API const char* FW_CALL fwResultName(int32_t result);
-/* major << 22 | minor << 12 | patch of the library in use. [any] */
+/* Returns major << 22 | minor << 12 | patch of the loaded library. [any] */
 FW_API uint32_t FW_CALL fwGetVersion(void);
 
 /* ---- defs ------------------------------------------------------------------------------------ */
-/* Take a def from its fwDefault...() and change what you need. structSize is the host's sizeof; a
- * newer library gives fields it does not find their default, a newer host gets FW_ERROR_VERSION if
- * bytes that the library does not know are not zero. */
+/* Take a def from its fwDefault...() function, then change the fields that you need. structSize is the host's sizeof.
+ * A newer library gives its default to each field that an older host does not have. An older library returns
+ * FW_ERROR_VERSION if a byte that it does not know is not 0. */
 
 typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
@@ -115,77 +126,75 @@ typedef enum FwDefType {
     FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
 } FwDefType;
-/* Writes defaults for the first structSize bytes, and zero for what this library does not know;
- * never a byte past structSize. Unknown types are zeroed but for structSize. [any] */
+/* Writes the defaults of a def type to the first structSize bytes of `def`, and never a byte more. Bytes that this
+ * library does not know become 0. If the type is unknown, all bytes but structSize become 0. [any] */
 FW_API void FW_CALL fwInitDef(uint32_t defType, void* def, uint32_t structSize);
 
 /* ---- context --------------------------------------------------------------------------------- */
 
 typedef enum FwBackend {
-    FW_BACKEND_VULKAN = 0, /* the device in FwContextDef::vulkan, or our own if that is null */
-    FW_BACKEND_CPU = 1,    /* simulation only, no device: servers, tools, tests */
+    FW_BACKEND_VULKAN = 0, /* host device: FwContextDef::vulkan. Own device: the library creates one if that is null */
+    FW_BACKEND_CPU = 1,    /* simulation only, without a device: servers, tools, tests */
     FW_BACKEND_FORCE32 = 0x7fffffff
 } FwBackend;
 
 typedef struct FwContextDef {
-    uint32_t structSize, abiVersion; /* set for you */
+    uint32_t structSize, abiVersion; /* fwDefaultContextDef sets both */
     uint32_t backend;                /* FwBackend, default FW_BACKEND_VULKAN */
     uint32_t flags;                  /* 0 */
     FwCallbacks callbacks;
-    const struct FwVulkanHost* vulkan; /* null: the library makes its own instance and device */
-    uint64_t gpuMemoryBudget;          /* bytes; 0: no cap. Creation fails beyond it. */
+    const struct FwVulkanHost* vulkan; /* null: the library creates its own instance and device */
+    uint64_t gpuMemoryBudget;          /* bytes, default 0: no limit. Creation beyond it fails: FW_ERROR_OUT_OF_MEMORY */
 } FwContextDef;
 static inline FwContextDef fwDefaultContextDef(void) {
     FwContextDef d; fwInitDef(FW_DEF_CONTEXT, &d, (uint32_t)sizeof d);
     d.abiVersion = FW_ABI_VERSION; return d;
 }
-/* On failure *context is null and *error (may be null) says why. [any] */
+/* Creates a context. If it fails, *context is null and *error (may be null) says why. [any] */
 FW_API FwResult FW_CALL fwCreateContext(const FwContextDef* def, FwContext** context, FwErrorInfo* error);
-/* Frees everything of it, worlds included, even after a lost device. The host has waited for its
- * last frame. Null is fine. [any, nothing else may use the context] */
+/* Frees the context and all its worlds, even after a lost device. The host has waited for its last frame.
+ * `context` may be null. [any, while no other call uses the context] */
 FW_API void FW_CALL fwDestroyContext(FwContext* context);
 
 typedef struct FwContextInfo {
     uint32_t structSize;
     uint32_t backend;                 /* FwBackend in use */
-    uint32_t apiVersion;              /* Vulkan version declared by the host; 0 on the cpu backend */
-    uint32_t ownDevice;               /* 1: we made the device */
+    uint32_t apiVersion;              /* Vulkan version that the host declared; 0 on the cpu backend */
+    uint32_t ownDevice;               /* 1: the library created the device */
     uint32_t gpuTimers;               /* 1: pass timers are available */
     uint32_t debugLabels;             /* 1: debug-utils labels and names are in use */
     uint64_t gpuMemoryUsed, gpuMemoryBudget; /* bytes */
-    uint64_t cpuMemoryUsed;           /* bytes alive through the allocator */
+    uint64_t cpuMemoryUsed;           /* bytes that the allocator has given out */
     char deviceName[256];
 } FwContextInfo;
 /* Fills up to info->structSize bytes. [any] */
 FW_API FwResult FW_CALL fwContext_GetInfo(FwContext* context, FwContextInfo* info);
-/* Text of the last failure on this context; returns the length needed without the zero. [any] */
+/* Copies the text of this context's last failure. Returns the length that it needs, without the terminating zero. [any] */
 FW_API size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, size_t capacity);
-/* Builds whatever pipelines are missing, may take long: a loading screen or a worker thread.
- * FW_OK when all is ready. Calling it is optional only on an own device. [any] */
+/* Builds all missing pipelines. Takes long: call it on a loading screen or on a worker thread. Returns FW_OK once
+ * all are ready. Required on a host device, optional on an own device. [any] */
 FW_API FwResult FW_CALL fwContext_Prepare(FwContext* context);
 
 typedef struct FwMemoryRow {  /* memory of one component, buffer or pool */
     char name[48];            /* unique in a report */
-    uint64_t bytes, capacity; /* in use, and reserved for it */
+    uint64_t bytes, capacity; /* bytes in use; bytes reserved */
 } FwMemoryRow;
-/* Writes at most capacity rows, returns how many there are. On the Vulkan backend a row for each
- * component comes first ("meshes" to "targets"), whatever the number of worlds. Row "blocks" follows:
- * `bytes` is the sum of the components, `capacity` is FwContextInfo::gpuMemoryUsed. Then a row for
- * each buffer of the worlds, summed over them; the components hold these bytes already.
- * On the cpu backend the rows of its pools ("cpu texel states", ...) come instead of all these. On both, rows
- * "world objects" to "world contacts" follow: memory of the CPU, of all worlds.
- * Waits for no step and no recording. [any] */
+/* Writes at most `capacity` rows and returns how many there are. Vulkan backend, in order: one row for each component
+ * ("meshes" to "targets", whatever the number of worlds); "blocks"; one row for each buffer, summed over all worlds.
+ * "blocks": `bytes` is the sum of the components, `capacity` is FwContextInfo::gpuMemoryUsed. The components already
+ * contain the bytes of the buffers. cpu backend: one row for each pool ("cpu texel states", ...) instead. Both backends
+ * end with CPU memory of all worlds, "world objects" to "world contacts". Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows, uint32_t capacity);
 
 /* ---- world ------------------------------------------------------------------------------------- */
 
-typedef enum FwWorldFlags { /* how fire reaches other objects; none of them: it does not */
-    FW_WORLD_RADIATION = 1, /* flames heat what they shine on until it catches */
-    FW_WORLD_PLUME = 2,     /* hot gas heats what is above */
-    FW_WORLD_CONTACT = 4,   /* flames lick across gaps of up to 5 cm: to other objects, and from part to part of
-                               a mesh whose parts share no edge (a roof on its walls, a cart's wheels) */
-    FW_WORLD_EMBERS = 8,    /* burning bits fly downwind and may light what they land on */
-    /* For every object that is created while they are set, as if it had the flag of that name. */
+typedef enum FwWorldFlags { /* how fire reaches other objects. Without the first four it does not */
+    FW_WORLD_RADIATION = 1, /* flames heat the surfaces that they shine on, until these ignite */
+    FW_WORLD_PLUME = 2,     /* hot gas heats the surfaces above a fire */
+    FW_WORLD_CONTACT = 4,   /* flames cross gaps of up to 5 cm: to other objects, and between parts of a mesh that share no
+                               edge (a roof on its walls, a cart's wheels) */
+    FW_WORLD_EMBERS = 8,    /* burning fragments fly downwind and may ignite the surface on which they land */
+    /* Each object that is created while one of these is set gets the FW_BURNABLE_ flag of the same name. */
     FW_WORLD_NO_SPREAD = 16,
     FW_WORLD_NO_DAMAGE = 32,
     FW_WORLD_NO_HOLES = 64,
@@ -193,273 +202,277 @@ typedef enum FwWorldFlags { /* how fire reaches other objects; none of them: it 
 } FwWorldFlags;
 
 typedef struct FwWorldDef {
-    uint32_t structSize, flags; /* FwWorldFlags, default 0; see fwWorld_SetFlags */
+    uint32_t structSize, flags; /* flags: FwWorldFlags, default 0; see fwWorld_SetFlags */
     float up[3];                /* unit vector, default 0,1,0 */
-    float paceFactor;           /* [0.1, 1000], default 1: how much faster than wood fire spreads
-                                   and burns out. Games use 5 to 30. */
-    float wind[3];              /* m/s, default 0 */
+    float paceFactor;           /* factor, [0.1, 1000], default 1. How many times faster than real fire spreads and burns out.
+                                   Games use 5 to 30 */
+    float wind[3];              /* m/s, [-120, 120] each, default 0 */
     uint32_t reserved;          /* 0 */
-    uint32_t seed;              /* of everything cosmetic and of noise */
-    uint32_t maxStepsPerFrame;  /* [1, 64], default 8: time beyond it is dropped and counted */
+    uint32_t seed;              /* default 1. Seeds noise and everything cosmetic */
+    uint32_t maxStepsPerFrame;  /* [1, 64], default 8. Time beyond it is dropped and counted: FW_EVENT_TIME_DROPPED */
     uint32_t maxLights;         /* [0, 64], default 16 */
-    uint32_t maxFlames;         /* [0, 65536], default 4096 flame quads alive; drawn: at most 4096 */
+    uint32_t maxFlames;         /* [0, 65536], default 4096. Flame quads that are simulated; at most 4096 are drawn */
     uint64_t userData;
-    uint32_t maxRefinedTriangles; /* [1000, 16000000], default 400000: what refined objects aim to
-                                     stay within, together; software devices do well with 60000 */
+    uint32_t maxRefinedTriangles; /* [1000, 16000000], default 400000. Target for all refined objects together.
+                                     60000 suits software devices */
     uint32_t reserved1;         /* 0 */
-    /* Limits of spread, for the world; objects have their own beside these. The stricter counts. */
-    float spreadChance;         /* [0, 1], default 1: of each jump from object to object, decided once for
-                                   a pair and a fire, and of each ember */
-    uint32_t maxHops;           /* fire that came over this many jumps goes to no other object; 0: no limit */
-    uint32_t maxBurningTiles;   /* never more tiles of 8 x 8 texels burn, however fire spreads: chance says which
-                                   catch, alike on every backend, others wait. What fwWorld_Ignite, FW_FIRE_IGNITES
-                                   and a jet on FW_BURNABLE_LITE light at once burns beyond it. 0: no limit */
-    float timeToLive;           /* s that the front of an object moves after the object caught; 0: no limit */
-    /* How much of `from` a fire of its sees `to`, 0 to 1: asked when one of them moved, kept until then.
-       Null: all. Called from the thread that steps the world; it must give the same answer to the same
-       poses wherever worlds are to be equal. */
+    /* Spread limits of the world. Objects have limits of their own; the stricter limit applies. */
+    float spreadChance;         /* [0, 1], default 1. Chance of each jump between objects (decided once for a pair and a fire)
+                                   and of each ember */
+    uint32_t maxHops;           /* default 0: no limit. Fire that made this many jumps reaches no other object */
+    uint32_t maxBurningTiles;   /* default 0: no limit. Spreading fire never burns more tiles than this. If more would ignite,
+                                   chance decides which do, the same on every backend; the others wait. Ignitions by
+                                   fwWorld_Ignite, by FW_FIRE_IGNITES and by a jet on FW_BURNABLE_LITE may exceed it */
+    float timeToLive;           /* s, [0, 1e6], default 0: no limit. An object's front stops this long after its ignition */
+    /* Returns the share of `to` that a fire on `from` sees, [0, 1]. Null: 1. The thread that steps the world calls it when
+     * one of the two has moved, and keeps the answer until then. Worlds that must stay equal need equal answers for equal
+     * poses. */
     float (FW_CALL* visibility)(void* visibilityData, FwBurnableMeshId from, FwBurnableMeshId to);
     void* visibilityData;
-    /* Volumetric fires where they are marched before they are drawn: the view of the outside part. */
-    uint32_t volumeCell;        /* px, [1, 16], default 2: of the cells that are marched; 1: each pixel */
-    uint32_t volumeSteps;       /* [6, 64], default 64: most samples of a ray through a flame's depth. The few
-                                   that all but the largest 32 flames get are no more than these */
-    uint32_t maxParticles;      /* [0, 1048576], default 16384: of all fire emitters; 48 bytes each, once there */
-    uint32_t arrivalTiles;      /* [1, 1048576], default 1024: tiles of 8 x 8 texels that questions for arrivals
-                                   look at in a frame, together; some 2 us each, and some 25 looks at each
-                                   tile of a map. See fwWorld_RequestArrival */
-    uint32_t volumeOctaves;     /* [1, 4], default 4: most octaves of noise of a volumetric flame; presets have
-                                   3, large fires 4. Fewer are quicker and smoother, and as high and bright */
+    /* Ray march of volumetric fires before they are drawn: for the views of fwWorld_RecordOutside. */
+    uint32_t volumeCell;        /* px, [1, 16], default 2. Side of a march pixel; 1: full resolution */
+    uint32_t volumeSteps;       /* [6, 64], default 64. Most samples of a ray through a flame. Flames beyond the 32 largest get
+                                   fewer samples, and never more than this */
+    uint32_t maxParticles;      /* [0, 1048576], default 16384. Particles of all fire emitters. Each takes 48 bytes once used */
+    uint32_t arrivalTiles;      /* [1, 1048576], default 1024. Tiles that fwWorld_RequestArrival may simulate per frame, for all
+                                   queries together. Cost: about 2 us a tile; each tile of a map is visited about 25 times */
+    uint32_t volumeOctaves;     /* [1, 4], default 4. Most noise octaves of a volumetric flame. Presets use 3, large fires 4.
+                                   Fewer octaves are faster and smoother; height and brightness stay */
     uint32_t reserved2;         /* 0 */
-    float metersPerUnit;        /* m, [0.0001, 1000], default 1: length of the unit in which the host gives and gets
-                                   every length of this world. 0.01: centimetres (Unreal, Qt); 0.3048: feet. 0: 1 */
+    float metersPerUnit;        /* m, [0.0001, 1000], default 1; 0: 1. Length of the unit for every length of this world.
+                                   0.01: centimetres (Unreal, Qt); 0.3048: feet */
     uint32_t reserved3;         /* 0 */
 } FwWorldDef;
 static inline FwWorldDef fwDefaultWorldDef(void) {
     FwWorldDef d; fwInitDef(FW_DEF_WORLD, &d, (uint32_t)sizeof d); return d;
 }
-FW_API FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* def, FwWorld** world); /* [any] */
-/* Turns the lengths of a def from metres into the world's unit. Defaults (fwDefault...), presets (fwInitFirePreset) and what
- * a host keeps in metres know no world. def: a struct of FwDefType `defType` whose structSize is set; what it points to stays
- * as it is. Once for each def. FW_ERROR_INVALID_ARGUMENT: defType is unknown. The defaults of
- * FwMeshDef and FwMaterialDef hold in every unit. [any] */
+/* Creates a world. If it fails, *world is null. [any] */
+FW_API FwResult FW_CALL fwCreateWorld(FwContext* context, const FwWorldDef* def, FwWorld** world);
+/* Converts the lengths of a def from metres to the world's unit. Use it for defaults (fwDefault...), presets
+ * (fwInitFirePreset) and values that the host keeps in metres. Call it once for each def. `def` is a struct of FwDefType
+ * `defType` with structSize set. Arrays behind pointers stay unchanged. Defaults of FwMeshDef and FwMaterialDef need no
+ * conversion. FW_ERROR_INVALID_ARGUMENT: unknown defType. [any] */
 FW_API FwResult FW_CALL fwWorld_ConvertDef(FwWorld* world, uint32_t defType, void* def);
-FW_API void FW_CALL fwDestroyWorld(FwWorld* world); /* null is fine [world] */
-FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity); /* [any] */
+/* Frees the world. `world` may be null. [world] */
+FW_API void FW_CALL fwDestroyWorld(FwWorld* world);
+/* Copies the text of this world's last failure. Returns the length that it needs, without the terminating zero. [any] */
+FW_API size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacity);
 
-/* ---- deferred destruction: for scene-node destructors, which run while frames are in flight ------ */
+/* ---- deferred destruction: for scene-node destructors that run while frames are in flight ------ */
 
-/* fwContext_Collect destroys the world once its completedFrameIndex is at least `frameIndex`. 0: the newest
- * frame that the world has recorded or stepped, the one in progress included. May be called while
- * another thread records with the world; no call that begins later may use it. A second call
- * changes the frame. fwDestroyContext destroys what still waits. [any] */
+/* Schedules the destruction of the world: fwContext_Collect destroys it once its completedFrameIndex is at least
+ * `frameIndex`. 0: the newest frame that the world has recorded or stepped, including one in progress. Another thread may
+ * be recording with the world during the call. No call that begins later may use the world. A second call changes the
+ * frame. fwDestroyContext destroys every world that still waits. [any] */
 FW_API FwResult FW_CALL fwWorld_DestroyAfterFrame(FwWorld* world, uint64_t frameIndex);
-/* Destroys what waits for frames up to completedFrameIndex: the frame of the host's that the GPU has
- * finished, with all before it. UINT64_MAX: everything, where the host has waited or the backend is the cpu's.
- * Returns how many worlds and targets still wait. Call it once a frame. [any, while no call uses what it
- * destroys: a frame that is complete has ended its calls] */
+/* Destroys the worlds and targets that wait for frames up to completedFrameIndex: the newest frame that the GPU has
+ * finished together with all frames before it. UINT64_MAX: all of them, if the host has waited or on the cpu backend.
+ * Returns how many worlds and targets still wait. Call it once a frame. [any, while no call uses what it destroys;
+ * the calls of a completed frame have ended] */
 FW_API uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIndex);
 
-typedef enum FwObjectKind { /* of an id, for fwWorld_DestroyLater */
+typedef enum FwObjectKind { /* kind of an id, for fwWorld_DestroyLater */
     FW_OBJECT_MATERIAL = 1, FW_OBJECT_IMAGE = 2, FW_OBJECT_MESH = 3, FW_OBJECT_BURNABLE_MESH = 4,
     FW_OBJECT_BLOCKER = 5, FW_OBJECT_VOLUMETRIC_FIRE = 6, FW_OBJECT_FIRE_PROFILE = 7,
     FW_OBJECT_FIRE_COLLIDER = 8, FW_OBJECT_FIRE_EMITTER = 9, FW_OBJECT_FLIPBOOK = 10,
     FW_OBJECT_PARTICLE_FIELD = 11, FW_OBJECT_WIND_ZONE = 12, FW_OBJECT_ROOM = 13, FW_OBJECT_BURN = 14,
     FW_OBJECT_KIND_COUNT = 15, FW_OBJECT_KIND_FORCE32 = 0x7fffffff
 } FwObjectKind;
-typedef struct FwObjectRef { uint32_t kind, index1, generation, reserved; } FwObjectRef; /* FwObjectKind; the id's; 0 */
-/* As the fwWorld_Destroy... or fwWorld_Remove... function of that kind, at the beginning of the world's next
- * fwWorld_Step or fwWorld_RecordOutside. In any order: what something still uses (a mesh, a profile, a
- * flipbook, a baked burn) waits until its last user is gone. An id that is stale by then is a warning in the
- * log. Frames in flight may still use the object; its memory waits for them. [any] */
+typedef struct FwObjectRef { uint32_t kind, index1, generation, reserved; } FwObjectRef; /* FwObjectKind; words of the id; 0 */
+/* Schedules the destruction of an object, in any order. The next fwWorld_Step or fwWorld_RecordOutside begins with it and
+ * acts like the fwWorld_Destroy... or fwWorld_Remove... function of that kind. An object in use (mesh, profile, flipbook,
+ * baked burn) waits until its last user is gone. Its memory waits for the frames in flight. If the id is stale by then,
+ * the log has a warning. [any] */
 FW_API FwResult FW_CALL fwWorld_DestroyLater(FwWorld* world, const FwObjectRef* object);
 
-/* Uniform wind, m/s, world space, each component within +-120. Filtered over a material's link
- * time before it reaches a front. [world] */
+/* Sets the uniform wind: m/s, world space, [-120, 120] for each component. A low-pass filter delays its effect on a front by
+ * the time that the front takes to cross a texel. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]);
-/* FwWorldFlags from the next exchange on: fire reaches other objects eight times a second. What
- * they say of objects counts for those created from now on. [world] */
+/* Sets FwWorldFlags. Heat-transfer flags take effect at the next exchange. The flags NO_SPREAD, NO_DAMAGE and NO_HOLES
+ * apply to objects that are created later. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags);
 
-/* Moves all places of the world by `offset` m, each within +-2e6 m and rounded to whole metres: a place p is p + offset from
- * here on. For hosts that move their origin in large worlds. Everything goes along: objects, what burns and what they
- * give each other, blockers, shields, rooms, wind, gusts, fires with their history, emitters with their particles,
- * fields, colliders, lights, answers and events that wait; the fire burns on and looks as if nothing had moved.
- * Callbacks of the host's (FwFireColliderDef::distance) are asked in the new places. Saves keep the origin, and loading or
- * seeking goes back to theirs: see fwWorld_GetOrigin. In logs, timelines and networks. *applied (may be null) gets the
- * whole metres. Exact for what burns, but for what jets, FW_FIRE_IGNITES and FW_FIELD_WETS strike, which is found in
- * floats: to the tenth of a millimetre at 1000 m. A world that follows a server has the server's origin.
- * FW_ERROR_INVALID_ARGUMENT, and nothing moved: something would be beyond +-1e6 m, or the world follows a server. [world] */
+/* Shifts the origin: every position p of the world becomes p + offset. For hosts that rebase their origin in large worlds.
+ * `offset`: m, [-2e6, 2e6] each; the library rounds it to whole metres. *applied (may be null) gets the rounded offset.
+ * Everything moves: objects and the heat between them, occluders, rooms, wind, gusts, fires, emitters with their particles,
+ * fields, colliders, lights, pending answers and events. Burning and pictures continue as if nothing had moved. The library
+ * calls FwFireColliderDef::distance at the new positions.
+ * Saves contain the origin; fwWorld_Load and fwWorld_Seek restore it: see fwWorld_GetOrigin. Command logs, timelines and
+ * networks carry the shift. A client's world has the origin of its server. Burning is exact, with one exception: hits of
+ * jets, FW_FIRE_IGNITES and FW_FIELD_WETS are found in floats, to 0.1 mm at 1000 m.
+ * FW_ERROR_INVALID_ARGUMENT: a position would leave [-1e6, 1e6] m, or the world follows a server. [world] */
 FW_API FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld*, const float offset[3], float applied[3]);
-/* m that fwWorld_ShiftOrigin has moved all places since the world was created, in all. [world] */
+/* Gets the sum of all shifts since the world was created, in m. [world] */
 FW_API FwResult FW_CALL fwWorld_GetOrigin(FwWorld*, double origin[3]);
 
-typedef struct FwBlockerDef { /* a box that radiation, plumes and embers do not pass: a wall, a door */
-    uint32_t structSize, flags; /* 0 */
-    float transform[16];        /* box to world, rigid and uniform scale; default identity */
-    float halfSize[3];          /* m, each [0, 30], also times the transform's scale; 0: a quad. Default 0.5 */
+typedef struct FwBlockerDef { /* a box that stops radiation, plumes and embers: a wall, a door */
+    uint32_t structSize, flags; /* flags: 0 */
+    float transform[16];        /* box to world, default identity. Rigid, with a uniform scale */
+    float halfSize[3];          /* m, [0, 30] each, default 0.5; the limit includes the scale. One 0 makes a quad */
     uint32_t reserved;          /* 0 */
 } FwBlockerDef;
 static inline FwBlockerDef fwDefaultBlockerDef(void) {
     FwBlockerDef d; fwInitDef(FW_DEF_BLOCKER, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 64 at a time. What is within 6 cm of a box's surface is not behind it. [world] */
+/* Adds an occluder box, at most 64 at a time. The box does not occlude points within 6 cm of its surface. [world] */
 FW_API FwResult FW_CALL fwWorld_AddBlocker(FwWorld*, const FwBlockerDef* def, FwBlockerId* id);
 FW_API FwResult FW_CALL fwWorld_MoveBlocker(FwWorld*, FwBlockerId id, const float transform[16]); /* [world] */
 FW_API FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld*, FwBlockerId id); /* [world] */
 
 typedef enum FwHeatShieldFlags {
-    FW_HEAT_SHIELD_ALL_OBJECTS = 1, /* all burnable meshes that are there fill cells, not `objects` alone */
+    FW_HEAT_SHIELD_ALL_OBJECTS = 1, /* all existing burnable meshes fill cells, not only those in `objects` */
     FW_HEAT_SHIELD_FORCE32 = 0x7fffffff
 } FwHeatShieldFlags;
-/* A grid of solid cells that radiation, plumes and embers do not pass, for more than boxes give: terrain and houses of
- * the host's, walls and fences that are burnable meshes. A cell is solid if any of the three below says so. */
+/* Heat-occlusion grid: solid cells stop radiation, plumes and embers. For shapes beyond boxes: terrain and houses of the
+ * host, walls and fences that are burnable meshes. A cell is solid if `cells`, `distance` or an object makes it solid. */
 typedef struct FwHeatShieldDef {
-    uint32_t structSize, flags; /* FwHeatShieldFlags, default 0 */
-    uint32_t counts[3];         /* cells along the world's x, y, z, [1, 256] each, at most 2097152 in all; default 1 */
-    float origin[3];            /* m, world, within +-1e6: the grid's low corner. Rounded to mm */
-    float cellSize;             /* m, [0.05, 10], default 0.25. Not below what the gaps are that fire is to pass, nor
-                                   below the side of the objects' texels */
+    uint32_t structSize, flags; /* flags: FwHeatShieldFlags, default 0 */
+    uint32_t counts[3];         /* [1, 256] each, default 1. Cells along the world's x, y, z; at most 2097152 in all */
+    float origin[3];            /* m, [-1e6, 1e6], world. The grid's low corner; rounded to mm */
+    float cellSize;             /* m, [0.05, 10], default 0.25. Choose it no larger than the gaps that fire must pass, and no
+                                   smaller than the texels of the objects */
     uint32_t objectCount;       /* default 0 */
-    const uint8_t* cells;       /* default null. A byte each, x fastest, then y, then z; not 0: solid. Copied */
-    float (FW_CALL* distance)(void* distanceData, const float place[3]); /* default null. m from a place (m, world) to the
-                                   nearest surface, negative inside: called once for each cell's middle, within
-                                   fwWorld_SetHeatShield alone. Below half of cellSize: solid, so that a wall of any
-                                   thickness has no gap. Give more where ground is to stay below what lies on it */
+    const uint8_t* cells;       /* default null. One byte a cell, x fastest, then y, then z. Not 0: solid. Copied */
+    float (FW_CALL* distance)(void* distanceData, const float place[3]); /* default null. Returns the distance in m from `place`
+                                   (m, world) to the nearest surface, negative inside. The library calls it once for the
+                                   middle of each cell, only during fwWorld_SetHeatShield. A cell is solid below half of
+                                   cellSize, so that walls of any thickness have no gaps. To keep solid ground below the
+                                   objects that lie on it, return more there */
     void* distanceData;
-    const FwBurnableMeshId* objects; /* default null. Those whose surface fills cells, as they stand now, at rest. A cell of
-                                   theirs opens as pictures and jets have it: with the hole at its middle */
+    const FwBurnableMeshId* objects; /* default null. Objects whose surfaces fill cells, in their present rest pose. Such a
+                                   cell opens when the texel at its middle has a hole, as jets and pictures see it */
 } FwHeatShieldDef;
 static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
     FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
 }
-/* In place of the shield that was; null: none any more. Counts from the next exchange on (eight a second), beside blockers.
- * Cells of the host's stop jets, too, which strike meshes by themselves. What is within a cell of a flame or of what it
- * warms is not between them; of the cells of the two's own, and of the host's, what is within some cells: nothing shades
- * itself. What has burnt away lets fire pass by itself; what moved is where it was until the next call; what is destroyed
- * is gone. At most 262144 cells are objects'. The same on every backend, in saves, logs and networks: these have 58 bytes
- * for every 384 cells in a row of which one of the host's changed (all that are solid, where the grid is another), and 9
- * for each object. Takes some 5 ns per cell, the callback's own time and some 40 ns per texel of the objects. [world] */
+/* Replaces the heat-occlusion grid; null removes it. Takes effect at the next exchange, in addition to occluder boxes. Cells
+ * of the host also stop jets; jets hit meshes without the grid. Nothing shades itself: the library ignores all cells within
+ * one cell of a flame or of a heated surface. Cells of the host and of these two objects it ignores within a few cells. Burnt
+ * holes let fire pass without another call. If an object moves, its cells stay until the next call; if it is destroyed, they
+ * are gone. Objects fill at most 262144 cells. The result is the same on every backend and goes to saves, command logs and
+ * networks. Size there: 9 bytes for each object, and 58 for each row of 384 cells in which a host's cell changed. If the grid
+ * differs, all rows with solid cells count. Cost: about 5 ns a cell, the time of the callback, and about 40 ns a texel of the
+ * objects. [world] */
 FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
 
-typedef enum FwWindShape { /* where a wind zone is; what lies in it is measured from its middle to its edge */
-    FW_WIND_BOX = 0,           /* along the world's axes: size is half of its sides */
+typedef enum FwWindShape { /* extent of a wind zone. Falloff runs from its middle to its edge */
+    FW_WIND_BOX = 0,           /* along the world's axes; size: half of each side */
     FW_WIND_SPHERE = 1,        /* size[0]: radius */
-    FW_WIND_CONE = 2,          /* from `position` along `axis`; size[0]: length, size[1]: radius at its end. A fan */
+    FW_WIND_CONE = 2,          /* a fan: from `position` along `axis`; size[0]: length, size[1]: radius at its end */
     FW_WIND_SHAPE_COUNT = 3, FW_WIND_SHAPE_FORCE32 = 0x7fffffff
 } FwWindShape;
 typedef enum FwWindFlow {
     FW_WIND_ALONG = 0,         /* along `axis` */
-    FW_WIND_RADIAL = 1,        /* away from `position`; a negative speed: towards it */
+    FW_WIND_RADIAL = 1,        /* away from `position`; a negative speed blows towards it */
     FW_WIND_VORTEX = 2,        /* around `axis` through `position`, right-handed */
     FW_WIND_FLOW_COUNT = 3, FW_WIND_FLOW_FORCE32 = 0x7fffffff
 } FwWindFlow;
 typedef enum FwWindBlend {
-    FW_WIND_ADD = 0,           /* to what blows there */
-    FW_WIND_REPLACE = 1,       /* instead of it, as far as the zone has not faded; speed 0: shelter */
+    FW_WIND_ADD = 0,           /* adds to the wind that already blows there */
+    FW_WIND_REPLACE = 1,       /* replaces that wind, by the share left after falloff; speed 0 makes a shelter */
     FW_WIND_BLEND_COUNT = 2, FW_WIND_BLEND_FORCE32 = 0x7fffffff
 } FwWindBlend;
-/* Wind of a place's own. An object's fire, its flames and the embers from it have the wind at the middle of its box
- * (of its mesh at rest: split what is larger than a zone), volumetric fires, emitters and fields that at their position. */
+/* Local wind. An object takes the wind at the middle of its box (of the mesh in rest pose) for its fire, flames and embers:
+ * split objects that are larger than a zone. Volumetric fires, emitters and fields take the wind at their position. */
 typedef struct FwWindZoneDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t shape;             /* FwWindShape, default FW_WIND_BOX */
     uint32_t flow;              /* FwWindFlow, default FW_WIND_ALONG */
     uint32_t blend;             /* FwWindBlend, default FW_WIND_ADD */
-    int32_t priority;           /* [-1000, 1000], default 0: higher ones count after lower ones, of the same those with
-                                   the higher id */
-    float position[3];          /* m, world, within +-1e6 */
-    float axis[3];              /* direction, default 1,0,0; of any length */
-    float size[3];              /* m, [0.01, 1000], default 1: see FwWindShape */
+    int32_t priority;           /* [-1000, 1000], default 0. Zones apply in ascending priority; ties in ascending id */
+    float position[3];          /* m, [-1e6, 1e6], world */
+    float axis[3];              /* direction of any length, default 1,0,0 */
+    float size[3];              /* m, [0.01, 1000], default 1; see FwWindShape */
     float speed;                /* m/s, [-120, 120], default 5 */
-    float falloff;              /* [0, 1], default 0.5: the part of the way from its middle to its edge on which it
-                                   fades; 0: as strong up to its edge */
+    float falloff;              /* [0, 1], default 0.5. Outer share of the zone over which it fades; 0: full strength up to its
+                                   edge */
     uint32_t reserved;          /* 0 */
 } FwWindZoneDef;
 static inline FwWindZoneDef fwDefaultWindZoneDef(void) {
     FwWindZoneDef d; fwInitDef(FW_DEF_WIND_ZONE, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 64 at a time. Counts from the next step on; filtered like the world's wind. [world] */
+/* Creates a wind zone. Takes effect at the next step and is filtered like the world's wind. At most 64 at a time. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateWindZone(FwWorld*, const FwWindZoneDef* def, FwWindZoneId* id);
-/* All of it anew: to turn a fan, or as it starts and stops. [world] */
+/* Replaces the whole def of a zone, for example to turn a fan or to switch it on and off. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWindZone(FwWorld*, FwWindZoneId id, const FwWindZoneDef* def);
 FW_API FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld*, FwWindZoneId id); /* [world] */
-/* Wind on a grid: of a weather map, of the host's own solver. Trilinear between its points; none of it outside. */
+/* Wind on a grid: from a weather map or a solver of the host. Trilinear between its points, nothing outside. */
 typedef struct FwWindGridDef {
     uint32_t structSize, flags; /* flags: 0 */
-    uint32_t blend;             /* FwWindBlend, default FW_WIND_REPLACE: with the world's wind. Zones count after it */
-    uint32_t counts[3];         /* points along the world's x, y, z, [2, 64] each, at most 32768 in all; default 2 */
-    float origin[3];            /* m, world, within +-1e6: where the first point is */
-    float cellSize;             /* m, [0.01, 1000], default 1: from point to point, along each axis */
-    float fade;                 /* m, [0, 1000], default 0: the way inward from its faces on which it fades */
+    uint32_t blend;             /* FwWindBlend with the world's wind, default FW_WIND_REPLACE. Zones apply after the grid */
+    uint32_t counts[3];         /* [2, 64] each, default 2. Points along the world's x, y, z; at most 32768 in all */
+    float origin[3];            /* m, [-1e6, 1e6], world. Position of the first point */
+    float cellSize;             /* m, [0.01, 1000], default 1. Distance between points along each axis */
+    float fade;                 /* m, [0, 1000], default 0. Distance inward from the grid's faces over which it fades */
     uint32_t reserved;          /* 0 */
-    const float* velocities;    /* m/s, 3 of each point, each within +-120; x runs fastest, then y, then z. Copied */
+    const float* velocities;    /* m/s, [-120, 120] each. 3 a point; x runs fastest, then y, then z. Copied */
 } FwWindGridDef;
 static inline FwWindGridDef fwDefaultWindGridDef(void) {
     FwWindGridDef d; fwInitDef(FW_DEF_WIND_GRID, &d, (uint32_t)sizeof d); return d;
 }
-/* In place of the grid that was; null: none any more. Rounded to 1/128 m/s. Counts from the next step on, filtered like
- * the world's wind; meant for a few times a second: a log or a network has some 58 bytes for every eight points in a
- * row of which one changed, where the grid stays where it is, else for all that are not calm. [world] */
+/* Replaces the wind grid; null removes it. Takes effect at the next step and is filtered like the world's wind. Velocities
+ * are rounded to 1/128 m/s. Meant for a few calls a second: a command log or network carries about 58 bytes for each eight
+ * points in a row of which one changed. If the grid moves, it carries all points that are not calm. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWindGrid(FwWorld*, const FwWindGridDef* def);
-/* Gusts: the world's wind and that of its grid are stronger here and weaker there, by noise that drifts with the wind.
- * They reach fronts, embers, plumes, flames, volumetric fires and emitters, a quarter of a second at a time, the same on
- * every backend; not particle fields, nor what zones add or shelter. What plays a baked burn goes live in them. */
+/* Gusts: noise that drifts with the wind scales the world's wind and that of its grid. Gusts reach fronts, embers, plumes,
+ * flames, volumetric fires and emitters. They change every quarter of a second, the same on every backend. They do not reach
+ * particle fields, and they do not scale wind zones. An object that plays a baked burn goes live in gusts. */
 typedef struct FwGustDef {
     uint32_t structSize, flags; /* flags: 0 */
-    float strength;             /* [0, 1], default 0: it blows (1 - strength) to (1 + strength) times as strong */
-    float size;                 /* m, [0.5, 1000], default 12: of a gust; half of it in half of its size */
+    float strength;             /* [0, 1], default 0. The wind varies between (1 - strength) and (1 + strength) times itself */
+    float size;                 /* m, [0.5, 1000], default 12. Grid size of the noise. A second octave has half the size and half
+                                   the amplitude */
 } FwGustDef;
 static inline FwGustDef fwDefaultGustDef(void) {
     FwGustDef d; fwInitDef(FW_DEF_GUSTS, &d, (uint32_t)sizeof d); return d;
 }
-/* From the next step on; strength 0: none. [world] */
+/* Sets the gusts from the next step on. Strength 0 switches them off. [world] */
 FW_API FwResult FW_CALL fwWorld_SetGusts(FwWorld*, const FwGustDef* def);
-/* m/s, at a point (m, world, within +-1e6), now, as all that is there has it. [world] */
+/* Gets the wind in m/s at a point (m, [-1e6, 1e6], world), as objects there receive it now. [world] */
 FW_API FwResult FW_CALL fwWorld_GetWindAt(FwWorld*, const float point[3], float wind[3]);
 
 typedef enum FwRoomFlags {
-    FW_ROOM_REFILL = 1,         /* of fwWorld_SetRoom: its air becomes that of `oxygen`: gas that puts fires out */
+    FW_ROOM_REFILL = 1,         /* fwWorld_SetRoom: sets the room's air to `oxygen`, as gas that puts fires out does */
     FW_ROOM_FLAGS_FORCE32 = 0x7fffffff
 } FwRoomFlags;
-/* A room whose air fires use up. An object is in the room where the middle of its box lies (of its mesh at rest), of
- * several in the one made first; outside of all there is air without end. Fire takes 1 kg of oxygen for 13.1 MJ
- * (Huggett 1980). Below 15 % of oxygen by volume it weakens evenly until nothing burns in 12 %: it gives off less,
- * spreads slower, lights others less, and goes out as it cools. What is still alight grows again when air comes, and
- * what went out lights again where it is still hot enough. Objects with FW_BURNABLE_LITE, volumetric fires and
- * emitters neither use air nor want it.
- * It flashes over (FW_EVENT_FLASHED_OVER) when its fires, in the mean of about a second, give off what Thomas (1981)
- * says that takes: 7.8 kW for each m^2 of its box's sides and 945 kW for each m^3/s of `vent` (378 kW for each m^2.5
- * of A sqrt(h)); once, until they have given off less than half of that. It is told, and changes nothing by itself. */
+/* A room (compartment) whose air fires use up. An object belongs to the room that contains the middle of its box (of the
+ * mesh in rest pose). If several rooms contain it, the first one created counts. Outside all rooms air is unlimited.
+ * Fire takes 1 kg of oxygen for each 13.1 MJ (Huggett 1980). Below 15 % of oxygen by volume it weakens linearly; at 12 %
+ * nothing burns. Weak fire gives off less heat, spreads more slowly, ignites less and goes out as it cools. If air comes back,
+ * what still burns grows again, and surfaces that are still hot enough reignite. Objects with FW_BURNABLE_LITE, volumetric
+ * fires and emitters neither use nor need air.
+ * Flashover raises FW_EVENT_FLASHED_OVER and changes nothing by itself. It occurs when the power of the room's fires, averaged
+ * over about 1 s, reaches the limit of Thomas (1981): 7.8 kW for each m^2 of its box's sides plus 945 kW for each m^3/s of
+ * `vent` (378 kW for each m^2.5 of A sqrt(h)). The event can repeat only after the power fell below half of the limit. */
 typedef struct FwRoomDef {
-    uint32_t structSize, flags; /* FwRoomFlags */
-    float position[3];          /* m, world, within +-1e6: its middle */
-    float rotation[4];          /* unit quaternion x, y, z, w; default 0,0,0,1 */
-    float halfSize[3];          /* m, half of its sides, [0.05, 1000], default 2, 1.25, 2.5 */
-    float volume;               /* m^3 of air, [0.1, 1e6]; 0, the default: that of its box, which is then within that */
-    float vent;                 /* m^3/s of air from outside, [0, 1e4], default 0.01: a leaky room. An opening of A m^2
-                                   and height h m: about 0.4 A sqrt(h) (Kawagoe), a door 0.9 */
-    float oxygen;               /* by volume, [0, 1], default 0.2095: as it is created, and with FW_ROOM_REFILL */
+    uint32_t structSize, flags; /* flags: FwRoomFlags, default 0 */
+    float position[3];          /* m, [-1e6, 1e6], world. Its middle */
+    float rotation[4];          /* unit quaternion x, y, z, w, default 0,0,0,1 */
+    float halfSize[3];          /* m, [0.05, 1000], default 2, 1.25, 2.5. Half of each side */
+    float volume;               /* m^3 of air, [0.1, 1e6], default 0: the volume of its box, which must be in that range */
+    float vent;                 /* m^3/s of outside air, [0, 1e4], default 0.01: a leaky room. An opening of A m^2 and height
+                                   h m lets in about 0.4 A sqrt(h) (Kawagoe); a door 0.9 */
+    float oxygen;               /* share by volume, [0, 1], default 0.2095. Applies at creation and with FW_ROOM_REFILL */
     uint32_t reserved;          /* 0 */
 } FwRoomDef;
 static inline FwRoomDef fwDefaultRoomDef(void) {
     FwRoomDef d; fwInitDef(FW_DEF_ROOM, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 64 at a time. Counts from the next step on. [world] */
+/* Creates a room. Takes effect at the next step. At most 64 at a time. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateRoom(FwWorld*, const FwRoomDef* def, FwRoomId* id);
-/* All of it anew but its air: as a door opens or a ship moves. [world] */
+/* Replaces the whole def of a room but keeps its air, for example when a door opens or a ship moves. [world] */
 FW_API FwResult FW_CALL fwWorld_SetRoom(FwWorld*, FwRoomId id, const FwRoomDef* def);
-/* Who was in it has air without end, or that of another room. [world] */
+/* Destroys a room. Its objects then have unlimited air, or that of another room around them. [world] */
 FW_API FwResult FW_CALL fwWorld_DestroyRoom(FwWorld*, FwRoomId id);
 typedef struct FwRoomState {
     uint32_t structSize;
-    uint32_t objects;           /* burnable meshes that are in it now */
-    uint64_t frameIndex;        /* the rest is as of it, like FwObjectState */
-    float oxygen;               /* by volume, [0, 1] */
-    float strength;             /* of fire in it, [0, 1]: 1 from 15 % of oxygen on, 0 up to 12 % */
-    float power;                /* W that uses its air, mean of the last 1/8 s, at pace 1 */
-    uint32_t flashedOver;       /* 1: it has flashed over and still burns so; 0: not */
-    float flashOverPower;       /* W at which it does */
+    uint32_t objects;           /* burnable meshes in it now */
+    uint64_t frameIndex;        /* frame of the values below, as in FwObjectState */
+    float oxygen;               /* share by volume, [0, 1] */
+    float strength;             /* [0, 1]. Strength of fire in it: 1 at 15 % of oxygen or more, 0 at 12 % or less */
+    float power;                /* W at pace 1. Mean power of the last 1/8 s that uses its air */
+    uint32_t flashedOver;       /* 1: it has flashed over and still burns so */
+    float flashOverPower;       /* W. Power at which it flashes over */
     uint32_t reserved;
 } FwRoomState;
 FW_API FwResult FW_CALL fwWorld_GetRoomState(FwWorld*, FwRoomId id, FwRoomState* state); /* [world] */
@@ -475,99 +488,100 @@ typedef enum FwMaterialPreset {
     FW_MATERIAL_PRESET_FORCE32 = 0x7fffffff
 } FwMaterialPreset;
 
-typedef struct FwMaterialDef { /* spread law: see plugin/docs/model.md. In SI units in every world */
+/* Spread law: plugin/docs/model.md. All values are SI in every world. Defaults are those of FW_MATERIAL_PINE. */
+typedef struct FwMaterialDef {
     uint32_t structSize;
-    uint32_t look;        /* FwMaterialPreset whose appearance is used */
-    float spreadRate;     /* m/s on a flat horizontal sheet in still air, [0, 1]; 0: cannot burn */
-    float windGain;       /* drive per m/s of wind along the surface, [0, 16] */
-    float upGain;         /* drive of a vertical surface, [0, 16] */
-    float headGain;       /* head speed = spreadRate * (1 + headGain * min(drive, driveMax)) [0, 255] */
-    float backGain;       /* back speed = spreadRate / (1 + backGain * drive) [0, 255] */
-    float driveMax;       /* [0, 63] */
-    float lengthToBreadth;/* largest length/breadth of the burnt ellipse, [1, 4]; default 2 */
-    float ceilingGain;    /* speed-up below a ceiling, [0, 4]; default 0.3 */
-    float burnTime;       /* s a texel flames, at pace 1; <= 0: thick fuel, which flames while
-                             thickness * density lasts at burningFlux, and while it is hot enough */
-    float moisture;       /* kg water per kg dry fuel, [0, 2] */
-    float extinctionMoisture; /* moisture at which it no longer spreads, (0, 2] */
-    float thickness;      /* m, of the visible rim and of the consumption, >= 0 */
-    float heatOfCombustion;   /* J/kg */
-    float burningFlux;    /* kg/m^2/s while it flames */
-    float baseColor[3];   /* linear albedo of the fresh material, where no image is given */
-    float baseRoughness;  /* [0, 1] */
-    /* Heat and water: of objects without FW_BURNABLE_LITE. */
-    float density;                 /* kg/m^3, [1, 20000] */
-    float specificHeat;            /* J/kg/K, [100, 10000] */
-    float conductivity;            /* W/m/K, [0.001, 500] */
-    float ignitionTemperature;     /* K of its surface, with a flame near, [300, 2000] */
-    float autoIgnitionTemperature; /* K without one, [ignitionTemperature, 3000] */
-    float flameFeedback;           /* W/m^2 that its own flame gives back to it, [0, 200000]; default
-                                      25000. Below some 9000 a lone flame goes out, as real planks do */
-    float charFloor;               /* thick fuel: share of its burning rate that no char stops, (0, 1] */
-    float waterHeld;               /* g/m^2 of water that stay on it, [0, 1023]; more runs off */
-    float radiantFraction;         /* of its heat that leaves as radiation, [0, 1] */
-    float sootYield;               /* kg of soot per kg burnt, [0, 1] */
-    float recede;         /* share of the thickness that is gone when it is consumed, [0, 1]; the
-                             rest stays as char. Used by FW_BURNABLE_RECEDE */
-    float shrink;         /* of lengths of a charred sheet, [0, 0.5] */
-    float curl;           /* 1/m, of a charred sheet, [0, 200] */
+    uint32_t look;        /* FwMaterialPreset, default FW_MATERIAL_PINE. Selects the appearance */
+    float spreadRate;     /* m/s, [0, 1], default 0.0003. Front speed on a flat horizontal sheet in still air; 0: cannot burn */
+    float windGain;       /* drive for each m/s of wind along the surface, [0, 16], default 0.35 */
+    float upGain;         /* drive of a vertical surface, [0, 16], default 1 */
+    float headGain;       /* [0, 255], default 8. Head speed = spreadRate * (1 + headGain * min(drive, driveMax)) */
+    float backGain;       /* [0, 255], default 2. Back speed = spreadRate / (1 + backGain * drive) */
+    float driveMax;       /* [0, 63], default 4 */
+    float lengthToBreadth;/* [1, 4], default 2. Largest length / breadth of the burnt ellipse */
+    float ceilingGain;    /* [0, 4], default 0.3. Speed-up below a ceiling */
+    float burnTime;       /* s at pace 1, [-1e6, 1e6], default 0. Time that a texel flames. 0 or less: thick fuel, which flames
+                             while it is hot enough and its fuel (thickness * density, burning at burningFlux) lasts */
+    float moisture;       /* kg of water per kg of dry fuel, [0, 2], default 0 */
+    float extinctionMoisture; /* kg/kg, [0.001, 2], default 0.4. Moisture at which fire no longer spreads */
+    float thickness;      /* m, [0, 100], default 0.02. Of the visible rim and of the consumption */
+    float heatOfCombustion;   /* J/kg, [0, 2e8], default 15e6 */
+    float burningFlux;    /* kg/m^2/s, [0, 10], default 0.0075. Mass loss while it flames */
+    float baseColor[3];   /* linear albedo, [0, 1], default 0.50, 0.33, 0.18. Fresh material without an image */
+    float baseRoughness;  /* [0, 1], default 0.7 */
+    /* Heat and water: for objects without FW_BURNABLE_LITE. */
+    float density;                 /* kg/m^3, [1, 20000], default 450 */
+    float specificHeat;            /* J/kg/K, [100, 10000], default 2500 */
+    float conductivity;            /* W/m/K, [0.001, 500], default 0.12 */
+    float ignitionTemperature;     /* K, [300, 2000], default 623. Surface temperature of ignition near a flame */
+    float autoIgnitionTemperature; /* K, [ignitionTemperature, 3000], default 873. Ignition without a flame */
+    float flameFeedback;           /* W/m^2, [0, 200000], default 25000. Heat that its own flame returns to the surface. Below
+                                      about 9000 a lone flame goes out, as on real planks */
+    float charFloor;               /* share, [0.01, 1], default 0.38. Thick fuel: share of its burning rate that char cannot
+                                      stop */
+    float waterHeld;               /* g/m^2, [0, 1023], default 200. Water that stays on the surface; more runs off */
+    float radiantFraction;         /* share, [0, 1], default 0.3. Share of its heat that leaves as radiation */
+    float sootYield;               /* kg of soot per kg burnt, [0, 1], default 0.015 */
+    float recede;         /* share, [0, 1], default 0.3. Share of the thickness that is gone once it is consumed; the rest stays
+                             as char. For FW_BURNABLE_RECEDE */
+    float shrink;         /* share, [0, 0.5], default 0. Shrinkage of the lengths of a charred sheet */
+    float curl;           /* 1/m, [0, 200], default 0. Curvature of a charred sheet */
 } FwMaterialDef;
 static inline FwMaterialDef fwDefaultMaterialDef(void) { /* pine */
     FwMaterialDef d; fwInitDef(FW_DEF_MATERIAL, &d, (uint32_t)sizeof d); return d;
 }
-/* Overwrites all but structSize with a preset. [any] */
+/* Overwrites all fields but structSize with a preset. [any] */
 FW_API FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset);
-FW_API const char* FW_CALL fwMaterialPresetName(uint32_t preset); /* [any] */
+FW_API const char* FW_CALL fwMaterialPresetName(uint32_t preset); /* static text, never null [any] */
 FW_API FwResult FW_CALL fwWorld_CreateMaterial(FwWorld*, const FwMaterialDef* def, FwMaterialId* id); /* [world] */
-FW_API FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld*, FwMaterialId id); /* users keep their copy [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld*, FwMaterialId id); /* its objects keep their copy [world] */
 
 /* ---- images: base colours --------------------------------------------------------------------------- */
 
 typedef struct FwImageDef {
     uint32_t structSize, flags; /* flags: 0 */
-    uint32_t width, height;     /* [1, 8192] */
+    uint32_t width, height;     /* px, [1, 8192] */
     const void* pixels;         /* RGBA8, rows top first, tightly packed; sRGB colour, linear alpha */
-    float alphaCutoff;          /* [0, 1], default 0: alpha is ignored. Above 0 the image is a cut-out: where its
-                                   alpha is below this, objects that show it are not there. They are not drawn
-                                   there, hold no fuel that burns (fire goes around) and bear nothing (see
-                                   FW_EVENT_STRUCTURE_BROKE). A texel of the burn map
-                                   burns if any part of it is there. Costs such objects 2 bytes a texel */
+    float alphaCutoff;          /* [0, 1], default 0: alpha is ignored. Above 0 the image is a cut-out: objects that show it do
+                                   not exist where its alpha is lower. There they draw nothing, hold no fuel (fire goes
+                                   around) and carry nothing (see FW_EVENT_STRUCTURE_BROKE). A texel of the burn map can burn
+                                   if any part of it exists. Costs such objects 2 bytes a texel */
     float reserved;             /* 0 */
 } FwImageDef;
 static inline FwImageDef fwDefaultImageDef(void) {
     FwImageDef d; fwInitDef(FW_DEF_IMAGE, &d, (uint32_t)sizeof d); return d;
 }
 FW_API FwResult FW_CALL fwWorld_CreateImage(FwWorld*, const FwImageDef* def, FwImageId* id); /* [world] */
-FW_API FwResult FW_CALL fwWorld_DestroyImage(FwWorld*, FwImageId id); /* objects fall back to their base colour [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyImage(FwWorld*, FwImageId id); /* its objects fall back to their base colour [world] */
 
 /* ---- meshes: baked once, shared by any number of objects ----------------------------------------------- */
 
 typedef struct FwMeshDef {
-    uint32_t structSize, flags;    /* FwMeshFlags */
-    const float* positions;        /* 3 per vertex, m, required unless cooked. Here m is the mesh's unit */
-    const float* normals;          /* 3 per vertex, or null: computed */
-    const float* uvs;              /* 2 per vertex, or null */
-    const float* details;          /* 2 per vertex, m on the surface, y along the grain, or null */
-    const uint32_t* colors;        /* RGBA8 linear per vertex, or null: white */
-    const void* indices;           /* 3 per triangle */
-    const uint8_t* triangleMaterials; /* 1 per triangle, [0, 7], or null: 0 */
-    uint32_t vertexCount, indexCount;
-    uint32_t indexSize;            /* bytes: 2 or 4 (default) */
-    uint32_t mapSize;              /* largest side of the burn map in texels, [8, 4096], default 512 */
-    float texelsPerMetre;          /* wished density, (0, 4096], default 128; lowered to fit mapSize */
-    float noiseAmplitude;          /* raggedness of the front, [0, 0.5], default 0.15 */
-    float noiseFeature;            /* metres in every unit, [0.0001, 1000], default 0.012 */
-    uint32_t noiseSeed;
-    const void* cooked;            /* from fwCookMesh; then the arrays above are not read */
-    uint64_t cookedSize;           /* bytes */
-    float metersPerUnit;           /* m, [0.0001, 1000]: length of the mesh's unit, in which are the arrays above and all of its
-                                      object space: transforms lead from it, pins, skinned vertices and FwMeshInfo are in
-                                      it. 0, default: the world's unit; with fwCookMesh: 1. Of a cooked mesh, whose bytes
-                                      hold metres: the unit of its object space from here on */
+    uint32_t structSize, flags;    /* flags: FwMeshFlags, default 0 */
+    const float* positions;        /* 3 a vertex, in the mesh's unit (metersPerUnit). Required unless cooked */
+    const float* normals;          /* 3 a vertex; null: computed */
+    const float* uvs;              /* 2 a vertex, or null */
+    const float* details;          /* 2 a vertex: m on the surface in the mesh's unit, y along the grain; or null */
+    const uint32_t* colors;        /* RGBA8, linear, 1 a vertex; null: white */
+    const void* indices;           /* 3 a triangle */
+    const uint8_t* triangleMaterials; /* 1 a triangle, [0, 7]; null: 0 */
+    uint32_t vertexCount, indexCount; /* [3, 16777216]; [3, 50331648], a multiple of 3 */
+    uint32_t indexSize;            /* bytes, 2 or 4, default 4 */
+    uint32_t mapSize;              /* texels, [8, 4096], default 512. Largest side of the burn map */
+    float texelsPerMetre;          /* 1/m, (0, 4096], default 128. Requested density; lowered to fit mapSize */
+    float noiseAmplitude;          /* [0, 0.5], default 0.15. Raggedness of the front */
+    float noiseFeature;            /* metres in every unit, [0.0001, 1000], default 0.012. Size of that noise */
+    uint32_t noiseSeed;            /* default 1 */
+    const void* cooked;            /* bytes of fwCookMesh; if given, the library ignores the arrays above */
+    uint64_t cookedSize;           /* bytes, [1, 2^32] */
+    float metersPerUnit;           /* m, [0.0001, 1000], default 0: the world's unit; in fwCookMesh 0 means 1. Length of the
+                                      mesh's unit: for the arrays above and all of its object space (transforms start from it;
+                                      pins, skinned vertices and FwMeshInfo use it). Cooked bytes hold metres: for a cooked
+                                      mesh this sets only the unit of its object space */
     uint32_t reserved;             /* 0 */
 } FwMeshDef;
 typedef enum FwMeshFlags {
-    FW_MESH_TRUST_UVS = 1, /* use the UVs as the burn map's even if they overlap or stretch */
+    FW_MESH_TRUST_UVS = 1, /* use the UVs for the burn map, even if they overlap or stretch */
     FW_MESH_FLAGS_FORCE32 = 0x7fffffff
 } FwMeshFlags;
 static inline FwMeshDef fwDefaultMeshDef(void) {
@@ -575,154 +589,150 @@ static inline FwMeshDef fwDefaultMeshDef(void) {
 }
 typedef struct FwMeshInfo {
     uint32_t structSize;
-    uint32_t mapWidth, mapHeight, texels, charts;
+    uint32_t mapWidth, mapHeight, texels, charts; /* texels: those that triangles cover */
     uint32_t vertices, triangles, degenerateTriangles, openEdges, nonManifoldEdges;
-    uint32_t usedOwnUvs, reserved;
+    uint32_t usedOwnUvs, reserved; /* 1: the burn map uses the UVs of the mesh */
     float area, texelArea;         /* m^2 */
     float boundsLow[3], boundsHigh[3]; /* m, object space */
-    float texelsPerMetre, bakeMilliseconds;
+    float texelsPerMetre, bakeMilliseconds; /* 1/m; ms */
 } FwMeshInfo;
-/* Bakes the burn domain: up to seconds for 100k triangles. [world] */
+/* Creates a mesh and bakes its burn map. Takes up to seconds for 100k triangles; cooked bytes load quickly.
+ * FW_ERROR_BAD_DATA: the mesh or the cooked bytes are unusable. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateMesh(FwWorld*, const FwMeshDef* def, FwMeshId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyMesh(FwWorld*, FwMeshId id); /* refused while an object uses it [world] */
 FW_API FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld*, FwMeshId id, FwMeshInfo* info); /* [world] */
-/* The bake alone, for a tool, a cache or a worker thread. Call with buffer null for the size, or
- * with enough room; *size is what is (or would be) written. [any] */
+/* Bakes a mesh to bytes: for tools, caches and worker threads. If `buffer` is null, *size gets the size needed; otherwise
+ * *size is the capacity on entry and the bytes written on return. [any] */
 FW_API FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* def, void* buffer, uint64_t* size);
 
-/* ---- burnable meshes: what burns ------------------------------------------------------------------------ */
+/* ---- burnable meshes: objects that burn ----------------------------------------------------------------- */
 
 typedef enum FwBurnableFlags {
-    FW_BURNABLE_HIDDEN = 1,     /* simulated, not drawn by us */
-    FW_BURNABLE_TWO_SIDED = 2,  /* draw back faces too */
-    FW_BURNABLE_PUBLISHED = 4,  /* spread by the published 16-tap kernel, for comparison */
-    FW_BURNABLE_NO_HOLES = 8,   /* never consumed */
-    FW_BURNABLE_LITE = 16,      /* no temperature, fuel and water per texel: 8 bytes a texel less, and
-                                   nothing to do for what burns behind the front. It burns by
-                                   burnTime alone, and water stays until it is dried */
-    FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to its burn map's
-                                   cells, which recede as the material is consumed */
-    FW_BURNABLE_REFINE_PUBLISHED = 64, /* instead of FW_BURNABLE_REFINE: by the published scheme, for
-                                   comparison. A template of four-way splits on each triangle, refined
-                                   where a heat boundary has come to that grows from the first place
-                                   a host lights (what another object lights stays coarse); burnt
-                                   triangles vanish whole. It cracks where levels meet, and has no
-                                   budget. Same fire, same mesh */
-    FW_BURNABLE_RECEDE = 128,   /* what we draw recedes as it is consumed; for solids. Closed ones of up to
-                                   65536 triangles show walls behind holes, as they do without it */
-    FW_BURNABLE_SHELL = 256,    /* a thin sheet: hangs, flutters, curls and shrinks as it chars, tears;
-                                   see pins. Cosmetic: fire spreads and is found where it rests */
+    FW_BURNABLE_HIDDEN = 1,     /* simulated but not drawn by the library */
+    FW_BURNABLE_TWO_SIDED = 2,  /* draws back faces too */
+    FW_BURNABLE_PUBLISHED = 4,  /* fire spreads by the published 16-tap kernel, for comparison */
+    FW_BURNABLE_NO_HOLES = 8,   /* the surface is never consumed */
+    FW_BURNABLE_LITE = 16,      /* no temperature, fuel or water for each texel. Saves 8 bytes a texel and all work behind the
+                                   front. The object burns by burnTime alone, and water stays until FW_DRY */
+    FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to the texels of its burn map. The refined
+                                   surface recedes as the material is consumed */
+    FW_BURNABLE_REFINE_PUBLISHED = 64, /* instead of FW_BURNABLE_REFINE: the published adaptive refinement, for comparison.
+                                   Each triangle has a template of four-way splits. It refines where a heat boundary reaches
+                                   it; the boundary grows from the host's first ignition (fire from other objects stays
+                                   coarse). Burnt triangles vanish whole, levels crack where they meet, and there is no
+                                   budget. Fire and mesh are the same */
+    FW_BURNABLE_RECEDE = 128,   /* for solids: the drawn surface recedes as it is consumed. Closed meshes of up to 65536
+                                   triangles show inner walls behind holes; that needs no flag */
+    FW_BURNABLE_SHELL = 256,    /* for thin sheets: the sheet hangs, flutters, curls and shrinks as it chars, and tears; see
+                                   FwPin. Cosmetic: fire spreads and is queried in the rest pose */
     FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */
     FW_BURNABLE_SKINNED = 1024, /* the host moves its vertices: fwWorld_SetVertexPositions */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
-    FW_BURNABLE_NO_DAMAGE = 4096, /* its fire takes its course, and nothing is seen of it but flames:
-                                     no char, no holes, no recession, no curling, no refinement */
-    FW_BURNABLE_Z_PASS = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has caught, crossed
-                                   walls are hidden as published. Costs a draw of its depth for each
-                                   view, shows no insides, and needs a target of FW_DEPTH_TEST */
+    FW_BURNABLE_NO_DAMAGE = 4096, /* it burns as usual but shows only flames: no char, holes, recession, curling or refinement */
+    FW_BURNABLE_Z_PASS = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has ignited, self-intersections are hidden as
+                                   published. Costs one depth draw of the object for each view, shows no insides, and needs a
+                                   target with FW_DEPTH_TEST */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 
-typedef struct FwPin { /* holds the points of a sheet within radius m of a segment; object space, m */
-    float from[3], to[3], radius, reserved; /* radius >= 0; reserved: 0 */
+typedef struct FwPin { /* holds the points of a sheet that are within `radius` of a segment */
+    float from[3], to[3], radius, reserved; /* m, [-1e6, 1e6], object space; radius: m, [0, 1e6]; reserved: 0 */
 } FwPin;
 typedef struct FwBurnableMeshDef {
-    uint32_t structSize, flags;       /* FwBurnableFlags */
+    uint32_t structSize, flags;       /* flags: FwBurnableFlags, default 0. At most one of SKINNED, REFINE, REFINE_PUBLISHED,
+                                         RECEDE, SHELL and SPRINGS */
     FwMeshId mesh;
-    FwMaterialId materials[8];        /* by triangle material, default all null: the object is pine.
-                                         Once one is named, null ones are noncombustible */
+    FwMaterialId materials[8];        /* by triangle material. All null: pine. If one is set, null ones are noncombustible */
     FwImageId baseColor;              /* null: the material's base colour and procedural detail */
-    float transform[16];              /* the mesh's unit to the world's: rotation, a scale per axis (the largest at most
-                                         16 times the smallest), a mirror; no shear. Default identity.
-                                         Objects of one mesh and one shape share it; another shape costs a
-                                         copy of the mesh's planes. */
-    float moisture;                   /* added to the materials' own, [0, 2] */
-    float tint[3];                    /* multiplies the base colour, default 1,1,1 */
-    const uint8_t* multiplier;        /* speed multiplier over the burn map, 128 = 1, 0 = cannot burn */
-    uint32_t multiplierWidth, multiplierHeight; /* resampled (nearest) to the burn map */
-    uint64_t userData;                /* comes back in events */
-    FwImageId baseColors[8];          /* by triangle material, default null: baseColor there too */
-    uint32_t refineDepth;             /* FW_BURNABLE_REFINE..: halvings of an edge, [0, 5], default 5 */
-    float refinePixelsPerEdge;        /* length on the screen of the finest edges, [1, 1000], default 8 */
-    const FwPin* pins;                /* of FW_BURNABLE_SHELL, or null: it falls */
+    float transform[16];              /* mesh unit to world unit, default identity. Rotation, mirror and a scale for each axis;
+                                         the largest scale is at most 16 times the smallest; no shear. Objects of one mesh
+                                         share its buffers if the ratio of their scales is the same; each other ratio costs a
+                                         copy */
+    float moisture;                   /* kg/kg, [0, 2], default 0. Added to that of the materials */
+    float tint[3];                    /* factor, [0, 100], default 1. Multiplies the base colour */
+    const uint8_t* multiplier;        /* 128: factor 1, 0: cannot burn; or null. Factors of the front speed over the burn map */
+    uint32_t multiplierWidth, multiplierHeight; /* [1, 8192] with a multiplier; resampled (nearest) to the burn map */
+    uint64_t userData;                /* returned in events */
+    FwImageId baseColors[8];          /* by triangle material; null: baseColor */
+    uint32_t refineDepth;             /* [0, 5], default 5. FW_BURNABLE_REFINE...: how often an edge is halved */
+    float refinePixelsPerEdge;        /* px, [1, 1000], default 8. Length of the finest edges on the screen */
+    const FwPin* pins;                /* for FW_BURNABLE_SHELL; null: the sheet falls */
     uint32_t pinCount;                /* [0, 8] */
-    float ground;                     /* m, world, along up: sheets fall no deeper; default -1e9 */
-    float spreadChance;               /* as in FwWorldDef, of this object: the chance of its fire to jump,
-                                         times the world's; default 1 */
-    uint32_t maxHops;                 /* 0: no limit */
-    uint32_t maxBurningTiles;         /* of this object, as FwWorldDef's; 0: no limit */
-    float timeToLive;                 /* s, 0: no limit */
-    /* Of FW_BURNABLE_REFINE_PUBLISHED: its heat boundary at a radius r is where
+    float ground;                     /* m along up, world, [-1e9, 1e9], default -1e9. Sheets fall no deeper */
+    float spreadChance;               /* [0, 1], default 1. As in FwWorldDef, for fire of this object; multiplied by the
+                                         world's chance */
+    uint32_t maxHops;                 /* default 0: no limit. As in FwWorldDef */
+    uint32_t maxBurningTiles;         /* default 0: no limit. As in FwWorldDef, for this object */
+    float timeToLive;                 /* s, [0, 1e6], default 0: no limit. As in FwWorldDef */
+    /* FW_BURNABLE_REFINE_PUBLISHED: its heat boundary at a radius r is where
      * r^2 = |sin(pi Theta / heatStep) + sin(pi Theta) + heatPsi |x - x0|^2|, Theta random. */
-    float heatPsi;                    /* 1/m^2, [0, 1e8]; 0, default: one over the square of the mean
-                                         finest edge */
-    float heatStep;                   /* delta r: what r grows by in a step of 1/32 s, [0, 1000]; 0,
-                                         default: as fast as the materials' fastest fire */
-    /* FW_EVENT_STRUCTURE_BROKE, looked for twice a second of the world's time. What is gone is where holes are:
-     * what burnt out, and gave way. Costs some 25 ns a texel each time; with a device a copy of its burn map, 12 bytes a
-     * texel. */
-    float breakShare;                 /* (0, 1]: raise it once that much of its surface is gone; 0, default: never */
-    float breakArea;                  /* m^2, (0, 1e6]: raise it for each part of so much or more that has lost its
-                                         way, over what is left, to where it stands: the lowest two texels of what
-                                         hung together when the mesh was made, as it is turned now; of
-                                         FW_BURNABLE_SHELL to its pins. 0, default: never */
+    float heatPsi;                    /* 1/m^2, [0, 1e8], default 0: 1 / (mean finest edge)^2 */
+    float heatStep;                   /* [0, 1000], default 0: as fast as the materials' fastest fire. Growth of r in a step
+                                         of 1/32 s (delta r) */
+    /* FW_EVENT_STRUCTURE_BROKE. Checked twice a second of world time. Holes count as gone: burnt out or collapsed. Each check
+     * costs about 25 ns a texel; on a device it copies the burn map, 12 bytes a texel. */
+    float breakShare;                 /* share, [0, 1], default 0: never. Raises the event once this share of the surface is
+                                        gone */
+    float breakArea;                  /* m^2, [0, 1e6], default 0: never. Minimum area of a disconnected piece that raises the
+                                         event. A piece is disconnected when no remaining surface connects it to its supports.
+                                         Supports: texels of each connected part of the mesh that are at most two texel sides
+                                         above its lowest, in the present orientation; for FW_BURNABLE_SHELL its pins */
 } FwBurnableMeshDef;
 static inline FwBurnableMeshDef fwDefaultBurnableMeshDef(void) {
     FwBurnableMeshDef d; fwInitDef(FW_DEF_BURNABLE_MESH, &d, (uint32_t)sizeof d); return d;
 }
 FW_API FwResult FW_CALL fwWorld_CreateBurnableMesh(FwWorld*, const FwBurnableMeshDef* def, FwBurnableMeshId* id); /* [world] */
 FW_API FwResult FW_CALL fwWorld_DestroyBurnableMesh(FwWorld*, FwBurnableMeshId id); /* [world] */
-/* As FwBurnableMeshDef::transform; wind and gravity follow the new pose at the next latch, and so
- * does the front's speed under another size. Another ratio of the axes than at creation stretches what
- * is drawn and asked, while fire goes on in the metric of its creation (times the mean scale); a
- * mirror is settled at creation. [world] */
+/* Moves an object; `transform` is as FwBurnableMeshDef::transform. Wind, gravity and (for another size) the front's speed
+ * follow when the next parameters are latched, at most a quarter of a second later. Another ratio of the scales than at
+ * creation stretches pictures and queries; fire keeps the metric of its creation, times the mean scale. A mirror is fixed at
+ * creation. [world] */
 FW_API FwResult FW_CALL fwWorld_SetTransform(FwWorld*, FwBurnableMeshId id, const float transform[16]);
-/* Of an object with FW_BURNABLE_SKINNED: where the vertices of its mesh (FwMeshDef's, in its order
- * and object space) are from the next frame on; 3 floats each, m, within +-1e6. normals: 3 each, or null:
- * they follow the triangles. Fire spreads in the metric and under the normals of the mesh at rest and
- * does not know of this; what is drawn, flames, lights, ignitions, queries and tags follow. [world] */
+/* Sets the vertices of an object with FW_BURNABLE_SKINNED, from the next frame on: in the order and object space of its mesh.
+ * `positions`: 3 a vertex, m, [-1e6, 1e6]. `normals`: 3 a vertex; null: computed from the triangles. Pictures, flames,
+ * lights, ignitions, queries and tags follow. Fire still spreads in the metric and along the normals of the rest pose.
+ * [world] */
 FW_API FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld*, FwBurnableMeshId id, const float* positions,
                                                    const float* normals, uint32_t vertexCount);
 FW_API FwResult FW_CALL fwWorld_SetHidden(FwWorld*, FwBurnableMeshId id, uint32_t hidden); /* [world] */
 
 typedef enum FwIgnitionKind {
-    FW_IGNITE = 0,      /* receptive texels catch fire now */
-    FW_WET = 1,         /* wets: what burns goes out if the water takes more heat than the fire gives,
-                           wet texels cannot catch until heat or air has dried them (FW_BURNABLE_LITE:
-                           goes out at once, stays wet until FW_DRY) */
-    FW_DRY = 2,         /* dries what was wetted */
-    FW_EXTINGUISH = 3,  /* puts out, leaves dry: may catch again from a live neighbour */
+    FW_IGNITE = 0,      /* unburnt, dry texels ignite now */
+    FW_WET = 1,         /* wets texels. A burning texel goes out if water takes more heat than fire gives. A wet texel cannot
+                           ignite until heat or air has dried it. FW_BURNABLE_LITE: goes out at once, stays wet until FW_DRY */
+    FW_DRY = 2,         /* dries wet texels */
+    FW_EXTINGUISH = 3,  /* puts out and leaves dry: a texel may reignite from a burning neighbour */
     FW_IGNITION_KIND_FORCE32 = 0x7fffffff
 } FwIgnitionKind;
-typedef struct FwIgnitionDef { /* a ball against one object or all of them */
+typedef struct FwIgnitionDef { /* a ball that acts on one object or on all of them */
     uint32_t structSize;
-    uint32_t kind;            /* FwIgnitionKind */
-    FwBurnableMeshId object;  /* null: every object the ball touches */
-    float position[3];        /* m, world */
-    float radius;             /* m, >= 0; the nearest texel within reach counts at least */
-    float delay;              /* s from now, [0, 3600] */
-    float water;              /* FW_WET: g/m^2, [0, 1023]; 0: as much as the material holds */
+    uint32_t kind;            /* FwIgnitionKind, default FW_IGNITE */
+    FwBurnableMeshId object;  /* null: every object that the ball touches */
+    float position[3];        /* m, [-1e6, 1e6], world */
+    float radius;             /* m, [0, 1e6], default 0. Includes at least the nearest texel within reach */
+    float delay;              /* s from now, [0, 3600], default 0 */
+    float water;              /* g/m^2, [0, 1023], default 0: as much as the material holds. For FW_WET; otherwise 0 */
     uint32_t reserved[2];
 } FwIgnitionDef;
 static inline FwIgnitionDef fwDefaultIgnitionDef(void) {
     FwIgnitionDef d; fwInitDef(FW_DEF_IGNITION, &d, (uint32_t)sizeof d); return d;
 }
-/* Queued; takes effect in the simulation step whose window holds its time. *texels (may be null) gets how
- * many texels it addresses. FW_NOTHING_THERE: it addresses none, or as FW_IGNITE none that can burn
- * (noncombustible, cut out, a multiplier of 0, or water that was queued before it). Then the log (FW_LOG_INFO) and
- * fwWorld_GetLastMessage say why FW_IGNITE lights nothing: the nearest object and its distance, or the
- * material. What earlier steps made wet is not known here: see FW_POINT_WET of fwWorld_RequestPoint. [world] */
+/* Queues an ignition, wetting, drying or extinction. Takes effect in the step whose window contains its time. *texels (may be
+ * null) gets the number of texels that it addresses. FW_NOTHING_THERE: it addresses no texel, or FW_IGNITE addresses none that
+ * can burn (noncombustible, cut out, multiplier 0, or wetted by a queued call). Then the log (FW_LOG_INFO) and
+ * fwWorld_GetLastMessage name the cause: the nearest object and its distance, or the material. Water of earlier steps is
+ * unknown here: see FW_POINT_WET of fwWorld_RequestPoint. [world] */
 FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint32_t* texels);
 
-/* The burn of `from` goes on on `to`, an object of another mesh of the same shape: a level of detail. With the next step each
- * texel of `to` gets the state, fuel, temperature and water that the nearest texel of `from` has, in object space with both
- * at rest, of those that face the same way (within 60 degrees) before others; none, where none is within 5 % of the
- * diagonal of its box and two texels. So the share of the area that burnt stays what it is, to a texel along its edge. What
- * cannot burn stays as it is. Events and FwObjectState of `to` go on from those of `from`; tags and queries stay with their
- * object. `from` keeps its burn: destroy it from the next step on (fwWorld_DestroyLater waits for that), or hide it and put it out. Bit by bit the same on every
- * backend, in logs, timelines and networks. Refused: unless both have heat or both FW_BURNABLE_LITE; with
- * FW_BURNABLE_PUBLISHED; while either plays a baked burn or is part of another transfer; where less than half of `to` has
- * such a texel (FW_ERROR_BAD_DATA). [world] */
+/* Transfers the burn of `from` to `to`, an object with another mesh of the same shape: a level of detail. At the next step
+ * each texel of `to` copies state, fuel, temperature and water of the nearest texel of `from`. Nearest: in object space, in
+ * rest pose. Texels that face the same way (within 60 degrees) come first. A texel copies nothing if none is within 5 % of the
+ * diagonal of `to`'s box plus two texels. The burnt share of the area stays, to within a texel along its edge. Noncombustible
+ * texels stay unchanged. Events and FwObjectState of `to` continue those of `from`; tags and queries stay with their object.
+ * `from` keeps its burn. Destroy it after the next step (fwWorld_DestroyLater waits for that), or hide it and put it out.
+ * The result is bit-identical on every backend and in command logs, timelines and networks.
+ * FW_ERROR_INVALID_ARGUMENT: one has FW_BURNABLE_LITE and the other not; either has FW_BURNABLE_PUBLISHED, plays a baked burn
+ * or takes part in another transfer. FW_ERROR_BAD_DATA: less than half of `to` has a matching texel. [world] */
 FW_API FwResult FW_CALL fwWorld_TransferBurn(FwWorld*, FwBurnableMeshId from, FwBurnableMeshId to);
 
 /* ---- volumetric fires: flames without fuel ----------------------------------------------------------------- */
@@ -733,484 +743,483 @@ typedef enum FwFirePreset {
     FW_FIRE_PRESET_COUNT = 9, FW_FIRE_PRESET_FORCE32 = 0x7fffffff
 } FwFirePreset;
 typedef enum FwVolumetricFireFlags {
-    FW_FIRE_HIDDEN = 1,   /* not drawn, and no light; time passes for it */
+    FW_FIRE_HIDDEN = 1,   /* neither drawn nor a light; its time continues */
     FW_FIRE_NO_SMOKE = 2,
-    FW_FIRE_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
-    FW_FIRE_NO_COLLISION = 8, /* goes through colliders and blockers */
-    FW_FIRE_IGNITES = 16, /* lights burnable meshes that it touches for long enough, see below */
+    FW_FIRE_NO_LIGHT = 4, /* fwWorld_GetLights omits it */
+    FW_FIRE_NO_COLLISION = 8, /* passes through colliders and occluder boxes */
+    FW_FIRE_IGNITES = 16, /* ignites burnable meshes that it touches long enough; see FwVolumetricFireDef */
     FW_FIRE_FLAGS_FORCE32 = 0x7fffffff
 } FwVolumetricFireFlags;
-typedef enum FwFireTier { /* how a view shows it: the view that RecordOutside gets; others march what they show */
-    FW_FIRE_TIER_AUTO = 0,       /* by its size on the screen; 32 flames are marched at most, the 16 largest high */
-    FW_FIRE_TIER_MARCH_HIGH = 1, /* each frame, up to 64 samples a ray. Of one that asks for it rays that meet little
-                                    flame take more than AUTO lets them: its thin tongues show the least grain,
-                                    and it costs half as much again */
-    FW_FIRE_TIER_MARCH_LOW = 2,  /* each frame, two thirds of them */
-    FW_FIRE_TIER_IMPOSTOR = 3,   /* a card that faces the camera, up to 24 cells across the flame: marched as those
-                                    are, but twelve in a frame, in turn, however many there are. Meant for flames
-                                    of less than 13 px across */
-    FW_FIRE_TIER_SLICES = 4,     /* planes across the view through the flame's lattice, a sample each: the published
-                                    method, of use where little else may run before the pass. Layers may show.
-                                    Where we tone map (FwOutputEncoding other than FW_OUTPUT_LINEAR) they would add
-                                    up wrongly: there it is marched, low */
-    FW_FIRE_TIER_FLIPBOOK = 5,   /* a card as those are, of pages that flames alike share: of one of them a page is
-                                    marched in each frame, and the last 32 are a book. Each shows them up to 22
-                                    frames late, half of them mirrored, as wide, high and leaning as it is itself.
-                                    Alike: of the same look, nearly as wide, as high for that, and seen as steeply,
-                                    with nothing in their way. There are 4 books; until one is whole, and where
-                                    there is none, it is a card of its own. AUTO takes it for flames alike of 10
-                                    to 24 px across, and of any size for those beyond the 32 */
+typedef enum FwFireTier { /* how the views of fwWorld_RecordOutside show a fire. Other views march all fires as they draw */
+    FW_FIRE_TIER_AUTO = 0,       /* by size on the screen. Marches at most 32 flames, the 16 largest at high quality */
+    FW_FIRE_TIER_MARCH_HIGH = 1, /* marched each frame with up to 64 samples a ray. If the host requests it, rays
+                                    through thin regions take more samples than with AUTO: thin flame tongues show the least
+                                    grain. Cost: about 1.5 times that of AUTO */
+    FW_FIRE_TIER_MARCH_LOW = 2,  /* marched each frame with two thirds of those samples */
+    FW_FIRE_TIER_IMPOSTOR = 3,   /* an impostor of its own: a billboard, marched at up to 24 march pixels across. Twelve
+                                    impostors are marched in each frame, round-robin, whatever their number. Meant for flames
+                                    less than 13 px across */
+    FW_FIRE_TIER_SLICES = 4,     /* the published method, for comparison: view-aligned planes through the flame's lattice, one
+                                    sample each. For hosts that can run little before their pass. Layers may be visible. Slices
+                                    need FW_OUTPUT_LINEAR; with another FwOutputEncoding they would blend wrongly, so the fire
+                                    is marched low instead */
+    FW_FIRE_TIER_FLIPBOOK = 5,   /* an impostor that similar flames share. Each frame marches one of them into an atlas of the
+                                    last 32 frames. Each flame shows the atlas up to 22 frames late, with its own width,
+                                    height and lean; half of them are mirrored. Similar: the same appearance, nearly the same
+                                    width, height for that width and view elevation, and no obstacle. There are 4 atlases.
+                                    Without a complete atlas a flame has an impostor of its own. AUTO uses this tier for
+                                    similar flames 10 to 24 px across, and for those of any size beyond the 32 */
     FW_FIRE_TIER_FORCE32 = 0x7fffffff
 } FwFireTier;
-typedef struct FwFirePoint { /* of the line that a flame follows, its base first */
-    float position[3];       /* m, world, within +-1e6 */
-    float radius;            /* m, [0, 100], of the tube that burns there */
+typedef struct FwFirePoint { /* a point of the line that a flame follows, base first */
+    float position[3];       /* m, [-1e6, 1e6], world */
+    float radius;            /* m, [0, 100]. Radius of the burning tube */
 } FwFirePoint;
-/* A flame as high as its power and width make it (Heskestad), pulsing at its own rate. Its gas rises, leans in
- * the wind, trails behind a motion, flows around colliders and blockers; fires near each other lean together,
- * and as one they are taller. Too little power for its width burns as many small flames. Floats, for the eye:
- * no two machines need agree on them. Only FW_FIRE_IGNITES changes what burns: eight times a second each burnable
- * mesh within the flame, as position, diameter, power, windResponse and the world's wind make it (or within
- * radius of the points), counts how long it has been there; after its material's ignition time under 35 kW/m^2,
- * at the world's pace, what the flame covers catches. Factors multiply what the preset says. */
+/* Power and width set the height of a flame (Heskestad); it pulses at its own rate. Its gas rises, leans in the wind, trails
+ * behind a motion, and flows around colliders and occluder boxes. Fires near each other lean together and, merged, grow
+ * taller. With too little power for its width a fire burns as many small flames. Floats, cosmetic: machines may differ.
+ * Only FW_FIRE_IGNITES changes what burns. Eight times a second each burnable mesh within the flame counts its exposure.
+ * Position, diameter, power, windResponse and the world's wind define the flame there (with points: their radius). After the
+ * material's ignition time under 35 kW/m^2, at the world's pace, the covered surface ignites.
+ * Fields with the unit "factor" multiply the value of the preset. */
 typedef struct FwVolumetricFireDef {
-    uint32_t structSize, flags; /* FwVolumetricFireFlags */
-    uint32_t preset;            /* FwFirePreset: its look; size and power are below */
-    uint32_t seed;              /* of its shapes; 0: another one for each fire of a world */
-    float position[3];          /* m, world: the middle of its base */
-    float diameter;             /* m, of its base, [0.002, 20]; default 0.6 */
-    float power;                /* kW, [0, 100000]; 0: out. Default 60 */
-    float windResponse;         /* [0, 4], default 1 */
-    float turbulence;           /* factor, [0, 3]: how torn it is; default 1 */
-    float speed;                /* factor, [0, 4]: of everything that moves in it; default 1 */
-    float density;              /* factor, [0, 10]: how hard it is to see through; default 1 */
-    float smoke;                /* factor, [0, 10]; default 1 */
-    float blue;                 /* factor, [0, 10]: of the blue at its foot; default 1 */
-    float tint[3];              /* linear colour it takes instead of a hot body's, [0, 1] */
-    float tintWeight;           /* [0, 1]; default 0: as the preset has it */
-    uint32_t pointCount;        /* 0: it rises by itself; [2, 32]: it follows the points, as high as their
-                                   line is long and as wide as the first of them; in no wind */
+    uint32_t structSize, flags; /* flags: FwVolumetricFireFlags, default 0 */
+    uint32_t preset;            /* FwFirePreset, default FW_FIRE_CAMP. Its appearance; size and power are below */
+    uint32_t seed;              /* default 0: a different seed for each fire of a world. Seeds its shapes */
+    float position[3];          /* m, [-1e6, 1e6], world. Middle of its base */
+    float diameter;             /* m, [0.002, 20], default 0.6. Of its base */
+    float power;                /* kW, [0, 100000], default 60; 0: out */
+    float windResponse;         /* factor of the wind, [0, 4], default 1 */
+    float turbulence;           /* factor, [0, 3], default 1. How torn the flame is */
+    float speed;                /* factor, [0, 4], default 1. Of all motion in the flame */
+    float density;              /* factor, [0, 10], default 1. Opacity */
+    float smoke;                /* factor, [0, 10], default 1 */
+    float blue;                 /* factor, [0, 10], default 1. Blue at its foot */
+    float tint[3];              /* linear colour, [0, 1], default 1. Replaces the black-body colour by tintWeight */
+    float tintWeight;           /* share, [0, 1], default 0: the colour of the preset */
+    uint32_t pointCount;        /* default 0: it rises freely. [2, 32]: it follows the points, as high as their line is long
+                                   and as wide as the first point; wind has no effect */
     const FwFirePoint* points;
-    uint64_t userData;          /* comes back in its state */
-    FwFireProfileId profile;    /* null: the preset's */
-    float blend;                /* s, [0, 60]: from its own way to points or a track, and back; default 0.3 */
-    uint32_t tier;              /* FwFireTier; default FW_FIRE_TIER_AUTO */
-    float coreTint[3];          /* linear colour of its hottest gas, [0, 1], where tintWeight is not 0: from there
-                                   it goes over into tint as it gets cooler */
-    float coreTintWeight;       /* [0, 1]; default 0: a paler tint */
+    uint64_t userData;          /* returned in its state */
+    FwFireProfileId profile;    /* null: that of the preset */
+    float blend;                /* s, [0, 60], default 0.3. Blend from free motion to points or a track, and back */
+    uint32_t tier;              /* FwFireTier, default FW_FIRE_TIER_AUTO */
+    float coreTint[3];          /* linear colour, [0, 1], default 1. Colour of the hottest gas if tintWeight is not 0; it fades
+                                   to `tint` as the gas cools */
+    float coreTintWeight;       /* share, [0, 1], default 0: a paler `tint` */
 } FwVolumetricFireDef;
 static inline FwVolumetricFireDef fwDefaultVolumetricFireDef(void) {
     FwVolumetricFireDef d; fwInitDef(FW_DEF_VOLUMETRIC_FIRE, &d, (uint32_t)sizeof d); return d;
 }
-/* Sets preset, diameter (in metres: see fwWorld_ConvertDef) and power of a whole def, whose structSize is set; the rest
- * stays. [any] */
+/* Sets preset, diameter (in metres: see fwWorld_ConvertDef) and power of a def; other fields stay. structSize is set. [any] */
 FW_API FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset);
-FW_API const char* FW_CALL fwFirePresetName(uint32_t preset); /* static, never null [any] */
-/* At most 256 at a time in a world, as at most 256 flames. [world] */
+FW_API const char* FW_CALL fwFirePresetName(uint32_t preset); /* static text, never null [any] */
+/* Creates a volumetric fire. At most 256 at a time in a world, and at most 256 flames in all. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld*, const FwVolumetricFireDef* def, FwVolumetricFireId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld*, FwVolumetricFireId id); /* [world] */
-/* Where its base is from the next frame on; it trails behind a motion. Beyond 100 m/s it was put there: the whole flame
- * stands there at once as it stood before. [world] */
+/* Moves the base of a fire, from the next frame on; the flame trails behind. A motion faster than 100 m/s is a jump: the whole
+ * flame moves at once and keeps its shape. [world] */
 FW_API FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld*, FwVolumetricFireId id, const float position[3]);
-/* kW; the flame follows within a second. [world] */
+/* Sets the power: kW, [0, 100000]. The flame follows within a second. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld*, FwVolumetricFireId id, float power);
-/* As FwVolumetricFireDef::points; 0: it rises by itself again. [world] */
+/* Sets FwVolumetricFireDef::points. pointCount 0: the fire rises freely again. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld*, FwVolumetricFireId id, const FwFirePoint* points,
                                                         uint32_t pointCount);
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld*, FwVolumetricFireId id, uint32_t hidden); /* [world] */
-/* FwFireTier, as FwVolumetricFireDef::tier; views go over to it within 16 frames. [world] */
+/* Sets FwVolumetricFireDef::tier. Views change over within 16 frames. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld*, FwVolumetricFireId id, uint32_t tier);
 
-typedef struct FwVolumetricFireState { /* as of the last frame; before its first one as it is about to be */
-    uint32_t structSize, flames; /* flames it burns as; 0: out */
+typedef struct FwVolumetricFireState { /* state at the last frame; before the first frame, the state at its start */
+    uint32_t structSize, flames; /* flames: number of separate flames; 0: out */
     uint64_t userData;
-    float power;                /* kW, now */
-    float height;               /* m, mean of what is seen of it */
+    float power;                /* kW, present value */
+    float height;               /* m. Mean visible height */
     float pulseRate;            /* Hz */
-    float contactPower;         /* kW that go into colliders and blockers in its way, the mean of a pulse */
-    float boundsLow[3], boundsHigh[3]; /* m, world: of all that shows, smoke too; empty while it is out */
-    float tip[3];               /* m, world: where its mean height ends */
+    float contactPower;         /* kW into colliders and occluder boxes in its way, mean over a pulse */
+    float boundsLow[3], boundsHigh[3]; /* m, world. Of everything visible, smoke included; empty while it is out */
+    float tip[3];               /* m, world. End of its mean height */
     float lightPosition[3];     /* m, world */
-    float lightIntensity;       /* W/sr of the visible part, flickering */
-    float contact[3];           /* m, world: the middle of what it touches; of use where contactPower > 0 */
+    float lightIntensity;       /* W/sr of visible light, with flicker */
+    float contact[3];           /* m, world. Middle of the touched surface; valid if contactPower > 0 */
 } FwVolumetricFireState;
 FW_API FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld*, FwVolumetricFireId id, FwVolumetricFireState* state); /* [world] */
 
-/* A script of a fire: keys of its line, smooth between them. */
+/* Animation of a fire: keys of its line, with smooth interpolation. */
 typedef struct FwFireTrackDef {
-    uint32_t structSize, flags; /* FwFireTrackFlags */
+    uint32_t structSize, flags; /* flags: FwFireTrackFlags, default 0 */
     uint32_t keyCount;          /* [1, 4096] */
     uint32_t pointsPerKey;      /* [2, 32] */
-    const float* times;         /* s, keyCount of them, increasing */
-    const FwFirePoint* points;  /* key after key; from the fire's position, m, world axes. Copied */
-    float weight;               /* [0, 1]: of the script; the rest is the fire's own motion. Default 1 */
+    const float* times;         /* s, increasing; keyCount of them */
+    const FwFirePoint* points;  /* key after key, relative to the fire's position, m, world axes. Copied */
+    float weight;               /* share, [0, 1], default 1. Weight of the track; the rest is the fire's free motion */
     uint32_t reserved;          /* 0 */
 } FwFireTrackDef;
 typedef enum FwFireTrackFlags {
-    FW_FIRE_TRACK_LOOP = 1, /* the last key is the first again; without it the last stays */
+    FW_FIRE_TRACK_LOOP = 1, /* the last key equals the first, and the track repeats. Without it the fire stays at the last key */
     FW_FIRE_TRACK_FLAGS_FORCE32 = 0x7fffffff
 } FwFireTrackFlags;
 static inline FwFireTrackDef fwDefaultFireTrackDef(void) {
     FwFireTrackDef d; fwInitDef(FW_DEF_FIRE_TRACK, &d, (uint32_t)sizeof d); return d;
 }
-/* Plays from the first key on, instead of points; blends in and out within FwVolumetricFireDef::blend. Null:
- * back to the fire's own motion (or its points). [world] */
+/* Plays a track from its first key, instead of points; blends in and out within FwVolumetricFireDef::blend. Null ends it: the
+ * fire returns to its free motion or its points. [world] */
 FW_API FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld*, FwVolumetricFireId id, const FwFireTrackDef* def);
 
-/* What burns where in a flame, as an artist paints it: over the radius (x, from the axis to 1.25 radii) and the
- * height (y, base row first). Either texels or a cooked .fwprofile. */
+/* Temperature and soot of a flame, as an artist paints them: over the radius (x, from the axis to 1.25 radii) and the height
+ * (y, base row first). Either texels or a cooked .fwprofile. */
 typedef struct FwFireProfileDef {
     uint32_t structSize, flags; /* flags: 0 */
-    uint32_t width, height;     /* of texels, each [8, 512]; resampled to 64 x 128 */
-    const float* texels;        /* 2 each: K, [0, 3000]; soot, [0, 2]. Below 1000 K soot does not glow: K / 1000
-                                   is then how much clean gas burns (blue) */
-    const void* cooked;         /* then texels are not read */
+    uint32_t width, height;     /* texels, [8, 512]; resampled to 64 x 128 */
+    const float* texels;        /* 2 each: temperature (K, [0, 3000]) and soot ([0, 2]). Below 1000 K soot does not glow; then
+                                   K / 1000 is the amount of clean, blue-burning gas */
+    const void* cooked;         /* bytes of a .fwprofile; if given, texels are ignored */
     uint64_t cookedSize;        /* bytes */
 } FwFireProfileDef;
 static inline FwFireProfileDef fwDefaultFireProfileDef(void) {
     FwFireProfileDef d; fwInitDef(FW_DEF_FIRE_PROFILE, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 23 at a time. [world] */
+/* Creates a fire profile. At most 23 at a time. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld*, const FwFireProfileDef* def, FwFireProfileId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld*, FwFireProfileId id); /* refused while a fire uses it [world] */
-/* To .fwprofile bytes; buffer and size as in fwCookMesh. [any] */
+/* Converts a profile to .fwprofile bytes; `buffer` and `size` as in fwCookMesh. [any] */
 FW_API FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* def, void* buffer, uint64_t* size);
 
 typedef enum FwFireColliderKind {
     FW_COLLIDER_SPHERE = 0, FW_COLLIDER_CAPSULE = 1, FW_COLLIDER_BOX = 2, FW_COLLIDER_PLANE = 3,
     FW_COLLIDER_HEIGHT_FIELD = 4, FW_COLLIDER_DISTANCE = 5,
-    FW_COLLIDER_DEPTH = 6, /* a picture of the scene's depth: what it shows bends and flattens flames, and so does the
-                              underside of a slab whose top it shows, and the room below (for worlds whose up is
-                              0,1,0); what else it does not show does not. Only that: it shades nothing and stops no
-                              jet, so no pixel of it changes what burns */
+    FW_COLLIDER_DEPTH = 6, /* a depth image of the scene. Visible surfaces bend and flatten flames. So do, if the world's up is
+                              0,1,0, the underside of a slab whose top is visible and the space below it. Hidden surfaces have
+                              no effect. It shades nothing and stops no jet, so that no pixel changes what burns */
     FW_COLLIDER_KIND_FORCE32 = 0x7fffffff
 } FwFireColliderKind;
-typedef struct FwFireColliderDef { /* what flames flow around, beside the world's blockers; cosmetic */
+typedef struct FwFireColliderDef { /* an obstacle for flames, in addition to the world's occluder boxes; cosmetic */
     uint32_t structSize;
     uint32_t kind;         /* FwFireColliderKind */
-    float position[3];     /* m, world: middle; one end of a capsule; a point of a plane; corner of a height field
-                              where x and z are lowest */
-    float end[3];          /* m, world: the other end of a capsule */
-    float normal[3];       /* of a plane, towards the free side; default 0,1,0 */
-    float halfSize[3];     /* m, of a box, > 0; default 0.5 */
-    float rotation[4];     /* of a box: unit quaternion x, y, z, w; default 0,0,0,1 */
-    float radius;          /* m, > 0: sphere, capsule; of a picture of depth [0.01, 100]: how far around flames it is
-                              looked at, and a tenth of it how thick it takes things to be; default 0.5 */
-    float cellSize;        /* m, > 0: between two heights; default 1 */
-    uint32_t columns, rows;/* heights along x and z, each [2, 4096]; of a picture of depth each [2, 512] */
-    const float* heights;  /* m above position, row after row along x; for worlds whose up is 0,1,0. Copied */
-    /* Signed distance in m, and its unit normal, for FW_COLLIDER_DISTANCE. Called by the thread that steps or
-     * records the world, many times; it calls nothing of the world. What is not finite is far away. */
+    float position[3];     /* m, [-1e6, 1e6], world. Middle; capsule: one end; plane: a point; height field: corner of lowest x
+                              and z */
+    float end[3];          /* m, [-1e6, 1e6], world. Capsule: its other end */
+    float normal[3];       /* default 0,1,0. Plane: direction towards the free side */
+    float halfSize[3];     /* m, [1e-4, 1e5], default 0.5. Box */
+    float rotation[4];     /* unit quaternion x, y, z, w, default 0,0,0,1. Box */
+    float radius;          /* m, [1e-4, 1e5], default 0.5. Sphere, capsule. Depth image: [0.01, 100], the distance around flames
+                              that the library tests; a tenth of it is the assumed thickness of surfaces */
+    float cellSize;        /* m, [1e-3, 1e5], default 1. Height field: distance between two heights */
+    uint32_t columns, rows;/* height field: heights along x and z, [2, 4096]; depth image: px, [2, 512] */
+    const float* heights;  /* m, [-1e6, 1e6], above `position`. Row after row along x; for worlds whose up is 0,1,0. Copied */
+    /* FW_COLLIDER_DISTANCE: returns the signed distance in m and writes its unit normal. The thread that steps or records the
+     * world calls it many times. It must not call the world. The library reads a distance that is not finite as far away. */
     float (FW_CALL* distance)(void* distanceData, const float point[3], float normal[3]);
     void* distanceData;
-    const float* depths;   /* FW_COLLIDER_DEPTH: [0, 1], clip z over w in each middle, row after row, top first. Small
-                              is enough (160 x 90), and so is one that is some frames old, as read back. Copied */
-    float view[16], projection[16]; /* that it was drawn with, as FwView's; default identity */
+    const float* depths;   /* [0, 1]. Depth image: clip z / w at the middle of each pixel, row after row, top first. A small
+                              image (160 x 90) is enough, and so is a readback that is some frames old. Copied */
+    float view[16], projection[16]; /* default identity. Depth image: its matrices, as in FwView */
 } FwFireColliderDef;
 static inline FwFireColliderDef fwDefaultFireColliderDef(void) {
     FwFireColliderDef d; fwInitDef(FW_DEF_FIRE_COLLIDER, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 64 at a time. [world] */
+/* Adds a collider. At most 64 at a time. [world] */
 FW_API FwResult FW_CALL fwWorld_AddFireCollider(FwWorld*, const FwFireColliderDef* def, FwFireColliderId* id);
-/* Another shape or place, from the next frame on. A height field whose heights are null, with as many columns and
- * rows as before, keeps them. [world] */
+/* Replaces the whole def of a collider, from the next frame on. A height field keeps its heights if `heights` is null and
+ * columns and rows are unchanged. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFireCollider(FwWorld*, FwFireColliderId id, const FwFireColliderDef* def);
 FW_API FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld*, FwFireColliderId id); /* [world] */
 
-typedef struct FwFireAnswer {   /* of all volumetric fires at a point, as of the last frame */
+typedef struct FwFireAnswer {   /* effect of all volumetric fires at a point, at the last frame */
     uint32_t structSize;
-    uint32_t inside;            /* 1: within a flame, on the mean */
-    float temperature;          /* K of the gas there; 293 where no fire reaches */
-    float heatFlux;             /* W/m^2 on a small cold body there, by gas and radiation; walls around it shade it */
-    float gas[3];               /* m/s: how the fire's gas moves there, without the wind */
+    uint32_t inside;            /* 1: within a mean flame */
+    float temperature;          /* K. Gas temperature; 293 beyond the reach of fire */
+    float heatFlux;             /* W/m^2 on a small cold body, by gas and radiation; nearby walls shade it */
+    float gas[3];               /* m/s. Velocity of the fire's gas, without the wind */
     uint32_t reserved;
-    FwVolumetricFireId fire;    /* that heats it most; null: none does */
+    FwVolumetricFireId fire;    /* the fire that heats the point most, or null */
 } FwFireAnswer;
-/* At once, on every backend. [world] */
+/* Samples all volumetric fires at a point (m, world). Answers at once, on every backend. [world] */
 FW_API FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld*, const float point[3], FwFireAnswer* answer);
-typedef struct FwFirePush {     /* on a ball that stands still */
+typedef struct FwFirePush {     /* effect of all volumetric fires on a ball at rest */
     uint32_t structSize;
-    float ignitionPower;        /* W into it */
+    float ignitionPower;        /* W into the ball */
     float force[3];             /* N */
     uint32_t reserved;
 } FwFirePush;
-/* radius: m, [0, 100]. [world] */
+/* Gets heat and force on a ball; centre: m, world; radius: m, [0, 100]. [world] */
 FW_API FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld*, const float centre[3], float radius, FwFirePush* push);
 
-/* ---- flipbooks: what particles and flames show --------------------------------------------------------------- */
+/* ---- flipbooks: frames that particles and flames show ------------------------------------------------------- */
 
-typedef enum FwFlipbookPreset { /* our own, baked from our own flames: 64 x 64 texels a frame, sparks 32 x 32 */
+typedef enum FwFlipbookPreset { /* baked from flames of this library: 64 x 64 texels a frame, sparks 32 x 32 */
     FW_FLIPBOOK_CUSTOM = 0,  /* FwFlipbookDef::cooked */
-    FW_FLIPBOOK_FLAME = 1,   /* fire: a standing flame, a loop of 1.6 s */
-    FW_FLIPBOOK_ROLL = 2,    /* fire: a ball that rolls up about a ring and is torn */
-    FW_FLIPBOOK_PUFF = 3,    /* fire: a ball that eddies tear */
+    FW_FLIPBOOK_FLAME = 1,   /* fire: a standing flame, loop of 1.6 s */
+    FW_FLIPBOOK_ROLL = 2,    /* fire: a ball that rolls up about a ring and tears */
+    FW_FLIPBOOK_PUFF = 3,    /* fire: a ball torn by eddies */
     FW_FLIPBOOK_SMOKE = 4,   /* smoke: thick, in billows */
     FW_FLIPBOOK_HAZE = 5,    /* smoke: thin, drawn out */
     FW_FLIPBOOK_SPARK = 6,   /* sparks: a streak */
     FW_FLIPBOOK_PRESET_COUNT = 7, FW_FLIPBOOK_PRESET_FORCE32 = 0x7fffffff
 } FwFlipbookPreset;
-/* Frames of fire, smoke or sparks with the motion between them: what moves between two frames is seen once, on its
- * way, not twice beside itself. Temperatures, not colours: black bodies colour them as they do volumetric flames. */
+/* Frames of fire, smoke or sparks, with motion vectors between them: interpolated frames show one moving shape, not two
+ * faded ones. Frames hold temperatures instead of colours; black-body radiation colours them, as in volumetric flames. */
 typedef struct FwFlipbookDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t preset;            /* FwFlipbookPreset, default FW_FLIPBOOK_CUSTOM */
     uint32_t reserved;          /* 0 */
-    const void* cooked;         /* content of a .fwbook (flamewright_flipbook bakes them); null with a preset */
+    const void* cooked;         /* bytes of a .fwbook file (from flamewright_flipbook); null with a preset */
     uint64_t cookedSize;        /* bytes */
 } FwFlipbookDef;
 static inline FwFlipbookDef fwDefaultFlipbookDef(void) {
     FwFlipbookDef d; fwInitDef(FW_DEF_FLIPBOOK, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 32 at a time; all of a world's lie in one picture of at most 4096 x 4096 texels (else
- * FW_ERROR_OUT_OF_MEMORY). FW_ERROR_BAD_DATA, FW_ERROR_VERSION: what is wrong with the file. [world] */
+/* Creates a flipbook. At most 32 at a time; all of a world fit into one texture of 4096 x 4096 texels.
+ * FW_ERROR_OUT_OF_MEMORY: they do not fit. FW_ERROR_BAD_DATA, FW_ERROR_VERSION: the file is unusable. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateFlipbook(FwWorld*, const FwFlipbookDef* def, FwFlipbookId* id);
-FW_API FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld*, FwFlipbookId id); /* refused while something shows it [world] */
-/* What the flames and the smoke of burning meshes show from the next frame on; null: as they are made without, by
- * noise. Books of fire and of smoke. [world] */
+FW_API FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld*, FwFlipbookId id); /* refused while in use [world] */
+/* Sets the flipbooks of flames and smoke on burning meshes, from the next frame on. `fire` is a flipbook of fire, `smoke` one
+ * of smoke; null: procedural noise. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld*, FwFlipbookId fire, FwFlipbookId smoke);
 
 /* ---- fire emitters: particles ------------------------------------------------------------------------------- */
 
 typedef enum FwEmitterShape {
     FW_EMITTER_POINT = 0,
-    FW_EMITTER_DISC = 1,  /* across direction, of radius */
+    FW_EMITTER_DISC = 1,  /* perpendicular to `direction`, of `radius` */
     FW_EMITTER_LINE = 2,  /* from position - extent to position + extent */
-    FW_EMITTER_MESH = 3,  /* on the tiles of `object` that flame, each as likely as it has power. At `power` or more
-                             all its particles are there, at less as many fewer at once, which rise slower and burn
-                             shorter, by power to the 0.2: flames as high as so much power has. Its light is the
-                             mesh's */
+    FW_EMITTER_MESH = 3,  /* on the flaming tiles of `object`, each with a chance proportional to its power. If the object's
+                             power P is at least `power`, the emitter runs at full particle count. Below it, count scales
+                             linearly; speed and lifetime scale with (P / power)^0.2, which gives flames the height of
+                             that power. The mesh provides the light */
     FW_EMITTER_SHAPE_FORCE32 = 0x7fffffff
 } FwEmitterShape;
 typedef enum FwEmitterFlags {
-    FW_EMITTER_HIDDEN = 1,   /* not drawn, and no light; time passes for it */
+    FW_EMITTER_HIDDEN = 1,   /* neither drawn nor a light; its time continues */
     FW_EMITTER_NO_SMOKE = 2,
-    FW_EMITTER_NO_LIGHT = 4, /* fwWorld_GetLights does not name it */
-    FW_EMITTER_GROUND = 8,   /* nothing of it goes below ground: it spreads out there */
-    FW_EMITTER_JET = 16,     /* a pressurised stream along direction that tears into flame, instead of a fire
-                                that rises: a flamethrower. Colliders (fwWorld_AddFireCollider), blockers and
-                                burnable meshes stop it: it splashes there, and nothing behind is reached */
-    FW_EMITTER_IGNITES = 32, /* of a jet: heats the burnable meshes that it strikes, until they catch */
-    FW_EMITTER_NO_COLLISION = 64, /* of a jet: nothing stops it */
+    FW_EMITTER_NO_LIGHT = 4, /* fwWorld_GetLights omits it */
+    FW_EMITTER_GROUND = 8,   /* particles stay above `ground` and spread out there */
+    FW_EMITTER_JET = 16,     /* a flamethrower: a pressurised stream along `direction` that tears into flame, instead of a rising
+                                fire. Colliders (fwWorld_AddFireCollider), occluder boxes and burnable meshes stop it: it
+                                splashes and reaches nothing behind */
+    FW_EMITTER_IGNITES = 32, /* for a jet: it heats the burnable meshes that it hits, until they ignite */
+    FW_EMITTER_NO_COLLISION = 64, /* for a jet: nothing stops it */
     FW_EMITTER_FLAGS_FORCE32 = 0x7fffffff
 } FwEmitterFlags;
-/* Fire, the smoke it becomes and sparks, of particles that live in the world: large soft quads, simulated and
- * drawn on the device. The CPU's work is that of an emitter, however many particles it has. Floats, for the eye.
- * Power drives it: what is 0 below is as a fire of that power has it. */
+/* Fire with its smoke and sparks, made of particles in world space: large soft quads that the device simulates and draws. CPU
+ * cost is that of one emitter, whatever its particle count. Floats, cosmetic. Power drives it: 0 in rate, speed, cone, size0,
+ * size1, life, drag and temperature means the value of a fire of that power. */
 typedef struct FwFireEmitterDef {
-    uint32_t structSize, flags; /* FwEmitterFlags */
+    uint32_t structSize, flags; /* flags: FwEmitterFlags, default 0 */
     uint32_t shape;             /* FwEmitterShape, default FW_EMITTER_POINT */
-    uint32_t seed;              /* 0: another one for each emitter of a world */
-    float position[3];          /* m, world */
-    float direction[3];         /* of its particles at birth; any length but 0. Default 0,1,0 */
-    float extent[3];            /* m, within +-100; of FW_EMITTER_LINE */
-    float radius;               /* m, [0, 50], of FW_EMITTER_DISC */
-    float power;                /* kW, [0, 100000]; 0: nothing is born. Default 60 */
-    float rate;                 /* births a second, [0, 200000] */
-    float speed;                /* m/s, [0, 200] */
-    float cone;                 /* rad, [0, 2]: how far they stray from direction, two thirds of them */
-    float size0, size1;         /* m, [0, 50]: width at birth, and when the fire ends */
-    float life;                 /* s, [0, 60]: of the fire; smoke comes after it */
+    uint32_t seed;              /* default 0: a different seed for each emitter of a world */
+    float position[3];          /* m, [-1e6, 1e6], world */
+    float direction[3];         /* of any length but 0, default 0,1,0. Direction of particles at birth */
+    float extent[3];            /* m, [-100, 100]. For FW_EMITTER_LINE */
+    float radius;               /* m, [0, 50], default 0. For FW_EMITTER_DISC */
+    float power;                /* kW, [0, 100000], default 60; 0: no births */
+    float rate;                 /* births a second, [0, 200000], default 0 */
+    float speed;                /* m/s, [0, 200], default 0 */
+    float cone;                 /* rad, [0, 2], default 0. Spread about `direction`; contains two thirds of the particles */
+    float size0, size1;         /* m, [0, 50], default 0. Width at birth, and when the flame ends */
+    float life;                 /* s, [0, 60], default 0. Life of the flame; smoke follows it */
     float lifeVariance;         /* share, [0, 1], default 0.33 */
-    float drag;                 /* s, [0, 60]: in which a particle takes on the speed of the air */
+    float drag;                 /* s, [0, 60], default 0. Time in which a particle takes on the speed of the air */
     float buoyancy;             /* factor, [-4, 4], default 1 */
     float windResponse;         /* factor, [0, 4], default 1 */
     float turbulence;           /* factor, [0, 4], default 1 */
-    float inherit;              /* share of the emitter's own motion that particles get, [0, 1], default 0.5 */
-    float smoke;                /* share of the particles that turn to smoke, [0, 1], default 0.32 */
-    float smokeLife;            /* in lives of the fire, [0, 20], default 2.2 */
+    float inherit;              /* share, [0, 1], default 0.5. Share of the emitter's velocity that particles get */
+    float smoke;                /* share, [0, 1], default 0.32. Share of the particles that turn to smoke */
+    float smokeLife;            /* times the life of the flame, [0, 20], default 2.2 */
     float smokeDensity;         /* factor, [0, 4], default 1 */
-    float sparks;               /* sparks and embers a second for each kW, [0, 1], default 0.04; 2048 at a time are
-                                   the most. They fly up to 2.5 s, bounce off the ground and a jet's wall, rest and go
-                                   out; of FW_EMITTER_MESH each tile throws its own */
-    float temperature;          /* K at birth, [0, 2500] */
-    float ground;               /* m along up, with FW_EMITTER_GROUND; default 0 */
-    uint32_t maxParticles;      /* [0, 1048576], 0: as many as it needs at this power. The oldest make room */
+    float sparks;               /* 1/s for each kW, [0, 1], default 0.04. Births of sparks and embers, at most 2048 alive. They
+                                   fly for up to 2.5 s, bounce off the ground and off walls that a jet hits, lie there and go out.
+                                   FW_EMITTER_MESH: each tile throws its own */
+    float temperature;          /* K, [0, 2500], default 0. At birth */
+    float ground;               /* m along up, [-1e6, 1e6], default 0. With FW_EMITTER_GROUND */
+    uint32_t maxParticles;      /* [0, 1048576], default 0: as many as this power needs. The oldest are replaced */
     uint32_t reserved;          /* 0 */
-    uint64_t userData;          /* comes back in its state */
-    /* Of a jet: it is swept, by 16 rays over its cone, from `behind` its nozzle on, where its holder stands: a
-     * nozzle that is pushed into a wall or through it burns that wall, not the room beyond. Of its power the
-     * share `heat` goes into what it strikes, all of it, spread over where: eight times a second, when the stream
-     * has flown there (a wall that comes between is met), by the host's numbers alone, the same on every backend.
-     * It comes through holes: those of a mesh's shape, and those that have burnt, as long as FwBurnableMeshDef lets
-     * holes burn and no two walls more are in the way; not those of FW_BURNABLE_LITE, nor to what is that. */
+    uint64_t userData;          /* returned in its state */
+    /* Jet. 16 rays sweep its cone. They start `behind` the nozzle, where its holder stands: a nozzle that is pushed into or
+     * through a wall burns that wall and not the room beyond. The share `heat` of its power heats the surfaces that rays hit,
+     * spread over the hit area, eight times a second. It arrives after the time of flight; a wall that moves in between is
+     * hit. The host's numbers alone decide this, so it is the same on every backend. The jet passes holes of a mesh's shape. A
+     * ray also passes at most two burnt walls, if FwBurnableMeshDef allows their holes. It does not pass burnt holes of
+     * FW_BURNABLE_LITE, nor does it reach such objects through burnt holes. */
     float behind;               /* m, [0, 10], default 0.5 */
-    float heat;                 /* [0, 1], default 0.35 */
-    /* What its particles show, each by chance one of those given, at its own phase; none given: noise. */
+    float heat;                 /* share, [0, 1], default 0.35 */
+    /* Flipbooks. Each particle picks one of those given, by chance, and its own phase. None given: procedural noise. */
     FwFlipbookId fireBooks[3];
     FwFlipbookId smokeBooks[2];
     FwFlipbookId sparkBook;
-    FwBurnableMeshId object;    /* of FW_EMITTER_MESH; once it is gone nothing more is born */
-    /* Of a jet with FW_EMITTER_IGNITES: fuel that sticks. Of the power that strikes something the share `stick` stays
-     * there as fuel, in at most 16 places 0.25 m wide, and burns on evenly over stickTime from the last that came: it
-     * flames, and heats the mesh it sticks to with that power, counted in integers, none lost. Fuel that finds no room
-     * heats at once, and so does all that strikes what may have burnt through by then. Water (FW_WET) takes 2600 J a gram that falls
-     * on it from its fuel; FW_EXTINGUISH takes all. */
-    float stick;                /* [0, 1], default 0 */
-    float stickTime;            /* s, [0.125, 120], in eighths of a second; default 6 */
+    FwBurnableMeshId object;    /* for FW_EMITTER_MESH. Once it is destroyed, births end */
+    /* Jet with FW_EMITTER_IGNITES: sticking fuel. The share `stick` of the power that hits a surface stays there as fuel, in at
+     * most 16 patches 0.25 m wide. A patch burns evenly over stickTime after its last fuel arrived. It flames and heats its mesh
+     * with that power, counted in integers without loss. Fuel heats at once if all patches are taken or if the surface may
+     * have burnt through by then. Water (FW_WET) that falls on a patch takes 2600 J a gram from its fuel; FW_EXTINGUISH removes
+     * all of it. */
+    float stick;                /* share, [0, 1], default 0 */
+    float stickTime;            /* s in steps of 1/8, [0.125, 120], default 6 */
 } FwFireEmitterDef;
 static inline FwFireEmitterDef fwDefaultFireEmitterDef(void) {
     FwFireEmitterDef d; fwInitDef(FW_DEF_FIRE_EMITTER, &d, (uint32_t)sizeof d); return d;
 }
-/* At most 256 at a time in a world, and FwWorldDef::maxParticles. [world] */
+/* Creates an emitter. At most 256 at a time in a world; FwWorldDef::maxParticles limits their particles. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateFireEmitter(FwWorld*, const FwFireEmitterDef* def, FwFireEmitterId* id);
-/* Its particles go with it; to let them burn out set its power to 0 and wait. [world] */
+/* Destroys an emitter with its particles. To let them burn out, set its power to 0 and wait. [world] */
 FW_API FwResult FW_CALL fwWorld_DestroyFireEmitter(FwWorld*, FwFireEmitterId id);
-/* Where it is from the next frame on, having come there straight: births lie along the way, unless that is farther
- * than 100 m/s allow. direction null: as before. [world] */
+/* Moves an emitter, from the next frame on. Births lie along the straight path to the new position, unless that needs more
+ * than 100 m/s. `direction` null: unchanged. [world] */
 FW_API FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld*, FwFireEmitterId id, const float position[3],
                                                 const float* direction);
-/* kW. No more particles than it was created with; create it with the most power it will have. [world] */
+/* Sets the power: kW, [0, 100000]. The particle count stays at most that of creation: create an emitter with its highest
+ * power. [world] */
 FW_API FwResult FW_CALL fwWorld_SetFireEmitterPower(FwWorld*, FwFireEmitterId id, float power);
 FW_API FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld*, FwFireEmitterId id, uint32_t hidden); /* [world] */
-typedef struct FwFireEmitterState { /* as of the last frame */
-    uint32_t structSize, particles; /* that may still show; 0: nothing is left of it */
-    uint32_t capacity, reserved;    /* the most it may have */
+typedef struct FwFireEmitterState { /* state at the last frame */
+    uint32_t structSize, particles; /* particles: those that may still be visible; 0: all are gone */
+    uint32_t capacity, reserved;    /* capacity: most particles that it may have */
     uint64_t userData;
     float power;                /* kW */
-    float rate, life, speed;    /* 1/s, s, m/s: as it has them now */
-    float reach;                /* m that its fire comes, about */
-    float lightIntensity;       /* W/sr of the visible part, flickering */
+    float rate, life, speed;    /* 1/s, s, m/s: present values */
+    float reach;                /* m. Approximate length of its fire */
+    float lightIntensity;       /* W/sr of visible light, with flicker */
     float lightPosition[3];     /* m, world */
-    uint32_t struck;            /* of a jet: rays of 16 that something stopped */
-    float freeWay;              /* m from its nozzle to the nearest of it, 0: right there; else reach */
-    float heated;               /* W that reached burnable meshes in the last eighth of a second */
-    float stuckFuel;            /* kJ of fuel that sticks somewhere */
-    float stuckPower;           /* kW that it gave in the last eighth of a second, to meshes or not */
-    uint32_t stuckPlaces;       /* [0, 16] */
+    uint32_t struck;            /* jet: how many of its 16 rays hit something */
+    float freeWay;              /* m. Jet: distance from its nozzle to the nearest hit; otherwise `reach` */
+    float heated;               /* W that reached burnable meshes in the last 1/8 s */
+    float stuckFuel;            /* kJ of sticking fuel */
+    float stuckPower;           /* kW that sticking fuel gave off in the last 1/8 s, on meshes or not */
+    uint32_t stuckPlaces;       /* [0, 16]. Patches of sticking fuel */
     uint32_t reserved1;
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
 
-/* ---- particle fields: fire, smoke and water by the cell, for small devices and for what is far away ---------- */
+/* ---- particle fields: fire, smoke and water on a 2D grid, for small devices and far fires --------------------- */
 
 typedef enum FwFieldPreset {
     FW_FIELD_FIRE = 0, FW_FIELD_SMOKE = 1, FW_FIELD_WATER = 2, FW_FIELD_PRESET_COUNT = 3,
     FW_FIELD_PRESET_FORCE32 = 0x7fffffff
 } FwFieldPreset;
-typedef enum FwFieldShape {       /* what it is drawn on */
-    FW_FIELD_CARD = 0,            /* turns about its up axis to face the eye */
-    FW_FIELD_SPHEROID = 1,        /* its left and right border meet */
-    FW_FIELD_DISPLACED = 2,       /* the same, bulging where it is dense */
+typedef enum FwFieldShape {       /* the surface that shows the grid */
+    FW_FIELD_CARD = 0,            /* a billboard: turns about its up axis to face the camera */
+    FW_FIELD_SPHEROID = 1,        /* its left and right borders meet */
+    FW_FIELD_DISPLACED = 2,       /* a spheroid that bulges where the grid is dense */
     FW_FIELD_SHAPE_FORCE32 = 0x7fffffff
 } FwFieldShape;
 typedef enum FwFieldSource {
-    FW_FIELD_SOURCE_BASE = 0,     /* the lowest rows, of what falls the highest */
+    FW_FIELD_SOURCE_BASE = 0,     /* the lowest rows; if particles fall, the highest */
     FW_FIELD_SOURCE_DISC = 1,
-    FW_FIELD_SOURCE_PAINTED = 2,  /* paint */
+    FW_FIELD_SOURCE_PAINTED = 2,  /* FwParticleFieldDef::paint */
     FW_FIELD_SOURCE_FORCE32 = 0x7fffffff
 } FwFieldSource;
-typedef enum FwFieldOpen {        /* borders over which particles leave; the others are walls */
+typedef enum FwFieldOpen {        /* borders through which particles leave; the others are walls */
     FW_FIELD_OPEN_LEFT = 1, FW_FIELD_OPEN_RIGHT = 2, FW_FIELD_OPEN_BOTTOM = 4, FW_FIELD_OPEN_TOP = 8,
     FW_FIELD_OPEN_FORCE32 = 0x7fffffff
 } FwFieldOpen;
 typedef enum FwParticleFieldFlags {
-    FW_FIELD_HIDDEN = 1,          /* not drawn; time passes for it */
-    FW_FIELD_AS_PUBLISHED = 2,    /* ten steps a second, and shown as they are */
-    FW_FIELD_WETS = 4,            /* of water: wets the burnable meshes that it touches, and so puts them out: eight
-                                     times a second, by what is in its cells, the same on every backend. Where cells
-                                     are full that is 320 g/m^2 in a second. A card counts as a sheet across its own
-                                     x axis, however it turns to the eye. It costs a step of the CPU's for each of
-                                     the field's */
+    FW_FIELD_HIDDEN = 1,          /* not drawn; its time continues */
+    FW_FIELD_AS_PUBLISHED = 2,    /* ten steps a second, shown without interpolation */
+    FW_FIELD_WETS = 4,            /* for water: wets the burnable meshes that it touches and so puts them out. Eight times a
+                                     second, from the content of its cells, the same on every backend. Full cells give 320 g/m^2
+                                     in a second. A billboard acts as a sheet across its own x axis, however it faces the
+                                     camera. Costs the CPU one field step for each step of the field */
     FW_FIELD_FLAGS_FORCE32 = 0x7fffffff
 } FwParticleFieldFlags;
-/* Particles counted in cells, in integers: none is lost or made but by a source, by the end of its life and over
- * open borders, and every backend counts the same. Steps are at fixed times of the world. */
+/* Cells count particles in integers. Only sources, the end of a life and open borders change their number, and every backend
+ * counts the same. Steps are at fixed times of the world. */
 typedef struct FwParticleFieldDef {
-    uint32_t structSize, flags; /* FwParticleFieldFlags */
-    uint32_t shape;             /* FwFieldShape */
-    uint32_t seed;              /* 0: another one for each field of a world */
-    float position[3];          /* m, world: the middle of its lower edge; of a spheroid its lowest point */
-    float size[3];              /* m: width, height, and of a spheroid depth, (0, 1000]; default 1 */
-    float rotation[4];          /* unit quaternion x, y, z, w; default 0,0,0,1 */
-    uint32_t width, height;     /* cells, each [32, 256], the width in fours; default 64 */
-    uint32_t stepRate;          /* steps a second, [20, 30]; default 24 */
-    uint32_t open;              /* FwFieldOpen; default all but the bottom. Spheroids: top and bottom count */
-    /* What it is: eight numbers, the same for fire, smoke and water; see fwInitFieldPreset. */
-    float amount;               /* of its source, [0, 4]; at 1 a cell there is full after 12 steps */
-    float rise;                 /* cells a step, [-4, 4], upwards; below 0 it falls */
-    float spread;               /* [0, 1]: how fast differences even out */
-    float memory;               /* [0, 1]: how much of its motion a particle keeps */
-    float chaos;                /* [0, 4]: of eddies */
-    float life;                 /* s, mean, [0.05, 1000] */
-    float detail;               /* [0, 1]: fine structure that it is drawn with */
-    float body;                 /* 0 emits light, 1 absorbs it, 2 refracts it; [0, 2] */
-    float windResponse;         /* cells a step for each m/s of wind along its width, [0, 4]; default 0.12; rings: none */
-    uint32_t source;            /* FwFieldSource */
-    float sourceSize;           /* of a base: share of the width; of a disc its diameter, share of the smaller side;
-                                   (0, 1] */
-    float sourceAt[2];          /* of a disc: its middle, shares of width and height, [0, 1]; default 0.5, 0.2 */
+    uint32_t structSize, flags; /* flags: FwParticleFieldFlags, default 0 */
+    uint32_t shape;             /* FwFieldShape, default FW_FIELD_CARD */
+    uint32_t seed;              /* default 0: a different seed for each field of a world */
+    float position[3];          /* m, [-1e6, 1e6], world. Middle of its lower edge; spheroid: its lowest point */
+    float size[3];              /* m, [0.001, 1000], default 1. Width, height and, for spheroids, depth */
+    float rotation[4];          /* unit quaternion x, y, z, w, default 0,0,0,1 */
+    uint32_t width, height;     /* cells, [32, 256], default 64. The width is a multiple of 4 */
+    uint32_t stepRate;          /* 1/s, [20, 30], default 24 */
+    uint32_t open;              /* FwFieldOpen, default all but the bottom. Spheroids use only top and bottom */
+    /* Eight numbers set its behaviour, the same for fire, smoke and water. Defaults: FW_FIELD_FIRE; see fwInitFieldPreset. */
+    float amount;               /* [0, 4]. Strength of its source; at 1 a source cell is full after 12 steps */
+    float rise;                 /* cells a step, [-4, 4]. Upward speed; below 0 particles fall */
+    float spread;               /* [0, 1]. How fast differences even out */
+    float memory;               /* [0, 1]. Share of its motion that a particle keeps */
+    float chaos;                /* [0, 4]. Strength of eddies */
+    float life;                 /* s, [0.05, 1000]. Mean life */
+    float detail;               /* [0, 1]. Fine structure in the drawing */
+    float body;                 /* [0, 2]. 0 emits light, 1 absorbs it, 2 refracts it */
+    float windResponse;         /* cells a step for each m/s of wind along its width, [0, 4], default 0.12. Spheroids ignore it */
+    uint32_t source;            /* FwFieldSource, default FW_FIELD_SOURCE_BASE */
+    float sourceSize;           /* share, [0.001, 1]. Base: of the width. Disc: its diameter, of the smaller side */
+    float sourceAt[2];          /* shares of width and height, [0, 1], default 0.5, 0.2. Middle of a disc */
     uint32_t reserved;          /* 0 */
-    /* Bytes of width x height cells, rows from the bottom; null: none. Copied. */
-    const uint8_t* paint;       /* how much of the source's rate each cell has, 255: all */
-    const uint8_t* walls;       /* not 0: nothing is there, nothing goes there */
-    float tint[3];              /* linear, [0, 10]; default 1 */
-    float opacity;              /* factor, [0, 10]; default 1 */
-    uint64_t userData;          /* comes back in its state */
+    /* Bytes of width x height cells, bottom row first. Null: none. Copied. */
+    const uint8_t* paint;       /* [0, 255]. Share of the source's rate in each cell; 255: all of it */
+    const uint8_t* walls;       /* not 0: a wall, without particles */
+    float tint[3];              /* linear factor, [0, 10], default 1 */
+    float opacity;              /* factor, [0, 10], default 1 */
+    uint64_t userData;          /* returned in its state */
 } FwParticleFieldDef;
-static inline FwParticleFieldDef fwDefaultParticleFieldDef(void) { /* a fire on a card */
+static inline FwParticleFieldDef fwDefaultParticleFieldDef(void) { /* a fire on a billboard */
     FwParticleFieldDef d; fwInitDef(FW_DEF_PARTICLE_FIELD, &d, (uint32_t)sizeof d); return d;
 }
-/* Sets the eight numbers and sourceSize of a whole def, whose structSize is set; the rest stays. [any] */
+/* Sets the eight numbers and sourceSize of a def; other fields stay. structSize is set. [any] */
 FW_API FwResult FW_CALL fwInitFieldPreset(FwParticleFieldDef* def, uint32_t preset);
-FW_API const char* FW_CALL fwFieldPresetName(uint32_t preset); /* static, never null [any] */
-/* Empty at first. At most 256 at a time in a world. [world] */
+FW_API const char* FW_CALL fwFieldPresetName(uint32_t preset); /* static text, never null [any] */
+/* Creates an empty field. At most 256 at a time in a world. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateParticleField(FwWorld*, const FwParticleFieldDef* def, FwParticleFieldId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyParticleField(FwWorld*, FwParticleFieldId id); /* [world] */
-/* Rotation: null: as before. [world] */
+/* Moves a field. `rotation` null: unchanged. [world] */
 FW_API FwResult FW_CALL fwWorld_MoveParticleField(FwWorld*, FwParticleFieldId id, const float position[3],
                                                   const float rotation[4]);
-FW_API FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld*, FwParticleFieldId id, float amount); /* [world] */
+FW_API FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld*, FwParticleFieldId id, float amount); /* amount: [0, 4] [world] */
 FW_API FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld*, FwParticleFieldId id, uint32_t hidden); /* [world] */
-/* Other bytes as in the def; null: as before. What is where a wall comes dies. [world] */
+/* Replaces paint and walls, as in the def; null: unchanged. Particles where a wall appears die. [world] */
 FW_API FwResult FW_CALL fwWorld_PaintParticleField(FwWorld*, FwParticleFieldId id, const uint8_t* paint,
                                                    const uint8_t* walls);
-typedef struct FwParticleFieldState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU, now on the cpu */
+typedef struct FwParticleFieldState { /* state at `frameIndex`: 2 to 3 frames ago on a device, now on the cpu backend */
     uint32_t structSize, reserved;
     uint64_t userData;
     uint64_t frameIndex;
-    uint64_t inside;            /* particles; inside + dead + out = emitted, always */
-    uint64_t emitted, dead, out;/* since it was created */
+    uint64_t inside;            /* particles. Always inside + dead + out = emitted */
+    uint64_t emitted, dead, out;/* particles since creation; out: left over open borders */
     uint64_t steps;
-    uint64_t bytes;             /* of the backend's memory for it */
+    uint64_t bytes;             /* bytes of the backend for this field */
 } FwParticleFieldState;
 FW_API FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld*, FwParticleFieldId id, FwParticleFieldState* state); /* [world] */
 
 /* ---- running ---------------------------------------------------------------------------------------------- */
 
-/* Advances the simulation by deltaTime s, [0, 10]. cpu backend: at once. Own device: submits and
- * waits. Lent device: use fwWorld_RecordOutside instead (FW_ERROR_WRONG_BACKEND). A world simulates
- * at most 1048560 s (12 days, a warning comes a day before); then it refuses more time. [world] */
+/* Advances the simulation by deltaTime: s, [0, 10]. cpu backend: simulates at once. Own device: submits and waits.
+ * A world simulates at most 1048560 s (12 days); the log has a warning a day before that.
+ * FW_ERROR_WRONG_BACKEND: host device; use fwWorld_RecordOutside. FW_ERROR_INVALID_ARGUMENT: the world is at its limit (0
+ * is still accepted), or a client may not advance so far. [world] */
 FW_API FwResult FW_CALL fwWorld_Step(FwWorld*, float deltaTime);
 
-typedef struct FwView { /* what a camera and its light are; all lengths m */
-    uint32_t structSize, flags;       /* 0 */
-    float view[16], projection[16];   /* world to view space, rigid; view to Vulkan clip space: y down, depth 0..1.
-                                         From another clip space: fwConvertProjection */
-    float sunDirection[3];            /* towards the sun, unit */
-    float sunColor[3];                /* radiance x pi/2 into a Lambert/pi surface; cd/m^2-like */
-    float ambientSky[3], ambientGround[3]; /* hemisphere about world up */
-    float exposure;                   /* times all light, before any tone mapping; [1e-6, 1e6], default 1 */
-    float emissionScale;              /* of glow and flames against the scene's light, default 1 */
-    float time;                       /* s, for flicker and breathing only */
-    float haze;                       /* how far heat haze bends what is behind a fire, where a target has it
-                                         (FW_TARGET_HAZE): [0, 8], default 1, 0 none */
-    uint32_t viewId;                  /* of the views of a frame, see fwWorld_RecordOutsideViews: any number that stays
-                                         with its camera from frame to frame, default 0. With one view a frame leave it */
+typedef struct FwView { /* a camera and its light; all lengths in m */
+    uint32_t structSize, flags;       /* flags: 0 */
+    float view[16], projection[16];   /* default identity. World to view space, rigid; view space to Vulkan clip space: y down,
+                                         depth 0..1. For other clip spaces: fwConvertProjection */
+    float sunDirection[3];            /* unit vector towards the sun, default 0.408, 0.816, 0.408 */
+    float sunColor[3];                /* [0, 1e6], default 3.0, 2.9, 2.7. Irradiance of the sun: a Lambert surface that faces it
+                                         reflects albedo / pi times this. Scale: pi / 2 times a radiance, like cd/m^2 */
+    float ambientSky[3], ambientGround[3]; /* [0, 1e6], default 0.35, 0.42, 0.55 and 0.14, 0.12, 0.10. Hemisphere about the
+                                         world's up */
+    float exposure;                   /* factor, [1e-6, 1e6], default 1. Multiplies all light before any tone mapping */
+    float emissionScale;              /* factor, [0, 1e6], default 1. Glow and flames against the light of the scene */
+    float time;                       /* s, [-1e9, 1e9], default 0. Only for flicker and pulsing */
+    float haze;                       /* factor, [0, 8], default 1; 0: none. How far heat haze bends the background of a fire, on
+                                         targets with FW_TARGET_HAZE */
+    uint32_t viewId;                  /* default 0. Identifies the camera from frame to frame, any number: see
+                                         fwWorld_RecordOutsideViews. Keep 0 with one view a frame */
     float reserved;
 } FwView;
 static inline FwView fwDefaultView(void) {
     FwView d; fwInitDef(FW_DEF_VIEW, &d, (uint32_t)sizeof d); return d;
 }
-typedef enum FwClipSpace { /* how a host's clip space differs from Vulkan's, for fwConvertProjection */
-    FW_CLIP_Y_UP = 1,           /* y of clip space points up: Direct3D, Metal, WebGPU, Unreal */
+typedef enum FwClipSpace { /* how a host's clip space differs from Vulkan's; for fwConvertProjection */
+    FW_CLIP_Y_UP = 1,           /* y points up: Direct3D, Metal, WebGPU, Unreal */
     FW_CLIP_SYMMETRIC_DEPTH = 2,/* depth is -1..1 instead of 0..1 */
     FW_CLIP_OPENGL = 3,         /* both: OpenGL, Qt, glm without GLM_FORCE_DEPTH_ZERO_TO_ONE */
-    FW_CLIP_REVERSE_DEPTH = 4,  /* turns the direction of depth: the matrix has near at 0 and the depth buffer at 1, or the
-                                   other way. A matrix that is reversed already needs FwVulkanTargetDef::reversedDepth alone */
+    FW_CLIP_REVERSE_DEPTH = 4,  /* reverses the depth: for a matrix with near at 0 and a depth buffer with near at 1, or vice
+                                   versa. A matrix that is already reversed needs only FwVulkanTargetDef::reversedDepth */
     FW_CLIP_SPACE_FORCE32 = 0x7fffffff
 } FwClipSpace;
-/* Turns the projection of a host's, in place, into one of Vulkan's clip space. clipSpace: FwClipSpace bits, 0: nothing
- * changes. The same points stay at the same pixel and the same depth of the depth buffer. [any] */
+/* Converts a host's projection to Vulkan's clip space, in place. clipSpace: FwClipSpace bits; 0: no change. Each point keeps
+ * its pixel and its value in the depth buffer. [any] */
 static inline void fwConvertProjection(float projection[16], uint32_t clipSpace) {
     for (int c = 0; c < 16; c += 4) {
         if (clipSpace & FW_CLIP_Y_UP) projection[c + 1] = -projection[c + 1];
@@ -1219,93 +1228,93 @@ static inline void fwConvertProjection(float projection[16], uint32_t clipSpace)
     }
 }
 
-typedef struct FwOffscreenDef { /* own device only: the smallest way to a picture */
-    uint32_t structSize, width, height, reserved; /* pixels, [1, 8192] */
+typedef struct FwOffscreenDef { /* own device only: the shortest path to a picture */
+    uint32_t structSize, width, height, reserved; /* px, [1, 8192], default 1280 x 720; reserved: 0 */
     FwView view;
-    float background[4];              /* linear */
-    void* pixels;                     /* out: RGBA8 sRGB, rows top first, width*height*4 bytes */
+    float background[4];              /* linear, [0, 1e6], default 0, 0, 0, 1 */
+    void* pixels;                     /* output: RGBA8 sRGB, rows top first, width * height * 4 bytes */
 } FwOffscreenDef;
 static inline FwOffscreenDef fwDefaultOffscreenDef(void) {
     FwOffscreenDef d; fwInitDef(FW_DEF_OFFSCREEN, &d, (uint32_t)sizeof d); return d;
 }
-/* Renders the world and waits for it. [world] */
+/* Renders the world and waits for the result. FW_ERROR_WRONG_BACKEND: cpu backend or host device. [world] */
 FW_API FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld*, const FwOffscreenDef* def);
 
-/* ---- what a game asks ---------------------------------------------------------------------------------------- */
+/* ---- events and queries --------------------------------------------------------------------------------------- */
 
 typedef enum FwEventType {
     FW_EVENT_IGNITED = 1,       /* the object's first texel burns; value: s since world start */
-    FW_EVENT_BURNT_OUT = 2,     /* nothing of it burns or waits to burn: its last flames used up their fuel;
+    FW_EVENT_BURNT_OUT = 2,     /* no texel burns or is about to burn, and the last flames used up their fuel;
                                    value: burnt fraction */
-    FW_EVENT_EXTINGUISHED = 3,  /* nothing of it burns or waits to burn, but its last flames went out with fuel
-                                   left; tag: FwExtinguishCause; value: burnt fraction */
-    FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; value: s since world start */
-    FW_EVENT_FRONT_LIMITED = 5, /* many arrivals come late: the front is faster than 8 substeps
-                                   can follow; value: how many since the last such event */
+    FW_EVENT_EXTINGUISHED = 3,  /* no texel burns or is about to burn, but the last flames went out with fuel left;
+                                   tag: FwExtinguishCause; value: burnt fraction */
+    FW_EVENT_TAG_REACHED = 4,   /* the front reached a tagged point; tag: the host's; value: s since world start */
+    FW_EVENT_FRONT_LIMITED = 5, /* many arrivals are late: the front is faster than 8 substeps can follow; value: their number
+                                   since the last such event */
     FW_EVENT_TIME_DROPPED = 6,  /* more steps were due than maxStepsPerFrame; value: s dropped */
-    FW_EVENT_SPREAD_TO = 7,     /* `object` was lit by `other`; tag: jumps since the first fire; value: s
-                                   since world start; position: of `object`'s box's middle */
-    FW_EVENT_SPOT_FIRE = 8,     /* an ember lit `object`; position: there; value: how many since the last */
-    FW_EVENT_WENT_LIVE = 9,     /* the baked burn that `object` played is over, or was disturbed: from here on
-                                   it is simulated; value: s since world start */
-    FW_EVENT_FLASHED_OVER = 10, /* a room did, see FwRoomDef; tag: index1 of its FwRoomId; object: null;
+    FW_EVENT_SPREAD_TO = 7,     /* `other` ignited `object`; tag: jumps since the first fire; position: middle of `object`'s box;
+                                   value: s since world start */
+    FW_EVENT_SPOT_FIRE = 8,     /* an ember ignited `object`; position: there; value: embers since the last such event */
+    FW_EVENT_WENT_LIVE = 9,     /* the baked burn of `object` ended or was disturbed: from now on the object is simulated;
+                                   value: s since world start */
+    FW_EVENT_FLASHED_OVER = 10, /* a room flashed over, see FwRoomDef; tag: index1 of its FwRoomId; object: null;
                                    position: its middle; value: s since world start */
-    FW_EVENT_STRUCTURE_BROKE = 11, /* of objects with breakShare or breakArea: the host may break `object`; tag:
-                                   FwBreakKind; value: m^2 of its surface that are concerned */
+    FW_EVENT_STRUCTURE_BROKE = 11, /* for objects with breakShare or breakArea: the host may break `object`;
+                                   tag: FwBreakKind; value: m^2 of affected surface */
     FW_EVENT_TYPE_FORCE32 = 0x7fffffff
 } FwEventType;
 typedef enum FwExtinguishCause {
     FW_EXTINGUISHED_BY_WATER = 1, /* FW_WET, or a field with FW_FIELD_WETS */
     FW_EXTINGUISHED_BY_CALL = 2,  /* FW_EXTINGUISH */
     FW_EXTINGUISHED_BY_AIR = 3,   /* its room had too little oxygen */
-    FW_EXTINGUISHED_BY_COLD = 4,  /* it lost more heat than its flames gave back, as a lone plank does */
+    FW_EXTINGUISHED_BY_COLD = 4,  /* it lost more heat than its flames returned, as a lone plank does */
     FW_EXTINGUISH_CAUSE_FORCE32 = 0x7fffffff
 } FwExtinguishCause;
 typedef enum FwBreakKind {
-    FW_BREAK_PART = 1,          /* a part of what is left of it hangs on nothing any more; position: the middle of it */
-    FW_BREAK_SHARE = 2,         /* so much of it is gone; position: of its box's middle */
+    FW_BREAK_PART = 1,          /* a piece lost its connection to all supports; position: middle of the piece */
+    FW_BREAK_SHARE = 2,         /* the share breakShare is gone; position: middle of the object's box */
     FW_BREAK_KIND_FORCE32 = 0x7fffffff
 } FwBreakKind;
-typedef struct FwEvent {        /* 64 bytes for ever */
-    uint32_t type, tag;         /* FwEventType; tag: of FW_EVENT_TAG_REACHED the host's number */
-    uint64_t userData;          /* the object's */
+typedef struct FwEvent {        /* frozen, 64 bytes */
+    uint32_t type, tag;         /* FwEventType; tag: as the type says */
+    uint64_t userData;          /* that of the object */
     FwBurnableMeshId object;
-    uint64_t frameIndex;        /* the frame whose work raised it */
-    float position[3], value;   /* position: with the object where it stands when the event is reported, which with a
-                                   device is up to 3 frames after `frameIndex` */
-    FwBurnableMeshId other;     /* FW_EVENT_SPREAD_TO: who lit it; else null */
+    uint64_t frameIndex;        /* frame whose work raised it */
+    float position[3], value;   /* m, world; value: as the type says. `position` follows the object's pose at the time of the
+                                   report: on a device up to 3 frames after `frameIndex` */
+    FwBurnableMeshId other;     /* FW_EVENT_SPREAD_TO: the object that ignited it; otherwise null */
     uint64_t reserved;
 } FwEvent;
-/* Oldest first; returns how many were written, 0 when there are no more. At most 4096 wait; then
- * the oldest are dropped and the next one says so in the log. Each event is written once: poll from
- * one place. Waits for no step and no recording. [any] */
+/* Writes events, oldest first, and returns how many; 0: none left. Each event is written once: poll from one place. At most
+ * 4096 events wait; if more come, the oldest are dropped and the log counts them. Waits for no step and no recording. [any] */
 FW_API uint32_t FW_CALL fwWorld_PollEvents(FwWorld*, FwEvent* events, uint32_t capacity);
-/* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, world) burns. [world] */
+/* Raises FW_EVENT_TAG_REACHED once when the texel nearest to `position` (m, [-1e6, 1e6], world) burns. At most 4096 points of a
+ * world may wait. [world] */
 FW_API FwResult FW_CALL fwWorld_TagPoint(FwWorld*, FwBurnableMeshId id, const float position[3], uint32_t tag);
-/* Cancels all points of the object with this tag that the front has not reached. None: FW_OK. [world] */
+/* Cancels all points of the object with this tag that the front has not reached. FW_OK if there are none. [world] */
 FW_API FwResult FW_CALL fwWorld_UntagPoint(FwWorld*, FwBurnableMeshId id, uint32_t tag);
 
-typedef struct FwObjectState { /* as of `frameIndex`: 2 to 3 frames ago on a GPU, now on the cpu */
+typedef struct FwObjectState { /* state at `frameIndex`: 2 to 3 frames ago on a device, now on the cpu backend */
     uint32_t structSize, reserved;
     uint64_t frameIndex;
-    uint32_t texels;           /* that can burn */
-    uint32_t ignited;          /* texels alight or burnt out, the most ever: what goes out again within
-                                  the step that it was lit in does not count */
+    uint32_t texels;           /* texels that can burn */
+    uint32_t ignited;          /* texels that burn or have burnt out; its maximum so far. A texel that goes out in the step of its
+                                  ignition does not count */
     uint32_t burning;          /* texels that flame now */
-    uint32_t frontTiles;       /* tiles on which the front can still move */
-    float burntFraction;       /* ignited / texels */
+    uint32_t frontTiles;       /* tiles in which the front can still move */
+    float burntFraction;       /* [0, 1]. ignited / texels */
     float burningArea;         /* m^2 */
-    float power;               /* W, at pace 1 */
+    float power;               /* W at pace 1 */
     float reserved1;
     double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_PUBLISHED */
-    uint32_t refinedTriangles; /* as last drawn, if it refines and caught fire; see FwWorldStats */
-    uint32_t plays;            /* 1: a baked burn, see fwWorld_PlayBurn; 0: it is simulated */
+    uint32_t refinedTriangles; /* at the last draw, if it refines and has ignited; see FwWorldStats */
+    uint32_t plays;            /* 1: it plays a baked burn (fwWorld_PlayBurn); 0: it is simulated */
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
-/* The same from any thread, as the last fwWorld_Step or fwWorld_RecordOutside left it, without waiting for one
- * that runs. The first fwWorld_Read... call on a world begins this copying and returns FW_NOT_READY; so does
- * an object that no frame has copied yet. Copying costs each frame some 0.1 us an object that ever burnt, and
- * 2 ns an object that never did. FW_ERROR_STALE_ID: the object was gone by that frame. [any] */
+/* Reads the state that the last fwWorld_Step or fwWorld_RecordOutside left, without waiting for one that runs. The first
+ * fwWorld_Read... call on a world starts this copying. Copying costs each frame about 0.1 us for each object that ever burnt,
+ * and 2 ns for each other object. FW_NOT_READY: no frame has copied the object yet. FW_ERROR_STALE_ID: the object was
+ * destroyed by that frame. [any] */
 FW_API FwResult FW_CALL fwWorld_ReadObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state);
 
 typedef enum FwPointStateKind {
@@ -1315,400 +1324,413 @@ typedef enum FwPointStateKind {
 typedef struct FwPointState {
     uint32_t structSize;
     uint32_t kind;             /* FwPointStateKind */
-    uint64_t frameIndex;       /* the answer is of this frame */
-    float age;                 /* s since it caught; < 0: not yet */
-    float distance;            /* m from the asked point to the texel */
-    float position[3];         /* m, world, of the texel */
+    uint64_t frameIndex;       /* frame of this state */
+    float age;                 /* s since its ignition; below 0: not ignited */
+    float distance;            /* m from the requested point to the texel */
+    float position[3];         /* m, world. Of the texel */
     float reserved;
-    float temperature;         /* K of the surface; 0: not known (FW_BURNABLE_LITE) */
-    float fuel;                /* [0, 1], that is left */
-    float charred;             /* [0, 1], for looks: scorched to burnt */
+    float temperature;         /* K of the surface; 0: unknown (FW_BURNABLE_LITE) */
+    float fuel;                /* share, [0, 1]. Remaining fuel */
+    float charred;             /* [0, 1], cosmetic. From scorched to burnt */
     float water;               /* g/m^2 on the surface */
 } FwPointState;
-/* Asks for the texel nearest to `position` (m, world). The answer comes with a later frame's
- * readback (at once on the cpu backend) and stays until it is fetched once, or cancelled; at most 1024 are
- * open. Destroying the object ends its queries: their ids are stale from then on. [world] */
+/* Requests the state of the texel nearest to `position` (m, [-1e6, 1e6], world). The answer arrives with the readback of a
+ * later frame (at once on the cpu backend) and stays until it is fetched or cancelled. At most 1024 queries may be open.
+ * Destroying the object ends its queries; their ids become stale. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestPoint(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
-/* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
+/* Writes the answer and frees the query. FW_NOT_READY: it has not arrived yet. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchPoint(FwWorld*, FwQueryId query, FwPointState* state);
 
-/* Ends a query of fwWorld_RequestPoint or fwWorld_RequestArrival; its id is stale from then on. [world] */
+/* Ends a query of fwWorld_RequestPoint or fwWorld_RequestArrival. Its id becomes stale. [world] */
 FW_API FwResult FW_CALL fwWorld_CancelQuery(FwWorld*, FwQueryId query);
 
 typedef enum FwArrivalKind {
-    FW_ARRIVAL_AHEAD = 0,      /* fire will be there */
-    FW_ARRIVAL_PAST = 1,       /* it burns or has burnt */
-    FW_ARRIVAL_NEVER = 2,      /* it will not, as things are */
+    FW_ARRIVAL_AHEAD = 0,      /* fire will arrive */
+    FW_ARRIVAL_PAST = 1,       /* the texel burns or has burnt */
+    FW_ARRIVAL_NEVER = 2,      /* fire will not arrive under present conditions */
     FW_ARRIVAL_KIND_FORCE32 = 0x7fffffff
 } FwArrivalKind;
 typedef struct FwArrivalState {
     uint32_t structSize;
     uint32_t kind;             /* FwArrivalKind */
-    uint64_t frameIndex;       /* the fire was as after this frame */
-    float seconds;             /* s from the world's present until it catches; PAST: since then, <= 0; NEVER: FLT_MAX */
-    float distance;            /* m from the asked point to the texel */
-    float position[3];         /* m, world, of the texel */
+    uint64_t frameIndex;       /* the prediction starts from the state after this frame */
+    float seconds;             /* s from the world's present to the ignition; PAST: 0 or less; NEVER: FLT_MAX */
+    float distance;            /* m from the requested point to the texel */
+    float position[3];         /* m, world. Of the texel */
     float reserved;
 } FwArrivalState;
-/* When will the object's own fire be at the texel nearest to `position` (m, world)? As things are at the time of the
- * call: where it burns, what is wet, under the wind, pose and room's air of now as if they stayed (in air in which
- * nothing burns: never). Not what other objects, gusts, water that dries or limits on burning tiles will make of it.
- * The front is run ahead of itself, at most FwWorldDef::arrivalTiles a frame, for all questions about an object at
- * once; what is near is known first, and the first frames tell it where the state is read back later. Exact for a
- * fire left alone. After a change (fire, water, wind, pose, air) ask anew. Counts to the 1024 queries that may be
- * open. Allocates some 5 bytes a texel at an object's first question. Not for FW_BURNABLE_PUBLISHED. [world] */
+/* Predicts when the object's own fire reaches the texel nearest to `position` (m, [-1e6, 1e6], world). Conditions are those of
+ * the call and stay: the present fire, water, wind, pose and air of the room (if nothing burns in that air: never). It ignores
+ * other objects, gusts, drying water and limits on burning tiles. Exact for a fire left alone; after a change of fire, water,
+ * wind, pose or air, request again. The library runs the front ahead, at most FwWorldDef::arrivalTiles tiles a frame, once
+ * for all queries on an object. Near points are answered first; on a device the first frames wait for the readback of the
+ * state. Counts towards the 1024 open queries. An object's first query allocates about 5 bytes a texel.
+ * FW_ERROR_INVALID_ARGUMENT: the object has FW_BURNABLE_PUBLISHED. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestArrival(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
-/* FW_NOT_READY until the answer is here; FW_OK writes it and frees the query. [world] */
+/* Writes the answer and frees the query. FW_NOT_READY: it has not arrived yet. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArrivalState* state);
 
-/* ---- saves: a world mid-burn as bytes -------------------------------------------------------------------- */
+/* ---- saves: a burning world as bytes ----------------------------------------------------------------------- */
 
-/* Wishes a save of the world as it is after the next frame, be it of no time; with a device the bytes come some frames
- * later, and nothing waits for them. One at a time: a second wish begins anew. In a save: every texel's state, temperature, fuel
- * and water; counters, clocks, wind, flags and what the wind's filters hold; transforms of objects and blockers; events
- * that wait, tags, contacts; what jets have in the air, what fires and jets are about to light, cells of fields that
- * wet; points of volumetric fires; what FwWorldDef::visibility answered; which breaks were reported; all events up to that
- * frame's that were not polled before it (with a device those that it reports later, too), but for those about objects that
- * are destroyed by then. Not in it: what only shows (particles, flames, soot, sheets in motion), queries, hidden,
- * and what the host made: meshes, materials, objects. Refused while an object with FW_BURNABLE_PUBLISHED burns. The bytes
- * are the same on every backend, if as much was polled and nothing moved since (positions of events are those of the poll):
- * little-endian, versioned, with a checksum, compressed. A loaded world goes on as its original does: state, events and
- * later saves are alike. FwWorldStats::runTiles and flames alone are not: they count work. [world] */
+/* Takes a snapshot at the end of the next frame (deltaTime may be 0). On a device its bytes arrive some frames later, and no
+ * frame waits for them. One save at a time: a second request restarts it.
+ * The save contains: state, temperature, fuel and water of every texel; counters, clocks, wind, flags and wind filters;
+ * transforms of objects and occluder boxes; waiting events, tags, contacts; jet streams in flight; pending ignitions of fires
+ * and jets; cells of fields that wet; points of volumetric fires; answers of FwWorldDef::visibility; reported breaks. It also
+ * contains all events up to that frame's that were not polled before it, including those that a device reports later. Events
+ * of objects that are destroyed by then are left out.
+ * It does not contain: cosmetic state (particles, flames, soot, moving sheets), queries, hidden flags, and objects of the host
+ * (meshes, materials, burnable meshes).
+ * The bytes are little-endian, versioned, checksummed and compressed. They are equal on every backend if polling was equal and
+ * no object moved since (event positions are those of the poll). A loaded world continues like its original: state, events
+ * and later saves are equal, except FwWorldStats::runTiles and flames, which count work.
+ * FW_ERROR_INVALID_ARGUMENT: an object with FW_BURNABLE_PUBLISHED burns. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
-/* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
- * be) written, in bytes. The library keeps them until the next fwWorld_RequestSave. To keep them, write them to a new
- * file, and rename that over the old one: then a crash leaves the old one whole. [world] */
+/* Copies the save. If `buffer` is null, *size gets the size needed; otherwise *size is the capacity on entry and the bytes
+ * written on return. The library keeps the save until the next fwWorld_RequestSave. Write it to a new file, then rename that
+ * over the old one, so that a crash keeps the old file intact. FW_NOT_READY: it has not arrived yet. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchSave(FwWorld*, void* buffer, uint64_t* size);
-/* Forgets a save that was requested, and frees one that is there. None: FW_OK. [world] */
+/* Cancels a requested save, or frees a finished one. FW_OK if there is none. [world] */
 FW_API FwResult FW_CALL fwWorld_CancelSave(FwWorld*);
-/* The world as it was saved, on whatever backend: from here on both burn bit by bit alike, whatever frame rate each of
- * them has, if they hear the same calls. The world holds what the saved one did, made in the same order, so that the
- * ids' index1 are the same: burnable meshes of the same meshes and materials (by a hash of them and of their defs),
- * blockers, wind zones, rooms, fires, emitters and fields. Its FwWorldDef has the same paceFactor, up, seed and limits of spread. All in it
- * goes to where and what it was, also what has never burnt; ids stay valid. The first frame shows flames and particles as if
- * they had long burnt so. Unpolled events are the save's, as of the frame
- * before the next: a host that knew by the save's frame what it had polled hears each event once. Queries that
- * wait are asked anew. FW_ERROR_BAD_DATA, and nothing is changed: the bytes are damaged, cut, of another version, or of
- * another world; the message says of what, with both values. Time is that of the save; frame indices go on growing.
- * Uploads with the next frame. [world] */
+/* Restores a saved world, on any backend. From then on both worlds burn bit-identically at any frame rate, if they get the
+ * same calls. The world must hold the same things, created in the same order, so that index1 of all ids is equal: burnable
+ * meshes with equal meshes, materials and defs (compared by hash), occluder boxes, wind zones, rooms, fires, emitters and
+ * fields. Its FwWorldDef has the same paceFactor, up, seed and spread limits.
+ * Everything returns to its saved place and state, unburnt objects included; ids stay valid. The first frame shows flames and
+ * particles as if they had burnt for long. Unpolled events are those of the save, as of the frame before the next one: a host
+ * that recorded what it had polled by the save's frame gets each event once. Open queries restart. Time is that of the save;
+ * frame indices keep growing. The state is uploaded with the next frame.
+ * FW_ERROR_BAD_DATA: the bytes are damaged, incomplete, or of another version or world; nothing changed, and the message
+ * names the difference with both values. [world] */
 FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size);
 
-/* ---- a log: any moment of a burn, seen again -------------------------------------------------------------- */
+/* ---- command log: replay of a burn ---------------------------------------------------------------------------- */
 
-/* What the host does to the burn, each with the tick it came before. With the last save before a moment it gives that moment
- * bit by bit, on any backend, whatever frame rate either has: load the save, open the log, then
+/* Starts to record the commands that change the burn, each with the tick that it preceded. A save and the command log after it
+ * reproduce any later time bit by bit, on any backend, at any frame rate. Load the save, open the log, then
  *     while (fwWorld_PlayLog(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
- * In it are the same calls that a network sends by itself (see fwNet_Serve); all else (what is made and destroyed, colliders,
- * points of fires, painted fields, vertices) the host does again at its time.
- * Notes from here on, some 20 to 60 bytes a call; a log that was noted before is dropped. [world] */
+ * The log contains the calls that a network sends by itself (see fwNet_Serve). The host repeats all else at its time:
+ * creation, destruction, colliders, points of fires, painted fields, vertices. A call takes 20 to 60 bytes. Drops an earlier
+ * recording. [world] */
 FW_API FwResult FW_CALL fwWorld_StartLog(FwWorld*);
-/* Notes no more, and drops what was noted. [world] */
+/* Stops recording and drops the recorded commands. [world] */
 FW_API FwResult FW_CALL fwWorld_StopLog(FwWorld*);
-/* All that was noted, little-endian, versioned, with a checksum. As fwWorld_FetchSave: buffer null for the size, or
- * with enough room; *size is what is (or would be) written, in bytes. The log goes on. [world] */
+/* Copies the recorded commands: little-endian, versioned, checksummed. Recording continues. If `buffer` is null, *size gets
+ * the size needed; otherwise *size is the capacity on entry and the bytes written on return.
+ * FW_ERROR_INVALID_ARGUMENT: nothing is being recorded. FW_ERROR_OUT_OF_MEMORY: memory ran out while recording. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchLog(FwWorld*, void* buffer, uint64_t* size);
-/* Reads a log to be played, in place of one that was; size 0: none any more. FW_ERROR_BAD_DATA, and nothing is changed: the
- * bytes are damaged, cut, of another version, or of a world that is made of other things. [world] */
+/* Opens a command log for replay, in place of an open one; size 0 closes it. FW_ERROR_BAD_DATA: the bytes are damaged,
+ * incomplete, of another version, or of a world that holds other things; nothing changed. [world] */
 FW_API FwResult FW_CALL fwWorld_OpenLog(FwWorld*, const void* bytes, uint64_t size);
-/* Does what the log has before the world's next step. *seconds: how far the world is to be moved before the next call: to
- * the next thing in the log, or to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), but no
- * farther than a frame may go; 0: it is there. What lies before the world's present, or went into the save that was loaded
- * there, is passed over; what the world refuses, too, and its log says so. Refused without a log, and while the world
- * follows a server's. [world] */
+/* Applies the logged commands that precede the world's next step. *seconds gets the time to advance before the next call: to
+ * the next command, or to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick). It is never more than
+ * one frame may advance. 0: the world is there. Skips commands before the world's present and those that the loaded save already
+ * contains. Skips commands that the world refuses; the log has a warning.
+ * FW_ERROR_INVALID_ARGUMENT: no log is open, or the world follows a server. [world] */
 FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* seconds);
 
-/* ---- a timeline: forth and back in a burn ------------------------------------------------------------------ */
+/* ---- timeline: back and forth in a burn ------------------------------------------------------------------------ */
 
-/* The world keeps saves of itself, some time apart, and what the host did since the first of them: any moment in between
- * can be had again, bit by bit, in the same world. For scrubbing, replays, kill cams, undo. Baked burns, be it that they
- * play or went live, are in it as any other fire. */
+/* The world keeps keyframes (saves of itself, some time apart) and the commands since the first of them. It can return to any
+ * time in between, bit by bit. For scrubbing, replays, kill cams and undo. Baked burns are included. */
 typedef struct FwTimelineDef {
     uint32_t structSize;
-    float interval;            /* s of the world's time from one save to the next, [1/32, 3600], default 2 */
-    float longest;             /* s, [interval, 3600], default 32: as far apart they may come to be, so that they fit */
+    float interval;            /* s of world time, [1/32, 3600], default 2. Distance between keyframes */
+    float longest;             /* s, [interval, 3600], default 32. Largest distance to which they may be thinned out to fit */
     uint32_t reserved;         /* 0 */
-    uint64_t bytes;            /* the most that saves and notes take, [65536, 2^64), default 67108864. Beyond that every second
-                                  save goes, as long as `longest` allows; then the oldest, and with it the timeline's
-                                  beginning. The newest save, and what was done since, stay whatever they take */
+    uint64_t bytes;            /* bytes, [65536, 2^64), default 67108864. Limit for keyframes and commands. Beyond it every second
+                                  keyframe goes, as far as `longest` allows; then the oldest, and with it the start of the
+                                  timeline. The newest keyframe and the commands after it stay, whatever their size */
 } FwTimelineDef;
 static inline FwTimelineDef fwDefaultTimelineDef(void) {
     FwTimelineDef d; fwInitDef(FW_DEF_TIMELINE, &d, (uint32_t)sizeof d); return d;
 }
-/* From the world as it is after the next frame; one that was kept before is dropped. A save costs what fwWorld_RequestSave says,
- * in its frame. fwWorld_Load begins it anew. Refused while an object with FW_BURNABLE_PUBLISHED burns. [world] */
+/* Starts a timeline at the state after the next frame; drops an earlier one. A keyframe costs its frame as much as
+ * fwWorld_RequestSave. fwWorld_Load restarts the timeline. FW_ERROR_INVALID_ARGUMENT: an object with FW_BURNABLE_PUBLISHED
+ * burns. [world] */
 FW_API FwResult FW_CALL fwWorld_StartTimeline(FwWorld*, const FwTimelineDef* def);
-FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays where it is [world] */
-/* One piece of the way to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), be that ahead or behind:
+FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays as it is [world] */
+/* Moves one part of the way to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), back or forth:
  *     while (fwWorld_Seek(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
- * or a recorded frame for each. Goes back, or leaps, to the nearest save by what fwWorld_Load does (events that wait are the save's, what
- * only shows begins anew), and does again what the host did from there on; *seconds: how far the world is to be moved before the
- * next call; 0: it is there. Where it stops in the past, what the host did at that very tick is not done yet. Called with more
- * and more it plays the past; events are raised again. Who moves the world on without it, or does anything to the burn, begins
- * another future: what came after is forgotten. FW_ERROR_INVALID_ARGUMENT: it has no such time, see FwTimelineState; or there is none.
- * FW_NOT_READY: its first save is not there yet. FW_ERROR_BAD_DATA: something was made or destroyed since, which is not on
- * timelines: start another one then. Refused while the world follows a server's. [world] */
+ * or with one recorded frame for each. *seconds gets the time to advance before the next call; 0: the world is there. A jump
+ * loads the nearest keyframe, as fwWorld_Load does: waiting events are those of the keyframe, and cosmetic state restarts.
+ * Then the library applies the commands after it. Where it stops in the past, commands of that very tick are not applied yet.
+ * Rising values of untilTick play the past again; events are raised again. If the host advances the world without Seek, or
+ * changes the burn, another future begins and the timeline forgets what came after.
+ * FW_ERROR_INVALID_ARGUMENT: there is no timeline, it lacks that time (see FwTimelineState), or the world follows a server.
+ * FW_NOT_READY: its first keyframe has not arrived. FW_ERROR_BAD_DATA: the host created or destroyed something since, which a
+ * timeline does not contain; start another one. [world] */
 FW_API FwResult FW_CALL fwWorld_Seek(FwWorld*, uint64_t untilTick, float* seconds);
 typedef struct FwTimelineState {
     uint32_t structSize;
-    uint32_t moments;          /* saves that are kept; 0: it is not there yet, or none is kept */
-    uint64_t firstTick, endTick; /* where fwWorld_Seek may go; a tick is 2^-12 s */
-    uint64_t bytes;            /* that saves and notes take */
-    float interval;            /* s from one save to the next, now */
+    uint32_t moments;          /* keyframes; 0: the first has not arrived, or there is no timeline */
+    uint64_t firstTick, endTick; /* ticks (2^-12 s). Range of fwWorld_Seek */
+    uint64_t bytes;            /* bytes of keyframes and commands */
+    float interval;            /* s. Present distance between keyframes */
     uint32_t reserved;
 } FwTimelineState;
 FW_API FwResult FW_CALL fwWorld_GetTimelineState(FwWorld*, FwTimelineState* state); /* [world] */
 
-/* ---- baked burns: fire that plays and goes live when disturbed ------------------------------------------------ */
+/* ---- baked burns: recorded fire that goes live when disturbed ------------------------------------------------- */
 
-/* Asks for when each texel of an object caught, as it will be after the next frame; fetched like a save, some frames later
- * with a device. What was put out, and what has not burnt, is not in it. [world] */
+/* Requests the ignition time of each texel of an object, after the next frame. On a device it arrives some frames later, like
+ * a save. Unburnt and extinguished texels are left out. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestBurn(FwWorld*, FwBurnableMeshId id);
-/* FW_NOT_READY until it is there. Call with buffer null for the size, or with enough room; *size is what is (or would
- * be) written, in bytes: a .fwburn file, little-endian, versioned, with a checksum, compressed. Times count from the first
- * texel that caught. Refused where nothing has burnt. [world] */
+/* Copies the burn as a .fwburn file: little-endian, versioned, checksummed, compressed. Times count from its first ignition.
+ * If `buffer` is null, *size gets the size needed; otherwise *size is the capacity on entry and the bytes written on return.
+ * FW_NOT_READY: it has not arrived yet. FW_ERROR_INVALID_ARGUMENT: nothing has burnt. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchBurn(FwWorld*, FwBurnableMeshId id, void* buffer, uint64_t* size);
-/* Forgets what fwWorld_RequestBurn asked for, and frees it where it is there. Nothing requested: FW_OK. [world] */
+/* Cancels fwWorld_RequestBurn, or frees its result. FW_OK if there is none. [world] */
 FW_API FwResult FW_CALL fwWorld_CancelBurn(FwWorld*, FwBurnableMeshId id);
-/* Bytes of fwWorld_FetchBurn, of this world or another one, to be played by any number of objects. FW_ERROR_BAD_DATA: they
- * are damaged, cut or of another version. Takes 8 bytes a texel. [world] */
+/* Creates a baked burn from bytes of fwWorld_FetchBurn, of this world or another one. Any number of objects may play it. Takes
+ * 8 bytes a texel. FW_ERROR_BAD_DATA: the bytes are damaged, incomplete or of another version. [world] */
 FW_API FwResult FW_CALL fwWorld_CreateBurn(FwWorld*, const void* bytes, uint64_t size, FwBurnId* id);
 FW_API FwResult FW_CALL fwWorld_DestroyBurn(FwWorld*, FwBurnId id); /* refused while an object plays it [world] */
-/* From the next step on the object plays the burn, whose first texel catches `delay` s from now ([0, 3600], at least one
- * step), and the others at `speed` times the pace at which they did ([1/16, 16], 1: as they did). Meant for what has not
- * burnt yet; what burns already goes on. No front is simulated on it; fuel, heat, char, flames, lights, what it does to
- * others, events, queries and saves are as ever, and fwWorld_RequestArrival tells what the burn says. The object goes live
- * (FW_EVENT_WENT_LIVE), that is, its front is simulated from the state that it then has, within two steps after: the host
- * or another object lights, heats, wets, dries or douses a texel of it; others' fire sends it 4 kW/m^2 (see
- * FW_WORLD_RADIATION), of which wood does not catch yet; its wind or pose turns so far that its front would hear of it;
- * fwWorld_StopBurn; the last texel of the burn caught. The same on every backend, in saves (which name burns by their id and
- * a hash: make them in the same order), logs and networks. Replaces a burn that the object plays. The burn is of the same
- * mesh (by a hash of what is baked of it, in the same shape), or it is refused; so is FW_BURNABLE_PUBLISHED. [world] */
+/* Plays a baked burn on an object, from the next step on, in place of one that it plays. Its first texel ignites after
+ * `delay` (s, [0, 3600], at least one step), the others at `speed` times their recorded pace (factor, [1/16, 16]). Meant for
+ * unburnt objects; texels that burn already continue. The object simulates no front. Fuel, heat, char, flames, lights, heat
+ * to others, events, queries and saves work as usual, and fwWorld_RequestArrival answers from the burn.
+ * The object goes live (FW_EVENT_WENT_LIVE) within two steps after a disturbance: its front is simulated from its present
+ * state. Disturbances: the host or another object ignites, heats, wets, dries or extinguishes a texel; fire of others sends it
+ * 4 kW/m^2 (see FW_WORLD_RADIATION), too little to ignite wood; its wind or pose changes enough to change its front;
+ * fwWorld_StopBurn; the last texel of the burn ignites.
+ * The result is the same on every backend and in command logs, networks and saves, which name burns by id and hash: create
+ * them in the same order. FW_ERROR_INVALID_ARGUMENT: the burn is of another mesh or shape (by hash), or the object has
+ * FW_BURNABLE_PUBLISHED. [world] */
 FW_API FwResult FW_CALL fwWorld_PlayBurn(FwWorld*, FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
-/* Makes an object live that plays a burn; else nothing. [world] */
+/* Makes an object that plays a burn go live. Otherwise does nothing. [world] */
 FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
 
-/* ---- a network: one burn on many machines ------------------------------------------------------------------ */
+/* ---- network: one burn on many machines -------------------------------------------------------------------- */
 
-/* The server's world is the truth. Clients have worlds that are made of the same things in the same order (see fwWorld_Load);
- * they get the server's state once, and from there on what its host does to the burn, with the step that it came before. As
- * fire is integers, both then burn bit by bit alike; hashes of each object, every few seconds, show it, and a client that has
- * gone astray, whyever, gets the tiles that differ, or all again. The host moves the packets, by whatever way it has: they may be lost, come
- * twice, late and in any order. A packet that is damaged, cut, or of another session or version is refused with a message
- * and changes nothing; the checksum finds damage, not malice: encrypt where that is to be feared. Nothing here waits.
+/* The server's world is authoritative. Clients hold worlds of the same things in the same order (see fwWorld_Load). They get
+ * the server's state once, then each command of its host with the step that it precedes. Fire is integers, so all worlds burn
+ * bit-identically. Hashes of each object, every few seconds, verify it: a client that differs gets the tiles that differ, or
+ * the whole state. The host transports the packets, by any means: they may be lost, repeated, late and out of order. A packet
+ * that is damaged, incomplete, or of another session or version is refused with a message and changes nothing. The checksum
+ * detects damage, not attacks: encrypt where attacks are possible. No call waits.
  *
- * Sent by itself is: fwWorld_Ignite, PlayBurn, StopBurn, SetWind, SetWindGrid, SetGusts, SetWindZone, SetRoom, SetFlags,
- * SetTransform, MoveBlocker, SetHeatShield;
- * of volumetric fires with FW_FIRE_IGNITES and jets with FW_EMITTER_IGNITES where they are and their power, of fields with
- * FW_FIELD_WETS where they are and their amount. On a client these calls are refused, as fwWorld_Load is. What is made and
- * destroyed, and all else that changes what burns (colliders, points of fires, painted fields, vertices), each host does by
- * itself: told by fwNet_Tell, at the same step. */
+ * Sent automatically: fwWorld_Ignite, fwWorld_PlayBurn, fwWorld_StopBurn, fwWorld_TransferBurn, fwWorld_SetWind,
+ * fwWorld_SetWindGrid, fwWorld_SetGusts, fwWorld_SetWindZone, fwWorld_SetRoom, fwWorld_SetFlags, fwWorld_SetTransform,
+ * fwWorld_MoveBlocker, fwWorld_SetHeatShield and fwWorld_ShiftOrigin; position and power of volumetric fires with
+ * FW_FIRE_IGNITES and of jets with FW_EMITTER_IGNITES; position and amount of fields with FW_FIELD_WETS. A client refuses these
+ * calls, and fwWorld_Load. Each host repeats all else that changes the burn at the same step, when a message of fwNet_Tell says
+ * so: creation, destruction, colliders, points of fires, painted fields, vertices. */
 typedef struct FwNetDef {
     uint32_t structSize, flags; /* flags: 0 */
-    uint32_t token;             /* [1, 2^32): a number of the host's by chance, another one each time: of the session, or of
-                                   this client. Packets of others are refused */
-    uint32_t packetBytes;       /* [512, 1400], default 1200: the most that a packet has */
-    uint32_t bytesPerSecond;    /* [4000, 100000000], default 262144: of a server, to each client at most: what a connection
-                                   carries. A client that falls too far behind gets the whole state; see
+    uint32_t token;             /* [1, 2^32). A random number of the host, new each time: of the session, or of this client.
+                                   Packets with another token are refused */
+    uint32_t packetBytes;       /* bytes, [512, 1400], default 1200. Largest packet */
+    uint32_t bytesPerSecond;    /* bytes/s, [4000, 100000000], default 262144. Server: most that it sends to each client; the
+                                   capacity of a connection. A client that falls too far behind gets the whole state: see
                                    FwNetState::overloaded */
-    float interval;             /* s between packets, [1/64, 1], default 1/16; more are sent where there is more to say */
-    float delay;                /* s, [0, 10], default 0.15: of a client, how far it stays behind the newest that it has heard
-                                   of. Below what packets need on their way, and again where one is lost, its fire stutters */
+    float interval;             /* s, [1/64, 1], default 1/16. Time between packets; more are sent if there is more to send */
+    float delay;                /* s, [0, 10], default 0.15. Client: how far it stays behind the newest known step. If it is below
+                                   the latency of packets (or twice that after a loss), fire stutters */
     uint32_t reserved;          /* 0 */
 } FwNetDef;
 static inline FwNetDef fwDefaultNetDef(void) {
     FwNetDef d; fwInitDef(FW_DEF_NET, &d, (uint32_t)sizeof d); return d;
 }
-/* The world is a server's from here on, or a client's, which begins with the server's state and moves no further than
- * fwNet_TakeTurn says. On any backend. Refused while it is either already. [world] */
+/* Makes the world a server, on any backend. FW_ERROR_INVALID_ARGUMENT: it is a server or a client already. [world] */
 FW_API FwResult FW_CALL fwNet_Serve(FwWorld*, const FwNetDef* def);
-FW_API FwResult FW_CALL fwNet_Join(FwWorld*, const FwNetDef* def); /* [world] */
-/* Neither any more; the world stays as it is. [world] */
+/* Makes the world a client, on any backend. It starts with the server's state and advances no further than fwNet_TakeTurn says.
+ * FW_ERROR_INVALID_ARGUMENT: it is a server or a client already. [world] */
+FW_API FwResult FW_CALL fwNet_Join(FwWorld*, const FwNetDef* def);
+/* Ends the role of server or client. The world stays as it is. [world] */
 FW_API FwResult FW_CALL fwNet_Leave(FwWorld*);
-/* Of a server: somebody from whom packets come, at most 256 at a time. A client that comes back with another token is another
- * peer. How long one has been silent says its state; dropping it is the host's. [world] */
+/* Server: adds a peer from which packets come, at most 256 at a time. A client that returns with another token is another peer.
+ * FwNetState::silent tells how long a peer has been silent; the host removes it. [world] */
 FW_API FwResult FW_CALL fwNet_AddPeer(FwWorld*, FwPeerId* id);
 FW_API FwResult FW_CALL fwNet_RemovePeer(FwWorld*, FwPeerId id); /* [world] */
-/* Once in each of the host's frames, after its steps: deltaTime s, [0, 10], of real time have passed. [world] */
+/* Advances network time by deltaTime: s of real time, [0, 10]. Call it once in each frame of the host, after its steps.
+ * [world] */
 FW_API FwResult FW_CALL fwNet_Update(FwWorld*, float deltaTime);
-/* The next packet for a peer; of a client: for the server, with a null id. *size: room for FwNetDef::packetBytes, then what
- * was written. FW_NOT_READY: there is none before the next fwNet_Update. [world] */
+/* Writes the next packet for a peer; on a client, for the server, with a null id. *size is the capacity on entry
+ * (FwNetDef::packetBytes) and the bytes written on return. FW_NOT_READY: none before the next fwNet_Update. [world] */
 FW_API FwResult FW_CALL fwNet_Write(FwWorld*, FwPeerId to, void* packet, uint32_t* size);
-/* A packet that came. FW_ERROR_BAD_DATA, FW_ERROR_VERSION: it is damaged, of another session, or has a number that cannot be
- * by what this side has sent. Such a packet changes nothing; FwNetState::packetsRefused counts it, and a server's log says the
- * first, second, fourth, eighth... of each peer. Of one peer a server looks at 512 packets a second. [world] */
+/* Reads a packet that arrived. A server reads at most 512 packets a second of one peer.
+ * FW_ERROR_BAD_DATA, FW_ERROR_VERSION: the packet is damaged, of another session, or contains a number that contradicts what
+ * this side has sent. It changes nothing, and FwNetState::packetsRefused counts it. The log of a server names the 1st, 2nd,
+ * 4th, 8th... of each peer. [world] */
 FW_API FwResult FW_CALL fwNet_Read(FwWorld*, FwPeerId from, const void* packet, uint32_t size);
-/* Of a server: bytes of the host's own, [0, 1024] and at most FwNetDef::packetBytes less 64, that each client gets between
- * the same calls and before the same step as here, in order, none left out; a client that gets the whole state, as it fell
- * behind or went wrong, gets those before that state right before it. Clients that join later do not get it: their
- * host has to know by another way what has been made since. [world] */
+/* Server: sends a message of the host to all clients. size: bytes, [0, 1024], and at most FwNetDef::packetBytes - 64. Each
+ * client gets it between the same commands and before the same step, in order and without gaps. A client that gets the whole
+ * state gets the messages that precede that state right before it. Clients that join later do not get it: their host must learn
+ * by other means what was created since. [world] */
 FW_API FwResult FW_CALL fwNet_Tell(FwWorld*, const void* message, uint32_t size);
 
 typedef enum FwNetTurnKind {
-    FW_TURN_WAIT = 0,    /* nothing more in this frame of the host's */
-    FW_TURN_STEP = 1,    /* move the world on by deltaTime, with fwWorld_Step or a recorded frame, then ask again */
-    FW_TURN_MESSAGE = 2, /* the server's host says so: do it now, then ask again */
+    FW_TURN_WAIT = 0,    /* nothing more to do in this frame of the host */
+    FW_TURN_STEP = 1,    /* advance the world by deltaTime, with fwWorld_Step or a recorded frame, then call again */
+    FW_TURN_MESSAGE = 2, /* a message of the server's host: act on it now, then call again */
     FW_TURN_FORCE32 = 0x7fffffff
 } FwNetTurnKind;
 typedef struct FwNetTurn {
     uint32_t structSize;
     uint32_t kind;             /* FwNetTurnKind */
-    float deltaTime;           /* s */
+    float deltaTime;           /* s. For FW_TURN_STEP */
     uint32_t messageSize;      /* bytes */
     unsigned char message[1024];
 } FwNetTurn;
-/* Of a client: what to do next, in a loop after fwNet_Update until FW_TURN_WAIT. A host that records one frame of the world's
- * in each of its own takes one step each: the rest waits, and comes a little faster. [world] */
+/* Client: gets the next action. Call it in a loop after fwNet_Update until FW_TURN_WAIT. A host that records one frame of the
+ * world in each of its own takes one step each; the rest waits and arrives a little faster.
+ * FW_ERROR_VERSION: structSize is below sizeof(FwNetTurn). [world] */
 FW_API FwResult FW_CALL fwNet_TakeTurn(FwWorld*, FwNetTurn* turn);
 
 typedef enum FwNetRole { FW_NET_NONE = 0, FW_NET_SERVER = 1, FW_NET_CLIENT = 2, FW_NET_ROLE_FORCE32 = 0x7fffffff } FwNetRole;
 typedef enum FwNetPhase {
-    FW_NET_CALLING = 0,   /* no answer yet */
-    FW_NET_REFUSED = 1,   /* the server's world is of other things, as the log says; it is asked again each second */
-    FW_NET_LOADING = 2,   /* the state is on its way */
+    FW_NET_CALLING = 0,   /* no reply yet */
+    FW_NET_REFUSED = 1,   /* the server's world holds other things, as the log says; the client retries each second */
+    FW_NET_LOADING = 2,   /* the state is being transferred */
     FW_NET_FOLLOWING = 3,
     FW_NET_PHASE_FORCE32 = 0x7fffffff
 } FwNetPhase;
 typedef struct FwNetState {
     uint32_t structSize;
-    uint32_t role, phase;      /* FwNetRole; FwNetPhase: of a client, or of a server's peer */
+    uint32_t role, phase;      /* FwNetRole; FwNetPhase of a client, or of a server's peer */
     uint32_t peers;
-    uint64_t step;             /* of 1/32 s, that this world has come to */
-    uint64_t heardStep;        /* that the other one has, as far as is known */
-    float behind;              /* s that the client is behind that */
-    float silent;              /* s since the last packet came */
-    uint32_t records;          /* that wait: for answers on a server, for their step on a client */
-    uint32_t states;           /* that were taken from the server; the first is how a client joins */
-    uint32_t strays;           /* of a client: how often it was found to differ */
-    uint32_t repairs;          /* of a client: of its states, those of which only tiles that differed came */
-    uint64_t hashes;           /* of a client: that were compared */
-    uint64_t bytesOut, bytesIn, packetsOut, packetsIn; /* without what the way adds */
-    uint64_t packetsIgnored;   /* that had come before, came much too late, or faster than 512 a second from one peer */
-    uint64_t packetsRefused;   /* that were damaged or had a number that cannot be; of a server's peer: those of this peer */
-    uint64_t messagesLost;     /* of a server: messages of fwNet_Tell that peers miss, since more than 4 MB of them waited */
-    uint32_t resyncs;          /* of a server: how often a peer fell so far behind that it needs the whole state */
-    uint32_t overloaded;       /* of a server: peers whose rate cannot carry the changes; of a client: 1 if its server says so */
-    float changeRate;          /* bytes/s, of a server: what its changes of the last seconds take */
-    float backlog;             /* s, of a server: age of the oldest change that a peer has not got */
-    float roundTrip;           /* s, of a server's peer: from a packet to its answer; 0: not known yet */
+    uint64_t step;             /* steps (1/32 s). Present of this world */
+    uint64_t heardStep;        /* steps. Newest step of the other side that this side knows */
+    float behind;              /* s. How far the client is behind that step */
+    float silent;              /* s since the last packet arrived */
+    uint32_t records;          /* waiting records: for acknowledgement on a server, for their step on a client */
+    uint32_t states;           /* states received from the server; the first is the one with which a client joins */
+    uint32_t strays;           /* client: how often it was found to differ */
+    uint32_t repairs;          /* client: states of which only the tiles that differed were sent */
+    uint64_t hashes;           /* client: hashes compared */
+    uint64_t bytesOut, bytesIn, packetsOut, packetsIn; /* without overhead of the transport */
+    uint64_t packetsIgnored;   /* repeated packets, much too late ones, and those beyond 512 a second from one peer */
+    uint64_t packetsRefused;   /* damaged packets and those with impossible numbers; for a server's peer: those of this peer */
+    uint64_t messagesLost;     /* server: messages that peers miss because more than 4 MB of them waited */
+    uint32_t resyncs;          /* server: how often a peer fell so far behind that it needs the whole state */
+    uint32_t overloaded;       /* server: peers whose rate cannot carry the changes; client: 1 if its server reports that */
+    float changeRate;          /* bytes/s. Server: rate of the changes of the last seconds */
+    float backlog;             /* s. Server: age of the oldest change that a peer has not received */
+    float roundTrip;           /* s. Server's peer: from a packet to its acknowledgement; 0: unknown */
     uint32_t reserved;         /* 0 */
 } FwNetState;
-/* Of a server: peer null: of all of them. [world] */
+/* Gets the state of a client or server. Server: `peer` selects a peer; null sums over all of them. [world] */
 FW_API FwResult FW_CALL fwNet_GetState(FwWorld*, FwPeerId peer, FwNetState* state);
+
+/* ---- lights and surroundings --------------------------------------------------------------------------------- */
 
 typedef struct FwLight {       /* frozen, 64 bytes. A ball of fire for the host's own lighting */
     float position[3];         /* m, world */
-    float radius;              /* m, of the source */
+    float radius;              /* m. Of the source */
     float color[3];            /* linear, luminance 1 */
-    float intensity;           /* relative radiant intensity, W/sr of the visible part */
-    float power;               /* W, whole heat release */
+    float intensity;           /* W/sr of visible light. Relative radiant intensity */
+    float power;               /* W. Whole heat release */
     float reserved[3];
-    uint32_t id, reserved1;    /* stable while the same fire burns */
+    uint32_t id, reserved1;    /* id: stable while the same fire burns */
     uint64_t frameIndex;
 } FwLight;
-/* The strongest fires, which shine for all others too: the sum of power and intensity is that of all fires, however
- * few lights there are. Of burning meshes as of the last readback, and smooth from frame to frame (a filter of 0.1 s,
- * and flicker of at most 7 % in 1/60 s); volumetric fires as of the last frame, or as they are about to be (their ids
- * have the highest bit set); fire emitters (the bit below it). At most FwWorldDef::maxLights; strongest first. Backends
- * gather burning tiles each in its own way: places, radii, ids and shares of the power differ between them, the sum of the
- * power does not. Returns how many were written. [world] */
+/* Writes the strongest fires, strongest first, and returns how many: at most FwWorldDef::maxLights. They shine for all others
+ * too: the sums of power and intensity are those of all fires, whatever the number of lights. Lights of burning meshes are as
+ * of the last readback. They change smoothly: a filter of 0.1 s, flicker of at most 7 % in 1/60 s. Volumetric fires are as of
+ * the last frame, or as they are about to be; bit 31 of their ids is set. Bit 30 marks fire emitters. Each backend clusters
+ * burning tiles in its own way: positions, radii, ids and shares of the power differ, their sum does not. [world] */
 FW_API uint32_t FW_CALL fwWorld_GetLights(FwWorld*, FwLight* lights, uint32_t capacity);
-/* The same from any thread, as the last fwWorld_Step or fwWorld_RecordOutside left it: see
- * fwWorld_ReadObjectState. *count: room in `lights`, then how many were written. FW_NOT_READY: no frame has
- * copied them yet, *count is 0. [any] */
+/* Reads the lights that the last fwWorld_Step or fwWorld_RecordOutside left: see fwWorld_ReadObjectState. *count is the
+ * capacity of `lights` on entry and the number written on return. FW_NOT_READY: no frame has copied them yet; *count is 0.
+ * [any] */
 FW_API FwResult FW_CALL fwWorld_ReadLights(FwWorld*, FwLight* lights, uint32_t* count);
 
-/* What fire does to a place: for damage, for what characters feel and see. Of burning meshes (their lights), fire
- * emitters and volumetric fires, as of the last frame; cosmetic. Plumes are McCaffrey's and lean with the wind;
- * blockers, colliders and the shield shade radiation (cells of a burnable mesh: until half of it has burnt). */
+/* Effect of fire at a point: for damage, and for what characters feel and see. From burning meshes (their lights), fire emitters
+ * and volumetric fires at the last frame; cosmetic. Plumes follow McCaffrey and lean with the wind. Occluder boxes, colliders
+ * and the heat-occlusion grid shade radiation (cells of a burnable mesh until half of it has burnt). */
 typedef struct FwSurroundings {
     uint32_t structSize;
-    float heatFlux;            /* W/m^2 on a small cold body there, by radiation and hot gas; at most 150 kW/m^2 */
-    float temperature;         /* K of the air; 293 where nothing warms it */
-    float smoke;               /* 1/m: through a metre of it passes exp(-smoke) of the light; 0: clear */
-    float danger;              /* 0: none. 1: as much as people bear: 2.5 kW/m^2, 60 C or smoke of 1 1/m. No upper end */
-    float nearest;             /* m to the edge of the nearest flame; FLT_MAX: nothing burns */
-    float nearestPosition[3];  /* m, world: foot of that fire */
+    float heatFlux;            /* W/m^2, at most 150000. On a small cold body, by radiation and hot gas */
+    float temperature;         /* K of the air; 293 without fire */
+    float smoke;               /* 1/m. exp(-smoke) of the light passes through a metre; 0: clear */
+    float danger;              /* 0 or more. 0: none; 1: the tolerance of people: 2.5 kW/m^2, 60 C or smoke of 1 1/m */
+    float nearest;             /* m to the edge of the nearest flame; FLT_MAX: no fire */
+    float nearestPosition[3];  /* m, world. Foot of that fire */
     float nearestPower;        /* W */
     uint32_t nearestLight;     /* its FwLight::id, if it has a light of its own */
     uint32_t reserved;
 } FwSurroundings;
-/* At once, on every backend; some tens of nanoseconds a fire. heatFlux and danger add up the lights of fwWorld_GetLights, and
- * differ between backends as these do. [world] */
+/* Samples the effect of fire at a point (m, [-1e6, 1e6], world). Answers at once, on every backend; costs some tens of
+ * nanoseconds a fire. heatFlux and danger sum over the lights of fwWorld_GetLights and differ between backends as these do.
+ * [world] */
 FW_API FwResult FW_CALL fwWorld_AskSurroundings(FwWorld*, const float point[3], FwSurroundings* surroundings);
-/* How much of one point is seen from the other through smoke, [0, 1]. Walls are the host's business. [world] */
+/* Gets the visibility of one point from the other through smoke: [0, 1]. Walls are up to the host. [world] */
 FW_API FwResult FW_CALL fwWorld_AskSight(FwWorld*, const float from[3], const float to[3], float* seen);
-/* Where people may walk: danger at columns x rows points, row after row, as a byte each: 127 for a danger of 1, at
- * most 255. The first point is `corner` (m, world: at the height of heads), the others `columnStep` and `rowStep` (m)
- * apart. columns and rows: each [1, 4096]. [world] */
+/* Writes danger at columns x rows points, one byte each, row after row, for path-finding: 127 is a danger of 1; at most 255.
+ * `corner` (m, world, at head height) is the first point; `columnStep` and `rowStep` (m, [-1e4, 1e4]) lead to the others.
+ * columns and rows: [1, 4096] each. [world] */
 FW_API FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld*, const float corner[3], const float columnStep[3],
                                                const float rowStep[3], uint32_t columns, uint32_t rows, uint8_t* mask);
+
+/* ---- statistics and budgets ---------------------------------------------------------------------------------- */
 
 typedef struct FwWorldStats {
     uint32_t structSize, reserved;
     uint64_t steps, tick;          /* of the simulation; a tick is 2^-12 s */
-    uint64_t readbackFrame;        /* newest frame whose readback has come */
+    uint64_t readbackFrame;        /* newest frame whose readback has arrived */
     uint32_t objects, burningObjects, meshes, materials;
-    uint32_t frontTiles, runTiles; /* waiting, and run in the last step */
+    uint32_t frontTiles, runTiles; /* tiles that wait; tiles that ran in the last step */
     uint32_t burningTiles;
-    uint32_t flames;               /* quads of flames, smoke, particles and sparks that the last view showed, as of
-                                      the last readback; 0 on the cpu backend, which draws nothing */
-    uint32_t lateClamps, droppedSteps;
+    uint32_t flames;               /* quads of flames, smoke, particles and sparks in the last view, as of the last readback;
+                                      0 on the cpu backend */
+    uint32_t lateClamps, droppedSteps; /* late arrivals (FW_EVENT_FRONT_LIMITED); steps beyond maxStepsPerFrame */
     uint64_t texels;               /* of all objects' burn maps */
-    uint32_t hotTiles;             /* whose temperature or water changes */
-    uint32_t refinedTriangles;     /* of refined objects that caught fire, as last drawn; pieces along cut holes
-                                      not counted. See FwWorldDef::maxRefinedTriangles */
+    uint32_t hotTiles;             /* tiles whose temperature or water changes */
+    uint32_t refinedTriangles;     /* of refined objects that have ignited, at the last draw; without pieces along mesh-cut
+                                      holes. See FwWorldDef::maxRefinedTriangles */
 } FwWorldStats;
 FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [world] */
 
-/* Where the energy of all burnable meshes that the world holds is, to the joule: `fuel` is what they were made with,
- * and always the sum of `unburnt`, `radiated` and `convected`. All in units of 2^-20 J, as the simulation counts, so
- * that the sum is exact. As of `frameIndex`, like FwObjectState. With FW_BURNABLE_LITE a texel's fuel counts as a
- * whole, once it has burnt out (put out before, it has all of it); FW_BURNABLE_PUBLISHED keeps no book. */
+/* Energy of all burnable meshes of the world, exact: fuel = unburnt + radiated + convected, always. In units of 2^-20 J, which
+ * the simulation counts. At `frameIndex`, as in FwObjectState. FW_BURNABLE_LITE: a texel's fuel counts as a whole once it has
+ * burnt out (if put out earlier, all of it is unburnt). FW_BURNABLE_PUBLISHED keeps no ledger. */
 typedef struct FwEnergyBook {
     uint32_t structSize;
-    uint32_t objects;          /* that keep a book */
+    uint32_t objects;          /* objects that keep a ledger */
     uint64_t frameIndex;
-    uint64_t fuel;             /* in them when they were created */
-    uint64_t unburnt;          /* of it, that is left */
-    uint64_t radiated;         /* 33 % of what flames gave off: what may heat others */
-    uint64_t convected;        /* the rest, in hot gas */
-    float power;               /* W that they give off now, at pace 1 */
-    float burningArea;         /* m^2 that flames, of all objects */
+    uint64_t fuel;             /* 2^-20 J. Fuel of these objects at their creation */
+    uint64_t unburnt;          /* 2^-20 J. Fuel that is left */
+    uint64_t radiated;         /* 2^-20 J. 33 % of the heat of flames: the part that may heat others */
+    uint64_t convected;        /* 2^-20 J. The rest, in hot gas */
+    float power;               /* W at pace 1. Present heat release */
+    float burningArea;         /* m^2. Flaming surface of all objects */
 } FwEnergyBook;
 FW_API FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld*, FwEnergyBook* book); /* [world] */
 
-/* What a frame may cost. While it costs more, detail falls in eight levels, and rises when there is room: how many
- * volumetric flames have rays of their own and with how many samples, the largest on the screen last, how many
- * triangles refined meshes aim at, how many quads flames of burning meshes and particles show (the others are larger
- * for it), and how many lights shine for all (the others shine for them too); under a limit of bytes also how fine marched flames are. Fires are never deleted, and what burns is
- * the same bit by bit at every level. A new load settles within 60 frames; a single slow frame changes nothing. */
+/* Cost limits of a frame. While a frame costs more, detail falls in eight levels; it rises when there is budget again. A level
+ * sets how many volumetric flames have rays of their own (the largest on the screen keep them), and with how many samples. It
+ * also sets the target of refined triangles, the quads of flames and particles (fewer are larger) and the lights (fewer shine
+ * for all). With a limit of bytes it sets the resolution of marched flames too. Fires are never deleted, and the burn is
+ * bit-identical at every level. A new load settles within 60 frames; a single slow frame changes nothing. */
 typedef struct FwBudgetDef {
     uint32_t structSize, reserved;  /* 0 */
-    float gpuMilliseconds;     /* of all that is recorded for a frame, [0, 1000]; default 0: no limit */
-    float cpuMilliseconds;     /* of fwWorld_RecordOutside, RecordInside and RecordComposite of a frame (of fwWorld_Step
-                                  on the cpu backend), [0, 1000]; default 0: no limit */
-    float measuredMilliseconds;/* what the host measured of our part of the last frame on its GPU, [0, 1e5]; < 0, the
-                                  default: take the library's time stamps. Needed where the queue family has none */
+    float gpuMilliseconds;     /* ms, [0, 1000], default 0: no limit. All that is recorded for a frame */
+    float cpuMilliseconds;     /* ms, [0, 1000], default 0: no limit. fwWorld_RecordOutside, RecordInside and RecordComposite of a
+                                  frame; on the cpu backend fwWorld_Step */
+    float measuredMilliseconds;/* ms, [-1e5, 1e5], default -1. GPU time of the library in the last frame, as the host measured it.
+                                  Below 0: the library's own time stamps. Needed if the queue family has none */
     uint32_t reserved1;        /* 0 */
-    uint64_t bytes;            /* of device memory that follows detail: of marched flames and of quads; default 0: no
-                                  limit. Buffers are made anew when the level changes. Not what is authoritative, nor
-                                  meshes and their refinement: see FwContextDef::gpuMemoryBudget */
+    uint64_t bytes;            /* bytes, default 0: no limit. Device memory that follows detail: marched flames and quads. The
+                                  library recreates buffers when the level changes. Authoritative state, meshes and their
+                                  refinement do not count: see FwContextDef::gpuMemoryBudget */
 } FwBudgetDef;
 static inline FwBudgetDef fwDefaultBudgetDef(void) {
     FwBudgetDef d; fwInitDef(FW_DEF_BUDGET, &d, (uint32_t)sizeof d); return d;
 }
-/* From the next frame on; cheap enough for each. Without limits, as at first, all detail comes back. [world] */
+/* Sets the limits, from the next frame on. Cheap enough for every frame. Without limits (the initial state) detail returns in
+ * full. [world] */
 FW_API FwResult FW_CALL fwWorld_SetBudget(FwWorld*, const FwBudgetDef* def);
 typedef struct FwBudgetState {
     uint32_t structSize;
-    uint32_t level, levels;    /* 0: all detail; levels - 1: the least */
-    uint32_t marchedFires;     /* volumetric flames at most that have rays of their own */
-    uint32_t volumeSteps;      /* samples of a ray at most */
-    uint32_t refinedTriangles; /* that refined meshes aim to stay within */
-    float gpuMilliseconds, cpuMilliseconds; /* of a frame, smooth; 0: not known */
-    float quads;               /* share of flames' quads and particles that show, [0, 1] */
-    uint32_t lights;           /* at most that shine for all fires; FwWorldDef::maxLights, and half of it at the least */
-    uint64_t bytes;            /* that FwBudgetDef::bytes limits, now; 0 on the cpu backend */
+    uint32_t level, levels;    /* 0: full detail; levels - 1: the least */
+    uint32_t marchedFires;     /* most volumetric flames with rays of their own */
+    uint32_t volumeSteps;      /* most samples of a ray */
+    uint32_t refinedTriangles; /* target of refined meshes */
+    float gpuMilliseconds, cpuMilliseconds; /* ms a frame, smoothed; 0: unknown */
+    float quads;               /* share, [0, 1]. Visible share of the quads of flames and particles */
+    uint32_t lights;           /* most lights; between half of FwWorldDef::maxLights and all of it */
+    uint64_t bytes;            /* bytes that FwBudgetDef::bytes limits; 0 on the cpu backend */
 } FwBudgetState;
 FW_API FwResult FW_CALL fwWorld_GetBudgetState(FwWorld*, FwBudgetState* state); /* [world] */
 

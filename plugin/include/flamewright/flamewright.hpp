@@ -1,6 +1,6 @@
-// flamewright/flamewright.hpp: a thin C++20 wrapper, compiled by the host, so that nothing of C++
-// crosses the library's edge. Owners, spans and default defs; no exceptions, no state of its own.
-// All else is the C API, which these types convert to.
+// flamewright/flamewright.hpp: a thin C++20 wrapper: owners, spans and default defs, without
+// exceptions or state of its own. The host compiles it, so that no C++ crosses the library's ABI.
+// All else is the C API; get() gives its pointers and ids.
 #ifndef FLAMEWRIGHT_FLAMEWRIGHT_HPP
 #define FLAMEWRIGHT_FLAMEWRIGHT_HPP
 #include "flamewright/flamewright.h"
@@ -20,140 +20,115 @@ struct Close {
     void operator()(FwContext* context) const noexcept { fwDestroyContext(context); }
     void operator()(FwWorld* world) const noexcept { fwDestroyWorld(world); }
 };
-// A world goes before its context: declare it after.
+// Declare a world after its context, so that it is destroyed first.
 using Context = std::unique_ptr<FwContext, Close>;
 using World = std::unique_ptr<FwWorld, Close>;
 
 // ---- defs: `auto def = fw::def<FwWorldDef>();`
-// ---------------------------------------------------
 
 template <class Def>
 inline constexpr uint32_t kDefType = 0;
-template <>
-inline constexpr uint32_t kDefType<FwContextDef> = FW_DEF_CONTEXT;
-template <>
-inline constexpr uint32_t kDefType<FwWorldDef> = FW_DEF_WORLD;
-template <>
-inline constexpr uint32_t kDefType<FwBlockerDef> = FW_DEF_BLOCKER;
-template <>
-inline constexpr uint32_t kDefType<FwHeatShieldDef> = FW_DEF_HEAT_SHIELD;
-template <>
-inline constexpr uint32_t kDefType<FwWindZoneDef> = FW_DEF_WIND_ZONE;
-template <>
-inline constexpr uint32_t kDefType<FwWindGridDef> = FW_DEF_WIND_GRID;
-template <>
-inline constexpr uint32_t kDefType<FwGustDef> = FW_DEF_GUSTS;
-template <>
-inline constexpr uint32_t kDefType<FwRoomDef> = FW_DEF_ROOM;
-template <>
-inline constexpr uint32_t kDefType<FwMaterialDef> = FW_DEF_MATERIAL;
-template <>
-inline constexpr uint32_t kDefType<FwImageDef> = FW_DEF_IMAGE;
-template <>
-inline constexpr uint32_t kDefType<FwMeshDef> = FW_DEF_MESH;
-template <>
-inline constexpr uint32_t kDefType<FwBurnableMeshDef> = FW_DEF_BURNABLE_MESH;
-template <>
-inline constexpr uint32_t kDefType<FwIgnitionDef> = FW_DEF_IGNITION;
-template <>
-inline constexpr uint32_t kDefType<FwVolumetricFireDef> = FW_DEF_VOLUMETRIC_FIRE;
-template <>
-inline constexpr uint32_t kDefType<FwFireTrackDef> = FW_DEF_FIRE_TRACK;
-template <>
-inline constexpr uint32_t kDefType<FwFireProfileDef> = FW_DEF_FIRE_PROFILE;
-template <>
-inline constexpr uint32_t kDefType<FwFireColliderDef> = FW_DEF_FIRE_COLLIDER;
-template <>
-inline constexpr uint32_t kDefType<FwFlipbookDef> = FW_DEF_FLIPBOOK;
-template <>
-inline constexpr uint32_t kDefType<FwFireEmitterDef> = FW_DEF_FIRE_EMITTER;
-template <>
-inline constexpr uint32_t kDefType<FwParticleFieldDef> = FW_DEF_PARTICLE_FIELD;
-template <>
-inline constexpr uint32_t kDefType<FwView> = FW_DEF_VIEW;
-template <>
-inline constexpr uint32_t kDefType<FwOffscreenDef> = FW_DEF_OFFSCREEN;
-template <>
-inline constexpr uint32_t kDefType<FwTimelineDef> = FW_DEF_TIMELINE;
-template <>
-inline constexpr uint32_t kDefType<FwNetDef> = FW_DEF_NET;
-template <>
-inline constexpr uint32_t kDefType<FwBudgetDef> = FW_DEF_BUDGET;
+// clang-format off
+template <> inline constexpr uint32_t kDefType<FwContextDef> = FW_DEF_CONTEXT;
+template <> inline constexpr uint32_t kDefType<FwWorldDef> = FW_DEF_WORLD;
+template <> inline constexpr uint32_t kDefType<FwBlockerDef> = FW_DEF_BLOCKER;
+template <> inline constexpr uint32_t kDefType<FwHeatShieldDef> = FW_DEF_HEAT_SHIELD;
+template <> inline constexpr uint32_t kDefType<FwWindZoneDef> = FW_DEF_WIND_ZONE;
+template <> inline constexpr uint32_t kDefType<FwWindGridDef> = FW_DEF_WIND_GRID;
+template <> inline constexpr uint32_t kDefType<FwGustDef> = FW_DEF_GUSTS;
+template <> inline constexpr uint32_t kDefType<FwRoomDef> = FW_DEF_ROOM;
+template <> inline constexpr uint32_t kDefType<FwMaterialDef> = FW_DEF_MATERIAL;
+template <> inline constexpr uint32_t kDefType<FwImageDef> = FW_DEF_IMAGE;
+template <> inline constexpr uint32_t kDefType<FwMeshDef> = FW_DEF_MESH;
+template <> inline constexpr uint32_t kDefType<FwBurnableMeshDef> = FW_DEF_BURNABLE_MESH;
+template <> inline constexpr uint32_t kDefType<FwIgnitionDef> = FW_DEF_IGNITION;
+template <> inline constexpr uint32_t kDefType<FwVolumetricFireDef> = FW_DEF_VOLUMETRIC_FIRE;
+template <> inline constexpr uint32_t kDefType<FwFireTrackDef> = FW_DEF_FIRE_TRACK;
+template <> inline constexpr uint32_t kDefType<FwFireProfileDef> = FW_DEF_FIRE_PROFILE;
+template <> inline constexpr uint32_t kDefType<FwFireColliderDef> = FW_DEF_FIRE_COLLIDER;
+template <> inline constexpr uint32_t kDefType<FwFlipbookDef> = FW_DEF_FLIPBOOK;
+template <> inline constexpr uint32_t kDefType<FwFireEmitterDef> = FW_DEF_FIRE_EMITTER;
+template <> inline constexpr uint32_t kDefType<FwParticleFieldDef> = FW_DEF_PARTICLE_FIELD;
+template <> inline constexpr uint32_t kDefType<FwView> = FW_DEF_VIEW;
+template <> inline constexpr uint32_t kDefType<FwOffscreenDef> = FW_DEF_OFFSCREEN;
+template <> inline constexpr uint32_t kDefType<FwTimelineDef> = FW_DEF_TIMELINE;
+template <> inline constexpr uint32_t kDefType<FwNetDef> = FW_DEF_NET;
+template <> inline constexpr uint32_t kDefType<FwBudgetDef> = FW_DEF_BUDGET;
+// clang-format on
 
 template <class Def>
 [[nodiscard]] Def def() noexcept {
     static_assert(kDefType<Def> != 0, "not a def of flamewright.h");
-    Def made;
-    fwInitDef(kDefType<Def>, &made, uint32_t(sizeof made));
-    return made;
+    Def result;
+    fwInitDef(kDefType<Def>, &result, uint32_t(sizeof result));
+    return result;
 }
 
-// Types of defs whose defaults have lengths of a world, as bits.
+// Bits of the FwDefTypes whose defaults contain lengths of a world.
 inline constexpr uint32_t kDefsWithLengths =
     1u << FW_DEF_BURNABLE_MESH | 1u << FW_DEF_BLOCKER | 1u << FW_DEF_HEAT_SHIELD |
     1u << FW_DEF_WIND_ZONE | 1u << FW_DEF_WIND_GRID | 1u << FW_DEF_GUSTS | 1u << FW_DEF_ROOM |
     1u << FW_DEF_VOLUMETRIC_FIRE | 1u << FW_DEF_FIRE_COLLIDER | 1u << FW_DEF_FIRE_EMITTER |
     1u << FW_DEF_PARTICLE_FIELD;
 
-// The same with these lengths in the unit of a world that has another than the metre:
-// `auto room = fw::def<FwRoomDef>(world);`. See fwWorld_ConvertDef.
+// A default def with its lengths in the unit of a world: `auto room = fw::def<FwRoomDef>(world);`.
+// See fwWorld_ConvertDef.
 template <class Def>
 [[nodiscard]] Def def(const World& world) noexcept {
     static_assert((kDefsWithLengths >> kDefType<Def> & 1u) != 0,
                   "this def has no lengths of a world");
-    Def made = def<Def>();
-    (void)fwWorld_ConvertDef(world.get(), kDefType<Def>, &made);
-    return made;
+    Def result = def<Def>();
+    (void)fwWorld_ConvertDef(world.get(), kDefType<Def>, &result);
+    return result;
 }
 
-// A struct that the library fills, e.g. fw::info<FwMeshInfo>().
+// An empty struct for the library to fill, e.g. fw::info<FwMeshInfo>().
 template <class Info>
 [[nodiscard]] Info info() noexcept {
-    Info made{};
-    made.structSize = uint32_t(sizeof made);
-    return made;
+    Info result{};
+    result.structSize = uint32_t(sizeof result);
+    return result;
 }
 
 [[nodiscard]] inline FwMaterialDef preset(FwMaterialPreset which) noexcept {
-    FwMaterialDef made = fwDefaultMaterialDef();
-    (void)fwInitMaterialPreset(&made, uint32_t(which));
-    return made;
+    FwMaterialDef result = fwDefaultMaterialDef();
+    (void)fwInitMaterialPreset(&result, uint32_t(which));
+    return result;
 }
 
 [[nodiscard]] inline FwVolumetricFireDef preset(FwFirePreset which) noexcept {
-    FwVolumetricFireDef made = fwDefaultVolumetricFireDef();
-    (void)fwInitFirePreset(&made, uint32_t(which));
-    return made;
+    FwVolumetricFireDef result = fwDefaultVolumetricFireDef();
+    (void)fwInitFirePreset(&result, uint32_t(which));
+    return result;
 }
 
-// The same in the unit of a world.
+// A preset with its lengths in the unit of a world.
 [[nodiscard]] inline FwVolumetricFireDef preset(const World& world, FwFirePreset which) noexcept {
-    FwVolumetricFireDef made = preset(which);
-    (void)fwWorld_ConvertDef(world.get(), FW_DEF_VOLUMETRIC_FIRE, &made);
-    return made;
+    FwVolumetricFireDef result = preset(which);
+    (void)fwWorld_ConvertDef(world.get(), FW_DEF_VOLUMETRIC_FIRE, &result);
+    return result;
 }
 
 [[nodiscard]] inline FwParticleFieldDef preset(FwFieldPreset which) noexcept {
-    FwParticleFieldDef made = fwDefaultParticleFieldDef();
-    (void)fwInitFieldPreset(&made, uint32_t(which));
-    return made;
+    FwParticleFieldDef result = fwDefaultParticleFieldDef();
+    (void)fwInitFieldPreset(&result, uint32_t(which));
+    return result;
 }
 
 // ---- creation
-// ------------------------------------------------------------------------------------
 
-// Null on failure; `error` (may be null) says why.
-[[nodiscard]] inline Context createContext(const FwContextDef& made,
+// Returns null if it fails; `error` (may be null) says why.
+[[nodiscard]] inline Context createContext(const FwContextDef& def,
                                            FwErrorInfo* error = nullptr) noexcept {
     FwContext* context = nullptr;
-    (void)fwCreateContext(&made, &context, error);
+    (void)fwCreateContext(&def, &context, error);
     return Context(context);
 }
-// Null on failure; lastMessage(context) says why.
+// Returns null if it fails; lastMessage(context) says why.
 [[nodiscard]] inline World createWorld(const Context& context,
-                                       const FwWorldDef& made = fwDefaultWorldDef()) noexcept {
+                                       const FwWorldDef& def = fwDefaultWorldDef()) noexcept {
     FwWorld* world = nullptr;
-    (void)fwCreateWorld(context.get(), &made, &world);
+    (void)fwCreateWorld(context.get(), &def, &world);
     return World(world);
 }
 
@@ -169,7 +144,6 @@ template <class Info>
 }
 
 // ---- ids: null tests, comparison, and owners that destroy
-// ----------------------------------------
 
 template <class Id>
 concept GenerationalId = requires(Id id) {
@@ -185,7 +159,7 @@ template <GenerationalId Id>
     return a.index1 == b.index1 && a.generation == b.generation;
 }
 
-// An id that destroys what it names. The world outlives it.
+// Owns an id and destroys its object. The world must outlive the owner.
 template <GenerationalId Id, FwResult(FW_CALL* Destroy)(FwWorld*, Id)>
 class Owned {
  public:
@@ -226,123 +200,122 @@ using Flipbook = Owned<FwFlipbookId, fwWorld_DestroyFlipbook>;
 using FireCollider = Owned<FwFireColliderId, fwWorld_RemoveFireCollider>;
 using FireEmitter = Owned<FwFireEmitterId, fwWorld_DestroyFireEmitter>;
 
-[[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& made) {
+[[nodiscard]] inline Material createMaterial(const World& world, const FwMaterialDef& def) {
     FwMaterialId id{};
-    (void)fwWorld_CreateMaterial(world.get(), &made, &id);
+    (void)fwWorld_CreateMaterial(world.get(), &def, &id);
     return {world.get(), id};
 }
 [[nodiscard]] inline Image createImage(const World& world, uint32_t width, uint32_t height,
                                        std::span<const std::byte> rgba) {
     FwImageId id{};
-    FwImageDef made = fwDefaultImageDef();
-    made.width = width;
-    made.height = height;
-    made.pixels = rgba.size() == size_t(width) * height * 4 ? rgba.data() : nullptr;
-    (void)fwWorld_CreateImage(world.get(), &made, &id);
+    FwImageDef def = fwDefaultImageDef();
+    def.width = width;
+    def.height = height;
+    def.pixels = rgba.size() == size_t(width) * height * 4 ? rgba.data() : nullptr;
+    (void)fwWorld_CreateImage(world.get(), &def, &id);
     return {world.get(), id};
 }
-[[nodiscard]] inline Mesh createMesh(const World& world, const FwMeshDef& made) {
+[[nodiscard]] inline Mesh createMesh(const World& world, const FwMeshDef& def) {
     FwMeshId id{};
-    (void)fwWorld_CreateMesh(world.get(), &made, &id);
+    (void)fwWorld_CreateMesh(world.get(), &def, &id);
     return {world.get(), id};
 }
 [[nodiscard]] inline BurnableMesh createBurnableMesh(const World& world,
-                                                     const FwBurnableMeshDef& made) {
+                                                     const FwBurnableMeshDef& def) {
     FwBurnableMeshId id{};
-    (void)fwWorld_CreateBurnableMesh(world.get(), &made, &id);
+    (void)fwWorld_CreateBurnableMesh(world.get(), &def, &id);
     return {world.get(), id};
 }
 
 [[nodiscard]] inline VolumetricFire createVolumetricFire(const World& world,
-                                                         const FwVolumetricFireDef& made) {
+                                                         const FwVolumetricFireDef& def) {
     FwVolumetricFireId id{};
-    (void)fwWorld_CreateVolumetricFire(world.get(), &made, &id);
+    (void)fwWorld_CreateVolumetricFire(world.get(), &def, &id);
     return {world.get(), id};
 }
 
 [[nodiscard]] inline FireEmitter createFireEmitter(const World& world,
-                                                   const FwFireEmitterDef& made) {
+                                                   const FwFireEmitterDef& def) {
     FwFireEmitterId id{};
-    (void)fwWorld_CreateFireEmitter(world.get(), &made, &id);
+    (void)fwWorld_CreateFireEmitter(world.get(), &def, &id);
     return {world.get(), id};
 }
 
 [[nodiscard]] inline ParticleField createParticleField(const World& world,
-                                                       const FwParticleFieldDef& made) {
+                                                       const FwParticleFieldDef& def) {
     FwParticleFieldId id{};
-    (void)fwWorld_CreateParticleField(world.get(), &made, &id);
+    (void)fwWorld_CreateParticleField(world.get(), &def, &id);
     return {world.get(), id};
 }
 
 [[nodiscard]] inline FireProfile createFireProfile(const World& world,
-                                                   const FwFireProfileDef& made) {
+                                                   const FwFireProfileDef& def) {
     FwFireProfileId id{};
-    (void)fwWorld_CreateFireProfile(world.get(), &made, &id);
+    (void)fwWorld_CreateFireProfile(world.get(), &def, &id);
     return {world.get(), id};
 }
 
-[[nodiscard]] inline Flipbook createFlipbook(const World& world, const FwFlipbookDef& made) {
+[[nodiscard]] inline Flipbook createFlipbook(const World& world, const FwFlipbookDef& def) {
     FwFlipbookId id{};
-    (void)fwWorld_CreateFlipbook(world.get(), &made, &id);
+    (void)fwWorld_CreateFlipbook(world.get(), &def, &id);
     return {world.get(), id};
 }
 
 [[nodiscard]] inline FireCollider addFireCollider(const World& world,
-                                                  const FwFireColliderDef& made) {
+                                                  const FwFireColliderDef& def) {
     FwFireColliderId id{};
-    (void)fwWorld_AddFireCollider(world.get(), &made, &id);
+    (void)fwWorld_AddFireCollider(world.get(), &def, &id);
     return {world.get(), id};
 }
 
-// The projection of a host of another clip space, e.g. fw::convertedProjection(m, FW_CLIP_OPENGL).
+// Converts a projection to Vulkan's clip space, e.g. fw::convertedProjection(m, FW_CLIP_OPENGL).
 [[nodiscard]] inline std::array<float, 16> convertedProjection(std::span<const float, 16> given,
                                                                uint32_t clipSpace) noexcept {
-    std::array<float, 16> made{};
-    for (size_t i = 0; i < 16; ++i) made[i] = given[i];
-    fwConvertProjection(made.data(), clipSpace);
-    return made;
+    std::array<float, 16> result{};
+    for (size_t i = 0; i < 16; ++i) result[i] = given[i];
+    fwConvertProjection(result.data(), clipSpace);
+    return result;
 }
 
-// Lights the texels within `radius` m of `place` (m, world) on every object. FW_OK: something was
-// lit; FW_NOTHING_THERE: nothing was, and lastMessage(world) says why; negative: refused.
+// Ignites the texels within `radius` m of `place` (m, world) on every object. FW_OK: some ignite.
+// FW_NOTHING_THERE: none does, and lastMessage(world) says why. Negative: refused.
 inline FwResult ignite(const World& world, const float (&place)[3], float radius) noexcept {
-    FwIgnitionDef match = fwDefaultIgnitionDef();
-    for (int i = 0; i < 3; ++i) match.position[i] = place[i];
-    match.radius = radius;
-    return fwWorld_Ignite(world.get(), &match, nullptr);
+    FwIgnitionDef def = fwDefaultIgnitionDef();
+    for (int i = 0; i < 3; ++i) def.position[i] = place[i];
+    def.radius = radius;
+    return fwWorld_Ignite(world.get(), &def, nullptr);
 }
 
-// A mesh def over the host's own arrays, which live until the def is used.
+// A mesh def that points to the host's arrays. They must live until the def is used.
 [[nodiscard]] inline FwMeshDef meshDef(std::span<const float> positions,
                                        std::span<const uint32_t> indices) noexcept {
-    FwMeshDef made = fwDefaultMeshDef();
-    made.positions = positions.data();
-    made.vertexCount = uint32_t(positions.size() / 3);
-    made.indices = indices.data();
-    made.indexCount = uint32_t(indices.size());
-    made.indexSize = 4;
-    return made;
+    FwMeshDef result = fwDefaultMeshDef();
+    result.positions = positions.data();
+    result.vertexCount = uint32_t(positions.size() / 3);
+    result.indices = indices.data();
+    result.indexCount = uint32_t(indices.size());
+    result.indexSize = 4;
+    return result;
 }
 
-// ---- walls
-// ----------------------------------------------------------------------------------------
+// ---- heat occlusion
 
-// A shield (see fwWorld_SetHeatShield) that asks `distance`, float(const float place[3]), of every
-// cell before it returns. It must not throw.
+// Sets the heat-occlusion grid (see fwWorld_SetHeatShield) from a distance function,
+// float(const float place[3]). The library calls it once for each cell before this returns. It must
+// not throw.
 template <std::invocable<const float*> Distance>
-FwResult setHeatShield(const World& world, FwHeatShieldDef made, Distance distance) noexcept {
-    made.distance = [](void* data, const float* place) -> float {
+FwResult setHeatShield(const World& world, FwHeatShieldDef def, Distance distance) noexcept {
+    def.distance = [](void* data, const float* place) -> float {
         return (*static_cast<Distance*>(data))(place);
     };
-    made.distanceData = std::addressof(distance);
-    return fwWorld_SetHeatShield(world.get(), &made);
+    def.distanceData = std::addressof(distance);
+    return fwWorld_SetHeatShield(world.get(), &def);
 }
 
 // ---- running
-// --------------------------------------------------------------------------------------
 
-// All the way to a moment of the world's timeline (see fwWorld_Seek), where the library steps: on
-// the cpu backend, or on a device of its own.
+// Moves a world to a tick of its timeline (see fwWorld_Seek). For contexts that fwWorld_Step
+// serves: the cpu backend or an own device.
 [[nodiscard]] inline FwResult seek(const World& world, uint64_t untilTick) noexcept {
     float seconds = 0;
     FwResult result = fwWorld_Seek(world.get(), untilTick, &seconds);
@@ -353,30 +326,28 @@ FwResult setHeatShield(const World& world, FwHeatShieldDef made, Distance distan
     return result;
 }
 
-// ---- what a game asks
-// ----------------------------------------------------------------------------
+// ---- events and lights
 
-// The part of `room` that was filled.
+// Returns the part of `buffer` that was filled.
 [[nodiscard]] inline std::span<const FwEvent> pollEvents(const World& world,
-                                                         std::span<FwEvent> room) noexcept {
-    return room.first(fwWorld_PollEvents(world.get(), room.data(), uint32_t(room.size())));
+                                                         std::span<FwEvent> buffer) noexcept {
+    return buffer.first(fwWorld_PollEvents(world.get(), buffer.data(), uint32_t(buffer.size())));
 }
 [[nodiscard]] inline std::span<const FwLight> lights(const World& world,
-                                                     std::span<FwLight> room) noexcept {
-    return room.first(fwWorld_GetLights(world.get(), room.data(), uint32_t(room.size())));
+                                                     std::span<FwLight> buffer) noexcept {
+    return buffer.first(fwWorld_GetLights(world.get(), buffer.data(), uint32_t(buffer.size())));
 }
-// From any thread: fwWorld_ReadLights. Empty until a frame has copied them.
+// As fwWorld_ReadLights, from any thread. Empty until a frame has copied the lights.
 [[nodiscard]] inline std::span<const FwLight> readLights(const World& world,
-                                                         std::span<FwLight> room) noexcept {
-    auto count = uint32_t(room.size());
-    (void)fwWorld_ReadLights(world.get(), room.data(), &count);
-    return room.first(count);
+                                                         std::span<FwLight> buffer) noexcept {
+    auto count = uint32_t(buffer.size());
+    (void)fwWorld_ReadLights(world.get(), buffer.data(), &count);
+    return buffer.first(count);
 }
 
 // ---- deferred destruction, from any thread
-// ----------------------------------------------------------
 
-// The owner gives the world up; fwContext_Collect destroys it. See fwWorld_DestroyAfterFrame.
+// Releases the world from its owner; fwContext_Collect destroys it. See fwWorld_DestroyAfterFrame.
 inline void destroyAfterFrame(World& world, uint64_t frameIndex = 0) noexcept {
     if (fwWorld_DestroyAfterFrame(world.get(), frameIndex) == FW_OK) (void)world.release();
 }
@@ -407,7 +378,7 @@ inline void destroyAfterFrame(World& world, uint64_t frameIndex = 0) noexcept {
 [[nodiscard]] constexpr FwObjectKind kindOf(FwWindZoneId) noexcept { return FW_OBJECT_WIND_ZONE; }
 [[nodiscard]] constexpr FwObjectKind kindOf(FwRoomId) noexcept { return FW_OBJECT_ROOM; }
 [[nodiscard]] constexpr FwObjectKind kindOf(FwBurnId) noexcept { return FW_OBJECT_BURN; }
-// fwWorld_DestroyLater.
+// Schedules the destruction of an object: see fwWorld_DestroyLater.
 template <GenerationalId Id>
 FwResult destroyLater(FwWorld* world, Id id) noexcept {
     const FwObjectRef object{uint32_t(kindOf(id)), id.index1, id.generation, 0};

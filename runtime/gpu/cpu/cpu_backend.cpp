@@ -88,22 +88,25 @@ FrontPlanes CpuBackend::State::planes(const CpuObject& object) const noexcept {
 }
 
 void CpuBackend::State::touch(uint32_t worldTile, uint32_t bits) noexcept {
+    FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
     uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileListed) == 0) list.push_back(worldTile);
+    if ((flag & kTileListed) == 0) append(list, worldTile);
     flag |= kTileListed | bits;
 }
 
 void CpuBackend::State::burning(uint32_t worldTile) noexcept {
     uint32_t& flag = tiles[worldTile].flag;
     if ((flag & kTileBurning) == 0) {
-        burnList.push_back(worldTile);
-        ++objects[tiles[worldTile].object]->counters.burningTiles;
+        append(burnList, worldTile);
+        ++ownerOf(worldTile).counters.burningTiles;
     }
     flag |= kTileBurning;
 }
 
 void CpuBackend::State::askToBurn(uint32_t worldTile) noexcept {
+    FW_ASSERT(worldTile < asked.size(), "world tile %u of %zu", worldTile, asked.size());
     if (asked[worldTile] != 0) return;
+    FW_ASSERT(asks.size() < asks.capacity(), "%zu tiles ask", asks.size());
     asked[worldTile] = 1;
     asks.push_back({0, 0, 0, worldTile});
 }
@@ -113,14 +116,14 @@ void CpuBackend::State::grant(uint32_t tilesMost, uint32_t now) noexcept {
     for (uvec4& ask : asks) {
         asked[ask.w] = 0;
         ask.y = tiles[ask.w].object;
-        ask.z = ask.w - objects[ask.y]->record.worldTileBase;
+        ask.z = at(ask.y).localTileOf(ask.w);
         ask.x = askOrder(ask.y, ask.z, now);
     }
     std::sort(asks.begin(), asks.end(), asksBefore);
     for (const uvec4& ask : asks) {
-        const CpuObject& object = *objects[ask.y];
-        const bool limited = (object.remote.flags & kRemoteLive) != 0;
-        // What the host lit meanwhile burns without leave, and counts.
+        const CpuObject& object = at(ask.y);
+        const bool limited = object.exchanges();
+        // A tile that the host lit meanwhile needs no grant, and counts.
         if ((tiles[ask.w].flag & kTileBurning) == 0 &&
             roomFor(uint32_t(burnList.size()) + goneBurning, tilesMost) != 0 &&
             (!limited || roomFor(object.counters.burningTiles, object.remote.tilesMost) != 0))
@@ -141,26 +144,26 @@ void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
         touch(base + ((switches & kSwitchWrongReaders) != 0 ? 0 : reader), kTileTouched);
 }
 
-// As events.comp has it.
+// As events.comp.
 void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexcept {
-    CpuObject& object = *objects[event.object];
-    const CpuObject& from = *objects[(event.kind >> kEventKindBits) - 1];
+    CpuObject& object = at(event.object);
+    const CpuObject& from = at((event.kind >> kEventKindBits) - 1);
+    FW_ASSERT(event.texel < object.state.size(), "%u of %zu texels", event.texel,
+              object.state.size());
+    FW_ASSERT(event.tick < from.state.size(), "%u of %zu texels", event.tick, from.state.size());
     uint32_t& state = object.state[event.texel];
     const uint32_t before = state;
     uint32_t after = from.state[event.tick];
     if (asksOnly || !carries(after, before)) return;
-    const uint32_t x = event.texel % object.domain->width, y = event.texel / object.domain->width;
-    const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
-    const uint32_t worldTile = object.record.worldTileBase + local;
+    const uint32_t worldTile = object.worldTileOf(event.texel);
     if (!object.heat.empty()) {
-        const HeatMaterial& m =
-            object.heatMaterials[object.domain->texels[event.texel].materialFlags & 7];
+        const HeatMaterial& m = object.heatMaterialOf(event.texel);
         const HeatTexel has = heatCarried(unpackHeat(from.heat[event.tick]), m);
         after = wetState(after, heatClosed(has, m));
         const uvec2 had = object.heat[event.texel], packed = packHeat(has);
         if (packed == had && after == before) return;
-        // Fuel that burnt on the other mesh counts as its own loss, of which its room has had its
-        // share.
+        // Fuel that burnt on the other mesh counts as this object's loss. Its room has already
+        // given the air for it.
         const uint64_t lost =
             uint64_t(int64_t(unpackHeat(had).fuel) - int64_t(has.fuel)) * m.energy;
         ObjectCounters& c = object.counters;
@@ -183,11 +186,17 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
         object.counters.litTick = std::max(object.counters.litTick, from.counters.litTick);
         object.counters.stopTick = std::max(object.counters.stopTick, from.counters.stopTick);
     }
-    tiles[worldTile].lastChange = now;
-    touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+    changedTexel(object, event.texel, now);
 }
 
-// How many events from `first` on are of the same object and texel, all texels being one.
+void CpuBackend::State::changedTexel(const CpuObject& object, uint32_t texel,
+                                     uint32_t now) noexcept {
+    const uint32_t worldTile = object.worldTileOf(texel);
+    tiles[worldTile].lastChange = now;
+    touchReaders(object, object.localTileOf(worldTile), 1ull << object.domain->laneOf(texel));
+}
+
+// Number of events from `first` on with the same object and texel; "all texels" counts as one.
 size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first) noexcept {
     size_t end = first;
     while (end < events.size() && events[end].object == events[first].object &&
@@ -197,11 +206,12 @@ size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first
     return end - first;
 }
 
-// Returns the texel state after a run of events; in `heated` what of its heat.
+// Returns the texel's state after a run of events; `heated`: its heat after them.
 uint32_t CpuBackend::State::afterEvents(const CpuObject& object, uint32_t texel,
                                         std::span<const TexelEvent> batch,
                                         std::span<const TexelEvent> run, uint32_t now,
                                         HeatTexel& heated, bool& byFlame) const noexcept {
+    FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
     if (!object.heat.empty()) return heatEvents(object, texel, batch, run, now, heated, byFlame);
     uint32_t after = object.state[texel];
     for (const TexelEvent& event : run)
@@ -213,8 +223,9 @@ uint32_t CpuBackend::State::afterEvents(const CpuObject& object, uint32_t texel,
 void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
     for (size_t i = 0; i < step.events.size();) {
         const TexelEvent& first = step.events[i];
-        if (eventKind(first.kind) == kEventGate) break;  // the rest are
-        CpuObject& object = *objects[first.object];
+        if (eventKind(first.kind) == kEventGate) break;  // gates end the batch
+        FW_ASSERT(i == 0 || step.events[i - 1].object <= first.object, "events are not sorted");
+        CpuObject& object = at(first.object);
         if (eventKind(first.kind) == kEventCarry) {
             carryTexel(first, step.now);
             ++i;
@@ -234,16 +245,15 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             applyToAll(object, run, step);
             continue;
         }
+        FW_ASSERT(first.texel < object.state.size(), "%u of %zu texels", first.texel,
+                  object.state.size());
         uint32_t& texel = object.state[first.texel];
         const uint32_t before = texel;
         HeatTexel heated{};
-        bool byFlame = false;  // lit by heat that came; what the host lights needs no leave
+        bool byFlame = false;  // lit by heat; an ignition of the host needs no grant
         const uint32_t now =
             afterEvents(object, first.texel, step.events, run, step.now, heated, byFlame);
-        const uint32_t x = first.texel % object.domain->width;
-        const uint32_t y = first.texel / object.domain->width;
-        const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
-        const uint32_t worldTile = object.record.worldTileBase + local;
+        const uint32_t worldTile = object.worldTileOf(first.texel);
         const bool lights = isSource(now) && !isSource(before);
         if (asksOnly) {
             if (lights && byFlame)
@@ -271,27 +281,25 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             publishedEvent(object, first.texel, isSource(now));
             continue;
         }
-        tiles[worldTile].lastChange = step.now;
-        touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+        changedTexel(object, first.texel, step.now);
     }
 }
 
-// As for its texels one by one. The host's own events: none needs leave to burn.
+// As for its texels one by one. These are events of the host: none needs a grant to burn.
 void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent> run,
                                    const StepPlan& step) noexcept {
     const mesh::BurnDomain& domain = *object.domain;
     const bool heats = !object.heat.empty();
-    // Texels at rest are alike: what the last one became is what the next one does.
+    // Texels at rest are alike: the next one becomes what the last one became.
     uint32_t knownBefore = 0, knownAfter = 0, knownMaterial = kNoneTexel;
     uvec2 knownHad(0), knownHeat(0);
     for (uint32_t local = 0; local < object.record.tileCount; ++local) {
         const uint32_t worldTile = object.record.worldTileBase + local;
-        const uint32_t corner =
-            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+        const mesh::TileTexels texels = domain.texelsOf(local);
         uint64_t changed = 0;
         bool heated = false, burns = false;
-        for (uint32_t lane = 0; lane < 64; ++lane) {
-            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+        for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
+            const uint32_t texel = texels[lane];
             const uint32_t flags = domain.texels[texel].materialFlags;
             if ((flags & kTexelReal) == 0) continue;
             const uint32_t before = object.state[texel];
@@ -337,7 +345,7 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
 
 void CpuBackend::State::wake(const StepPlan& step) noexcept {
     for (const MaterialUpdate& update : step.materials) {
-        CpuObject& object = *objects[update.object];
+        CpuObject& object = at(update.object);
         std::copy_n(update.materials, kMaterialsPerObject, object.materials.begin());
         object.record.window = update.window;
         object.record.substepShift = update.substepShift;
@@ -353,36 +361,34 @@ void CpuBackend::State::wake(const StepPlan& step) noexcept {
 
 void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, uint32_t worldTile,
                                      bool dense) noexcept {
+    const CpuObject& object = ownerOf(worldTile);
     TileState& tile = tiles[worldTile];
-    const BurnObject& record = objects[tile.object]->record;
-    if (!takesPart(iteration, step.substepShift, record.substepShift)) {
-        if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);
-        return;
-    }
-    if (step.plays && playsAt(objects[tile.object]->counters.playsUntil, step.now)) {
-        if ((tile.flag & kTileListed) != 0) listOut.push_back(worldTile);  // due when it goes live
+    const BurnObject& record = object.record;
+    const bool listed = (tile.flag & kTileListed) != 0;
+    // A tile of a baked burn is due once the burn goes live.
+    if (!takesPart(iteration, step.substepShift, record.substepShift) ||
+        (step.plays && playsAt(object.counters.playsUntil, step.now))) {
+        if (listed) append(listOut, worldTile);
         return;
     }
     if (step.governed) {
-        const CpuObject& object = *objects[tile.object];
-        const bool listed = (tile.flag & kTileListed) != 0;
         if (stoppedAt(object.counters.stopTick, step.now)) {
             tile.flag &= ~(kTileListed | kTileTouched);
             return;
         }
         if (holdsTile(tile.flag, scheduledBurning, step.rules.tilesMost,
                       object.counters.burningTiles, object.remote.flags, object.remote.tilesMost)) {
-            if (listed) listOut.push_back(worldTile);
+            if (listed) append(listOut, worldTile);
             return;
         }
     }
     const uint32_t end = iterationEnd(step.now, iteration, step.substepShift, record.substepShift);
     if (dense || (tile.flag & kTileTouched) != 0 || tile.wake <= end) {
-        runList.push_back(worldTile);
+        append(runList, worldTile);
         tile.wake = kNever;
         tile.flag &= ~(kTileListed | kTileTouched);
     } else if (tile.wake != kNever) {
-        listOut.push_back(worldTile);
+        append(listOut, worldTile);
     } else {
         tile.flag &= ~kTileListed;
     }
@@ -401,7 +407,7 @@ void CpuBackend::State::schedule(const StepPlan& step, uint32_t iteration) noexc
     } else {
         for (uint32_t worldTile : list) scheduleTile(step, iteration, worldTile, false);
     }
-    list.swap(listOut);  // from here on `list` is the one that commits append to
+    list.swap(listOut);  // commits append to `list`
     if ((switches & kSwitchShuffle) != 0) {
         shuffle(list);
         shuffle(runList);
@@ -422,22 +428,25 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
     runTiles += runList.size();
     {
         Stopwatch watch(*this, kTimerArrival);
-        uint32_t known = kNoneTexel;  // object whose planes are at hand
-        FrontPlanes at;
+        FW_ASSERT(runList.size() <= results.size() && runList.size() * 64 <= scratch.size(),
+                  "%zu tiles run, %zu results", runList.size(), results.size());
+        uint32_t known = kNoneTexel;  // object of knownPlanes
+        FrontPlanes knownPlanes;
         uint32_t end = 0, floorTick = 0, base = 0;
         for (size_t i = 0; i < runList.size(); ++i) {
             const uint32_t worldTile = runList[i];
             if (tiles[worldTile].object != known) {
                 known = tiles[worldTile].object;
-                const CpuObject& object = *objects[known];
+                const CpuObject& object = at(known);
                 const uint32_t shift = object.record.substepShift;
-                at = planes(object);
+                knownPlanes = planes(object);
                 end = iterationEnd(step.now, iteration, step.substepShift, shift);
                 floorTick =
                     frontFloor(end - windowTicks(step.substepShift, shift), object.record.window);
                 base = object.record.worldTileBase;
             }
-            results[i] = mesh::runFrontTile(at, worldTile - base, end, floorTick, &scratch[i * 64]);
+            results[i] =
+                mesh::runFrontTile(knownPlanes, worldTile - base, end, floorTick, &scratch[i * 64]);
         }
     }
     if (capped) {
@@ -451,7 +460,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
         const FrontTile& result = results[i];
         TileState& tile = tiles[worldTile];
         tile.wake = result.wake;
-        if (result.lit != 0 && !mayBurn(worldTile)) {  // left as it was, and due again
+        if (result.lit != 0 && !mayBurn(worldTile)) {  // no grant: unchanged, and due again
             touch(worldTile, kTileTouched);
             continue;
         }
@@ -459,22 +468,19 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             if (result.wake != kNever) touch(worldTile, 0);
             continue;
         }
-        CpuObject& object = *objects[tile.object];
-        const uint32_t local = worldTile - object.record.worldTileBase;
-        const uint32_t corner = (local / object.domain->tilesX) * 8 * object.domain->width +
-                                (local % object.domain->tilesX) * 8;
+        CpuObject& object = at(tile.object);
+        const uint32_t local = object.localTileOf(worldTile);
+        const mesh::TileTexels texels = object.domain->texelsOf(local);
         for (uint64_t rest = result.changed; rest != 0; rest &= rest - 1) {
             const uint32_t lane = uint32_t(std::countr_zero(rest));
-            object.state[corner + (lane >> 3) * object.domain->width + (lane & 7)] =
-                scratch[i * 64 + lane];
+            object.state[texels[lane]] = scratch[i * 64 + lane];
         }
         const uint32_t end =
             iterationEnd(step.now, iteration, step.substepShift, object.record.substepShift);
         tile.lastChange = end;
         object.counters.lateClamps += result.late;
         if (result.lit != 0) {
-            object.counters.ignited += uint32_t(std::popcount(result.lit));
-            object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
+            object.addIgnitions(uint32_t(std::popcount(result.lit)), end);
             burning(worldTile);
             if (!object.heat.empty()) hot(worldTile);
         }
@@ -495,22 +501,22 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     if (total > 0x7FFFFFFFu)
         core::fail(FW_ERROR_OUT_OF_MEMORY, "The world has %zu tiles; the limit is %u.", total,
                    0x7FFFFFFFu);
-    // All or nothing: room first, then the size that says so. Half as much again, or the thousandth
-    // object would copy what the others have a thousandth time.
-    const auto findRoom = [](auto& entries, size_t needed) {
+    // All or nothing: capacity first, then sizes. Capacity grows by half: exact growth would copy
+    // the tiles of all earlier objects with every new one.
+    const auto reserve = [](auto& entries, size_t needed) {
         if (entries.capacity() < needed)
             entries.reserve(std::max(needed, entries.capacity() + entries.capacity() / 2));
     };
     for (auto* entries : {&list, &listOut, &runList, &burnList, &hotList, &hotOut})
-        findRoom(*entries, total);
-    findRoom(asks, total);
-    findRoom(asked, total);
-    findRoom(tileHeat, total);
-    findRoom(tileFire, total);
-    findRoom(burnTiles, total);
-    findRoom(results, total);
-    findRoom(scratch, total * 64);
-    findRoom(tiles, total);
+        reserve(*entries, total);
+    reserve(asks, total);
+    reserve(asked, total);
+    reserve(tileHeat, total);
+    reserve(tileFire, total);
+    reserve(burnTiles, total);
+    reserve(results, total);
+    reserve(scratch, total * 64);
+    reserve(tiles, total);
     results.resize(total);
     scratch.resize(total * 64);
     tiles.resize(total);
@@ -523,7 +529,12 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
 void CpuBackend::State::releaseTiles(uint32_t first, uint32_t count) noexcept {
     const auto at = std::lower_bound(freeTiles.begin(), freeTiles.end(), first,
                                      [](const Range& r, uint32_t f) { return r.first < f; });
-    freeTiles.insert(at, {first, count});  // room was reserved with the object
+    FW_ASSERT(freeTiles.size() < freeTiles.capacity(), "%zu free ranges", freeTiles.size());
+    FW_ASSERT(first + count <= tiles.size(), "tiles %u to %u of %zu", first, first + count,
+              tiles.size());
+    FW_ASSERT(at == freeTiles.end() || at->count == 0 || first + count <= at->first,
+              "a tile is released twice");
+    freeTiles.insert(at, {first, count});
     size_t kept = 0;
     for (size_t i = 0; i < freeTiles.size(); ++i) {
         if (freeTiles[i].count == 0) continue;
@@ -555,6 +566,10 @@ void CpuBackend::destroyMesh(uint32_t slot) noexcept {
 
 void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
+    FW_ASSERT(!s.find(slot), "object %u exists", slot);
+    FW_ASSERT(init.mesh < s.meshes.size() && s.meshes[init.mesh], "mesh %u of %zu", init.mesh,
+              s.meshes.size());
+    FW_ASSERT(init.materials.size() >= kMaterialsPerObject, "%zu materials", init.materials.size());
     auto object = core::Owned<CpuObject>::make(s.memory, s.memory);
     const mesh::BurnDomain& domain = *s.meshes[init.mesh];
     const uint32_t texels = domain.texelCount();
@@ -563,8 +578,11 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->record = init.record;
     std::copy_n(init.materials.begin(), kMaterialsPerObject, object->materials.begin());
     object->slowness.assign(init.slowness.begin(), init.slowness.end());
+    FW_ASSERT(init.slowness.empty() || init.slowness.size() == texels, "%zu of %u texels",
+              init.slowness.size(), texels);
     object->state.resize(texels);
     if (!init.heat.empty()) {
+        FW_ASSERT(init.heat.size() >= kMaterialsPerObject, "%zu materials", init.heat.size());
         std::copy_n(init.heat.begin(), kMaterialsPerObject, object->heatMaterials.begin());
         object->heat.resize(texels);
     }
@@ -589,9 +607,9 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
 
 void CpuBackend::destroyObject(uint32_t slot) noexcept {
     State& s = *state_;
-    if (slot >= s.objects.size() || !s.objects[slot]) return;
-    const uint32_t first = s.objects[slot]->record.worldTileBase;
-    const uint32_t count = s.objects[slot]->record.tileCount;
+    const CpuObject* object = s.find(slot);
+    if (!object) return;
+    const uint32_t first = object->record.worldTileBase, count = object->record.tileCount;
     const auto drop = [&](std::pmr::vector<uint32_t>& entries) {
         return uint32_t(
             std::erase_if(entries, [&](uint32_t tile) { return tile - first < count; }));
@@ -600,15 +618,16 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     s.goneBurning += drop(s.burnList);
     s.goneHot += drop(s.hotList);
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
-    if (!s.objects[slot]->published.empty()) --s.publishedObjects;
+    FW_ASSERT(object->published.empty() || s.publishedObjects > 0);
+    if (!object->published.empty()) --s.publishedObjects;
     s.releaseTiles(first, count);
-    s.counts.remove(*s.objects[slot]);
+    s.counts.remove(*object);
     s.objects[slot] = core::Owned<CpuObject>();
 }
 
 void CpuBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) {
-    BurnObject& record = state_->objects[slot]->record;
+    BurnObject& record = state_->at(slot).record;
     record.worldRow0 = rows[0];
     record.worldRow1 = rows[1];
     record.worldRow2 = rows[2];
@@ -616,36 +635,163 @@ void CpuBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& ti
     record.flags = flags | kObjectLive;
 }
 
-void CpuBackend::setRoom(uint32_t slot, const Room& room) noexcept { state_->rooms[slot] = room; }
+void CpuBackend::setRoom(uint32_t slot, const Room& room) noexcept {
+    FW_ASSERT(slot < kMaxRooms, "room %u", slot);
+    state_->rooms[slot] = room;
+}
 
-void CpuBackend::run(const FramePlan& plan) {
-    State& s = *state_;
-    // Everything that can fail comes first.
-    if (s.waiting == s.readbacks.size()) {
-        std::rotate(s.readbacks.begin(), s.readbacks.begin() + std::ptrdiff_t(s.head),
-                    s.readbacks.end());
-        s.head = 0;
-        s.readbacks.emplace_back(s.memory);
+ReadbackStore& CpuBackend::State::reserveReadback(const FramePlan& plan) {
+    if (waiting == readbacks.size()) {
+        std::rotate(readbacks.begin(), readbacks.begin() + std::ptrdiff_t(head), readbacks.end());
+        head = 0;
+        readbacks.emplace_back(memory);
     }
-    ReadbackStore& store = s.readbacks[(s.head + s.waiting) % s.readbacks.size()];
+    ReadbackStore& store = readbacks[(head + waiting) % readbacks.size()];
     size_t words = 0, heatTexels = 0;
-    for (uint32_t slot : plan.burnMaps) {
-        if (slot >= s.objects.size() || !s.objects[slot]) continue;
-        words += s.objects[slot]->state.size();
-        heatTexels += s.objects[slot]->heat.size();
-    }
-    store.objects.resize(s.objects.size());
+    for (uint32_t slot : plan.burnMaps)
+        if (const CpuObject* object = find(slot)) {
+            words += object->state.size();
+            heatTexels += object->heat.size();
+        }
+    store.objects.resize(objects.size());
     store.answers.resize(plan.probes.size());
     store.mapTicks.resize(words);
     store.mapHeat.resize(heatTexels);
     store.maps.clear();
     store.maps.reserve(plan.burnMaps.size());
-    s.reserveImages(store, plan.images);
+    reserveImages(store, plan.images);
     store.lights.clear();
-    store.lights.reserve(s.maxLights);
-    store.fields.resize(s.fields.size());
+    store.lights.reserve(maxLights);
+    store.fields.resize(fields.size());
     store.rooms.reserve(kMaxRooms);
+    return store;
+}
 
+void CpuBackend::State::runStep(const StepPlan& step) noexcept {
+    FW_ASSERT(step.substepShift < 32, "substep shift %u", step.substepShift);
+    FW_ASSERT(!step.exchange || step.reduce, "an exchange needs the counts of a reduction");
+    FW_ASSERT(!asksOnly && asks.empty(), "%zu tiles still ask", asks.size());
+    if (step.remote) placeRemote(*step.remote);
+    if (step.shield) placeShield(*step.shield);
+    capped = step.capped;
+    const uint32_t most = step.rules.tilesMost;
+    if (!step.materials.empty()) {
+        Stopwatch watch(*this, kTimerWake);
+        wake(step);
+    }
+    if (!step.events.empty()) {
+        Stopwatch watch(*this, kTimerEvents);
+        askThen(most, step.now, [&] { applyEvents(step); });
+    }
+    if (step.rooms) {
+        Stopwatch watch(*this, kTimerRooms);
+        airRooms(step.now);
+    }
+    if (step.heat) goneHot = 0;
+    if (step.heat && !hotList.empty()) {
+        Stopwatch watch(*this, kTimerHeat);
+        if (capped) askHeat(step.now), grant(most, step.now);
+        heatStep(step.now);
+    }
+    goneListed = 0;
+    if (!list.empty() || (switches & kSwitchDense) != 0)
+        for (uint32_t k = 0; k < 1u << step.substepShift; ++k) iterate(step, k);
+    if (publishedObjects != 0) {
+        Stopwatch watch(*this, kTimerPublished);
+        askThen(most, step.now, [&] { publishedStep(step.now); });
+    }
+    if (step.reduce) {
+        Stopwatch watch(*this, kTimerReduce);
+        reduce(step.now + kStepTicks);
+    }
+    if (step.exchange) {
+        Stopwatch watch(*this, kTimerExchange);
+        exchange(step.rules, step.now + kStepTicks);
+    }
+}
+
+void CpuBackend::State::answerProbes(std::span<const Probe> probes,
+                                     std::span<ProbeAnswer> answers) const noexcept {
+    FW_ASSERT(probes.size() == answers.size(), "%zu probes, %zu answers", probes.size(),
+              answers.size());
+    for (size_t i = 0; i < probes.size(); ++i) {
+        answers[i] = {kInert, 0, 0, 0};
+        const CpuObject* object = find(probes[i].object);
+        const uint32_t texel = probes[i].texel;
+        if (!object || texel >= object->state.size()) continue;
+        answers[i].state = object->state[texel];
+        if (object->heat.empty()) continue;
+        answers[i].heatX = object->heat[texel].x;
+        answers[i].heatY = object->heat[texel].y;
+        answers[i].heat = 1;
+    }
+}
+
+void CpuBackend::State::copyBurnMaps(std::span<const uint32_t> slots,
+                                     ReadbackStore& store) const noexcept {
+    size_t at = 0, heatAt = 0;
+    for (uint32_t slot : slots) {
+        const CpuObject* object = find(slot);
+        if (!object) continue;
+        const std::span ticks = std::span(store.mapTicks).subspan(at, object->state.size());
+        const std::span heat = std::span(store.mapHeat).subspan(heatAt, object->heat.size());
+        std::copy(object->state.begin(), object->state.end(), ticks.begin());
+        std::copy(object->heat.begin(), object->heat.end(), heat.begin());
+        FW_ASSERT(store.maps.size() < store.maps.capacity(), "%zu burn maps", store.maps.size());
+        store.maps.push_back({slot, ticks, heat});
+        at += ticks.size();
+        heatAt += heat.size();
+    }
+    FW_ASSERT(at == store.mapTicks.size() && heatAt == store.mapHeat.size(),
+              "%zu of %zu texels, %zu of %zu with heat", at, store.mapTicks.size(), heatAt,
+              store.mapHeat.size());
+}
+
+void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept {
+    countFields(store.fields);
+    for (size_t i = 0; i < objects.size(); ++i)
+        store.objects[i] = objects[i] ? objects[i]->counters : ObjectCounters{};
+    answerProbes(plan.probes, store.answers);
+    copyBurnMaps(plan.burnMaps, store);
+    takeImages(store, plan.images);
+    findLights(store.lights);
+    store.rooms.assign(roomAir.begin(), airs ? roomAir.end() : roomAir.begin());
+    Readback& readback = store.readback;
+    readback = {};
+    readback.frameIndex = plan.frameIndex;
+    readback.endTick = plan.endTick;
+    readback.objects = store.objects;
+    readback.answers = store.answers;
+    readback.burnMaps = store.maps;
+    readback.images = store.images;
+    readback.lights = store.lights;
+    readback.fields = store.fields;
+    readback.rooms = store.rooms;
+    readback.frontTiles = uint32_t(list.size()) + goneListed;
+    readback.runTiles = uint32_t(std::min<uint64_t>(runTiles, 0xFFFFFFFFu));
+    readback.burningTiles = reducedBurning;
+    readback.hotTiles = uint32_t(hotList.size()) + goneHot;
+    readback.receivers = receivers;
+    ++waiting;
+    FW_ASSERT(waiting <= readbacks.size(), "%zu of %zu readbacks wait", waiting, readbacks.size());
+}
+
+void CpuBackend::State::listTimes(uint64_t frameIndex) noexcept {
+    timesCount = 0;
+    for (uint32_t t = 0; t < kTimerCount; ++t) {
+        if (timed[t] == 0) continue;
+        PassTime& time = times[timesCount++];
+        std::snprintf(time.name, sizeof time.name, "%s", kTimerNames[t]);
+        time.milliseconds = milliseconds[t];
+        time.frameIndex = frameIndex;
+        time.count = timed[t];
+    }
+}
+
+void CpuBackend::run(const FramePlan& plan) {
+    State& s = *state_;
+    // Everything that can fail comes first.
+    ReadbackStore& store = s.reserveReadback(plan);
     for (const StepPlan& step : plan.steps) {
         if (step.remote) s.reserveRemote(*step.remote);
         if (step.shield) s.reserveShield(*step.shield);
@@ -656,113 +802,19 @@ void CpuBackend::run(const FramePlan& plan) {
     s.runTiles = 0;
     s.milliseconds.fill(0);
     s.timed.fill(0);
-    for (const StepPlan& step : plan.steps) {
-        if (step.remote) s.placeRemote(*step.remote);
-        if (step.shield) s.placeShield(*step.shield);
-        s.capped = step.capped;
-        const uint32_t most = step.rules.tilesMost;
-        if (!step.materials.empty()) {
-            Stopwatch watch(s, kTimerWake);
-            s.wake(step);
-        }
-        if (!step.events.empty()) {
-            Stopwatch watch(s, kTimerEvents);
-            s.askThen(most, step.now, [&] { s.applyEvents(step); });
-        }
-        if (step.rooms) {
-            Stopwatch watch(s, kTimerRooms);
-            s.airRooms(step.now);
-        }
-        if (step.heat) s.goneHot = 0;
-        if (step.heat && !s.hotList.empty()) {
-            Stopwatch watch(s, kTimerHeat);
-            if (s.capped) s.askHeat(step.now), s.grant(most, step.now);
-            s.heatStep(step.now);
-        }
-        s.goneListed = 0;
-        if (!s.list.empty() || (s.switches & kSwitchDense) != 0)
-            for (uint32_t k = 0; k < 1u << step.substepShift; ++k) s.iterate(step, k);
-        if (s.publishedObjects != 0) {
-            Stopwatch watch(s, kTimerPublished);
-            s.askThen(most, step.now, [&] { s.publishedStep(step.now); });
-        }
-        if (step.reduce) {
-            Stopwatch watch(s, kTimerReduce);
-            s.reduce(step.now + kStepTicks);
-        }
-        if (step.exchange) {
-            Stopwatch watch(s, kTimerExchange);
-            s.exchange(step.rules, step.now + kStepTicks);
-        }
-    }
-
+    for (const StepPlan& step : plan.steps) s.runStep(step);
     if (plan.fields && !plan.fields->runs.empty()) {
         Stopwatch watch(s, kTimerField);
         s.stepFields(*plan.fields);
     }
-    s.countFields(store.fields);
-    for (size_t i = 0; i < s.objects.size(); ++i)
-        store.objects[i] = s.objects[i] ? s.objects[i]->counters : ObjectCounters{};
-    for (size_t i = 0; i < plan.probes.size(); ++i) {
-        const Probe& probe = plan.probes[i];
-        const bool known = probe.object < s.objects.size() && s.objects[probe.object] &&
-                           probe.texel < s.objects[probe.object]->state.size();
-        ProbeAnswer& answer = store.answers[i];
-        answer = {kInert, 0, 0, 0};
-        if (!known) continue;
-        const CpuObject& object = *s.objects[probe.object];
-        answer.state = object.state[probe.texel];
-        if (object.heat.empty()) continue;
-        answer.heatX = object.heat[probe.texel].x;
-        answer.heatY = object.heat[probe.texel].y;
-        answer.heat = 1;
-    }
-    size_t at = 0, heatAt = 0;
-    for (uint32_t slot : plan.burnMaps) {
-        if (slot >= s.objects.size() || !s.objects[slot]) continue;
-        const std::pmr::vector<uint32_t>& ticks = s.objects[slot]->state;
-        std::copy(ticks.begin(), ticks.end(), store.mapTicks.begin() + std::ptrdiff_t(at));
-        store.maps.push_back({slot, {store.mapTicks.data() + at, ticks.size()}, {}});
-        at += ticks.size();
-        const std::pmr::vector<uvec2>& heat = s.objects[slot]->heat;
-        std::copy(heat.begin(), heat.end(), store.mapHeat.begin() + std::ptrdiff_t(heatAt));
-        store.maps.back().heat = {store.mapHeat.data() + heatAt, heat.size()};
-        heatAt += heat.size();
-    }
-    s.takeImages(store, plan.images);
-    s.findLights(store.lights);
-    store.readback = {};
-    store.readback.frameIndex = plan.frameIndex;
-    store.readback.endTick = plan.endTick;
-    store.readback.objects = store.objects;
-    store.readback.answers = store.answers;
-    store.readback.burnMaps = store.maps;
-    store.readback.images = store.images;
-    store.readback.lights = store.lights;
-    store.readback.fields = store.fields;
-    store.rooms.assign(s.roomAir.begin(), s.airs ? s.roomAir.end() : s.roomAir.begin());
-    store.readback.rooms = store.rooms;
-    store.readback.frontTiles = uint32_t(s.list.size()) + s.goneListed;
-    store.readback.runTiles = uint32_t(std::min<uint64_t>(s.runTiles, 0xFFFFFFFFu));
-    store.readback.burningTiles = s.reducedBurning;
-    store.readback.hotTiles = uint32_t(s.hotList.size()) + s.goneHot;
-    store.readback.receivers = s.receivers;
-    ++s.waiting;
-
-    s.timesCount = 0;
-    for (uint32_t t = 0; t < kTimerCount; ++t) {
-        if (s.timed[t] == 0) continue;
-        PassTime& time = s.times[s.timesCount++];
-        std::snprintf(time.name, sizeof time.name, "%s", kTimerNames[t]);
-        time.milliseconds = s.milliseconds[t];
-        time.frameIndex = plan.frameIndex;
-        time.count = s.timed[t];
-    }
+    s.finishReadback(plan, store);
+    s.listTimes(plan.frameIndex);
 }
 
 const Readback* CpuBackend::nextReadback() {
     State& s = *state_;
     if (s.waiting == 0) return nullptr;
+    FW_ASSERT(s.head < s.readbacks.size(), "%zu of %zu readbacks", s.head, s.readbacks.size());
     const Readback* readback = &s.readbacks[s.head].readback;
     s.head = (s.head + 1) % s.readbacks.size();
     --s.waiting;
@@ -827,20 +879,19 @@ void CpuBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const {
     out.push_back({"cpu tiles and lists", counts.tiles * perTile, counts.tileCapacity * perTile});
 }
 
-std::span<const uint32_t> CpuBackend::state(uint32_t slot) const {
-    return state_->objects[slot]->state;
-}
+std::span<const uint32_t> CpuBackend::state(uint32_t slot) const { return state_->at(slot).state; }
 
-std::span<const uvec2> CpuBackend::heat(uint32_t slot) const { return state_->objects[slot]->heat; }
+std::span<const uvec2> CpuBackend::heat(uint32_t slot) const { return state_->at(slot).heat; }
 
 void CpuBackend::setTileHeat(uint32_t slot, uint32_t tile, const TileHeat& heat) {
-    const uint32_t worldTile = state_->objects[slot]->record.worldTileBase + tile;
+    const uint32_t worldTile = state_->at(slot).record.worldTileBase + tile;
+    FW_ASSERT(tile < state_->at(slot).record.tileCount, "tile %u", tile);
     state_->tileHeat[worldTile] = heat;
     state_->hot(worldTile);
 }
 
 const ObjectCounters& CpuBackend::counters(uint32_t slot) const {
-    return state_->objects[slot]->counters;
+    return state_->at(slot).counters;
 }
 
 }  // namespace fw::gpu::cpu

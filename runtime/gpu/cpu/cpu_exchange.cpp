@@ -1,4 +1,5 @@
-// Fire at a distance, every fourth step after `reduce`: the passes of shaders/exchange, on vectors.
+// Heat and fire between objects, every fourth step after `reduce`: the passes of shaders/exchange,
+// on vectors.
 #include "core/error.h"
 #include "core/growth.h"
 #include "core/hash.h"
@@ -32,9 +33,10 @@ namespace {
 template <class T>
 void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ranges,
                 std::pmr::vector<T>& to) noexcept {
+    FW_ASSERT(from.size() <= to.capacity(), "%zu of %zu entries", from.size(), to.capacity());
     const size_t known = std::min(to.size(), from.size());
     to.resize(known);
-    to.insert(to.end(), from.begin() + std::ptrdiff_t(known), from.end());  // its room is there
+    to.insert(to.end(), from.begin() + std::ptrdiff_t(known), from.end());
     for (const RemoteUpdate::Range& range : ranges)
         if (range.first < known)
             std::copy_n(from.begin() + range.first,
@@ -45,9 +47,10 @@ void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ra
 }  // namespace
 
 void CpuBackend::State::placeRemote(const RemoteUpdate& update) noexcept {
+    FW_ASSERT(update.blockers.size() <= blockers.capacity(), "%zu of %zu blockers",
+              update.blockers.size(), blockers.capacity());
     for (const RemoteUpdate::Placed& placed : update.objects)
-        if (placed.object < objects.size() && objects[placed.object])
-            objects[placed.object]->remote = placed.record;
+        if (CpuObject* object = find(placed.object)) object->remote = placed.record;
     copyRanges(update.neighbours, update.neighbourRanges, neighbours);
     copyRanges(update.links, update.linkRanges, links);
     blockers.assign(update.blockers.begin(), update.blockers.end());
@@ -58,6 +61,8 @@ void CpuBackend::State::reserveShield(const ShieldUpdate& update) {
 }
 
 void CpuBackend::State::placeShield(const ShieldUpdate& update) noexcept {
+    FW_ASSERT(update.words.size() <= shieldCells.capacity(), "%zu of %zu words",
+              update.words.size(), shieldCells.capacity());
     shieldCells.assign(update.words.begin(), update.words.end());
     shield = update;
     shield.words = shieldCells;
@@ -66,9 +71,10 @@ void CpuBackend::State::placeShield(const ShieldUpdate& update) noexcept {
 // As shaders/lib/shield.glsl.
 bool CpuBackend::State::shieldStands(uint32_t what, uint32_t texel, uint32_t now) const noexcept {
     if ((what & kShieldStays) != 0) return true;
-    const uint32_t slot = what & kShieldSlot;
-    if (slot >= objects.size() || !objects[slot]) return true;
-    const CpuObject& object = *objects[slot];
+    const CpuObject* found = find(what & kShieldSlot);
+    if (!found) return true;
+    const CpuObject& object = *found;
+    FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
     const uint32_t holes = object.materials[what >> 24 & 7].holeTicks, t = object.state[texel];
     if (!isSource(t) || t > now || now - t < holes) return true;
     return !object.heat.empty() &&
@@ -80,6 +86,8 @@ bool CpuBackend::State::shieldCuts(const ShieldEnds& ends, const ivec3& a, const
     const uint32_t words = shieldWords(rules.shieldCounts), side = rules.shieldCell;
     for (ShieldWalk w = shieldWalk(rules, a, b); w.within; shieldStep(w, side)) {
         const uint32_t at = w.cell >> 5, bit = 1u << (w.cell & 31);
+        FW_ASSERT(words + 2 * at + 1 < shieldCells.size(), "word %u of %zu", at,
+                  shieldCells.size());
         if ((shieldCells[at] & bit) == 0) continue;
         const uint32_t baked = shieldCells[words + 2 * at];
         if ((baked & bit) == 0) {
@@ -88,6 +96,7 @@ bool CpuBackend::State::shieldCuts(const ShieldEnds& ends, const ivec3& a, const
         }
         const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
         const uint32_t i = 3 * words + 2 * (shieldCells[words + 2 * at + 1] + before);
+        FW_ASSERT(i + 1 < shieldCells.size(), "word %u of %zu", i, shieldCells.size());
         const uint32_t what = shieldCells[i];
         if (!shieldSpares(w, ends, what & kShieldSlot, side) &&
             shieldStands(what, shieldCells[i + 1], rules.now))
@@ -128,9 +137,11 @@ void CpuBackend::State::sumSources() noexcept {
             object->gives = false;
         }
     for (const BurnTile& burning : burnTiles) {
-        CpuObject& object = *objects[burning.object];
-        if ((object.remote.flags & kRemoteLive) == 0) continue;
-        const RemoteTile& tile = remoteTiles[object.mesh][burning.tile];
+        CpuObject& object = at(burning.object);
+        if (!object.exchanges()) continue;
+        const RemoteTile& tile = remoteTileOf(object, burning.tile);
+        FW_ASSERT(tileCell(tile) < object.sources.size(), "source %u of %zu", tileCell(tile),
+                  object.sources.size());
         FireSource& source = object.sources[tileCell(tile)];
         object.gives = true;
         const ivec3 middle = tileMiddle(tile);
@@ -146,8 +157,8 @@ void CpuBackend::State::sumSources() noexcept {
 void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
     const auto burningTiles = uint32_t(burnTiles.size());
     for (uint32_t slot = 0; slot < objects.size(); ++slot) {
-        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
-        CpuObject& object = *objects[slot];
+        if (!exchanging(slot)) continue;
+        CpuObject& object = at(slot);
         ObjectCounters& c = object.counters;
         noteFire(c, object.remote, rules);
         c.held = heldBits(burningTiles, rules.tilesMost, c.burningTiles, object.remote.tilesMost,
@@ -157,10 +168,10 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
         const bool gives = mayGive(object.remote, hops, rules.hopsMost);
         if (gives && (rules.flags & (kRemoteRadiation | kRemotePlume)) != 0)
             for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
-                const uint32_t other = neighbours[object.remote.neighbourFirst + n] & 0xFFFFFFu;
-                if (other >= objects.size() || !objects[other]) continue;
-                ObjectCounters& theirs = objects[other]->counters;
-                theirs.until = std::max(theirs.until, rules.now + kExchangeTurns * kExchangeTicks);
+                CpuObject* other = find(neighbourOf(object, n) & 0xFFFFFFu);
+                if (!other) continue;
+                other->counters.until =
+                    std::max(other->counters.until, rules.now + kExchangeTurns * kExchangeTicks);
             }
         for (uint32_t cell = 0; cell < object.sources.size(); ++cell) {
             FireSource& source = object.sources[cell];
@@ -182,21 +193,18 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
 
 bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by,
                               uint32_t now) noexcept {
-    CpuObject& object = *objects[slot];
+    CpuObject& object = at(slot);
     if (texel >= object.state.size()) return false;
     const uint32_t before = object.state[texel];
     if (before != tick && !isReceptive(before)) return false;
-    const uint32_t x = texel % object.domain->width, y = texel / object.domain->width;
-    const uint32_t local = (y >> 3) * object.domain->tilesX + (x >> 3);
-    const uint32_t worldTile = object.record.worldTileBase + local;
+    const uint32_t worldTile = object.worldTileOf(texel);
     if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
     if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
     if (asksOnly || !mayBurn(worldTile)) return false;
     litFrom(object, by);
     if (before == tick) return true;  // two flames lit it
     object.state[texel] = tick;
-    ++object.counters.ignited;
-    object.counters.lastIgnition = std::max(object.counters.lastIgnition, now);
+    object.addIgnitions(1, now);
     burning(worldTile);
     if (!object.heat.empty()) hot(worldTile);
     disturb(object, now);
@@ -204,8 +212,7 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
         publishedEvent(object, texel, true);
         return true;
     }
-    tiles[worldTile].lastChange = now;
-    touchReaders(object, local, 1ull << ((y & 7) * 8 + (x & 7)));
+    changedTexel(object, texel, now);
     return true;
 }
 
@@ -213,11 +220,9 @@ void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
     receivers = 0;
     const uint32_t turn = rules.now / kExchangeTicks % kExchangeTurns;
     for (uint32_t slot = 0; slot < objects.size(); ++slot) {
-        if (!objects[slot]) continue;
-        CpuObject& object = *objects[slot];
-        if (object.counters.until < rules.now || object.heat.empty() ||
-            (object.remote.flags & kRemoteLive) == 0)
-            continue;
+        if (!exchanging(slot)) continue;
+        CpuObject& object = at(slot);
+        if (object.counters.until < rules.now || object.heat.empty()) continue;
         ++receivers;
         object.counters.held |= kHeldWarm;
         gatherSources(slot, rules);
@@ -227,18 +232,18 @@ void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
 }
 
 void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) noexcept {
-    const CpuObject& object = *objects[slot];
+    const CpuObject& object = at(slot);
     const ivec3 middle = boxMiddle(object.remote);
     // Counts the sources of weight [low, high) by its highest bit, or lists them.
     std::array<uint32_t, 32> bits{};
     const auto pass = [&](uint32_t low, uint32_t high, bool takes) {
         uint32_t count = 0;
         for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
-            const uint32_t entry = neighbours[object.remote.neighbourFirst + n];
+            const uint32_t entry = neighbourOf(object, n);
             const uint32_t slotOf = entry & 0xFFFFFFu;
-            if (entry >> 24 == 0 || slotOf >= objects.size() || !objects[slotOf]) continue;
-            const CpuObject& from = *objects[slotOf];
-            if ((from.remote.flags & kRemoteLive) == 0 || from.counters.burning == 0 ||
+            if (entry >> 24 == 0 || !exchanging(slotOf)) continue;
+            const CpuObject& from = at(slotOf);
+            if (from.counters.burning == 0 ||
                 !mayGive(from.remote, hopsOf(from.counters.litBy), rules.hopsMost) ||
                 !mayJump(rules.seed, slotOf, slot, from.counters.litTick,
                          bothChances(rules.chance, from.remote.chance)))
@@ -254,10 +259,11 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
         }
         return count;
     };
-    // The least power of two that so few are not below.
+    // The least power of two with at most kSourcesPerReceiver weights at or above it.
     uint32_t least = 0;
     for (uint32_t count = pass(1, kNoneTexel, false); count > kSourcesPerReceiver; ++least)
         count -= bits[least];
+    FW_ASSERT(least < 32, "2^%u", least);
     const uint32_t low = 1u << least;
     warmCount = 0;
     pass(low, kNoneTexel, true);
@@ -266,8 +272,8 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
 
 void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
                                  const ExchangePush& rules) noexcept {
-    CpuObject& object = *objects[slot];
-    const RemoteTile& tile = remoteTiles[object.mesh][local];
+    CpuObject& object = at(slot);
+    const RemoteTile& tile = remoteTileOf(object, local);
     if (tile.texels == 0) return;
     const uint32_t worldTile = object.record.worldTileBase + local;
     const ivec3 up = upOf(rules);
@@ -315,12 +321,12 @@ void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
         uint32_t best = kNever, by = 0;
         for (; i < links.size() && links[i].object == slot && links[i].texel == texel; ++i) {
             const ContactLink& link = links[i];
-            if (link.fromObject >= objects.size() || !objects[link.fromObject]) continue;
-            const CpuObject& from = *objects[link.fromObject];
+            if (!exchanging(link.fromObject)) continue;
+            const CpuObject& from = at(link.fromObject);
             const uint32_t hops = hopsOf(from.counters.litBy);
-            if ((from.remote.flags & kRemoteLive) == 0 || from.counters.burning == 0 ||
-                !mayGive(from.remote, hops, rules.hopsMost))
-                continue;
+            if (from.counters.burning == 0 || !mayGive(from.remote, hops, rules.hopsMost)) continue;
+            FW_ASSERT(link.fromTexel < from.state.size(), "%u of %zu texels", link.fromTexel,
+                      from.state.size());
             const uint32_t material =
                 from.domain->texels[link.fromTexel].materialFlags & (kMaterialsPerObject - 1);
             const uint32_t tick =
@@ -333,20 +339,18 @@ void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
             if (tick < best || (tick == best && key > by)) by = key;
             best = std::min(best, tick);
         }
-        if (best == kNever || slot >= objects.size() || !objects[slot] ||
-            (objects[slot]->remote.flags & kRemoteLive) == 0)
-            continue;
+        if (best == kNever || !exchanging(slot)) continue;
         light(slot, texel, best, by, rules.now);
     }
 }
 
 void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
     for (const BurnTile& burning : burnTiles) {
-        const CpuObject& object = *objects[burning.object];
-        if ((object.remote.flags & kRemoteLive) == 0 || object.domain->partLinks.empty()) continue;
-        const uvec4 leads = remoteTiles[object.mesh][burning.tile].parts;
+        const CpuObject& object = at(burning.object);
+        if (!object.exchanges() || object.domain->partLinks.empty()) continue;
+        const uvec4 words = remoteTileOf(object, burning.tile).parts;
         for (uint32_t block = 0; block < 4; ++block) {
-            const uint32_t word = leads[int(block)];
+            const uint32_t word = words[int(block)];
             if (word == kNoneTexel) continue;
             const mesh::PartLink link =
                 mesh::readPartLink(*object.domain, burning.tile, block, word);
@@ -358,24 +362,25 @@ void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
 }
 
 // The object below a place with the highest top, and its tile there.
-CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& at,
+CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& place,
                                                       uint32_t axis) const noexcept {
     Landing landing;
     int top = kNoTop;
     for (uint32_t slot = 0; slot < objects.size(); ++slot) {
-        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
-        const int here = topBelow(objects[slot]->remote, at, axis);
+        const CpuObject* object = exchanging(slot);
+        if (!object) continue;
+        const int here = topBelow(object->remote, place, axis);
         if (here > top) {
             top = here;
             landing.object = slot;
         }
     }
     if (landing.object == kNoneTexel) return landing;
-    const CpuObject& object = *objects[landing.object];
+    const CpuObject& object = at(landing.object);
     const std::pmr::vector<RemoteTile>& its = remoteTiles[object.mesh];
     uint32_t least = kMisses;
     for (uint32_t i = 0; i < its.size(); ++i) {
-        const uint32_t miss = landingMiss(object.remote, its[i], at, top, axis);
+        const uint32_t miss = landingMiss(object.remote, its[i], place, top, axis);
         if (miss < least) {
             least = miss;
             landing.tile = i;
@@ -384,7 +389,7 @@ CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& at,
     return landing;
 }
 
-// Calls each(source, ember, landing); no tile: it falls on nothing.
+// Calls each(source, ember, landing). A landing without a tile is on no object.
 template <class Each>
 void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexcept {
     const ivec3 up = upOf(rules), wind(rules.windX, rules.windY, rules.windZ);
@@ -393,8 +398,8 @@ void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexce
     const uint32_t first = shuffles ? core::hash32(random++) % slots : 0;
     for (uint32_t i = 0; i < slots; ++i) {
         const uint32_t slot = i < slots - first ? first + i : first + i - slots;
-        if (!objects[slot] || (objects[slot]->remote.flags & kRemoteLive) == 0) continue;
-        CpuObject& from = *objects[slot];
+        if (!exchanging(slot)) continue;
+        CpuObject& from = at(slot);
         if (from.counters.burning == 0) continue;
         const ivec3 blows = wind + unpackWind(uint32_t(from.remote.high.w));
         for (FireSource& source : from.sources) {
@@ -405,14 +410,13 @@ void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexce
     }
 }
 
-// Those whose way a blocker or the shield crosses are none.
+// Removes embers whose path a blocker or the shield crosses.
 void CpuBackend::State::emberWays(const ExchangePush& rules) noexcept {
     const auto stopped = [&](const FireSource& source, const Ember& ember, const Landing& to) {
         if (to.tile == kNoneTexel) return true;
-        const CpuObject& object = *objects[to.object];
+        const CpuObject& object = at(to.object);
         const ivec3 flame = alongFlame(source, upOf(rules), 8);
-        const ivec3 place =
-            remotePlace(object.remote, tileMiddle(remoteTiles[object.mesh][to.tile]));
+        const ivec3 place = remotePlace(object.remote, tileMiddle(remoteTileOf(object, to.tile)));
         for (const Blocker& blocker : blockers)
             if (blockerCuts(blocker, flame, ember.landing) ||
                 blockerCuts(blocker, ember.landing, place))
@@ -436,19 +440,17 @@ void CpuBackend::State::embers(const ExchangePush& rules) noexcept {
 void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, const Landing& to,
                                   uint32_t axis, const ExchangePush& rules) noexcept {
     const uint32_t target = to.object, tile = to.tile;
-    CpuObject& object = *objects[target];
-    const uint32_t chance =
-        bothChances(emberLights(ember.energy, object.remote.catches),
-                    bothChances(rules.chance, objects[source.object]->remote.chance));
+    CpuObject& object = at(target);
+    const uint32_t chance = bothChances(emberLights(ember.energy, object.remote.catches),
+                                        bothChances(rules.chance, at(source.object).remote.chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;
     const uint32_t lane = nearestLane(object, tile, ember.landing, axis);
     if (lane == kNoneTexel) return;
-    const uint32_t corner =
-        tile / object.domain->tilesX * 8 * object.domain->width + tile % object.domain->tilesX * 8;
+    const mesh::TileTexels texels = object.domain->texelsOf(tile);
     uint32_t lit = 0;
-    for (uint32_t other = 0; other < 64; ++other) {
+    for (uint32_t other = 0; other < mesh::kTileLanes; ++other) {
         if (!besideLane(lane, other)) continue;
-        const uint32_t texel = corner + (other >> 3) * object.domain->width + (other & 7);
+        const uint32_t texel = texels[other];
         if (light(target, texel, rules.now, litBy(source.hops, source.object), rules.now)) {
             lit = 1;
             object.counters.spotTexel = std::max(object.counters.spotTexel, kSpotFresh | texel);
@@ -460,10 +462,10 @@ void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, 
 uint32_t CpuBackend::State::nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
                                         uint32_t axis) noexcept {
     const mesh::BurnDomain& domain = *object.domain;
-    const uint32_t corner = tile / domain.tilesX * 8 * domain.width + tile % domain.tilesX * 8;
+    const mesh::TileTexels texels = domain.texelsOf(tile);
     uint32_t nearest = kNoneTexel, found = kNoneTexel;
-    for (uint32_t lane = 0; lane < 64; ++lane) {
-        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+    for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
+        const uint32_t texel = texels[lane];
         if (object.state[texel] == kInert) continue;
         const mesh::TexelPosition& p = domain.texels[texel];
         const uint32_t beside = besidePlace(object.remote, ivec3(p.x, p.y, p.z), at, axis);

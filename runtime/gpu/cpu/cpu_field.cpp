@@ -19,27 +19,28 @@ void CpuBackend::destroyField(uint32_t slot) noexcept {
 }
 
 void CpuBackend::setFieldRules(uint32_t slot, const FieldRules& rules) noexcept {
-    state_->fields[slot]->rules = rules;
+    state_->fieldAt(slot).rules = rules;
 }
 
 void CpuBackend::setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) {
-    field::maskField(state_->fields[slot]->field, masks);
+    field::maskField(state_->fieldAt(slot).field, masks);
 }
 
 uint64_t CpuBackend::fieldBytes(uint32_t slot) const noexcept {
-    const field::Field& f = state_->fields[slot]->field;
+    const field::Field& f = state_->fieldAt(slot).field;
     return sizeof(CpuField) + (f.cells.size() + f.next.size()) * sizeof f.cells[0] +
            f.given.size() * sizeof f.given[0] + f.masks.size();
 }
 
-const field::Field& CpuBackend::field(uint32_t slot) const { return state_->fields[slot]->field; }
+const field::Field& CpuBackend::field(uint32_t slot) const { return state_->fieldAt(slot).field; }
 
 void CpuBackend::State::stepFields(const FieldUpdate& update) noexcept {
     for (const FieldRun& run : update.runs)
-        field::stepField(fields[run.field]->field, fields[run.field]->rules);
+        field::stepField(fieldAt(run.field).field, fieldAt(run.field).rules);
 }
 
 void CpuBackend::State::countFields(std::span<FieldCounters> out) const noexcept {
+    FW_ASSERT(out.size() == fields.size(), "%zu of %zu fields", out.size(), fields.size());
     for (size_t i = 0; i < out.size(); ++i) {
         out[i] = {};
         if (!fields[i]) continue;

@@ -1,5 +1,5 @@
 // Temperature, fuel and water on the CPU, as heat.comp and the heat part of events.comp. The maths
-// is shared/heat.h; which tiles, and who hears of it, is here.
+// is shared/heat.h; the lists of tiles are kept here.
 #include "gpu/cpu/cpu_state.h"
 
 #include <algorithm>
@@ -8,26 +8,35 @@ namespace fw::gpu::cpu {
 
 void createHeat(CpuObject& object) {
     const mesh::BurnDomain& domain = *object.domain;
-    object.heat.resize(domain.texelCount());
+    FW_ASSERT(
+        object.heat.size() == domain.texelCount() && object.state.size() == object.heat.size(),
+        "%zu and %zu of %u texels", object.heat.size(), object.state.size(), domain.texelCount());
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
-        const HeatMaterial& m = object.heatMaterials[domain.texels[i].materialFlags & 7];
+        const HeatMaterial& m = object.heatMaterialOf(i);
         const HeatTexel x = heatRests(m, object.state[i] != kInert);
         object.heat[i] = packHeat(x);
         object.state[i] = wetState(object.state[i], heatClosed(x, m));
     }
 }
 
-void CpuBackend::State::hot(uint32_t worldTile) noexcept {
+void CpuBackend::State::listHot(uint32_t worldTile, uint32_t bits) noexcept {
+    FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
     uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileHot) == 0) hotList.push_back(worldTile);
-    flag |= kTileHot | kTileWarm;
+    if ((flag & kTileHot) == 0) append(hotList, worldTile);
+    flag |= kTileHot | bits;
 }
+
+void CpuBackend::State::hot(uint32_t worldTile) noexcept { listHot(worldTile, kTileWarm); }
 
 bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kind,
                                  uint32_t now) const noexcept {
     const TexelEvent* gate = batch.data() + (kind >> kEventKindBits) - 1;
     for (;; ++gate) {
-        const CpuObject& object = *objects[gate->object];
+        FW_ASSERT(gate >= batch.data() && gate < batch.data() + batch.size(), "gate %zd of %zu",
+                  gate - batch.data(), batch.size());
+        FW_ASSERT(eventKind(gate->kind) == kEventGate, "an event of kind %u is no gate",
+                  eventKind(gate->kind));
+        const CpuObject& object = at(gate->object);
         if (object.heat.empty() ||
             !gateLets(gate->kind, gate->tick, unpackHeat(object.heat[gate->texel]),
                       object.state[gate->texel], now))
@@ -40,8 +49,7 @@ uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
                                        std::span<const TexelEvent> batch,
                                        std::span<const TexelEvent> events, uint32_t now,
                                        HeatTexel& x, bool& byFlame) const noexcept {
-    const mesh::BurnDomain& domain = *object.domain;
-    const HeatMaterial& m = object.heatMaterials[domain.texels[texel].materialFlags & 7];
+    const HeatMaterial& m = object.heatMaterialOf(texel);
     uint32_t after = object.state[texel];
     x = unpackHeat(object.heat[texel]);
     for (const TexelEvent& event : events) {
@@ -55,14 +63,13 @@ uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
 }
 
 void CpuBackend::State::heatComes(uint32_t worldTile, uint32_t flux) noexcept {
-    uint32_t& flag = tiles[worldTile].flag;
-    if ((flag & kTileHot) == 0) hotList.push_back(worldTile);
-    flag |= kTileHot | (fluxWork(flux) == kWorkAlways ? kTileWarm : 0u);
+    FW_ASSERT(flux <= kFluxMost, "flux %u", flux);
+    listHot(worldTile, fluxWork(flux) == kWorkAlways ? kTileWarm : 0u);
 }
 
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
-    const uint32_t local = worldTile - objects[tile.object]->record.worldTileBase;
+    const uint32_t local = at(tile.object).localTileOf(worldTile);
     return heatTurn((tile.flag & kTileWarm) != 0, tile.object, local, tileHeat[worldTile].flux,
                     now);
 }
@@ -71,7 +78,7 @@ uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, u
                                       const TileHeat& comes, uint32_t now, HeatTexel& x,
                                       uint32_t& units) const noexcept {
     const uint32_t kind = object.domain->texels[texel].materialFlags & 7;
-    const HeatMaterial& m = object.heatMaterials[kind];
+    const HeatMaterial& m = object.heatMaterialOf(texel);
     const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
     if (work == kWorkDozes) return heatDozes(x, m, before, chance);
     const HeatMaterial waited = heatOver(m, work == kWorkRests, comes.flux);
@@ -81,19 +88,18 @@ uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, u
 
 void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept {
     TileState& tile = tiles[worldTile];
-    CpuObject& object = *objects[tile.object];
+    CpuObject& object = at(tile.object);
     const mesh::BurnDomain& domain = *object.domain;
-    const uint32_t local = worldTile - object.record.worldTileBase;
-    const uint32_t corner =
-        (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+    const uint32_t local = object.localTileOf(worldTile);
+    const mesh::TileTexels texels = domain.texelsOf(local);
     const TileHeat comes = tileHeat[worldTile];
     const bool held = !mayBurn(worldTile);
     const uint32_t ambient = object.heatMaterials[0].ambient;
     uint64_t energy = 0, changed = 0;
     uint32_t lit = 0, gone = 0, left = fluxWork(comes.flux);
     float watts = 0;
-    for (uint32_t lane = 0; lane < 64; ++lane) {
-        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+    for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
+        const uint32_t texel = texels[lane];
         const uint32_t kind = domain.texels[texel].materialFlags;
         if ((kind & kTexelReal) == 0) continue;
         const uint32_t before = object.state[texel];
@@ -105,7 +111,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         }
         uint32_t units = 0;
         const uint32_t after = heatTexel(object, texel, work, comes, now, x, units);
-        if (held && isSource(after) && !isSource(before)) {  // as it was, and looked at again
+        if (held && isSource(after) && !isSource(before)) {  // unchanged, and due again
             left |= kWorkAlways;
             continue;
         }
@@ -122,7 +128,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     if (left != 0) {
         const bool warm = (left & kWorkAlways) != 0;
         tile.flag = warm ? tile.flag | kTileWarm : tile.flag & ~kTileWarm;
-        hotOut.push_back(worldTile);
+        append(hotOut, worldTile);
     } else {
         tile.flag &= ~(kTileHot | kTileWarm);
     }
@@ -131,6 +137,8 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     object.counters.energyLow = uint32_t(energy);
     object.counters.energyHigh = uint32_t(energy >> 32);
     if (changed == 0) return;
+    FW_ASSERT(object.counters.ignited + lit >= gone, "%u ignited, %u more, %u gone",
+              object.counters.ignited, lit, gone);
     object.counters.ignited += lit - gone;
     if (lit != 0) {
         object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
@@ -141,10 +149,10 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     touchReaders(object, local, changed);
 }
 
-// As rooms.comp: what fires used of their rooms' air, and how they burn in what is left.
+// As rooms.comp: the air that fires used of their rooms, and how they burn in the rest.
 void CpuBackend::State::airRooms(uint32_t now) noexcept {
     airs = true;
-    std::array<uint32_t, kMaxRooms> ofRoom{};  // J that it draws
+    std::array<uint32_t, kMaxRooms> ofRoom{};  // J since the last step
     const auto roomOf = [](const core::Owned<CpuObject>& object) {
         return object ? object->record.flags >> kObjectRoomShift & 0xFF : 0u;  // plus 1
     };
@@ -152,7 +160,8 @@ void CpuBackend::State::airRooms(uint32_t now) noexcept {
         const uint32_t room = roomOf(object);
         if (room == 0) continue;
         ObjectCounters& c = object->counters;
-        if ((c.air & kAirKnown) == 0) {  // it comes in: what it gave off is gone
+        FW_ASSERT(room <= kMaxRooms, "room %u", room - 1);
+        if ((c.air & kAirKnown) == 0) {  // new in the room: its earlier energy does not count
             c.drawnLow = c.energyLow;
             c.drawnHigh = c.energyHigh;
         }
@@ -170,17 +179,15 @@ void CpuBackend::State::airRooms(uint32_t now) noexcept {
 void CpuBackend::State::askHeat(uint32_t now) noexcept {
     for (uint32_t worldTile : hotList) {
         const TileState& tile = tiles[worldTile];
-        const CpuObject& object = *objects[tile.object];
+        const CpuObject& object = at(tile.object);
         const mesh::BurnDomain& domain = *object.domain;
         const TileHeat comes = tileHeat[worldTile];
         const uint32_t turn = heatTurnOf(worldTile, now);
         if (turn == 0 || mayBurn(worldTile)) continue;
-        const uint32_t local = worldTile - object.record.worldTileBase;
-        const uint32_t corner =
-            (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+        const mesh::TileTexels texels = domain.texelsOf(object.localTileOf(worldTile));
         bool lights = false;
-        for (uint32_t lane = 0; lane < 64 && !lights; ++lane) {
-            const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+        for (uint32_t lane = 0; lane < mesh::kTileLanes && !lights; ++lane) {
+            const uint32_t texel = texels[lane];
             const uint32_t before = object.state[texel];
             if ((domain.texels[texel].materialFlags & kTexelReal) == 0 || isSource(before))
                 continue;
@@ -201,7 +208,7 @@ void CpuBackend::State::heatStep(uint32_t now) noexcept {
     for (uint32_t worldTile : hotList) {
         const uint32_t turn = heatTurnOf(worldTile, now);
         if (turn == 0)
-            hotOut.push_back(worldTile);  // sleeps on
+            append(hotOut, worldTile);  // sleeps on
         else
             heatTile(worldTile, turn, now);
     }

@@ -1,5 +1,5 @@
 // The published sixteen-tap kernel on the CPU: the floats of shaders/burn/published.comp, in its
-// order. Three planes, S * D twice and D, with two texels of nothing around the map.
+// order. Three planes, S * D twice and D, with a border of two zero texels around the map.
 #include "gpu/cpu/cpu_state.h"
 #include "shared/published.h"
 
@@ -16,6 +16,7 @@ size_t planeOf(const CpuObject& object) noexcept {
     return strideOf(object) * (object.domain->height + 2 * kPad);
 }
 size_t place(const CpuObject& object, uint32_t x, uint32_t y) noexcept {
+    FW_ASSERT(x < object.domain->width && y < object.domain->height, "texel (%u, %u)", x, y);
     return (y + kPad) * strideOf(object) + x + kPad;
 }
 
@@ -65,6 +66,7 @@ void createPublished(CpuObject& object) {
 }
 
 void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept {
+    FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
     const size_t plane = planeOf(object);
     const size_t at = place(object, texel % object.domain->width, texel / object.domain->width);
     const float q = burns ? object.published[2 * plane + at] : 0.0f;
@@ -79,6 +81,9 @@ void CpuBackend::State::publishedStep(uint32_t now) noexcept {
         CpuObject& object = *owned;
         const uint32_t width = object.domain->width;
         const size_t plane = planeOf(object);
+        FW_ASSERT(object.published.size() == 3 * plane, "%zu of %zu floats",
+                  object.published.size(), 3 * plane);
+        FW_ASSERT(object.publishedParity < 2, "parity %u", object.publishedParity);
         float* planes = object.published.data();
         for (uint32_t y = 0; y < object.domain->height; ++y) {
             const size_t row = place(object, 0, y);
@@ -89,14 +94,12 @@ void CpuBackend::State::publishedStep(uint32_t now) noexcept {
             for (uint32_t x = 0; x < width; ++x) {
                 uint32_t& state = object.state[y * width + x];
                 if (crossing(from[x], to[x], spread[x]) >> 31 == 0 || !isReceptive(state)) continue;
-                const uint32_t worldTile =
-                    object.record.worldTileBase + (y >> 3) * object.domain->tilesX + (x >> 3);
+                const uint32_t worldTile = object.worldTileOf(y * width + x);
                 if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
                 if (!mayBurn(worldTile)) to[x] = from[x];  // it passes again in the next step
                 if (asksOnly || !mayBurn(worldTile)) continue;
                 state = end;
-                ++object.counters.ignited;
-                object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
+                object.addIgnitions(1, end);
                 burning(worldTile);
             }
         }

@@ -1,5 +1,5 @@
-// What burns: counts per object, BurnTiles and the strongest lights. The counts are integers and
-// equal a device's; places and powers are cosmetic.
+// The burning tiles: counts per object, BurnTiles and the strongest lights. The counts are integers
+// and equal a device's; places and powers are cosmetic.
 #include "gpu/cpu/cpu_state.h"
 
 #include <algorithm>
@@ -10,7 +10,7 @@ namespace fw::gpu::cpu {
 namespace {
 
 constexpr float kLightCell = 1.0f;      // m: tiles of one object within a cell make one light
-constexpr uint32_t kLightSlots = 1024;  // open hash; what finds no slot joins the last one
+constexpr uint32_t kLightSlots = 1024;  // open hash; a key without a free slot joins the last one
 
 struct Cell {
     uint64_t key = 0;
@@ -34,18 +34,17 @@ uint64_t cellKey(const BurnTile& tile) {
 // gives off; `nominal`: each burning texel gives off its material's power instead.
 BurnTile CpuBackend::State::burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                        float fire) const noexcept {
-    const CpuObject& object = *objects[tiles[worldTile].object];
+    const CpuObject& object = ownerOf(worldTile);
     const mesh::BurnDomain& domain = *object.domain;
-    const uint32_t local = worldTile - object.record.worldTileBase;
-    const uint32_t corner =
-        (local / domain.tilesX) * 8 * domain.width + (local % domain.tilesX) * 8;
+    const uint32_t local = object.localTileOf(worldTile);
+    const mesh::TileTexels texels = domain.texelsOf(local);
     uint32_t count = 0, age = 0, position[3] = {};
     int normal[3] = {};
     const bool heats = !object.heat.empty();
     float power = heats ? fire : 0;
     const float strength = float(airStrength(object.counters.air)) / float(kAirFull);
-    for (uint32_t lane = 0; lane < 64; ++lane) {
-        const uint32_t texel = corner + (lane >> 3) * domain.width + (lane & 7);
+    for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
+        const uint32_t texel = texels[lane];
         const uint32_t t = object.state[texel];
         if (!isSource(t)) continue;
         const mesh::TexelPosition& at = domain.texels[texel];
@@ -90,7 +89,7 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
         if (!object) continue;
         object->counters.burning = object->counters.burningTiles = object->counters.frontTiles = 0;
     }
-    for (uint32_t worldTile : list) ++objects[tiles[worldTile].object]->counters.frontTiles;
+    for (uint32_t worldTile : list) ++ownerOf(worldTile).counters.frontTiles;
 
     burnTiles.clear();
     goneBurning = 0;
@@ -102,7 +101,8 @@ void CpuBackend::State::reduce(uint32_t now) noexcept {
             continue;
         }
         burnList[kept++] = worldTile;
-        CpuObject& object = *objects[tile.object];
+        FW_ASSERT(burnTiles.size() < burnTiles.capacity(), "%zu burning tiles", burnTiles.size());
+        CpuObject& object = at(tile.object);
         object.counters.burning += tile.texels;
         ++object.counters.burningTiles;
         burnTiles.push_back(tile);
@@ -137,7 +137,7 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
                       [](const Cell& a, const Cell& b) {
                           return a.power != b.power ? a.power > b.power : a.key < b.key;
                       });
-    // The others shine from the nearest of those: no watt is lost.
+    // The nearest chosen light takes the power of the others: no watt is lost.
     for (auto cell = cells.begin() + std::ptrdiff_t(count); cell != end; ++cell) {
         size_t nearest = 0;
         float least = 0;
@@ -157,13 +157,14 @@ void CpuBackend::State::findLights(std::pmr::vector<BurnLight>& out) noexcept {
     for (size_t i = 0; i < count; ++i) {
         const Cell& cell = cells[i];
         BurnLight light{};
-        // As lights.comp, but that one flickers and knows old embers: 30 % of the power leaves as
+        // As lights.comp, without its flicker and its old embers: 30 % of the power leaves as
         // light and heat; colour of a sooty flame, luminance 1.
         light.positionRadius = {cell.position[0] / cell.seen, cell.position[1] / cell.seen,
                                 cell.position[2] / cell.seen, std::sqrt(cell.area / 3.14159265f)};
         light.colorIntensity = {1.717f, 0.858f, 0.292f, cell.power * 0.3f / 12.566f};
         light.power = light.release = cell.power;
         light.id = cell.id;
+        FW_ASSERT(out.size() < out.capacity(), "%zu lights", out.size());
         out.push_back(light);
     }
 }

@@ -1,5 +1,5 @@
-// Images of objects: taken at a frame's end, and put back. Lists are not kept: which tiles are in
-// them is in the tiles' flags, and what is pending is found anew where tiles are touched.
+// Images of objects: taken at a frame's end, and put back. Images hold no lists: the tiles' flags
+// say which lists they are in, and touched tiles find their pending arrivals again.
 #include "gpu/cpu/cpu_state.h"
 
 #include <algorithm>
@@ -9,7 +9,7 @@ namespace fw::gpu::cpu {
 void CpuBackend::State::reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const {
     size_t texels = 0, heated = 0, tileCount = 0;
     for (const uint32_t slot : slots) {
-        const CpuObject& object = *objects[slot];
+        const CpuObject& object = at(slot);
         texels += object.state.size();
         heated += object.heat.size();
         tileCount += object.record.tileCount;
@@ -26,7 +26,7 @@ void CpuBackend::State::takeImages(ReadbackStore& store,
                                    std::span<const uint32_t> slots) const noexcept {
     size_t texel = 0, heated = 0, tile = 0;
     for (const uint32_t slot : slots) {
-        const CpuObject& object = *objects[slot];
+        const CpuObject& object = at(slot);
         const auto first = std::ptrdiff_t(object.record.worldTileBase);
         const size_t count = object.record.tileCount;
         std::copy(object.state.begin(), object.state.end(),
@@ -43,6 +43,7 @@ void CpuBackend::State::takeImages(ReadbackStore& store,
         image.tiles = std::span(store.imageTiles).subspan(tile, count);
         image.tileHeat = std::span(store.imageTileHeat).subspan(tile, count);
         image.counters = object.counters;
+        FW_ASSERT(store.images.size() < store.images.capacity(), "%zu images", store.images.size());
         store.images.push_back(image);
         texel += object.state.size();
         heated += object.heat.size();
@@ -62,7 +63,7 @@ void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
     if (!object.heat.empty()) createHeat(object);
     if (!object.published.empty()) {
         std::fill(object.published.begin(), object.published.end(), 0.0f);
-        createPublished(object);  // its room is there
+        createPublished(object);  // allocates nothing: its planes have their size
     }
     object.counters = {};
     std::fill(object.sources.begin(), object.sources.end(), FireSource{});
@@ -94,12 +95,19 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     }
     for (const RestoredObject& one : restored) {
         const ObjectImage& image = one.image;
-        CpuObject& object = *s.objects[image.object];
+        CpuObject& object = s.at(image.object);
         object.counters = image.counters;
         if (one.rests) continue;
         std::copy_n(one.materials, kMaterialsPerObject, object.materials.begin());
         object.record.window = one.window;
         object.record.substepShift = one.substepShift;
+        FW_ASSERT(image.ticks.size() == object.state.size(), "%zu of %zu texels",
+                  image.ticks.size(), object.state.size());
+        FW_ASSERT(image.heat.size() == object.heat.size(), "%zu of %zu texels with heat",
+                  image.heat.size(), object.heat.size());
+        FW_ASSERT(image.tiles.size() == object.record.tileCount &&
+                      image.tileHeat.size() == image.tiles.size(),
+                  "%zu of %u tiles", image.tiles.size(), object.record.tileCount);
         std::copy(image.ticks.begin(), image.ticks.end(), object.state.begin());
         std::copy(image.heat.begin(), image.heat.end(), object.heat.begin());
         const uint32_t base = object.record.worldTileBase;
@@ -109,12 +117,12 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
             s.tiles[worldTile].lastChange = image.tiles[local].lastChange;
             s.tileHeat[worldTile] = image.tileHeat[local];
             if ((kept & kTileListed) != 0) s.touch(worldTile, kTileTouched);
-            if ((kept & kTileBurning) != 0) s.burnList.push_back(worldTile);
-            if ((kept & kTileHot) != 0) s.hotList.push_back(worldTile);
+            if ((kept & kTileBurning) != 0) s.append(s.burnList, worldTile);
+            if ((kept & kTileHot) != 0) s.append(s.hotList, worldTile);
             s.tiles[worldTile].flag |= kept;
         }
     }
-    s.showsDue = true;  // once objects are where the save has them
+    s.showsDue = true;  // in the next frame, when objects have the poses of the save
     s.showsTick = tick;
 }
 

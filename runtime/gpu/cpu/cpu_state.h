@@ -1,9 +1,10 @@
-// What the cpu backend keeps, shared by its two sources. Not for anyone else.
+// State of the cpu backend, shared by its sources. Internal to runtime/gpu/cpu.
 #pragma once
 #include "field/field.h"
 #include "gpu/cpu/cpu_backend.h"
 #include "mesh/front/tile.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 
@@ -29,13 +30,32 @@ struct CpuObject {
     uint32_t publishedParity = 0;
     RemoteObject remote{};                 // without kRemoteLive until its first update
     std::pmr::vector<FireSource> sources;  // by cell, see mesh/remote_tiles.h
-    bool gives = false;                    // some of those are not as they rest
+    bool gives = false;                    // some source differs from FireSource{}
+
+    [[nodiscard]] uint32_t worldTileOf(uint32_t texel) const noexcept {
+        return record.worldTileBase + domain->tileOf(texel);
+    }
+    [[nodiscard]] uint32_t localTileOf(uint32_t worldTile) const noexcept {
+        FW_ASSERT(worldTile - record.worldTileBase < record.tileCount, "world tile %u, %u of %u",
+                  worldTile, record.tileCount, record.worldTileBase);
+        return worldTile - record.worldTileBase;
+    }
+    [[nodiscard]] const HeatMaterial& heatMaterialOf(uint32_t texel) const noexcept {
+        FW_ASSERT(texel < heat.size(), "%u of %zu texels with heat", texel, heat.size());
+        return heatMaterials[domain->texels[texel].materialFlags & (kMaterialsPerObject - 1)];
+    }
+    // Whether other objects' fires reach it, and its fire reaches them.
+    [[nodiscard]] bool exchanges() const noexcept { return (remote.flags & kRemoteLive) != 0; }
+    void addIgnitions(uint32_t texels, uint32_t tick) noexcept {
+        counters.ignited += texels;
+        counters.lastIgnition = std::max(counters.lastIgnition, tick);
+    }
 };
 
-// cpu_heat.cpp; after the states are there, which become as wet as their texels.
+// cpu_heat.cpp. Needs the states; makes those of wet texels wet.
 void createHeat(CpuObject& object);
 
-// cpu_published.cpp; after the states are there.
+// cpu_published.cpp. Needs the states.
 void createPublished(CpuObject& object);
 void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept;
 
@@ -105,21 +125,56 @@ struct CpuBackend::State {
     State(std::pmr::memory_resource* memory_, uint32_t maxLights_);
 
     FrontPlanes planes(const CpuObject& object) const noexcept;
+    // Null: the slot is empty, or there is none of this number.
+    [[nodiscard]] CpuObject* find(uint32_t slot) const noexcept {
+        return slot < objects.size() ? objects[slot].get() : nullptr;
+    }
+    [[nodiscard]] CpuObject& at(uint32_t slot) const noexcept {
+        FW_ASSERT(slot < objects.size() && objects[slot], "object %u of %zu", slot, objects.size());
+        return *objects[slot];
+    }
+    [[nodiscard]] CpuObject& ownerOf(uint32_t worldTile) const noexcept {
+        FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
+        return at(tiles[worldTile].object);
+    }
+    [[nodiscard]] CpuField& fieldAt(uint32_t slot) const noexcept {
+        FW_ASSERT(slot < fields.size() && fields[slot], "field %u of %zu", slot, fields.size());
+        return *fields[slot];
+    }
+    // An object that takes part in the exchange, or null.
+    [[nodiscard]] CpuObject* exchanging(uint32_t slot) const noexcept {
+        CpuObject* object = find(slot);
+        return object && object->exchanges() ? object : nullptr;
+    }
+    static void append(std::pmr::vector<uint32_t>& tileList, uint32_t worldTile) noexcept {
+        FW_ASSERT(tileList.size() < tileList.capacity(), "a list of %zu tiles is full",
+                  tileList.size());
+        tileList.push_back(worldTile);
+    }
     void touch(uint32_t worldTile, uint32_t bits) noexcept;
     void touchReaders(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
     void burning(uint32_t worldTile) noexcept;
-    // Where the tiles that burn are counted against a limit, as shaders/lib/lists.glsl.
+    // Where a limit counts the burning tiles, as shaders/lib/lists.glsl.
     [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
+        FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
         return !capped || (tiles[worldTile].flag & kTileBurning) != 0;
     }
     void askToBurn(uint32_t worldTile) noexcept;
     void grant(uint32_t tilesMost, uint32_t now) noexcept;
     template <class Light>
     void askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept;
-    // Of objects with heat: something of the tile's temperature, water or flux changes from now on.
+    // Of objects with heat: the tile's temperature, water or flux changes from now on.
     void hot(uint32_t worldTile) noexcept;
-    // Another flux comes to it, at one of its turns.
+    void listHot(uint32_t worldTile, uint32_t bits) noexcept;
+    // The flux onto the tile changed, at one of its turns.
     void heatComes(uint32_t worldTile, uint32_t flux) noexcept;
+    // A frame: reserves what it needs (throws), runs a step, fills the readback.
+    ReadbackStore& reserveReadback(const FramePlan& plan);
+    void runStep(const StepPlan& step) noexcept;
+    void answerProbes(std::span<const Probe> probes, std::span<ProbeAnswer> answers) const noexcept;
+    void copyBurnMaps(std::span<const uint32_t> slots, ReadbackStore& store) const noexcept;
+    void finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept;
+    void listTimes(uint64_t frameIndex) noexcept;
     void countLists() noexcept;  // for memoryRows, which any thread may call
     void applyEvents(const StepPlan& step) noexcept;
     void wake(const StepPlan& step) noexcept;
@@ -129,7 +184,7 @@ struct CpuBackend::State {
                       bool dense) noexcept;
     void shuffle(std::pmr::vector<uint32_t>& list) noexcept;
     bool gatesLet(std::span<const TexelEvent> batch, uint32_t kind, uint32_t now) const noexcept;
-    // cpu_heat.cpp: the texel's state after them.
+    // cpu_heat.cpp. Returns the texel's state after the events.
     uint32_t heatEvents(const CpuObject& object, uint32_t texel, std::span<const TexelEvent> batch,
                         std::span<const TexelEvent> events, uint32_t now, HeatTexel& x,
                         bool& byFlame) const noexcept;
@@ -144,12 +199,13 @@ struct CpuBackend::State {
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
     void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
-    // What a step makes of a texel with such work, whose turn it is; units: of its fuel.
+    // Returns the texel's state after a heat step of `work`; units: fuel that burnt.
     [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
+    void changedTexel(const CpuObject& object, uint32_t texel, uint32_t now) noexcept;
     void reduce(uint32_t now) noexcept;  // cpu_reduce.cpp
     [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
                                       float fire) const noexcept;
@@ -166,6 +222,17 @@ struct CpuBackend::State {
     void sumSources() noexcept;
     void settleSources(const ExchangePush& rules) noexcept;
     void warmAll(const ExchangePush& rules) noexcept;
+    [[nodiscard]] uint32_t neighbourOf(const CpuObject& object, uint32_t n) const noexcept {
+        FW_ASSERT(object.remote.neighbourFirst + n < neighbours.size(), "neighbour %u of %zu",
+                  object.remote.neighbourFirst + n, neighbours.size());
+        return neighbours[object.remote.neighbourFirst + n];
+    }
+    [[nodiscard]] const RemoteTile& remoteTileOf(const CpuObject& object,
+                                                 uint32_t local) const noexcept {
+        FW_ASSERT(object.mesh < remoteTiles.size() && local < remoteTiles[object.mesh].size(),
+                  "tile %u of mesh %u", local, object.mesh);
+        return remoteTiles[object.mesh][local];
+    }
     void gatherSources(uint32_t slot, const ExchangePush& rules) noexcept;
     void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
     void contacts(const ExchangePush& rules) noexcept;
@@ -178,13 +245,13 @@ struct CpuBackend::State {
     void emberWays(const ExchangePush& rules) noexcept;
     void embers(const ExchangePush& rules) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
-    Landing landsOn(const ivec3& at, uint32_t axis) const noexcept;
+    Landing landsOn(const ivec3& place, uint32_t axis) const noexcept;
     void landEmber(const FireSource& source, const Ember& ember, const Landing& to, uint32_t axis,
                    const ExchangePush& rules) noexcept;
     static uint32_t nearestLane(const CpuObject& object, uint32_t tile, const ivec3& at,
                                 uint32_t axis) noexcept;
     void litFrom(CpuObject& object, uint32_t by) noexcept;
-    // A baked burn that it plays ends with the step, or exchange, that ends there.
+    // A baked burn that the object plays ends with the step or exchange that ends at `end`.
     static void disturb(CpuObject& object, uint32_t end) noexcept;
     void findLights(std::pmr::vector<BurnLight>& out) noexcept;  // reserved by the caller
     uint32_t allocateTiles(uint32_t count);
@@ -192,7 +259,7 @@ struct CpuBackend::State {
     // cpu_restore.cpp
     void reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const;  // throws
     void takeImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
-    void rest(CpuObject& object, uint32_t slot) noexcept;  // as it was made
+    void rest(CpuObject& object, uint32_t slot) noexcept;  // back to its state after creation
     // cpu_field.cpp
     void stepFields(const FieldUpdate& update) noexcept;
     void countFields(std::span<FieldCounters> out) const noexcept;
@@ -205,8 +272,8 @@ struct CpuBackend::State {
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
     std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;
-    std::pmr::vector<uvec4> asks;     // askToBurn's: order, object, local tile, world tile
-    std::pmr::vector<uint8_t> asked;  // by world tile: it is among them
+    std::pmr::vector<uvec4> asks;     // of askToBurn: order, object, local tile, world tile
+    std::pmr::vector<uint8_t> asked;  // by world tile: `asks` holds it
     std::pmr::vector<TileHeat> tileHeat;
     std::pmr::vector<float> tileFire;     // W in the last heat step
     std::pmr::vector<FrontTile> results;  // per due tile
@@ -220,23 +287,23 @@ struct CpuBackend::State {
     size_t head = 0, waiting = 0;
     uint32_t switches = 0;
     bool capped = false;    // of the step
-    bool asksOnly = false;  // what would be lit asks to burn, nothing else is done
+    bool asksOnly = false;  // tiles that would be lit ask to burn; nothing else happens
     uint32_t random = 1;    // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
     CpuCounts counts;
-    // Fire at a distance.
+    // Exchange between objects.
     std::pmr::vector<std::pmr::vector<RemoteTile>> remoteTiles{memory};  // by mesh
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<ContactLink> links{memory};
     std::pmr::vector<Blocker> blockers{memory};
-    ShieldUpdate shield;  // its words are these
+    ShieldUpdate shield;  // its words are in shieldCells
     std::pmr::vector<uint32_t> shieldCells{memory};
     std::array<Room, kMaxRooms> rooms{};
     std::array<RoomAir, kMaxRooms> roomAir{};
     bool airs = false;  // some step had rooms
     uint32_t receivers = 0;
-    struct Warms {  // a source of the receiver at hand
+    struct Warms {  // a source that warms the current receiver
         const FireSource* source = nullptr;
         uint32_t seen = 0;  // of 255
     };
@@ -246,7 +313,7 @@ struct CpuBackend::State {
     bool showsDue = false;          // after `restore`: BurnTiles as of a tick
     uint32_t showsTick = 0;
     uint32_t reducedBurning = 0;  // as of the last reduce
-    // Of destroyed objects, which count until their list is walked again, as on a device.
+    // Tiles of destroyed objects: they count until their list is walked again, as on a device.
     uint32_t goneBurning = 0, goneListed = 0, goneHot = 0;
     std::array<double, kTimerCount> milliseconds{};
     std::array<uint32_t, kTimerCount> timed{};

@@ -1,6 +1,6 @@
 #include "mesh/deform/arms.h"
 
-#include "mesh/burn_domain.h"
+#include "mesh/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -14,10 +14,10 @@ using gpu::DeformNode;
 using gpu::vec3;
 
 constexpr double kSpanShare = 0.34;  // of the narrower side of the mesh
-constexpr float kShorter = 0.6f;     // of that, every other arm
-constexpr float kAside = 0.15f;      // of that, how far a node may be off the place sought
-constexpr float kFacing = 0.5f;      // cosine between normals at both ends, at least
-constexpr float kEven = 0.02f;       // of the span, that the middle of two arms may be off, aside
+constexpr float kShorter = 0.6f;     // length of every other arm, of the span
+constexpr float kAside = 0.15f;  // farthest that a node may be off the place sought, of the span
+constexpr float kFacing = 0.5f;  // cosine between normals at both ends, at least
+constexpr float kEven = 0.02f;   // of the span, that the middle of two arms may be off, aside
 // Squared, of the nodes at edges to all nodes: 16 for a square sheet.
 constexpr double kOpen = 4;
 
@@ -83,19 +83,15 @@ Axes axesOf(std::span<const DeformNode> nodes) {
     return axes;
 }
 
-// Nodes by the cell of a grid that they are in; cells share lists.
+// Nodes by their cell of a grid; cells share lists by their hash.
 class Cells {
  public:
     Cells(std::span<const DeformNode> nodes, float side, std::pmr::memory_resource* memory)
-        : side_(side), start_(memory), list_(memory) {
+        : side_(side), lists_(memory) {
+        FW_ASSERT(side > 0, "%g m", double(side));
         mask_ = std::bit_ceil(uint32_t(nodes.size()) + 1) - 1;
-        start_.assign(size_t(mask_) + 2, 0);
-        for (const DeformNode& node : nodes) ++start_[bucket(cell(placeOf(node))) + 1];
-        for (size_t i = 1; i < start_.size(); ++i) start_[i] += start_[i - 1];
-        list_.resize(nodes.size());
-        std::pmr::vector<uint32_t> next(start_.begin(), start_.end() - 1, memory);
-        for (uint32_t i = 0; i < nodes.size(); ++i)
-            list_[next[bucket(cell(placeOf(nodes[i])))]++] = i;
+        lists_ = groupBy(mask_ + 1, uint32_t(nodes.size()), memory,
+                         [&](uint32_t i) { return bucket(cell(placeOf(nodes[i]))); });
     }
     // All within `side` of a place, and others.
     template <class Do>
@@ -103,7 +99,7 @@ class Cells {
         const glm::ivec3 middle = cell(place);
         for (int i = 0; i < 27; ++i) {
             const uint32_t at = bucket(middle + glm::ivec3(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1));
-            for (uint32_t k = start_[at]; k < start_[at + 1]; ++k) what(list_[k]);
+            for (const uint32_t node : lists_.of(at)) what(node);
         }
     }
 
@@ -121,7 +117,7 @@ class Cells {
     }
     float side_;
     uint32_t mask_ = 0;
-    std::pmr::vector<uint32_t> start_, list_;
+    Groups lists_;
 };
 
 }  // namespace
@@ -154,7 +150,7 @@ void findArms(DeformModel& model, std::pmr::memory_resource* memory) {
             cells.near(sought, [&](uint32_t other) {
                 const DeformNode& there = nodes[other];
                 const float off = gpu::length(placeOf(there) - sought);
-                // Of several that are as near the first, whatever the order of the cells.
+                // The lowest of several equally near ones, whatever the order of the cells.
                 if (off > least || (off == least && other >= best) || there.arms[behind] != kNone ||
                     ((there.flags ^ node.flags) & 7u) ||
                     gpu::dot(facing(node), facing(there)) < kFacing)

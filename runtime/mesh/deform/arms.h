@@ -1,5 +1,5 @@
-// Which nodes of a sheet belong in the middle of which others some way off: what bends wider than
-// between neighbours (shared/deform.h). Open meshes alone have such arms; what closes is stiff.
+// Arms: pairs of nodes some distance apart with a third in their middle, which bend a sheet more
+// widely than neighbours do (shared/deform.h). Only open meshes have arms; closed ones are stiff.
 #pragma once
 #include "mesh/deform/model.h"
 

@@ -8,8 +8,6 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 namespace fw::mesh {
 namespace {
@@ -21,28 +19,14 @@ using gpu::kDeformTexels;
 
 constexpr double kAltitudeShare = 0.5;  // of the lowest altitude of the triangles around
 constexpr double kNoWall = 1e30;
-constexpr size_t kMostSteps = 256;  // around one node; of more triangles than that the first
+constexpr size_t kMostSteps = 256;  // triangles around one node that are read
 constexpr double kThickest = 0.25;  // m: walls farther apart never burn through together
 
 glm::dvec3 placeOf(const RenderVertex& v) {
     return {double(v.position[0]), double(v.position[1]), double(v.position[2])};
 }
 
-glm::dvec3 unitOr(glm::dvec3 v, glm::dvec3 otherwise) {
-    const double length = glm::length(v);
-    return length > 1e-30 ? v / length : otherwise;
-}
-
-// Which corners belong to a node: a list per node of (triangle * 3 + corner).
-struct Corners {
-    explicit Corners(std::pmr::memory_resource* memory) : start(memory), list(memory) {}
-    std::pmr::vector<uint32_t> start, list;
-    [[nodiscard]] std::span<const uint32_t> of(uint32_t node) const {
-        return {list.data() + start[node], start[node + 1] - start[node]};
-    }
-};
-
-// Where a vertex is on a curve through the mesh's bounds (Morton's).
+// A vertex's place on Morton's curve through the mesh's bounds.
 uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
     uint32_t code = 0;
     float side = 1e-30f;
@@ -56,7 +40,7 @@ uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
     return code;
 }
 
-// Vertices with the same position are one node, which the lowest of them keeps.
+// Makes one node of all vertices with the same position; the lowest vertex keeps it.
 void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory) {
     const auto count = uint32_t(domain.vertices.size());
     std::pmr::vector<uint32_t> order(count, memory);
@@ -98,24 +82,11 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
     for (uint32_t i = 0; i < count; ++i) model.nodeOf[i] = model.nodeOf[keeper[i]];
 }
 
-Corners cornersOf(const BurnDomain& domain, const DeformModel& model,
-                  std::pmr::memory_resource* memory) {
-    Corners corners(memory);
-    corners.start.assign(model.nodes.size() + 1, 0);
-    for (const uint32_t v : domain.indices) ++corners.start[model.nodeOf[v] + 1];
-    for (size_t i = 1; i < corners.start.size(); ++i) corners.start[i] += corners.start[i - 1];
-    corners.list.resize(domain.indices.size());
-    std::pmr::vector<uint32_t> next(corners.start.begin(), corners.start.end() - 1, memory);
-    for (uint32_t i = 0; i < domain.indices.size(); ++i)
-        corners.list[next[model.nodeOf[domain.indices[i]]]++] = i;
-    return corners;
-}
-
 struct Step {  // one triangle around a node: from one neighbour to the next
     uint32_t from, to;
 };
 
-// The steps around a node as one walk, the longest there is; true: it closes.
+// Joins the steps around a node to its longest walk; true: the walk closes.
 bool walk(std::pmr::vector<Step>& steps, std::pmr::vector<uint32_t>& out,
           std::pmr::vector<uint32_t>& best) {
     best.clear();
@@ -157,16 +128,18 @@ class Builder {
     Builder(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory)
         : domain_(domain),
           model_(model),
-          corners_(cornersOf(domain, model, memory)),
+          corners_(groupBy(uint32_t(model.nodes.size()), uint32_t(domain.indices.size()), memory,
+                           [&](uint32_t i) { return model.nodeOf[domain.indices[i]]; })),
+          triangleTexels_(groupBy(uint32_t(domain.indices.size() / 3), domain.texelCount(), memory,
+                                  [&](uint32_t texel) {
+                                      return domain.real(texel) ? domain.triangleOf[texel] : kNone;
+                                  })),
           steps_(memory),
           walk_(memory),
           best_(memory),
-          texels_(memory),
-          texelStart_(memory),
-          texelList_(memory) {}
+          texels_(memory) {}
 
     void run() {
-        sortTexels();
         for (uint32_t i = 0; i < model_.nodes.size(); ++i) {
             offset(i);
             sample(i);
@@ -192,29 +165,11 @@ class Builder {
         return glm::cross(cornerPlace(triangle, 1) - a, cornerPlace(triangle, 2) - a);
     }
 
-    // Real texels by their triangle.
-    void sortTexels() {
-        texelStart_.assign(domain_.indices.size() / 3 + 1, 0);
-        const auto triangleOf = [&](uint32_t texel) {
-            return domain_.real(texel) ? domain_.triangleOf[texel] : kNone;
-        };
-        for (uint32_t i = 0; i < domain_.texelCount(); ++i)
-            if (triangleOf(i) != kNone) ++texelStart_[triangleOf(i) + 1];
-        for (size_t i = 1; i < texelStart_.size(); ++i) texelStart_[i] += texelStart_[i - 1];
-        texelList_.resize(texelStart_.back());
-        std::pmr::vector<uint32_t> next(texelStart_.begin(), texelStart_.end() - 1,
-                                        texelStart_.get_allocator());
-        for (uint32_t i = 0; i < domain_.texelCount(); ++i)
-            if (triangleOf(i) != kNone) texelList_[next[triangleOf(i)]++] = i;
-    }
-
-    // Which way the node recedes: an offset with o.N = -1 for all faces, by least squares; where
-    // they say nothing, along the mean normal. And how far, by the triangles around.
+    // Direction in which the node recedes (see Faces), and its limit by the triangles around.
     void offset(uint32_t number) {
         DeformNode& node = model_.nodes[number];
-        glm::dmat3 squares(0);
-        glm::dvec3 sum(0);
-        double weights = 0, altitude = 1e30, area = 0;
+        Faces faces;
+        double altitude = 1e30, area = 0;
         for (const uint32_t corner : corners_.of(number)) {
             const uint32_t triangle = corner / 3;
             const glm::dvec3 twice = areaNormal(triangle);
@@ -226,9 +181,7 @@ class Builder {
             const glm::dvec3 a = unitOr(cornerPlace(triangle, corner % 3 + 1) - at, n);
             const glm::dvec3 b = unitOr(cornerPlace(triangle, corner % 3 + 2) - at, n);
             const double angle = std::acos(std::clamp(glm::dot(a, b), -1.0, 1.0)) + 1e-6;
-            squares += glm::outerProduct(n, n) * angle;
-            sum += n * angle;
-            weights += angle;
+            faces.add(n, angle);
             area += size / 6;
             double longest = 0;
             for (uint32_t k = 0; k < 3; ++k)
@@ -237,23 +190,17 @@ class Builder {
             altitude = std::min(altitude, size / std::max(longest, 1e-30));
         }
         node.area = float(area);
-        if (!(weights > 0)) return;
-        const glm::dvec3 mean = sum / weights;
-        const double square = glm::dot(mean, mean);
-        if (square < 1e-6) return;  // the two sides of a sheet: it cannot recede
-        const glm::dvec3 guess = -mean / std::max(square, 0.25);
-        const double little = 1e-3 * weights;
-        glm::dvec3 o = glm::inverse(squares + glm::dmat3(little)) * (guess * little - sum);
-        const double length = glm::length(o);
-        if (length > kLongestOffset) o *= kLongestOffset / length;
+        if (!(faces.weight > 0)) return;
+        const glm::dvec3 o = faces.offset();
+        if (o == glm::dvec3(0)) return;  // the two sides of a sheet
         node.outX = float(o.x);
         node.outY = float(o.y);
         node.outZ = float(o.z);
         node.limit = float(kAltitudeShare * altitude / std::max(glm::length(o), 1e-6));
     }
 
-    // The texels that speak for a node: spread over its ring as those of the mip of eq. (9) would
-    // be, each of them one texel of that mip's; the wall behind.
+    // The texels that a node samples, spread over its ring like the texels of one mip of its burn
+    // map; and the wall behind.
     void sample(uint32_t number) {
         DeformNode& node = model_.nodes[number];
         texels_.clear();
@@ -261,8 +208,8 @@ class Builder {
         for (const uint32_t corner : corners_.of(number)) {
             const uint32_t triangle = corner / 3;
             material = domain_.vertices[domain_.indices[corner]].material;
-            for (uint32_t i = texelStart_[triangle]; i < texelStart_[triangle + 1]; ++i)
-                texels_.push_back(texelList_[i]);
+            const std::span<const uint32_t> own = triangleTexels_.of(triangle);
+            texels_.insert(texels_.end(), own.begin(), own.end());
         }
         node.flags = material & 7u;
         const uint32_t mip = gpu::mipOfRing(uint32_t(texels_.size()), kDeformTexels);
@@ -270,7 +217,7 @@ class Builder {
         const auto central = [&](uint32_t texel) {
             return (texel % domain_.width & mask) == half && (texel / domain_.width & mask) == half;
         };
-        // Those in the middle of a texel of the mip first.
+        // Texels in the middle of a texel of the mip come first.
         std::stable_partition(texels_.begin(), texels_.end(), central);
         const auto middles = size_t(std::count_if(texels_.begin(), texels_.end(), central));
         const size_t from = middles >= kDeformTexels / 2 ? middles : texels_.size();
@@ -297,7 +244,7 @@ class Builder {
         if (glm::dot(facing, glm::vec3(out / stretch)) > 0.3f) node.opposite = texel;
     }
 
-    // The way past `center` along the far side of a corner's triangle.
+    // Adds the step past `center` along the far side of a corner's triangle.
     void addStep(uint32_t corner, uint32_t center) {
         const uint32_t triangle = corner / 3;
         const Step step{keeperAt(triangle, corner % 3 + 1), keeperAt(triangle, corner % 3 + 2)};
@@ -316,24 +263,24 @@ class Builder {
         const bool closes = walk(steps_, walk_, best_);
         const size_t all = best_.size(), kept = std::min<size_t>(all, kDeformRing);
         for (size_t i = 0; i < kept; ++i) node.ring[i] = best_[i * all / kept];
-        // Repeats, so that loops over eight see no triangle there.
+        // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
         for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
             node.ring[i] = closes ? node.ring[0] : node.ring[kept - 1];
         node.flags |= (closes ? gpu::kNodeClosed : 0u) | uint32_t(kept) << gpu::kNodeRingShift;
     }
-    // Two steps straight on from every neighbour: what Provot's flexion springs link.
+    // The vertices two steps straight on over every neighbour: ends of Provot's flexion springs.
     void farther(uint32_t number) {
         DeformNode& node = model_.nodes[number];
         const glm::dvec3 at = placeOf(domain_.vertices[node.vertex]);
         for (uint32_t i = 0; i < (node.flags >> gpu::kNodeRingShift & 15u); ++i) {
             const DeformNode& next = model_.nodes[model_.nodeOf[node.ring[i]]];
             const glm::dvec3 middle = placeOf(domain_.vertices[next.vertex]);
-            const glm::dvec3 way = unitOr(middle - at, glm::dvec3(0));
+            const glm::dvec3 ahead = unitOr(middle - at, glm::dvec3(0));
             double straightest = 0.9;
             for (const uint32_t over : next.ring) {
                 if (over == node.vertex || over == next.vertex) continue;
-                const double c =
-                    glm::dot(way, unitOr(placeOf(domain_.vertices[over]) - middle, glm::dvec3(0)));
+                const double c = glm::dot(
+                    ahead, unitOr(placeOf(domain_.vertices[over]) - middle, glm::dvec3(0)));
                 if (c <= straightest) continue;
                 straightest = c;
                 node.cross_[i] = over;
@@ -347,7 +294,7 @@ class Builder {
                            double(other.z) - double(node.z));
         return float(glm::length(d));
     }
-    // Forces need both ends to know of a link: what only one end lists has no length.
+    // A link that only one end lists gets no length: forces need both ends.
     void lengths() {
         for (DeformNode& node : model_.nodes) {
             glm::dvec3 mean(0), turned(0), before(0), first(0);
@@ -411,8 +358,8 @@ class Builder {
             made.ring[i] = closes ? made.ring[0] : made.ring[kept - 1];
         const glm::dvec3 at = placeOf(v);
         for (const uint32_t other : made.ring) {
-            const glm::dvec3 way = placeOf(domain_.vertices[other]) - at;
-            made.longest = std::max(made.longest, float(glm::dot(way, way)));
+            const glm::dvec3 edge = placeOf(domain_.vertices[other]) - at;
+            made.longest = std::max(made.longest, float(glm::dot(edge, edge)));
         }
         for (size_t i = 0; i + 1 < kDeformRing; ++i)
             face += glm::cross(placeOf(domain_.vertices[made.ring[i]]) - at,
@@ -421,19 +368,22 @@ class Builder {
         made.faceX = float(face.x);
         made.faceY = float(face.y);
         made.faceZ = float(face.z);
+        FW_ASSERT(model_.coats.size() == vertex, "%zu coats, vertex %u", model_.coats.size(),
+                  vertex);
         model_.coats.push_back(made);
     }
 
     const BurnDomain& domain_;
     DeformModel& model_;
-    Corners corners_;
+    Groups corners_;         // by node: triangle * 3 + corner
+    Groups triangleTexels_;  // by triangle: its real texels
     std::pmr::vector<Step> steps_;
-    std::pmr::vector<uint32_t> walk_, best_, texels_, texelStart_, texelList_;
+    std::pmr::vector<uint32_t> walk_, best_, texels_;
 };
 
-// Nodes of as many neighbours one after another, within a group, and what a run of them shares: how
-// many turns it takes to read those, and whether any of it has arms. Devices that run several nodes
-// as one then leave a loop over neighbours together.
+// Sorts nodes by their number of neighbours within each group, and notes per run of nodes the turns
+// that it takes to read them and whether any node has arms. Device lanes that share a run then
+// leave the loop over neighbours together.
 void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
     const size_t count = model.nodes.size();
     const auto turnsOf = [](const DeformNode& node) {
@@ -451,6 +401,7 @@ void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
                 sorted.push_back(model.nodes[i]);
             }
     }
+    FW_ASSERT(sorted.size() == count, "%zu of %zu nodes", sorted.size(), count);
     model.nodes.swap(sorted);
     for (uint32_t& node : model.nodeOf) node = moved[node];
     for (size_t first = 0; first < count; first += gpu::kDeformRun) {
@@ -478,6 +429,7 @@ DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource*
 }
 
 gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
+    FW_ASSERT(number < model.nodes.size(), "%u of %zu nodes", number, model.nodes.size());
     const DeformNode& node = model.nodes[number];
     gpu::DeviceNode made{};
     made.vertex = node.vertex;
@@ -485,6 +437,7 @@ gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
     made.rise = node.rise;
     made.opposite = node.opposite;
     const auto linked = [&](uint32_t vertex) {
+        FW_ASSERT(vertex == kNone || vertex < model.nodeOf.size(), "vertex %u", vertex);
         const uint32_t other = vertex == kNone ? number : model.nodeOf[vertex];
         return other | gpu::linkOdds(number, other) << 24;
     };

@@ -1,6 +1,6 @@
-// What deformation needs to know of a mesh: its nodes (points of the drawn mesh, with all vertices
-// on them), which way and how far each may recede, the texels around it, its neighbours; and what
-// normals follow. Static, per mesh, made when the first object wants it. Moves nothing itself.
+// A mesh's static data for deformation: nodes (points of the drawn mesh, with all vertices there),
+// the direction and limit of each node's recession, the texels around it, its neighbours; and the
+// faces that drawn normals follow. Made per mesh for the first object that deforms.
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/deform.h"
@@ -22,11 +22,12 @@ struct DeformModel {
 // Vertices at one place are one node, whatever their normals and UVs.
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
 
-// A node as devices have it: other nodes by number, with the odds of their links.
+// A node in the device's form: other nodes by number, with the odds of their links.
 gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
-// Record `number` of `count`, nodes or coats, as devices have them: quad by quad.
+// Writes record `number` of `count` (nodes or coats) in the device's order: quad by quad.
 template <class Record>
 void putQuads(const Record& record, size_t number, size_t count, std::byte* to) noexcept {
+    FW_ASSERT(number < count, "%zu of %zu records", number, count);
     for (size_t quad = 0; quad < sizeof record / 16; ++quad)
         std::memcpy(to + (quad * count + number) * 16,
                     reinterpret_cast<const std::byte*>(&record) + quad * 16, 16);

@@ -1,5 +1,5 @@
-// See arrivals.h. Rounds of time as the simulation has steps, but longer ones: within a round tiles
-// run until none has news, each on what those before it have just written.
+// See arrivals.h. Rounds of time, longer than the simulation's steps: within a round tiles run
+// until none was touched, each on the ticks that earlier ones have just written.
 #include "mesh/front/arrivals.h"
 
 #include "mesh/part_links.h"
@@ -16,12 +16,15 @@ using gpu::kNever;
 constexpr uint8_t kListed = 1, kTouched = 2;
 
 void touch(Arrivals& a, uint32_t tile, uint8_t bits) noexcept {
+    FW_ASSERT(tile < a.flags.size(), "%u of %zu tiles", tile, a.flags.size());
+    FW_ASSERT((a.flags[tile] & kListed) || a.list.size() < a.list.capacity(), "%zu tiles listed",
+              a.list.size());
     if (!(a.flags[tile] & kListed)) a.list.push_back(tile);
     a.flags[tile] |= uint8_t(kListed | bits);
 }
 
-// Ticks of a round: those of two links in still air. Shorter ones run each tile more often, longer
-// ones run more for nothing, as what came later is corrected.
+// Ticks of a round: the time over two links in still air. Shorter rounds run each tile more often;
+// longer ones compute more ticks that later ones correct.
 uint32_t strideOf(const Arrivals& a) noexcept {
     double slowness = 1e9;  // Q22 ticks per 1/8 position unit
     for (const gpu::BurnMaterial& material : a.materials)
@@ -30,7 +33,7 @@ uint32_t strideOf(const Arrivals& a) noexcept {
     return uint32_t(std::clamp(2 * link, double(gpu::kStepTicks), 1e7));
 }
 
-// The tiles that the round has to run: those with news, and those whose next arrival falls into it.
+// Lists the round's tiles: touched ones, and those whose next arrival falls into the round.
 void findDue(Arrivals& a) noexcept {
     a.due.clear();
     a.next = 0;
@@ -38,6 +41,7 @@ void findDue(Arrivals& a) noexcept {
     for (const uint32_t tile : a.list) {
         const bool runs = (a.flags[tile] & kTouched) || a.wake[tile] <= a.end;
         if (runs) {
+            FW_ASSERT(a.due.size() < a.due.capacity(), "%zu tiles due", a.due.size());
             a.due.push_back(tile);
             a.wake[tile] = kNever;
         }
@@ -49,16 +53,25 @@ void findDue(Arrivals& a) noexcept {
     a.list.resize(kept);
 }
 
-// Past times in which nothing happens.
+// Skips times in which nothing happens.
 void nextRound(Arrivals& a) noexcept {
     uint32_t soonest = kNever;
     for (const uint32_t tile : a.list) soonest = std::min(soonest, a.wake[tile]);
-    // Ticks end; so does what can be told.
+    FW_ASSERT(a.stride > 0 && a.stride < gpu::kLiveEnd, "stride %u", a.stride);
+    // The forecast ends with the range of ticks.
     a.whole = std::max(soonest, a.end) >= gpu::kLiveEnd - a.stride;
     if (!a.whole) a.end = std::max(a.end + a.stride, soonest);
 }
 
-// Where fire of these lanes' texels goes over gaps.
+// Touches a tile and the readers of its changed texels.
+void touchReaders(Arrivals& a, uint32_t tile, uint64_t changed) noexcept {
+    const auto touched = [&](uint32_t reader) { touch(a, reader, kTouched); };
+    touched(tile);
+    forEachTileBeside(*a.domain, tile, changed, touched);
+    for (const uint32_t reader : seamReaders(*a.domain, tile, changed)) touched(reader);
+}
+
+// Lights the texels that the fire of these lanes' texels reaches over gaps.
 void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
     const BurnDomain& d = *a.domain;
     for (uint32_t block = 0; block < 4; ++block) {
@@ -75,12 +88,9 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
             !(gpu::isReceptive(was) || (gpu::isSource(was) && was > a.now && was > arrives)))
             continue;
         a.ticks[to] = arrives;
-        const auto news = [&](uint32_t reader) { touch(a, reader, kTouched); };
-        const uint32_t other = to / d.width / 8 * d.tilesX + to % d.width / 8;
-        const uint64_t changed = uint64_t(1) << (to / d.width % 8 * 8 + to % d.width % 8);
-        news(other);
-        forEachTileBeside(d, other, changed, news);
-        for (const uint32_t reader : seamReaders(d, other, changed)) news(reader);
+        const uint32_t other = d.tileOf(to);
+        const uint64_t changed = uint64_t(1) << d.laneOf(to);
+        touchReaders(a, other, changed);
         crossGaps(a, other, changed);
     }
 }
@@ -96,7 +106,8 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
     planes.materials = a.materials.data();
     planes.width = a.domain->width;
     planes.tilesX = a.domain->tilesX;
-    uint32_t scratch[64];
+    FW_ASSERT(a.end >= a.stride, "round %u to %u", a.end, a.stride);
+    uint32_t scratch[kTileLanes];
     const uint32_t floorTick = gpu::frontFloor(a.end - a.stride, a.window);
     const FrontTile result = runFrontTile(planes, tile, a.end, floorTick, scratch);
     a.wake[tile] = result.wake;
@@ -104,15 +115,12 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
         if (result.wake != kNever) touch(a, tile, 0);
         return;
     }
-    const uint32_t corner = (tile / planes.tilesX) * 8 * planes.width + (tile % planes.tilesX) * 8;
+    const TileTexels texels = a.domain->texelsOf(tile);
     for (uint64_t rest = result.changed; rest != 0; rest &= rest - 1) {
         const auto lane = uint32_t(std::countr_zero(rest));
-        a.ticks[corner + (lane >> 3) * planes.width + (lane & 7)] = scratch[lane];
+        a.ticks[texels[lane]] = scratch[lane];
     }
-    const auto news = [&](uint32_t reader) { touch(a, reader, kTouched); };
-    news(tile);
-    forEachTileBeside(*a.domain, tile, result.changed, news);
-    for (const uint32_t reader : seamReaders(*a.domain, tile, result.changed)) news(reader);
+    touchReaders(a, tile, result.changed);
     if (a.parts) crossGaps(a, tile, result.changed);
 }
 
@@ -120,7 +128,7 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
 
 uint32_t Arrivals::settled() const noexcept {
     if (whole) return gpu::kLiveEnd;
-    // Of a round that is not through some tiles have not run.
+    // Some tiles of an unfinished round have not run.
     const uint32_t through = end - stride;
     return gpu::frontFloor(through, window);
 }
@@ -135,6 +143,10 @@ void reserveArrivals(Arrivals& a, const BurnDomain& domain) {
 
 void beginArrivals(Arrivals& a, const ArrivalInput& input) {
     const uint32_t tiles = input.domain->tileCount();
+    FW_ASSERT(input.state.size() == input.domain->texelCount(), "%zu of %u texels",
+              input.state.size(), input.domain->texelCount());
+    FW_ASSERT(input.materials.size() >= a.materials.size(), "%zu materials",
+              input.materials.size());
     reserveArrivals(a, *input.domain);
     a.ticks.assign(input.state.begin(), input.state.end());
     a.wake.assign(tiles, kNever);

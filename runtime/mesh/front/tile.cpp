@@ -1,4 +1,4 @@
-// See tile.h. The maths is shared/front.h; here are only the loads, in the shader's order.
+// See tile.h. The maths is shared/front.h; this file loads its inputs in the shader's order.
 #include "mesh/front/tile.h"
 
 #include <algorithm>
@@ -12,22 +12,22 @@ static_assert(gpu::kTexelReal == mesh::kTexelReal && gpu::kTexelRim == mesh::kTe
 
 namespace {
 
-// Is one of `count` texels a source?
+// Whether one of `count` texels is a source.
 bool anySource(const uint32_t* first, uint32_t count) noexcept {
     uint32_t least = kNever;
     for (uint32_t i = 0; i < count; ++i) least = std::min(least, first[i]);
     return isSource(least);
 }
 
-// Of eight texels of a row those that may change: all that are eligible, or none where no inner one
-// has a source in its ring. Rim texels have theirs elsewhere and are taken unseen.
+// The texels of a row of eight that may change: all eligible ones, or only eligible rim texels if
+// no inner texel has a source in its ring. The rings of rim texels lie elsewhere.
 uint32_t chosenOfRow(const uint32_t* row, uint32_t width, uint32_t rim,
                      uint32_t floorTick) noexcept {
     uint32_t eligible = 0;
     for (uint32_t x = 0; x < 8; ++x) eligible |= uint32_t(frontEligible(row[x], floorTick)) << x;
     const uint32_t inner = eligible & ~rim;
     if (inner == 0) return eligible;
-    // The rows beside an inner texel exist, and so do the columns beside an outermost one.
+    // The rows and columns beside an inner texel exist.
     const uint32_t left = inner & 1u;
     const uint32_t count = 8 + left + (inner >> 7);
     const uint32_t* middle = row - left;
@@ -104,10 +104,10 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
                 prep = frontPrep(decodeNormal(normal), slow, planes.materials[material]);
                 prepKey = key;
             }
-            uint32_t news = kNever;
+            uint32_t soonest = kNever;
             const uint32_t candidate =
                 frontArrival(ring, counts, prep, planes.materials[material].windowMax, windowEnd,
-                             floorTick, texel, false, pending, news);
+                             floorTick, texel, false, pending, soonest);
             decided = frontDecide(t, candidate, windowEnd, floorTick, pending, late);
         }
         if (decided != t) {

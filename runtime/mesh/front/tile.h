@@ -1,5 +1,5 @@
-// The front kernel over one tile, as the arrival pass does it on a device. Plain pointers; drivers
-// of lists are the cpu backend and arrivals.h.
+// The front kernel over one tile, as the arrival pass does it on a device. The cpu backend and
+// arrivals.h keep the lists of tiles.
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/front.h"
@@ -17,21 +17,22 @@ struct FrontPlanes {  // of one object
     uint32_t width = 0, tilesX = 0;  // texels, tiles
 };
 
-struct FrontTile {         // what a tile's run says
+struct FrontTile {         // result of a tile's run
     uint64_t changed = 0;  // lanes with a new tick in the scratch words
-    uint64_t lit = 0;      // of these, lanes that were receptive
+    uint64_t lit = 0;      // changed lanes that were receptive
     uint32_t wake = gpu::kNever;
-    uint32_t late = 0;  // candidates that came below the floor
+    uint32_t late = 0;  // candidates below the floor
 };
 
-// `scratch`: 64 words, written where `changed` says.
+// `scratch`: 64 words, written for the lanes of `changed`.
 FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept;
 
-// Of what changed in a tile (`mask`, a bit per lane): calls `tell` for each tile beside it on the
-// grid that reads that.
-template <typename Tell>
-void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, const Tell& tell) {
+// Calls visit(tile) for each neighbour on the grid that reads a changed texel of the tile (`mask`:
+// a bit per lane).
+template <typename Visit>
+void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, const Visit& visit) {
+    FW_ASSERT(tile < domain.tileCount(), "%u of %u tiles", tile, domain.tileCount());
     const uint32_t beside = gpu::neighboursOf(uint32_t(mask), uint32_t(mask >> 32));
     if (beside == 0) return;
     const int x = int(tile % domain.tilesX), y = int(tile / domain.tilesX);
@@ -41,15 +42,18 @@ void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, c
         if (otherX < 0 || otherY < 0 || otherX >= int(domain.tilesX) ||
             otherY >= int(domain.tilesY))
             continue;
-        tell(uint32_t(otherY) * domain.tilesX + uint32_t(otherX));
+        visit(uint32_t(otherY) * domain.tilesX + uint32_t(otherX));
     }
 }
-// And those that read it through links.
+// The tiles that read a changed texel through links.
 inline std::span<const uint32_t> seamReaders(const BurnDomain& domain, uint32_t tile,
                                              uint64_t mask) noexcept {
+    FW_ASSERT(tile < domain.tiles.size(), "%u of %zu tiles", tile, domain.tiles.size());
     const TileStatic& statics = domain.tiles[tile];
     const uint64_t seam = uint64_t(statics.seamMaskHigh) << 32 | statics.seamMaskLow;
     if ((seam & mask) == 0) return {};
+    FW_ASSERT(statics.readerStart + statics.readerCount <= domain.readers.size(), "%u readers",
+              statics.readerCount);
     return {domain.readers.data() + statics.readerStart, statics.readerCount};
 }
 

@@ -8,7 +8,7 @@
 namespace fw::mesh {
 namespace {
 
-constexpr double kWeldTexels = 0.5 / 1024;  // as the bake of the domain does it
+constexpr double kWeldTexels = 0.5 / 1024;  // equal to the weld distance of the domain's bake
 
 struct Split {  // of one base edge
     uint32_t low, high;
@@ -31,19 +31,6 @@ uint32_t fitted(const std::pmr::vector<Split>& splits, const std::array<uint32_t
 }
 
 }  // namespace
-
-std::pmr::vector<CoarseUse> sortedUses(const CoarseMesh& mesh, std::pmr::memory_resource* memory) {
-    std::pmr::vector<CoarseUse> uses(memory);
-    uses.reserve(mesh.triangles.size() * 3);
-    for (uint32_t i = 0; i < mesh.triangles.size(); ++i)
-        for (uint32_t e = 0; e < 3; ++e) {
-            const uint32_t a = mesh.triangles[i].point[e];
-            const uint32_t b = mesh.triangles[i].point[(e + 1) % 3];
-            uses.push_back({std::min(a, b), std::max(a, b), i, e});
-        }
-    std::sort(uses.begin(), uses.end());
-    return uses;
-}
 
 Surface surfaceOf(const BurnDomain& domain, std::pmr::memory_resource* memory) {
     std::pmr::vector<float> positions(memory), uvs(memory);
@@ -79,7 +66,7 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
 
     std::pmr::vector<Split> splits(memory);
     std::pmr::vector<std::array<uint32_t, 3>> sides(base.triangles.size(), memory);
-    for (const CoarseUse& use : sortedUses(base, memory)) {
+    for (const EdgeUse& use : sortedUses(base.triangles, memory)) {
         if (splits.empty() || splits.back().low != use.low || splits.back().high != use.high)
             splits.push_back({use.low, use.high, 0, 0});
         sides[use.triangle][use.side] = uint32_t(splits.size() - 1);
@@ -88,6 +75,7 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
     for (bool first = true; first || triangles > most; first = false, longest *= 2) {
         for (Split& s : splits)
             s.level = splitLevel(glm::length(base.points[s.low] - base.points[s.high]), longest);
+        FW_ASSERT(std::isfinite(longest) && longest > 0, "%g m", longest);
         triangles = 0;
         for (const auto& side : sides) triangles += gpu::refineCount(fitted(splits, side));
         if (triangles == base.triangles.size()) return base;
@@ -137,6 +125,8 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
             fine.triangles.push_back(c);
         }
     }
+    FW_ASSERT(fine.triangles.size() == triangles, "%zu of %llu triangles", fine.triangles.size(),
+              static_cast<unsigned long long>(triangles));
     return fine;
 }
 

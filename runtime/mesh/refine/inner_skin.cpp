@@ -1,4 +1,4 @@
-// The inner skin of what is not refined: the offsets of refinement at the mesh's own vertices.
+// The inner skin of an unrefined mesh: the offsets of refinement at the mesh's own vertices.
 #include "mesh/refine/model.h"
 
 #include <glm/geometric.hpp>
@@ -6,9 +6,9 @@
 namespace fw::mesh {
 namespace {
 
-constexpr size_t kMostTriangles = 1u << 16;  // some 4 us each of the first creation call
-// Nothing recedes here, so triangles smaller than the wall is thick may move by more than they are
-// high: they keep their shape where the surface is nearly flat.
+constexpr size_t kMostTriangles = 1u << 16;  // each costs about 4 us of the first creation call
+// Nothing recedes here, so triangles smaller than the wall's thickness may move by more than their
+// altitude: they keep their shape where the surface is nearly flat.
 constexpr float kAltitudes = 8;
 
 glm::vec3 restOf(const gpu::RefineSlot& slot) noexcept { return {slot.x, slot.y, slot.z}; }
@@ -46,7 +46,8 @@ std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
         places.emplace_back(v.position[0], v.position[1], v.position[2]);
     for (const gpu::RefineTriangle& t : model.triangles)
         for (size_t k = 0; k < 3; ++k) {
-            // The welded point that this corner is.
+            // The welded point of this corner.
+            FW_ASSERT(size_t{t.source} * 3 + k < domain.indices.size(), "triangle %u", t.source);
             const uint32_t vertex = domain.indices[size_t{t.source} * 3 + k];
             const RenderVertex& v = domain.vertices[vertex];
             const glm::vec3 rest(v.position[0], v.position[1], v.position[2]);

@@ -32,8 +32,8 @@ uint32_t deepest(double length, double cell, uint32_t depth) {
     return level;
 }
 
-// Attributes along an edge or at a corner: seen from the same drawn corners, or from the same
-// triangle, they are the same.
+// Attributes along an edge or at a corner are equal for owners with the same drawn corners, or with
+// the same triangle.
 struct Seen {
     uint32_t a = kNone, b = kNone;
     bool operator==(const Seen& o) const { return a == o.a && b == o.b; }
@@ -51,20 +51,21 @@ Seen seenFrom(const BurnDomain& domain, uint32_t source, glm::dvec3 weight) {
     return seen;
 }
 
-struct Copy {  // of an edge's points or of a corner, for owners that see other attributes
+struct Copy {  // of an edge's points or of a corner, for owners with other attributes
     Seen seen;
     uint32_t draw = 0;
     uint32_t next = kNone;
 };
 
-// Which draw vertices an owner uses: the canonical ones, a known copy, or a new one.
+// Chooses the draw vertices of an owner: the canonical ones, a known copy, or a new one.
 class Copies {
  public:
     Copies(uint32_t items, std::pmr::memory_resource* memory)
         : first_(items, kNone, memory), copies_(memory) {}
 
-    // True if `draw` is new: it was `fresh`.
+    // True if `draw` is a new vertex, `fresh`.
     bool find(uint32_t item, Seen seen, uint32_t canonical, uint32_t fresh, uint32_t& draw) {
+        FW_ASSERT(item < first_.size(), "%u of %zu items", item, first_.size());
         uint32_t last = kNone;
         for (uint32_t c = first_[item]; c != kNone; c = copies_[c].next) {
             if (copies_[c].seen == seen) {
@@ -86,10 +87,12 @@ class Copies {
 
 void makeEdges(const CoarseMesh& coarse, double cell, uint32_t depth, RefineModel& model,
                std::pmr::memory_resource* memory) {
-    const std::pmr::vector<CoarseUse> uses = sortedUses(coarse, memory);
+    const std::pmr::vector<EdgeUse> uses = sortedUses(coarse.triangles, memory);
     model.owners.reserve(uses.size());
     for (size_t i = 0; i < uses.size(); ++i) {
-        const CoarseUse& use = uses[i];
+        const EdgeUse& use = uses[i];
+        FW_ASSERT(use.high < coarse.points.size(), "point %u of %zu", use.high,
+                  coarse.points.size());
         if (i == 0 || !use.sameEdge(uses[i - 1])) {
             const double length = glm::length(coarse.points[use.low] - coarse.points[use.high]);
             model.ownerStart.push_back(uint32_t(i));
@@ -206,7 +209,7 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
         const uint32_t source = surface.triangles[t.source].source;
         return domain.vertices[domain.indices[size_t(source) * 3]].material;
     };
-    // Draws are by material.
+    // Draws go by material.
     std::pmr::vector<CoarseTriangle> sorted(memory);
     sorted.reserve(coarse.triangles.size());
     for (uint32_t m = 0, next = 0; m != kNone; m = next) {
@@ -217,6 +220,8 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
             if (own > m) next = std::min(next, own);
         }
     }
+    FW_ASSERT(sorted.size() == coarse.triangles.size(), "%zu of %zu triangles", sorted.size(),
+              coarse.triangles.size());
     coarse.triangles = std::move(sorted);
     RefineModel model(memory);
     model.textureWidth = domain.width;
@@ -233,7 +238,10 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
 }
 
 RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& model, uint32_t draw) {
+    FW_ASSERT(draw < model.draws.size(), "%u of %zu draw vertices", draw, model.draws.size());
     const gpu::RefineDraw& d = model.draws[draw];
+    FW_ASSERT(size_t(d.triangle) * 3 + 2 < domain.indices.size(), "triangle %u", d.triangle);
+    FW_ASSERT(d.slot < model.slots.size(), "%u of %zu slots", d.slot, model.slots.size());
     const RenderVertex* corner[3];
     for (uint32_t k = 0; k < 3; ++k)
         corner[k] = &domain.vertices[domain.indices[size_t(d.triangle) * 3 + k]];

@@ -1,6 +1,6 @@
-// What the bake adds for refinement: the mesh's coarse triangles and unique edges with room for
-// every vertex that any level can bring. A vertex has one slot for good, one rest place and one
-// texel that speaks for it, whoever asks; so no level set can open a crack. Immutable once baked.
+// The bake's data for refinement: the mesh's coarse triangles and unique edges with a slot for
+// every vertex of every level. A vertex has one slot, one rest place and one sampled texel for all
+// its triangles, so no combination of levels opens a crack. Immutable once baked.
 #pragma once
 #include "mesh/burn_domain.h"
 #include "shared/refine.h"
@@ -10,13 +10,13 @@
 namespace fw::mesh {
 
 struct RefineOptions {
-    float wall = 0.02f;      // m, > 0, thickness of the shell where nothing closer stops it
-    float cellTexels = 2;    // no edge segment is shorter than this; 0: down to `depth` everywhere
+    float wall = 0.02f;      // m, > 0, thickness of the shell unless another wall is nearer
+    float cellTexels = 2;    // the shortest edge segment; 0: down to `depth` everywhere
     uint32_t depth = 5;      // 0..5, deepest level
     float splitTexels = 48;  // longer edges are halved at the bake, up to five times; 0: none
     uint32_t maxTriangles = 1u << 16;  // after that splitting; splitTexels is doubled to keep it
-    float altitudeShare =
-        0.5f;  // of the least altitude of the triangles around: no vertex recedes further
+    // A vertex recedes by at most this share of the least altitude of the triangles around it.
+    float altitudeShare = 0.5f;
     bool twoWalls = true;  // walls nearer than 2 * wall burn through together; false: each alone
 };
 
@@ -33,7 +33,7 @@ struct RefineModel {
 
     uint32_t cornerCount = 0;  // the first slots, in order of the welded points
     uint32_t openEdges = 0, nonManifoldEdges = 0;
-    uint32_t farSlots = 0;      // whose chart has no texel near: they borrow the nearest in space
+    uint32_t farSlots = 0;      // slots without a texel of their chart near: they use the nearest
     uint32_t textureWidth = 0;  // texels of the burn domain per row
     uint32_t tileCount = 0;
 
@@ -42,29 +42,28 @@ struct RefineModel {
     std::pmr::vector<uint32_t> ownerStart;  // edges + 1
     std::pmr::vector<uint32_t> owners;      // triangle << 2 | side
     std::pmr::vector<gpu::RefineSlot> slots;
-    // The first slots.size() are the slots as their canonical owner sees them, in order; then one
-    // per further chart (or set of attributes) that meets there.
+    // The first slots.size() are the slots with their canonical owner's attributes, in order; then
+    // one per further chart, or set of attributes, that meets there.
     std::pmr::vector<gpu::RefineDraw> draws;
-    // What a tile's heat concerns: edges (their numbers) that it holds or that lie within 1.5 cells
-    // of its texels, and interiors (edges.size() + triangle) that it touches.
+    // The items that a tile's heat warms: edges (by number) inside it or within 1.5 cells of its
+    // texels, and interiors (edges.size() + triangle) that it touches.
     std::pmr::vector<uint32_t> tileStart, tileItems;  // tiles + 1
 
     // Triangles with every edge and interior at its deepest.
     [[nodiscard]] uint64_t fullCount() const noexcept;
 };
 
-// Works on cooked domains too. Deterministic. Throws core::Error (an option out of range, too many
-// slots) and std::bad_alloc.
+// Deterministic. Throws core::Error (an option out of range, too many slots) and std::bad_alloc.
 RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
                        std::pmr::memory_resource* memory);
 
-// Whether the mesh is around something, rather than a sheet: a twentieth of its bounds at least.
+// Whether the mesh encloses a volume, of at least a twentieth of its bounds; a sheet does not.
 bool hasInside(const BurnDomain& domain, const RefineModel& model) noexcept;
 
-// Where the domain's vertices are on the inner skin of its walls: `wall` m in along every face (see
-// offsets.cpp), less where another wall is near. What is drawn from inside, unrefined. Empty: it
-// has no inside, or edges that are open, where no wall would join the two skins, or more than
-// 65536 triangles.
+// Places of the domain's vertices on the inner skin of its walls: `wall` m in along every face (see
+// offsets.cpp), less where another wall is near. Drawn from inside where nothing is refined. Empty
+// if the mesh has no inside, an open edge (no wall would join the two skins) or more than 65536
+// triangles.
 std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
                                       std::pmr::memory_resource* memory);
 

@@ -1,11 +1,10 @@
-// Where a vertex rests, which way it recedes and how far it may. An offset o has o.N = -1 for every
-// face at the vertex, so that flat faces stay flat and a wall thins by the same depth everywhere.
+// Rest place, direction and reach of receding vertices. An offset o has o.N = -1 for every face at
+// the vertex, so that flat faces stay flat and a wall thins by the same depth everywhere.
 #include "mesh/ray_tree.h"
 #include "mesh/refine/coarse.h"
+#include "mesh/texels.h"
 
 #include <cmath>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 
 namespace fw::mesh {
 namespace {
@@ -13,44 +12,12 @@ namespace {
 constexpr double kSmoothCosine = 0.77;  // 40 degrees: flatter creases count as curved surface
 constexpr double kReachUnit = 1e-5;     // m
 
-// Faces at a vertex, summed up.
-struct Faces {
-    glm::dmat3 squares{0};  // sum of N * N^T
-    glm::dvec3 sum{0};
-    double count = 0;
-    void add(glm::dvec3 n) {
-        squares += glm::outerProduct(n, n);
-        sum += n;
-        count += 1;
-    }
-};
-
-// Least squares over the faces; directions they say nothing about stay along the mean normal.
-glm::dvec3 mitre(const Faces& faces) {
-    const glm::dvec3 mean = faces.sum / faces.count;
-    const double square = glm::dot(mean, mean);
-    if (square < 1e-6) return glm::dvec3(0);  // the two sides of a sheet: it cannot recede
-    const glm::dvec3 guess = -mean / std::max(square, 0.25);
-    const double weight = 1e-3 * faces.count;
-    glm::dvec3 o = glm::inverse(faces.squares + glm::dmat3(weight)) * (guess * weight - faces.sum);
-    const double length = glm::length(o);
-    return length > kLongestOffset ? o * (kLongestOffset / length) : o;
-}
-
 double leastAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double area) {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
         longest = std::max(
             longest, glm::length(coarse.points[t.point[k]] - coarse.points[t.point[(k + 1) % 3]]));
     return 2 * area / std::max(longest, 1e-30);
-}
-
-uint32_t packOffset(glm::dvec3 o) {
-    const auto field = [](double v, int one) {
-        return uint32_t(std::clamp(int(std::floor(v / kLongestOffset * one + 0.5)), -one, one));
-    };
-    return (field(o.x, 1023) & 0x7FFu) | (field(o.y, 1023) & 0x7FFu) << 11 |
-           (field(o.z, 511) & 0x3FFu) << 22;
 }
 
 class Offsets {
@@ -82,11 +49,13 @@ class Offsets {
 
  private:
     void put(uint32_t slot, glm::dvec3 place, glm::dvec3 offset, double reach) {
+        FW_ASSERT(slot < model_.slots.size(), "%u of %zu slots", slot, model_.slots.size());
+        FW_ASSERT(reach >= 0, "%g m", reach);
         gpu::RefineSlot& s = model_.slots[slot];
         s.x = float(place.x);
         s.y = float(place.y);
         s.z = float(place.z);
-        s.offset = packOffset(offset);
+        s.offset = packNormal(offset / kLongestOffset);
         s.reach = uint32_t(std::clamp(reach / kReachUnit, 0.0, 65535.0)) | 4096u << 16;
     }
 
@@ -100,16 +69,16 @@ class Offsets {
                                                              coarse_.points[t.point[2]] - a));
             const double low = leastAltitude(coarse_, t, area);
             for (const uint32_t p : t.point) {
-                faces[p].add(normal(i));
+                faces[p].add(normal(i), 1);
                 altitude[p] = std::min(altitude[p], low);
             }
         }
         for (uint32_t p = 0; p < coarse_.points.size(); ++p) {
-            if (faces[p].count > 0) offset_[p] = mitre(faces[p]);
+            if (faces[p].weight > 0) offset_[p] = faces[p].offset();
             const double length = glm::length(offset_[p]);
             reach_[p] =
                 std::min(double(options_.wall), double(options_.altitudeShare) * altitude[p]);
-            if (length > 1e-9)  // the way gone is reach * length
+            if (length > 1e-9)  // the distance receded is reach * length
                 reach_[p] =
                     std::min(reach_[p],
                              kDepthShare * depth(coarse_.points[p], offset_[p] / length) / length);
@@ -117,7 +86,7 @@ class Offsets {
         }
     }
 
-    // Two owners and hardly a crease between them.
+    // Whether two owners meet there at less than the angle of a crease.
     [[nodiscard]] bool smooth(uint32_t e) const {
         const uint32_t start = model_.ownerStart[e];
         return model_.ownerStart[e + 1] - start == 2 &&
@@ -125,7 +94,7 @@ class Offsets {
                    kSmoothCosine;
     }
 
-    // A crease moves as its two faces say, and along itself as its ends do.
+    // A crease moves across itself by its two faces' offset, and along itself as its ends do.
     void edge(uint32_t e) {
         const gpu::RefineEdge& edge = model_.edges[e];
         const uint32_t steps = 1u << (edge.flags & 15);
@@ -133,8 +102,8 @@ class Offsets {
         const glm::dvec3 a = coarse_.points[edge.low], b = coarse_.points[edge.high];
         Faces faces;
         for (uint32_t o = model_.ownerStart[e]; o < model_.ownerStart[e + 1]; ++o)
-            faces.add(normal(model_.owners[o] >> 2));
-        const glm::dvec3 crease = mitre(faces), along = glm::normalize(b - a);
+            faces.add(normal(model_.owners[o] >> 2), 1);
+        const glm::dvec3 crease = faces.offset(), along = glm::normalize(b - a);
         const bool curved = smooth(e);
         for (uint32_t i = 1; i < steps; ++i) {
             const double f = double(i) / steps;
@@ -146,7 +115,7 @@ class Offsets {
         }
     }
 
-    // A flat interior recedes along its normal, and in its plane as the corners do.
+    // A flat interior recedes along its normal, and within its plane as the corners do.
     void interior(uint32_t i) {
         const gpu::RefineTriangle& t = model_.triangles[i];
         const uint32_t n = 1u << gpu::refineInteriorDepth(t.flags);
@@ -175,8 +144,8 @@ class Offsets {
     std::pmr::vector<double> reach_;       // m, per point
 };
 
-// Texels around the point where a ray leaves the solid, if that wall is thin enough to burn through
-// together with this one.
+// Texels around the point where an inward ray leaves the solid, if the wall is thin enough for both
+// sides to burn through together.
 void findOpposites(const Surface& surface, const BurnDomain& domain, const RefineOptions& options,
                    const Offsets& offsets, RefineModel& model, std::pmr::memory_resource* memory) {
     std::pmr::vector<uint32_t> surfaceOf(domain.indices.size() / 3, kNone, memory);
@@ -198,7 +167,7 @@ void findOpposites(const Surface& surface, const BurnDomain& domain, const Refin
         if (texel == kNone || domain.triangleOf[texel] == kNone) continue;
         const uint32_t there = surfaceOf[domain.triangleOf[texel]];
         if (there == kNone || glm::dot(surface.triangles[there].normal, down) < 0.5) continue;
-        // Where between texels: the triangle's own map, unless the point lies outside it.
+        // The triangle's own map gives the place between texels, unless the point lies outside it.
         const Triangle& t = surface.triangles[there];
         const glm::dvec3 e1 = t.position[1] - t.position[0], e2 = t.position[2] - t.position[0];
         const glm::dvec3 q = glm::cross(e1, e2), d = far - t.position[0];

@@ -1,7 +1,8 @@
 // The published refinement scheme, for comparison: one template of four-way splits (id, SetLevel,
 // Siblings, Parent, Status) laid over every eligible coarse triangle, driven by a growing heat
 // boundary. Its rules as printed do not come to rest; the repaired ones do. It cracks between
-// coarse triangles and inside a template where levels meet: the product scheme is frame.h.
+// coarse triangles and inside a template where levels meet: the product scheme is
+// shaders/shared/refine.h.
 #pragma once
 #include <cstdint>
 #include <glm/vec3.hpp>

@@ -12,7 +12,7 @@ namespace fw::mesh {
 namespace {
 
 constexpr uint32_t kMostStatuses = 1u << 22;  // of an object
-constexpr float kAhead = 2;  // finest edges that the heat wave is ahead of the fire at first
+constexpr float kAhead = 2;  // initial lead of the heat wave over the fire, finest edges
 
 // The corner with the right angle in the lattice comes first, whatever corner the template has
 // there.
@@ -31,7 +31,7 @@ glm::vec3 pointOf(const glm::vec3* corner, const uint8_t (&at)[2]) {
     return corner[0] * (1 - a - b) + corner[1] * a + corner[2] * b;
 }
 
-// Halvings that a triangle's longest edge is worth.
+// Halvings for a triangle's longest edge on the screen.
 uint32_t worth(const glm::vec3* corner, const ArpSettings& settings, const ArpView& view,
                uint32_t depth) {
     if (view.focal <= 0) return depth;
@@ -50,6 +50,8 @@ class Lister {
     }
     void add(uint32_t coarse, uint32_t triangle) {
         if (state_.list.size() == model_.most()) return;
+        FW_ASSERT(triangle < model_.words.size() && state_.list.size() < state_.list.capacity(),
+                  "triangle %u, %zu listed", triangle, state_.list.size());
         state_.list.push_back(model_.words[triangle] | coarse << 16);
         ++state_.listed[std::min(model_.materials[coarse], gpu::kMaterialsPerObject - 1)];
     }
@@ -58,8 +60,8 @@ class Lister {
         const uint32_t first = ((1u << (2 * halvings)) - 1) / 3;  // breadth first
         for (uint32_t k = first; k < first + (1u << (2 * halvings)); ++k) add(coarse, k);
     }
-    // What the statuses draw, but nothing finer than `most` halvings: what was replaced there is
-    // drawn in place of what replaced it.
+    // Triangles drawn by their statuses, and no finer than `most` halvings: parents stand in for
+    // finer children.
     void addDrawn(uint32_t coarse, uint32_t most) {
         const std::span<const int8_t> status(
             state_.status.data() + size_t(coarse) * model_.arp.size(), model_.arp.size());
@@ -167,6 +169,8 @@ float arpRadius(const ArpSettings& settings, const ArpState& state, double tick)
 
 bool arpAdvance(const ArpModel& model, const ArpSettings& settings, double tick,
                 const ArpView& view, bool full, ArpState& state) noexcept {
+    FW_ASSERT(state.status.size() == model.triangles() * model.arp.size(), "%zu statuses",
+              state.status.size());
     const float radius = state.lit ? arpRadius(settings, state, tick) : 0;
     const uint32_t finest = 1u << (2 * model.depth);
     const size_t size = model.arp.size();

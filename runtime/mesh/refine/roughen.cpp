@@ -1,4 +1,4 @@
-// The shader's holeDelay (shaders/surface/look.glsl), for slots.
+// holeDelay of shaders/surface/look.glsl, for slots.
 #include "mesh/refine/roughen.h"
 
 #include <algorithm>
@@ -11,8 +11,8 @@ constexpr float kPlank = 0.15f;  // m
 
 float zigzag(float x) { return std::abs(x - std::floor(x) - 0.5f) * 4 - 1; }
 
-// Where the pattern is looked up where there are no detail coordinates: along the axis that the
-// surface faces most, with ragged joins.
+// Coordinates of the pattern without detail coordinates: along the axis that the surface faces
+// most, with ragged joins.
 void flatten(const float* p, uint32_t normal, float* d) {
     const float n[3] = {float(int(normal << 21) >> 21) / 1023,
                         float(int(normal << 10) >> 21) / 1023, float(int(normal) >> 22) / 511};
@@ -43,6 +43,8 @@ float sample(std::span<const uint8_t> noise, uint32_t side, float u, float v) {
 void refineRoughen(const BurnDomain& domain, const RefineModel& model,
                    std::span<const RefineHoles> materials, std::span<const uint8_t> noise,
                    uint32_t side, std::span<gpu::RefineSlot> slots) noexcept {
+    FW_ASSERT(slots.size() <= model.draws.size() && noise.size() >= size_t(side) * side,
+              "%zu slots, %zu bytes of noise", slots.size(), noise.size());
     const bool solid = hasInside(domain, model);
     for (uint32_t i = 0; i < slots.size(); ++i) {
         gpu::RefineSlot& slot = slots[i];
@@ -52,8 +54,8 @@ void refineRoughen(const BurnDomain& domain, const RefineModel& model,
         if (!(holes.variation > 0)) continue;
         const RenderVertex v = refineRenderVertex(domain, model, i);
         float d[2] = {v.detail[0], v.detail[1]};
-        // Walls that burn through together have the same holes, whatever their patterns; so have
-        // all of a solid but planks.
+        // Walls that burn through together have the same holes, whatever their patterns. So have
+        // all walls of a solid except planks.
         const bool detailed =
             domain.hasDetail && slot.opposite == gpu::kRefineOpposed && (holes.wood || !solid);
         if (!detailed) flatten(v.position, v.normal, d);

@@ -1,4 +1,4 @@
-// Which texels speak for a vertex, and which tiles warm a triangle or an edge.
+// The texels that a vertex samples, and the tiles that warm a triangle or an edge.
 #include "mesh/refine/coarse.h"
 
 #include <cmath>
@@ -6,8 +6,8 @@
 namespace fw::mesh {
 namespace {
 
-constexpr double kReachCells = 1.5;  // of an edge: the row beside it must not move before it splits
-constexpr int kCellSearch = 4;       // texels, where none of the four around is the chart's own
+constexpr double kReachCells = 1.5;  // of an edge: it must split before the row beside it moves
+constexpr int kCellSearch = 4;       // texels, if none of the four around is of the chart
 
 class Charts {
  public:
@@ -45,7 +45,7 @@ glm::dvec2 uvOf(const BurnDomain& domain, const gpu::RefineDraw& d) {
     return uv;
 }
 
-// Bilinear over the chart's own texels; where there is none, the nearest one.
+// Bilinear over the chart's own texels; without any, the nearest one.
 void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
             RefineModel& model) {
     gpu::RefineSlot& slot = model.slots[slotIndex];
@@ -95,7 +95,7 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
     slot.texel = (texel & 0xFFFFFFu) | material << 24;
 }
 
-// Collects the tiles of one item after another, then turns the lists around.
+// Collects the tiles of each item, then inverts the lists to the items of each tile.
 class TileLists {
  public:
     TileLists(const BurnDomain& domain, std::pmr::memory_resource* memory)
@@ -110,7 +110,9 @@ class TileLists {
             tiles_.push_back(tile);
     }
     void close() { start_.push_back(uint32_t(tiles_.size())); }
-    void turn(RefineModel& model) const {
+    void invert(RefineModel& model) const {
+        FW_ASSERT(start_.size() == model.edges.size() + model.triangles.size() + 1, "%zu items",
+                  start_.size() - 1);
         model.tileStart.assign(domain_.tileCount() + 1, 0);
         for (const uint32_t t : tiles_) ++model.tileStart[t + 1];
         for (uint32_t t = 0; t < domain_.tileCount(); ++t)
@@ -149,7 +151,7 @@ void trianglesTiles(const glm::dvec2 uv[3], TileLists& lists) {
     lists.close();
 }
 
-// Tiles along one side, and in reach of it where they hold its chart.
+// Tiles along one side, and tiles in reach of it that hold its chart.
 void sideTiles(glm::dvec2 a, glm::dvec2 b, double cells, uint32_t chart, const Charts& charts,
                TileLists& lists) {
     const glm::dvec2 d = b - a;
@@ -195,7 +197,7 @@ void bakeSamples(const Surface& surface, const CoarseMesh& coarse, const BurnDom
         const glm::dvec2 uv[3] = {cornerUv(i, 0), cornerUv(i, 1), cornerUv(i, 2)};
         trianglesTiles(uv, lists);
     }
-    lists.turn(model);
+    lists.invert(model);
 }
 
 }  // namespace fw::mesh

@@ -1,6 +1,7 @@
-// The one table of refinement: 3.2 KB of tokens from which shaders/shared/refine.h tells the k-th
-// triangle of any pattern. Made by the compiler; a device gets it as it is, two tokens per word.
+// The table of refinement: 3.2 KB of tokens from which shaders/shared/refine.h reads the k-th
+// triangle of any pattern. Made by the compiler; devices receive it unchanged, two tokens per word.
 #pragma once
+#include "core/assert.h"
 #include "shared/refine.h"
 
 #include <array>
@@ -11,8 +12,9 @@ using RefineTable = std::array<uint16_t, gpu::kRefineTableSize>;
 
 namespace detail {
 
-// Between an edge of 2^l segments and the lattice's row beside it: advance whichever comes first.
-// Edge vertex i lies at i * 2^m / 2^l, row vertex j at j + 1/2; ties go to the edge.
+// Strip between an edge of 2^l segments and the lattice's row beside it: the side whose next vertex
+// comes first advances. Edge vertex i lies at i * 2^m / 2^l, row vertex j at j + 1/2; the edge wins
+// ties.
 constexpr uint32_t fillStrip(RefineTable& table, uint32_t at, uint32_t l, uint32_t m) {
     const uint32_t n = 1u << m, steps = 1u << l;
     uint32_t i = 0, j = 1;
@@ -70,6 +72,7 @@ inline constexpr RefineTable kRefineTable = detail::makeRefineTable();
 // Codes of the k-th triangle of the pattern with these levels.
 inline glm::uvec3 refineTriangle(uint32_t levels, uint32_t k) {
     const gpu::RefinePlace place = gpu::refineLocate(levels, k);
+    FW_ASSERT(place.entry < kRefineTable.size(), "entry %u", place.entry);
     return gpu::refineCodes(levels, place, kRefineTable[place.entry]);
 }
 

@@ -1,10 +1,10 @@
-// The light that spreads around bright things, at a quarter of the size: a sum of soft mips.
+// Bloom: a sum of soft mips, at a quarter of the resolution.
 #version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 layout(binding = 0) uniform sampler2D scene;
 
-// Four taps half a texel out: hides the squares of a coarse mip.
+// Four taps, half a texel out, hide the squares of a coarse mip.
 vec3 softMip(float lod) {
     vec2 texel = 0.5 / vec2(textureSize(scene, int(lod)));
     return 0.25 * (textureLod(scene, uv + texel * vec2(1.0, 1.0), lod).rgb +

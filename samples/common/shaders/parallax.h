@@ -1,8 +1,7 @@
-// Parallax occlusion mapping: where a ray meets a relief that lies below a drawn surface, what of
-// a light gets down there, and where the relief ends in a silhouette. C++ too, for its tests.
-// Whoever includes it says how deep the relief is:
-//     float reliefDepth(vec2 at);  [0, 1] of the relief's depth, at a place on the picture
-// Places on the picture are in any unit, the same in all that is said here.
+// Parallax occlusion mapping: intersects rays with a relief below the drawn surface, shadows it,
+// and ends it in a silhouette. Also compiles as C++ for its tests. The includer defines the relief:
+//     float reliefDepth(vec2 at);  depth at a position on the picture, [0, 1] of the relief's depth
+// Positions on the picture share one unit of the includer's choice.
 #ifdef __cplusplus
 #define RELIEF_FN inline
 #define RELIEF_OUT(type) type&
@@ -12,63 +11,64 @@
 #endif
 
 struct ReliefRay {
-    vec2 at;      // where it enters
-    vec2 along;   // how far it goes on the picture for each m of its way
-    float depth;  // m below the surface where it enters
-    float down;   // m deeper for each m of its way
-    float sag;    // 1/m: the surface falls away below its tangent by sag * way^2; flat: 0
-    float most;   // m of way: a border that the relief ends at
+    vec2 at;      // entry point
+    vec2 along;   // movement on the picture per m of ray
+    float depth;  // m below the surface at the entry point
+    float down;   // m of depth per m of ray
+    float sag;    // 1/m: the surface drops below its tangent by sag * distance^2; flat: 0
+    float most;   // m of ray up to the border of the relief
 };
 
-// m below the surface after `way`.
-RELIEF_FN float reliefBelow(ReliefRay ray, float way) {
-    return ray.depth + (ray.down - ray.sag * way) * way;
+// Returns m below the surface after `travel` m of ray.
+RELIEF_FN float reliefBelow(ReliefRay ray, float travel) {
+    return ray.depth + (ray.down - ray.sag * travel) * travel;
 }
 
-// m of way to the relief's bottom, to where the ray is out of a curved surface again, or to the
-// border, whichever is first. deepest: m.
+// Returns m of ray to the first of: the relief's bottom, the exit from a curved surface, the
+// border. deepest: m.
 RELIEF_FN float reliefEnd(ReliefRay ray, float deepest, RELIEF_OUT(bool) atBottom) {
-    float way = ray.most;
+    float travel = ray.most;
     atBottom = false;
     float half_ = 0.5f * ray.down;
-    float leaves = half_ * half_ + ray.sag * ray.depth;             // of reliefBelow = 0
-    float sinks = half_ * half_ - ray.sag * (deepest - ray.depth);  // of reliefBelow = deepest
+    float leaves = half_ * half_ + ray.sag * ray.depth;             // of reliefBelow = 0: exit
+    float sinks = half_ * half_ - ray.sag * (deepest - ray.depth);  // of reliefBelow = deepest:
+                                                                    // bottom
     if (ray.sag > 1e-6f) {
-        way = min(way, (half_ + sqrt(max(leaves, 0.0f))) / ray.sag);
+        travel = min(travel, (half_ + sqrt(max(leaves, 0.0f))) / ray.sag);
     } else if (ray.down < 0.0f) {
-        way = min(way, ray.depth / -ray.down);
+        travel = min(travel, ray.depth / -ray.down);
     }
     if (ray.down > 0.0f && sinks >= 0.0f) {
-        // (half - sqrt(sinks)) / sag, written so that a flat surface is no special case.
+        // Written as a division, so that a flat surface needs no special case.
         float bottom = (deepest - ray.depth) / (half_ + sqrt(sinks));
-        atBottom = bottom <= way;
-        way = min(way, bottom);
+        atBottom = bottom <= travel;
+        travel = min(travel, bottom);
     }
-    return way;
+    return travel;
 }
 
-// How many layers: fewer seen from above, more at a slant; never more than two for each texel that
-// the ray crosses, for between texels a picture holds nothing.
+// Returns the number of layers: fewer from above, more at grazing angles, and at most two per
+// crossed texel, since a picture has no detail between texels.
 RELIEF_FN int reliefLayers(float down, float texels, float least, float most) {
     float layers = mix(most, least, clamp(down, 0.0f, 1.0f));
     return int(clamp(min(layers, 2.0f * texels + 1.0f), min(least, 4.0f), most));
 }
 
-// m of way to the relief; negative: the ray passes it. deepest: m. Layers find the first one that
-// the ray is under, three secant steps the place between it and the one before.
+// Returns m of ray to the relief, or a negative value for a miss. deepest: m. Layers find the first
+// sample below the relief. Three secant steps refine it.
 RELIEF_FN float reliefHit(ReliefRay ray, float deepest, int layers) {
     bool atBottom;
     float end = reliefEnd(ray, deepest, atBottom);
-    float above = 0.0f, below = -1.0f;  // way
+    float above = 0.0f, below = -1.0f;  // travel
     float gapAbove = reliefDepth(ray.at) * deepest - ray.depth, gapBelow = 0.0f;
-    if (gapAbove <= 0.0f) return 0.0f;  // it enters inside
+    if (gapAbove <= 0.0f) return 0.0f;  // the ray enters inside the relief
     for (int i = 1; i <= layers && below < 0.0f; ++i) {
-        float way = end * float(i) / float(layers);
-        float gap = reliefDepth(ray.at + ray.along * way) * deepest - reliefBelow(ray, way);
+        float travel = end * float(i) / float(layers);
+        float gap = reliefDepth(ray.at + ray.along * travel) * deepest - reliefBelow(ray, travel);
         bool under = gap <= 0.0f || (atBottom && i == layers);
-        below = under ? way : below;
+        below = under ? travel : below;
         gapBelow = under ? min(gap, -1e-7f) : gapBelow;
-        above = under ? above : way;
+        above = under ? above : travel;
         gapAbove = under ? gapAbove : gap;
     }
     if (below < 0.0f) return -1.0f;
@@ -85,71 +85,75 @@ RELIEF_FN float reliefHit(ReliefRay ray, float deepest, int layers) {
     return hit;
 }
 
-// [0, 1] of a light that reaches a place `depth` m below the surface: what stands between, the
-// nearer the harder. along: on the picture for each m towards the light; up: m of height for the
-// same; softness: 1 is a light about as wide as it is far.
+// Returns the share of a light that reaches a point `depth` m below the surface, [0, 1]. Near
+// occluders cast harder shadows. along: movement on the picture per m towards the light; up: m of
+// height per m. softness 1: a light about as wide as it is far.
 RELIEF_FN float reliefLit(vec2 at, vec2 along, float up, float depth, float deepest, float softness,
                           int steps) {
     if (up <= 0.0f) return 0.0f;
     float out_ = depth / up, blocked = 0.0f;
     for (int i = 1; i <= steps; ++i) {
-        float way = out_ * (float(i) - 0.5f) / float(steps);
-        float over = (depth - up * way) - reliefDepth(at + along * way) * deepest;
-        blocked = max(blocked, over * softness / way);
+        float travel = out_ * (float(i) - 0.5f) / float(steps);
+        float over = (depth - up * travel) - reliefDepth(at + along * travel) * deepest;
+        blocked = max(blocked, over * softness / travel);
     }
     return out_ > 0.0f ? 1.0f - clamp(blocked, 0.0f, 1.0f) : 1.0f;
 }
 
 #ifdef RELIEF_CONES
-// Whoever asks for these also says, of a place on the picture,
-//     vec2 reliefCone(vec2 at);  its depth as above; and how far aside, on the picture, nothing
-//                                stands in the open cone above it, for each m up
+// reliefHitByCones and its users need one more function from the includer:
+//     vec2 reliefCone(vec2 at);  x: depth as reliefDepth; y: open cone, movement on the picture per
+// m up
 
-// Twice as wide as a cone that is empty is one that a ray seldom comes through something in.
+// A cone of twice the empty width seldom skips an obstacle.
 const float kReliefRelaxed = 2.0f;
-// Of the whole way: the least step. Past a stone's edge a ray would creep along it, and end there.
+// The least step, as a share of the whole ray. Smaller steps would creep along a stone's edge and
+// stop there.
 const float kReliefLeast = 1.0f / 24.0f;
 
-// As reliefHit, in few steps: each goes to the side of the cone that the ray is in (J. Dummer, Cone
-// Step Mapping, 2006; F. Policarpo, M. Oliveira, Relaxed Cone Stepping, GPU Gems 3). Two secant
-// steps mend the last of them; reliefDepth is asked last where the relief is, but for a hair.
+// As reliefHit, in few steps: each step ends at the side of the current cone (J. Dummer, Cone Step
+// Mapping, 2006; F. Policarpo, M. Oliveira, Relaxed Cone Stepping, GPU Gems 3). Two secant steps
+// refine the last one. The last reliefDepth call is within a hair of the hit.
 RELIEF_FN float reliefHitByCones(ReliefRay ray, float deepest, int steps) {
     bool atBottom;
     float end = reliefEnd(ray, deepest, atBottom), aside = length(ray.along);
     vec2 here = reliefCone(ray.at);
-    float way = 0.0f, above = 0.0f, gap = here.x * deepest - ray.depth, gapAbove = gap;
+    float travel = 0.0f, above = 0.0f, gap = here.x * deepest - ray.depth, gapAbove = gap;
     bool met = gap <= 0.0f, past = false;
     for (int i = 0; i < steps && !met && !past; ++i) {
-        float falls = max(ray.down - 2.0f * ray.sag * way, 0.0f), cone = kReliefRelaxed * here.y;
-        above = way;
+        float falls = max(ray.down - 2.0f * ray.sag * travel, 0.0f), cone = kReliefRelaxed * here.y;
+        above = travel;
         gapAbove = gap;
-        way = min(way + max(cone * gap / (aside + cone * falls + 1e-6f), kReliefLeast * end), end);
-        here = reliefCone(ray.at + ray.along * way);
-        gap = here.x * deepest - reliefBelow(ray, way);
-        met = gap <= 0.0f || (atBottom && way >= end);
-        past = !met && way >= end;
+        travel =
+            min(travel + max(cone * gap / (aside + cone * falls + 1e-6f), kReliefLeast * end), end);
+        here = reliefCone(ray.at + ray.along * travel);
+        gap = here.x * deepest - reliefBelow(ray, travel);
+        met = gap <= 0.0f || (atBottom && travel >= end);
+        past = !met && travel >= end;
     }
-    float most = min(2.0f * way - above, end);
+    float most = min(2.0f * travel - above, end);
     for (int i = 0; i < 2; ++i) {
-        float nearer = gapAbove - gap, next = way + (way - above) * gap / max(nearer, 1e-7f);
-        next = nearer > 1e-7f ? clamp(next, above, most) : way;
+        float nearer = gapAbove - gap, next = travel + (travel - above) * gap / max(nearer, 1e-7f);
+        next = nearer > 1e-7f ? clamp(next, above, most) : travel;
         bool under = gap <= 0.0f;
-        most = under ? way : most;
-        above = under ? above : way;
+        most = under ? travel : most;
+        above = under ? above : travel;
         gapAbove = under ? gapAbove : gap;
-        way = next;
-        if (i == 0) gap = reliefDepth(ray.at + ray.along * way) * deepest - reliefBelow(ray, way);
+        travel = next;
+        if (i == 0)
+            gap = reliefDepth(ray.at + ray.along * travel) * deepest - reliefBelow(ray, travel);
     }
-    return past ? -1.0f : way;
+    return past ? -1.0f : travel;
 }
 
-// [0, 1] of a light that reaches a place over its horizon, as reliefLit finds it step by step.
-// horizon: t / (1 + t) of its tangents t, along u, along v and against them (N. Max, Horizon
-// mapping, 1988). along, up: of the unit way to the light.
+// Returns the share of a light that clears the horizon, [0, 1], as reliefLit finds it by marching.
+// horizon: t / (1 + t) of its tangents t along u, along v and against them (N. Max, Horizon
+// mapping, 1988). along, up: parts of the unit direction to the light.
 RELIEF_FN float reliefLitByHorizon(vec4 horizon, vec2 along, float up, float softness) {
-    vec4 ways = max(vec4(along, -along), vec4(0.0f));  // squares of a unit way's parts are shares
-    float square = max(dot(along, along), 1e-8f), told = dot(ways * ways, horizon);
-    float over = told / max(square - told, 0.02f * square) * sqrt(square) - up;
+    vec4 parts = max(vec4(along, -along), vec4(0.0f));  // the squared components of a unit vector
+                                                        // sum to 1
+    float square = max(dot(along, along), 1e-8f), weighted = dot(parts * parts, horizon);
+    float over = weighted / max(square - weighted, 0.02f * square) * sqrt(square) - up;
     return up > 0.0f ? 1.0f - clamp(over * softness, 0.0f, 1.0f) : 0.0f;
 }
 #endif

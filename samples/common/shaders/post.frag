@@ -1,18 +1,18 @@
-// From the scene to display values: bloom, a film curve, sRGB, dither.
+// Converts the scene to display values: bloom, filmic curve, sRGB, dither.
 #version 450
 layout(location = 0) in vec2 uv;
 layout(location = 0) out vec4 color;
 layout(binding = 0) uniform sampler2D scene;
-layout(binding = 1) uniform sampler2D spread;  // bloom.frag's
+layout(binding = 1) uniform sampler2D spread;  // from bloom.frag
 layout(push_constant) uniform Push {
-    float mode;      // 0 scene-referred floats, 1 an sRGB view, 2 display values already
+    float mode;  // 0: scene-referred floats, 1: an sRGB view, 2: display values
     float exposure;
     float bloom;
     float vignette;
     float aspect;
 } push;
 
-// Rec.709 to and from the space in which the curve works, and S. Hill's fit of the ACES curve.
+// Rec.709 to and from the curve's space, with S. Hill's fit of the ACES curve.
 vec3 filmCurve(vec3 c) {
     const mat3 into = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566,
                            0.83777);
@@ -39,7 +39,7 @@ void main() {
     } else if (push.mode < 1.5) {
         c = encodeSrgb(clamp(c, 0.0, 1.0));
     }
-    // A fixed dither of one step hides bands in the dark and costs an animation nothing.
+    // A fixed one-step dither hides banding in the dark and keeps animations small.
     uint h = uint(gl_FragCoord.x) * 1664525u ^ uint(gl_FragCoord.y) * 22695477u;
     h ^= h >> 15;
     h *= 0x2c1b3c6du;

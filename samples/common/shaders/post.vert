@@ -1,4 +1,4 @@
-// A triangle that covers the picture.
+// A triangle that covers the screen.
 #version 450
 layout(location = 0) out vec2 uv;
 void main() {

@@ -1,19 +1,19 @@
-// Stone, or char, with a relief below the drawn surface: bumps that only the light sees, or
-// parallax occlusion with depth, shadows and a silhouette.
+// Stone or char with a relief below the drawn surface: bump mapping, or parallax occlusion with
+// depth, shadows and a silhouette.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "relief_block.glsl"
 layout(constant_id = 0) const bool kParallax = true;
-layout(constant_id = 1) const bool kLinear = true;  // else display values are written
-layout(constant_id = 2) const bool kCurved = true;  // else no surface of the model is round
+layout(constant_id = 1) const bool kLinear = true;  // false: write display values
+layout(constant_id = 2) const bool kCurved = true;  // false: no surface of the model is curved
 
 layout(set = 1, binding = 0) uniform sampler2D colorMap;  // a: roughness
 layout(set = 1, binding = 1) uniform sampler2D shapeMap;  // slopes, cone, height
-layout(set = 1, binding = 2) uniform sampler2D horizonMap;  // half as wide and high
+layout(set = 1, binding = 2) uniform sampler2D horizonMap;  // half resolution
 
 layout(push_constant) uniform Push {
-    vec4 picture;  // m: width, height, depth; how steep the steepest slope is
-    vec4 texels;   // its width, its height; 1: the picture ends at its border; m along v, 0: for ever
+    vec4 picture;  // m: width, height, depth; steepest slope
+    vec4 texels;  // width, height; 1: the picture ends at its border; m along v, 0: endless
 } push;
 
 layout(location = 0) in vec3 inPosition;
@@ -21,31 +21,31 @@ layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec3 inAcross;
 layout(location = 3) in vec4 inRelief;
 layout(location = 0) out vec4 outColor;
-// What is hit lies behind the surface: tests before shading stay possible.
+// Hits lie behind the surface, so early depth tests stay possible.
 layout(depth_greater) out float gl_FragDepth;
 
 const float kPi = 3.14159265;
-float reliefLod;  // a whole level: it is one read and not two
-vec2 perMetre;    // of the picture: a search asks often, and divisions are slow
+float reliefLod;  // a whole mip level costs one read instead of two
+vec2 perMetre;  // on the picture; hoisted, since the search evaluates it often
 const float kWidestCone = 8.0;  // relief_maps.h
 
-vec4 shape;  // of the picture, where the relief was last asked for
+vec4 shape;  // the last sample of the relief
 float reliefDepth(vec2 at) {
     shape = textureLod(shapeMap, at * perMetre, reliefLod);
     return 1.0 - shape.a;
 }
 vec2 reliefCone(vec2 at) {
-    vec2 told = textureLod(shapeMap, at * perMetre, reliefLod).ba;
-    return vec2(1.0 - told.y, kWidestCone * told.x * told.x);
+    vec2 coneAndHeight = textureLod(shapeMap, at * perMetre, reliefLod).ba;
+    return vec2(1.0 - coneAndHeight.y, kWidestCone * coneAndHeight.x * coneAndHeight.x);
 }
 #define RELIEF_CONES
 #include "parallax.h"
 
-// m of way to where the picture ends.
+// Returns m of ray to the picture's border.
 float toBorder(vec2 at, vec2 along, vec2 size) {
     vec2 side = mix(vec2(0.0), size, greaterThan(along, vec2(0.0)));
-    vec2 way = (side - at) / mix(along, vec2(1e-9), lessThan(abs(along), vec2(1e-9)));
-    return max(min(way.x, way.y), 0.0);
+    vec2 reach = (side - at) / mix(along, vec2(1e-9), lessThan(abs(along), vec2(1e-9)));
+    return max(min(reach.x, reach.y), 0.0);
 }
 
 vec3 display(vec3 c) {
@@ -64,7 +64,7 @@ void main() {
     vec2 pixel = max(abs(dFdx(at)), abs(dFdy(at))) * perMetre * push.texels.xy;
     reliefLod = floor(max(0.0, log2(max(pixel.x, pixel.y))));
 
-    float way = 0.0, depth = 0.0;
+    float travel = 0.0, depth = 0.0;
     if (kParallax) {
         ReliefRay ray;
         ray.at = at;
@@ -77,18 +77,18 @@ void main() {
         if (bordered || round_)
             ray.most = toBorder(at, ray.along,
                                 bordered ? push.picture.xy : vec2(1e3, push.texels.w));
-        way = reliefHitByCones(ray, scale, int(mix(10.0, 5.0, clamp(ray.down, 0.0, 1.0))));
-        if (way < 0.0) discard;
-        at += ray.along * way;
-        depth = reliefBelow(ray, way);
-        if (kCurved) {  // the way turns with it, about v
-            float turned = inRelief.w * ray.along.x * way, unit = inversesqrt(1.0 + turned * turned);
+        travel = reliefHitByCones(ray, scale, int(mix(10.0, 5.0, clamp(ray.down, 0.0, 1.0))));
+        if (travel < 0.0) discard;
+        at += ray.along * travel;
+        depth = reliefBelow(ray, travel);
+        if (kCurved) {  // the direction turns with the surface around v
+            float turned = inRelief.w * ray.along.x * travel, unit = inversesqrt(1.0 + turned * turned);
             vec3 level = n;
             n = (level + u * turned) * unit;
             u = (u - level * turned) * unit;
         }
     }
-    vec3 position = inPosition - toEye * way;
+    vec3 position = inPosition - toEye * travel;
     vec4 clip = block.viewProjection * vec4(position, 1.0);
     gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
 
@@ -104,7 +104,8 @@ void main() {
     if (kParallax)
         horizon = textureLod(horizonMap, at * perMetre, max(reliefLod - 1.0, 0.0));
     vec3 gloss = vec3(0.0);
-    // Not known before it runs: lavapipe would compile and keep one shader a frame.
+    // The added zero is unknown at compile time. Otherwise lavapipe would compile and keep one
+    // shader per frame.
     int fires = int(block.sunDirection.w) + (int(gl_FragCoord.x) >> 31);
     for (int i = -1; i < fires; ++i) {
         bool sun = i < 0;
@@ -129,7 +130,7 @@ void main() {
         float d = nh * nh * (rough * rough - 1.0) + 1.0;
         gloss += strong * (0.04 * min(rough * rough / (d * d), 40.0) * 0.25);
     }
-    // The night swallows what is far.
+    // Distant ground fades into the night.
     float fade = 1.0 / (1.0 + 0.02 * distance_ * distance_);
     vec3 c = (albedo / kPi * light + gloss) * (block.eye.w * fade * kPi);
     outColor = vec4(kLinear ? c : display(c), 1.0);

@@ -1,4 +1,4 @@
-// The photographer's backdrop: a floor that bends up into a wall all around.
+// The photographer's backdrop: a floor that curves up into a wall on all sides.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "studio_block.glsl"

@@ -5,13 +5,13 @@ namespace game {
 
 namespace {
 
-struct Wish {
+struct PlannedTower {
     int32_t plot;
     TowerKind kind;
     int32_t level;  // from 0
 };
-// In this order, as the coins allow. Plots are the village's, see battlefield.cpp.
-constexpr Wish kPlan[] = {
+// Ordered by priority; bought as coins allow. Plots as in battlefield.cpp.
+constexpr PlannedTower kPlan[] = {
     {0, TowerKind::kFlamethrower, 0}, {4, TowerKind::kFlamethrower, 0},
     {2, TowerKind::kWaterCannon, 0},  {1, TowerKind::kEmberMortar, 0},
     {0, TowerKind::kFlamethrower, 1}, {3, TowerKind::kWindFan, 0},
@@ -25,7 +25,7 @@ constexpr Wish kPlan[] = {
 }  // namespace
 
 Order botsOrder(const State& state) {
-    for (const Wish& wish : kPlan) {
+    for (const PlannedTower& wish : kPlan) {
         const Tower& tower = state.towers[size_t(wish.plot)];
         if (tower.kind == TowerKind::kNone) {
             if (state.coins < kTowers[size_t(wish.kind)].price[0]) break;
@@ -35,9 +35,9 @@ Order botsOrder(const State& state) {
         if (state.coins < priceOf(tower)) break;
         return {Order::Type::kUpgrade, wish.plot, wish.kind};
     }
-    // Time is coins, once the first towers stand.
-    constexpr int32_t kHurry = 5 * kTicksPerSecond;
-    if (state.marched == 0 && state.untilWave > kHurry &&
+    // Calling a wave early earns coins, once the first towers stand.
+    constexpr int32_t kEarlyCallTicks = 5 * kTicksPerSecond;
+    if (state.marched == 0 && state.untilWave > kEarlyCallTicks &&
         state.untilWave < kBeforeWave - 2 * kTicksPerSecond)
         return {Order::Type::kCallWave, 0, TowerKind::kNone};
     return {};
@@ -54,8 +54,8 @@ State underWay(const Ground& ground, uint32_t seed) {
         give(state, ground, order);
     }
     state.untilWave = 0;
-    std::vector<Happening> happened;
-    for (int32_t i = 0; i < kSeconds * kTicksPerSecond; ++i) tick(state, ground, {}, happened);
+    std::vector<Event> events;
+    for (int32_t i = 0; i < kSeconds * kTicksPerSecond; ++i) tick(state, ground, {}, events);
     return state;
 }
 

@@ -1,14 +1,14 @@
-// A player who follows a plan: for whole games without hands, and for the tests.
+// A player who follows a plan, for unattended games and tests.
 #pragma once
 
 #include "game.h"
 
 namespace game {
 
-// What it would do now; of type kNone: wait. Looks at nothing but the state.
+// Returns the next order, or one of type kNone to wait. Depends on the state only.
 Order botsOrder(const State& state);
 
-// A game in the middle of it: its towers stand, and the fourth wave is on the road.
+// Returns a game in progress: its towers stand, and the fourth wave is on the road.
 State underWay(const Ground& ground, uint32_t seed);
 
 }  // namespace game

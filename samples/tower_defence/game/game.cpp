@@ -10,19 +10,19 @@ namespace game {
 
 namespace {
 
-constexpr int32_t kLeadTicks = 12;              // a jet's flight
-constexpr int32_t kEmberTicks = 44;             // an ember's
-constexpr int32_t kTurn = 300;                  // mm a tick that a tower's aim moves
-constexpr int32_t kOnTarget = 1300;             // mm
-constexpr int32_t kValve = 10;                  // ticks that a valve stays open
-constexpr int32_t kWindTurns = 16;              // mm/s a tick
-constexpr int32_t kPanics = 1500;               // thousandths of its pace
-constexpr int32_t kRuns = 48;                   // ticks that a burning enemy runs; then it stumbles
-constexpr int32_t kStumbles = 350;              // thousandths of its pace
-constexpr int32_t kLies = 8 * kTicksPerSecond;  // ticks until what fell is cleared away
-constexpr int32_t kFilesApart = 650;            // mm from the middle of the road
+constexpr int32_t kLeadTicks = 12;   // flight time of a jet
+constexpr int32_t kEmberTicks = 44;  // flight time of an ember
+constexpr int32_t kTurn = 300;       // mm per tick; turn rate of a tower's aim
+constexpr int32_t kOnTarget = 1300;  // mm
+constexpr int32_t kValve = 10;       // ticks for which a valve stays open
+constexpr int32_t kWindTurns = 16;   // mm/s per tick
+constexpr int32_t kPanics = 1500;    // thousandths of its pace
+constexpr int32_t kRuns = 48;        // ticks that a burning enemy runs before it stumbles
+constexpr int32_t kStumbles = 350;   // thousandths of its pace
+constexpr int32_t kLies = 8 * kTicksPerSecond;  // ticks until a fallen enemy is removed
+constexpr int32_t kFilesApart = 650;            // mm from the centre of the road
 
-uint32_t scramble(uint32_t a) {
+uint32_t mixBits(uint32_t a) {
     a ^= a >> 16;
     a *= 0x7feb352du;
     a ^= a >> 15;
@@ -33,24 +33,24 @@ uint32_t scramble(uint32_t a) {
 int64_t square(int64_t a) { return a * a; }
 int64_t distance2(Point a, Point b) { return square(a.x - b.x) + square(a.z - b.z); }
 
-// Of a sum of squares, rounded down.
-int32_t rootOf(int64_t value) {
+// Integer square root, rounded down.
+int32_t integerSqrt(int64_t value) {
     auto root = int64_t(std::sqrt(double(value)));
     while (root * root > value) --root;
     while ((root + 1) * (root + 1) <= value) ++root;
     return int32_t(root);
 }
 
-Point lengthened(Point direction, int32_t length) {
-    const int64_t now = std::max(1, rootOf(distance2(direction, {})));
+Point withLength(Point direction, int32_t length) {
+    const int64_t now = std::max(1, integerSqrt(distance2(direction, {})));
     return {int32_t(direction.x * int64_t(length) / now),
             int32_t(direction.z * int64_t(length) / now)};
 }
 
 Point towards(Point from, Point to, int32_t most) {
-    const Point way{to.x - from.x, to.z - from.z};
-    if (distance2(way, {}) <= square(most)) return to;
-    const Point step = lengthened(way, most);
+    const Point offset{to.x - from.x, to.z - from.z};
+    if (distance2(offset, {}) <= square(most)) return to;
+    const Point step = withLength(offset, most);
     return {from.x + step.x, from.z + step.z};
 }
 
@@ -65,7 +65,7 @@ bool inRange(const Tower& tower, Point from, Point at) {
            away >= square(ruleOf(tower).nearest);
 }
 
-// Whom to burn: those that do not burn yet before those that do, and of them the foremost.
+// Prefers enemies that do not burn yet; among equals, the foremost.
 int32_t chooseEnemy(const State& state, const Ground& ground, const Tower& tower, Point from) {
     int32_t best = -1;
     for (size_t i = 0; i < kEnemySlots; ++i) {
@@ -82,8 +82,8 @@ int32_t chooseEnemy(const State& state, const Ground& ground, const Tower& tower
     return best;
 }
 
-// What to water: of the houses that burn the one that has burnt the least, as it can be saved, and
-// one that has flashed over last of all.
+// Prefers the least burnt of the burning houses, since it can be saved. Houses after flashover come
+// last.
 int32_t chooseHouse(const State& state, const Ground& ground, const Burning& burning,
                     const Tower& tower, Point from) {
     int32_t best = -1;
@@ -107,7 +107,7 @@ Point ahead(const Ground& ground, const Enemy& enemy, int32_t ticks) {
     return placeOf(ground, later);
 }
 
-// How fast it goes, mm a tick.
+// Returns the pace, mm per tick.
 int32_t paceOf(const State& state, const Ground& ground, size_t slot) {
     const EnemyRule& rule = kEnemies[size_t(kindOf(slot))];
     const Enemy& enemy = state.enemies[slot];
@@ -123,8 +123,7 @@ int32_t paceOf(const State& state, const Ground& ground, size_t slot) {
     return int32_t(std::max<int64_t>(pace, 4));
 }
 
-void march(State& state, const Ground& ground, const Burning& burning,
-           std::vector<Happening>& happened) {
+void march(State& state, const Ground& ground, const Burning& burning, std::vector<Event>& events) {
     for (size_t i = 0; i < kEnemySlots; ++i) {
         Enemy& enemy = state.enemies[i];
         const EnemyRule& rule = kEnemies[size_t(kindOf(i))];
@@ -138,17 +137,16 @@ void march(State& state, const Ground& ground, const Burning& burning,
             state.coins += rule.bounty;
             state.earned += rule.bounty;
             ++state.felled;
-            happened.push_back({Happening::Type::kFell, int32_t(i), placeOf(ground, enemy), 0});
+            events.push_back({Event::Type::kFell, int32_t(i), placeOf(ground, enemy), 0});
         } else if (enemy.along >= roadLength(ground)) {
             state.lives = std::max(0, state.lives - rule.lives);
-            happened.push_back(
-                {Happening::Type::kGotThrough, int32_t(i), placeOf(ground, enemy), 0});
+            events.push_back({Event::Type::kGotThrough, int32_t(i), placeOf(ground, enemy), 0});
             enemy = {};
         }
     }
 }
 
-// Which kind the wave's next enemy is: they come mixed, by the seed.
+// Returns the kind of the wave's next enemy. The seed shuffles the kinds.
 EnemyKind nextKind(const State& state) {
     const Wave& wave = kWaves[size_t(state.wave)];
     std::array<int32_t, kEnemyKinds> left = wave.count;
@@ -156,29 +154,29 @@ EnemyKind nextKind(const State& state) {
     uint32_t kind = 0;
     for (int32_t i = 0; i <= state.marched; ++i, --sum) {
         int32_t pick =
-            int32_t(scramble(state.seed ^ scramble(uint32_t(state.wave * 64 + i))) % uint32_t(sum));
+            int32_t(mixBits(state.seed ^ mixBits(uint32_t(state.wave * 64 + i))) % uint32_t(sum));
         for (kind = 0; pick >= left[kind]; ++kind) pick -= left[kind];
         --left[kind];
     }
     return EnemyKind(kind);
 }
 
-void bringOn(State& state, std::vector<Happening>& happened) {
+void spawnEnemies(State& state, std::vector<Event>& events) {
     if (size_t(state.wave) >= kWaves.size()) return;
     const Wave& wave = kWaves[size_t(state.wave)];
     if (state.untilWave > 0) --state.untilWave;
-    if (state.marched == countOf(wave)) {  // all are out: over when none is left
+    if (state.marched == countOf(wave)) {  // all have appeared: the wave ends with its last enemy
         const bool any = std::any_of(state.enemies.begin(), state.enemies.end(),
                                      [](const Enemy& e) { return e.phase == Phase::kMarches; });
         if (any) return;
-        happened.push_back({Happening::Type::kWaveOver, state.wave, {}, 0});
+        events.push_back({Event::Type::kWaveOver, state.wave, {}, 0});
         state.coins += kCoinsPerWave;
         ++state.wave;
         state.marched = 0;
         state.untilWave = kBeforeWave;
-        const uint32_t random = scramble(state.seed + 77u * uint32_t(state.wave));
+        const uint32_t random = mixBits(state.seed + 77u * uint32_t(state.wave));
         const int32_t speed = 1500 + int32_t(random % 2500u);
-        state.wanted = lengthened(
+        state.wanted = withLength(
             {int32_t(random >> 8 & 1023) - 512, int32_t(random >> 18 & 1023) - 512}, speed);
         return;
     }
@@ -186,8 +184,7 @@ void bringOn(State& state, std::vector<Happening>& happened) {
     const EnemyKind kind = nextKind(state);
     for (size_t i = 0; i < kEnemySlots; ++i) {
         if (kindOf(i) != kind || state.enemies[i].phase != Phase::kAway) continue;
-        if (state.marched == 0)
-            happened.push_back({Happening::Type::kWaveBegins, state.wave, {}, 0});
+        if (state.marched == 0) events.push_back({Event::Type::kWaveBegins, state.wave, {}, 0});
         ++state.marched;
         Enemy& enemy = state.enemies[i];
         enemy = {};
@@ -196,13 +193,13 @@ void bringOn(State& state, std::vector<Happening>& happened) {
         enemy.side = kind == EnemyKind::kWickerGiant ? 0
                      : state.born % 2                ? kFilesApart
                                                      : -kFilesApart;
-        happened.push_back({Happening::Type::kBorn, int32_t(i), {}, 0});
+        events.push_back({Event::Type::kBorn, int32_t(i), {}, 0});
         state.untilWave = wave.gap;
         return;
     }
 }
 
-void burn(State& state, const Ground& ground, size_t plot, std::vector<Happening>& happened) {
+void burn(State& state, const Ground& ground, size_t plot, std::vector<Event>& events) {
     Tower& tower = state.towers[plot];
     const Point from = ground.plots[plot];
     const bool mortar = tower.kind == TowerKind::kEmberMortar;
@@ -219,22 +216,22 @@ void burn(State& state, const Ground& ground, size_t plot, std::vector<Happening
         return;
     }
     if (tower.flies > 0 && --tower.flies == 0)
-        happened.push_back({Happening::Type::kEmberLands, int32_t(plot), tower.falls,
-                            ofLevel(ruleOf(tower).strength, tower)});
+        events.push_back({Event::Type::kEmberLands, int32_t(plot), tower.falls,
+                          ofLevel(ruleOf(tower).strength, tower)});
     if (!onTarget || tower.wait > 0) return;
     const Point wind = windOf(state, ground);
     tower.wait = ruleOf(tower).reload;
     tower.flies = kEmberTicks;
     tower.falls = {tower.aim.x + wind.x / 8, tower.aim.z + wind.z / 8};
-    happened.push_back({Happening::Type::kShot, int32_t(plot), tower.falls, 0});
+    events.push_back({Event::Type::kShot, int32_t(plot), tower.falls, 0});
 }
 
 void spray(State& state, const Ground& ground, const Burning& burning, size_t plot,
-           std::vector<Happening>& happened) {
+           std::vector<Event>& events) {
     Tower& tower = state.towers[plot];
     tower.target = chooseHouse(state, ground, burning, tower, ground.plots[plot]);
     if (tower.target < 0) return;
-    // To and fro over the roof.
+    // Sweeps the water over the roof.
     constexpr int32_t kReach = 2200, kTurnTicks = 40;
     const int32_t turn = state.tick % (4 * kTurnTicks);
     const int32_t sway = std::abs(turn - 2 * kTurnTicks) - kTurnTicks;  // a triangle wave
@@ -248,12 +245,11 @@ void spray(State& state, const Ground& ground, const Burning& burning, size_t pl
     tower.streams = kValve;
     if (tower.wait > 0) return;
     tower.wait = ruleOf(tower).reload;
-    happened.push_back({Happening::Type::kSprays, int32_t(plot), tower.aim,
-                        ofLevel(ruleOf(tower).strength, tower)});
+    events.push_back(
+        {Event::Type::kSprays, int32_t(plot), tower.aim, ofLevel(ruleOf(tower).strength, tower)});
 }
 
-void work(State& state, const Ground& ground, const Burning& burning,
-          std::vector<Happening>& happened) {
+void work(State& state, const Ground& ground, const Burning& burning, std::vector<Event>& events) {
     for (size_t i = 0; i < kPlots; ++i) {
         Tower& tower = state.towers[i];
         tower.wait = std::max(0, tower.wait - 1);
@@ -261,10 +257,10 @@ void work(State& state, const Ground& ground, const Burning& burning,
         switch (tower.kind) {
             case TowerKind::kFlamethrower:
             case TowerKind::kEmberMortar:
-                burn(state, ground, i, happened);
+                burn(state, ground, i, events);
                 break;
             case TowerKind::kWaterCannon:
-                spray(state, ground, burning, i, happened);
+                spray(state, ground, burning, i, events);
                 break;
             default:
                 break;
@@ -272,24 +268,24 @@ void work(State& state, const Ground& ground, const Burning& burning,
     }
 }
 
-void countHouses(State& state, const Burning& burning, std::vector<Happening>& happened) {
+void countHouses(State& state, const Burning& burning, std::vector<Event>& events) {
     for (size_t i = 0; i < kHouses; ++i) {
         const int32_t before = state.houseBurnt[i];
         state.houseBurnt[i] = std::max(before, burning.houseBurnt[i]);
-        // A flashover lights all that is in it: what has not come down of its roof does so now.
+        // A flashover ignites everything inside, so the remaining beams fall now.
         const bool flashes = burning.houseFlashed[i] && state.flashed[i] == 0;
         for (int32_t beam = 0; beam < kBeams && burning.houseAlight[i]; ++beam) {
             const int32_t falls = kBeamsFallFrom + beam * kBeamsFallEvery;
             const bool fell = before >= falls || state.flashed[i] != 0;
             if (!fell && (flashes || state.houseBurnt[i] >= falls))
-                happened.push_back({Happening::Type::kBeamFalls, int32_t(i), {}, beam});
+                events.push_back({Event::Type::kBeamFalls, int32_t(i), {}, beam});
         }
         if (flashes) {
             state.flashed[i] = 1;
-            happened.push_back({Happening::Type::kFlashesOver, int32_t(i), {}, 0});
+            events.push_back({Event::Type::kFlashesOver, int32_t(i), {}, 0});
         }
         if (before < kHouseIsLost && state.houseBurnt[i] >= kHouseIsLost)
-            happened.push_back({Happening::Type::kHouseLost, int32_t(i), {}, 0});
+            events.push_back({Event::Type::kHouseLost, int32_t(i), {}, 0});
     }
 }
 
@@ -309,7 +305,7 @@ const char* place(State& state, const Ground& ground, const Order& order) {
 
 const char* upgrade(State& state, Tower& tower) {
     if (tower.kind == TowerKind::kNone) return "there is no tower";
-    if (tower.level + 1 == kLevels) return "it is as good as it gets";
+    if (tower.level + 1 == kLevels) return "it has its highest level";
     const int32_t price = priceOf(tower);
     if (price > state.coins) return "not enough coins";
     state.coins -= price;
@@ -323,7 +319,7 @@ const char* upgrade(State& state, Tower& tower) {
 State newGame(uint32_t seed) {
     State state;
     state.seed = seed;
-    state.wind = state.wanted = {-2400, -2000};  // from the sea
+    state.wind = state.wanted = {-2400, -2000};  // wind from the sea
     return state;
 }
 
@@ -343,15 +339,15 @@ Point roadPoint(const Ground& ground, int32_t along, Point* direction) {
     const auto i = size_t(along / Ground::kRoadStep);
     const int32_t rest = along % Ground::kRoadStep;
     const Point a = ground.road[i], b = ground.road[i + 1];
-    if (direction) *direction = lengthened({b.x - a.x, b.z - a.z}, 1000);
+    if (direction) *direction = withLength({b.x - a.x, b.z - a.z}, 1000);
     return {a.x + (b.x - a.x) * rest / Ground::kRoadStep,
             a.z + (b.z - a.z) * rest / Ground::kRoadStep};
 }
 
 Point placeOf(const Ground& ground, const Enemy& enemy) {
-    Point way;
-    const Point at = roadPoint(ground, enemy.along, &way);
-    return {at.x - way.z * enemy.side / 1000, at.z + way.x * enemy.side / 1000};
+    Point direction;
+    const Point at = roadPoint(ground, enemy.along, &direction);
+    return {at.x - direction.z * enemy.side / 1000, at.z + direction.x * enemy.side / 1000};
 }
 
 Point nearestOfRoad(const Ground& ground, Point place) {
@@ -364,7 +360,7 @@ Point fanOf(const State& state, const Ground& ground, size_t plot) {
     const Tower& tower = state.towers[plot];
     if (tower.kind != TowerKind::kWindFan) return {};
     const Point from = ground.plots[plot], to = nearestOfRoad(ground, from);
-    return lengthened({to.x - from.x, to.z - from.z}, ofLevel(ruleOf(tower).strength, tower));
+    return withLength({to.x - from.x, to.z - from.z}, ofLevel(ruleOf(tower).strength, tower));
 }
 
 Point windOf(const State& state, const Ground& ground) {
@@ -436,20 +432,19 @@ const char* give(State& state, const Ground& ground, const Order& order) {
     }
 }
 
-void tick(State& state, const Ground& ground, const Burning& burning,
-          std::vector<Happening>& happened) {
+void tick(State& state, const Ground& ground, const Burning& burning, std::vector<Event>& events) {
     if (state.outcome != Outcome::kPlaying) return;
     ++state.tick;
     state.wind = towards(state.wind, state.wanted, kWindTurns);
-    countHouses(state, burning, happened);
-    march(state, ground, burning, happened);
-    bringOn(state, happened);
-    work(state, ground, burning, happened);
+    countHouses(state, burning, events);
+    march(state, ground, burning, events);
+    spawnEnemies(state, events);
+    work(state, ground, burning, events);
     if (state.lives == 0)
         state.outcome = Outcome::kLost;
     else if (size_t(state.wave) >= kWaves.size())
         state.outcome = Outcome::kWon;
-    if (state.outcome != Outcome::kPlaying) happened.push_back({Happening::Type::kOver, 0, {}, 0});
+    if (state.outcome != Outcome::kPlaying) events.push_back({Event::Type::kOver, 0, {}, 0});
 }
 
 }  // namespace game

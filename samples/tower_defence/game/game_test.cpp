@@ -1,4 +1,4 @@
-// The rules, on a straight road and with fires made by hand.
+// Tests of the rules, on a straight road with scripted fires.
 #include <gtest/gtest.h>
 
 #include "bot.h"
@@ -9,7 +9,7 @@ namespace {
 using namespace game;
 using Type = Order::Type;
 
-// 80 m straight east; plots 4 m south of it, 8 m apart; houses 8 m north.
+// A road of 80 m straight east; plots 4 m south of it, 8 m apart; houses 8 m north.
 Ground straight() {
     Ground ground;
     for (int32_t i = 0; i <= 320; ++i) ground.road.push_back({i * Ground::kRoadStep, 0});
@@ -22,22 +22,22 @@ struct Play {
     Ground ground = straight();
     State state = newGame(1);
     Burning burning;
-    std::vector<Happening> happened;
+    std::vector<Event> events;
 
     void run(int32_t ticks) {
-        for (int32_t i = 0; i < ticks; ++i) tick(state, ground, burning, happened);
+        for (int32_t i = 0; i < ticks; ++i) tick(state, ground, burning, events);
     }
-    size_t count(Happening::Type type) const {
-        return size_t(std::count_if(happened.begin(), happened.end(),
-                                    [&](const Happening& h) { return h.type == type; }));
+    size_t count(Event::Type type) const {
+        return size_t(std::count_if(events.begin(), events.end(),
+                                    [&](const Event& h) { return h.type == type; }));
     }
-    // A wave called at once, its first enemy on the road.
+    // Calls a wave and returns its first enemy on the road.
     size_t first() {
         EXPECT_EQ(give(state, ground, {Type::kCallWave, 0, {}}), nullptr);
         run(1);
         for (size_t i = 0; i < kEnemySlots; ++i)
             if (state.enemies[i].phase == Phase::kMarches) return i;
-        ADD_FAILURE() << "nobody came";
+        ADD_FAILURE() << "no enemy appeared";
         return 0;
     }
 };
@@ -72,7 +72,7 @@ TEST(GameRules, ThreeLevelsAndNoMore) {
     EXPECT_EQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}), nullptr);
     EXPECT_EQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}), nullptr);
     EXPECT_STREQ(give(play.state, play.ground, {Type::kUpgrade, 3, {}}),
-                 "it is as good as it gets");
+                 "it has its highest level");
     EXPECT_EQ(priceOf(play.state.towers[3]), 0);
 }
 
@@ -89,7 +89,7 @@ TEST(GameRules, AnEnemyFallsWhenEnoughOfItHasBurnt) {
     play.run(1);
     EXPECT_EQ(play.state.enemies[slot].phase, Phase::kFalls);
     EXPECT_EQ(play.state.coins, coins + rule.bounty);
-    EXPECT_EQ(play.count(Happening::Type::kFell), 1u);
+    EXPECT_EQ(play.count(Event::Type::kFell), 1u);
 }
 
 TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
@@ -98,8 +98,8 @@ TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
     while (play.state.outcome == Outcome::kPlaying && --guard) play.run(1);
     EXPECT_EQ(play.state.outcome, Outcome::kLost);
     EXPECT_EQ(play.state.lives, 0);
-    EXPECT_EQ(play.count(Happening::Type::kFell), 0u);
-    EXPECT_EQ(play.count(Happening::Type::kOver), 1u);
+    EXPECT_EQ(play.count(Event::Type::kFell), 0u);
+    EXPECT_EQ(play.count(Event::Type::kOver), 1u);
     const uint64_t end = hashOf(play.state);
     play.run(10);
     EXPECT_EQ(hashOf(play.state), end);
@@ -107,13 +107,13 @@ TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
 
 TEST(GameRules, EveryWaveBringsWhoItNames) {
     Play play;
-    play.burning.enemyBurnt.fill(1000);  // whoever comes falls at once
+    play.burning.enemyBurnt.fill(1000);  // every enemy falls at once
     std::array<int32_t, kEnemyKinds> born{}, named{};
     int32_t guard = 200000;
     while (play.state.outcome == Outcome::kPlaying && --guard) play.run(1);
     ASSERT_EQ(play.state.outcome, Outcome::kWon);
-    for (const Happening& h : play.happened)
-        if (h.type == Happening::Type::kBorn) ++born[size_t(kindOf(size_t(h.slot)))];
+    for (const Event& h : play.events)
+        if (h.type == Event::Type::kBorn) ++born[size_t(kindOf(size_t(h.slot)))];
     for (const Wave& wave : kWaves)
         for (size_t k = 0; k < kEnemyKinds; ++k) named[k] += wave.count[k];
     EXPECT_EQ(born, named);
@@ -139,7 +139,7 @@ TEST(GameRules, FlamethrowersTurnToWhatDoesNotBurnYet) {
     play.burning.enemyAlight[ahead] = true;
     play.run(2);
     EXPECT_EQ(play.state.towers[0].target, int32_t(behind));
-    play.burning.enemyAlight[behind] = true;  // all burn: the foremost again
+    play.burning.enemyAlight[behind] = true;  // all burn: back to the foremost
     play.run(2);
     EXPECT_EQ(play.state.towers[0].target, int32_t(ahead));
     EXPECT_GT(play.state.towers[0].streams, 0);
@@ -150,15 +150,14 @@ TEST(GameRules, EmbersComeDownWhereTheyWereAimedAndTheWindBlew) {
     ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 1, TowerKind::kEmberMortar}), nullptr);
     play.first();
     int32_t guard = 3000;
-    while (--guard && play.count(Happening::Type::kEmberLands) == 0) play.run(1);
-    ASSERT_EQ(play.count(Happening::Type::kEmberLands), 1u);
-    const Happening& landed = play.happened.back();
-    const auto shot =
-        std::find_if(play.happened.begin(), play.happened.end(),
-                     [](const Happening& h) { return h.type == Happening::Type::kShot; });
+    while (--guard && play.count(Event::Type::kEmberLands) == 0) play.run(1);
+    ASSERT_EQ(play.count(Event::Type::kEmberLands), 1u);
+    const Event& landed = play.events.back();
+    const auto shot = std::find_if(play.events.begin(), play.events.end(),
+                                   [](const Event& h) { return h.type == Event::Type::kShot; });
     EXPECT_EQ(landed.place.x, shot->place.x);
     EXPECT_EQ(landed.place.z, shot->place.z);
-    EXPECT_LT(landed.place.z, 700 - 2000 / 8 + 1);  // the wind blows north, over the road
+    EXPECT_LT(landed.place.z, 700 - 2000 / 8 + 1);  // the wind blows north, across the road
     EXPECT_EQ(landed.strength, 700);
 }
 
@@ -166,14 +165,14 @@ TEST(GameRules, WaterGoesToTheHouseThatCanBeSaved) {
     Play play;
     ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kWaterCannon}), nullptr);
     play.run(50);
-    EXPECT_EQ(play.count(Happening::Type::kSprays), 0u);
+    EXPECT_EQ(play.count(Event::Type::kSprays), 0u);
     play.burning.houseAlight[0] = play.burning.houseAlight[1] = true;
     play.burning.houseBurnt[1] = 400;
     play.run(200);
     EXPECT_EQ(play.state.towers[0].target, 0);
-    EXPECT_GT(play.count(Happening::Type::kSprays), 10u);
-    for (const Happening& h : play.happened) {
-        if (h.type != Happening::Type::kSprays) continue;
+    EXPECT_GT(play.count(Event::Type::kSprays), 10u);
+    for (const Event& h : play.events) {
+        if (h.type != Event::Type::kSprays) continue;
         EXPECT_LT(std::abs(h.place.x), 5000);
         EXPECT_LT(std::abs(h.place.z + 8000), 5000);
     }
@@ -197,7 +196,7 @@ TEST(GameRules, BeamsFallOnceEachWhileARoofBurns) {
     Play play;
     play.burning.houseBurnt[2] = kBeamsFallFrom + kBeamsFallEvery;
     play.run(2);
-    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), 0u) << "its fire is out";
+    EXPECT_EQ(play.count(Event::Type::kBeamFalls), 0u) << "its fire is out";
     Play burns;
     burns.burning.houseAlight[2] = true;
     for (const int32_t burnt : {kBeamsFallFrom - 1, kBeamsFallFrom + kBeamsFallEvery, 1000, 1000}) {
@@ -205,8 +204,8 @@ TEST(GameRules, BeamsFallOnceEachWhileARoofBurns) {
         burns.run(1);
     }
     std::vector<int32_t> beams;
-    for (const Happening& h : burns.happened)
-        if (h.type == Happening::Type::kBeamFalls && h.slot == 2) beams.push_back(h.strength);
+    for (const Event& h : burns.events)
+        if (h.type == Event::Type::kBeamFalls && h.slot == 2) beams.push_back(h.strength);
     ASSERT_EQ(beams.size(), size_t(kBeams));
     for (int32_t i = 0; i < kBeams; ++i) EXPECT_EQ(beams[size_t(i)], i);
 }
@@ -220,21 +219,21 @@ TEST(GameRules, AFlashoverLightsTheWholeHouseOnceAndIsWateredLast) {
     play.run(1);
     EXPECT_EQ(play.state.towers[0].target, 0);
     const int32_t before = score(play.state);
-    play.happened.clear();
+    play.events.clear();
     play.burning.houseFlashed[0] = true;
     play.run(3);
-    EXPECT_EQ(play.count(Happening::Type::kFlashesOver), 1u);
-    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), size_t(kBeams - 1)) << "one had fallen";
+    EXPECT_EQ(play.count(Event::Type::kFlashesOver), 1u);
+    EXPECT_EQ(play.count(Event::Type::kBeamFalls), size_t(kBeams - 1)) << "one beam had fallen";
     EXPECT_EQ(score(play.state), before - kScoreForFlash);
     EXPECT_EQ(play.state.towers[0].target, 1) << "what can be saved comes first";
-    play.burning.houseFlashed[0] = false;  // and again: it is told once
+    play.burning.houseFlashed[0] = false;  // and again: the event comes once
     play.run(1);
     play.burning.houseFlashed[0] = true;
     play.burning.houseBurnt[0] = 1000;
     play.run(1);
-    EXPECT_EQ(play.count(Happening::Type::kFlashesOver), 1u);
-    EXPECT_EQ(play.count(Happening::Type::kBeamFalls), size_t(kBeams - 1));
-    play.burning.houseAlight[1] = false;  // alone it is watered all the same
+    EXPECT_EQ(play.count(Event::Type::kFlashesOver), 1u);
+    EXPECT_EQ(play.count(Event::Type::kBeamFalls), size_t(kBeams - 1));
+    play.burning.houseAlight[1] = false;  // as the only burning house, it still gets water
     play.run(1);
     EXPECT_EQ(play.state.towers[0].target, 0);
 }
@@ -244,22 +243,22 @@ TEST(GameRules, HousesAreLostOnceAndCount) {
     const int32_t before = score(play.state);
     play.burning.houseBurnt[4] = kHouseIsLost;
     play.run(3);
-    EXPECT_EQ(play.count(Happening::Type::kHouseLost), 1u);
+    EXPECT_EQ(play.count(Event::Type::kHouseLost), 1u);
     EXPECT_EQ(score(play.state), before - kScorePerHouse);
     EXPECT_EQ(standing(play.state), 1000 - 500 / int32_t(kHouses));
 }
 
-// The bot's game with fires that follow a jet: the same twice, another with another seed.
+// The bot's game with fires that follow a jet: equal for equal seeds, different otherwise.
 uint64_t botsGame(uint32_t seed, State* end) {
     Play play;
     play.state = newGame(seed);
     while (play.state.outcome == Outcome::kPlaying && play.state.tick < 60000) {
         give(play.state, play.ground, botsOrder(play.state));
-        for (const Happening& h : play.happened)
-            if (h.type == Happening::Type::kBorn)
+        for (const Event& h : play.events)
+            if (h.type == Event::Type::kBorn)
                 play.burning.enemyBurnt[size_t(h.slot)] = play.burning.enemyAlight[size_t(h.slot)] =
                     0;
-        play.happened.clear();
+        play.events.clear();
         for (const Tower& tower : play.state.towers)
             if (tower.streams > 0 && tower.target >= 0)
                 play.burning.enemyAlight[size_t(tower.target)] = true;

@@ -1,5 +1,5 @@
-// The numbers of the game: enemies, towers, waves. All of them integers: millimetres, ticks of
-// 1/32 s, thousandths.
+// The numbers of the game: enemies, towers, waves. All are integers: millimetres, ticks of 1/32 s,
+// thousandths.
 #pragma once
 
 #include <array>
@@ -9,19 +9,19 @@
 namespace game {
 
 constexpr int32_t kTicksPerSecond = 32;
-constexpr int32_t kLevels = 3;  // of a tower
+constexpr int32_t kLevels = 3;  // levels per tower
 
 enum class EnemyKind : int32_t { kStrawMan, kYuleGoat, kLogKnight, kWickerGiant, kCount };
 constexpr size_t kEnemyKinds = size_t(EnemyKind::kCount);
 
 struct EnemyRule {
     const char* name;
-    int32_t pace;    // mm a tick
-    int32_t falls;   // thousandths of it that have burnt when it falls
+    int32_t pace;    // mm per tick
+    int32_t falls;   // thousandths burnt at which it falls
     int32_t bounty;  // coins
-    int32_t lives;   // that it costs when it comes to the mill
+    int32_t lives;   // lives lost when it reaches the mill
     bool panics;     // runs while it burns
-    int32_t most;    // of them at a time
+    int32_t most;    // most of them at a time
 };
 constexpr std::array<EnemyRule, kEnemyKinds> kEnemies{{
     {"straw man", 44, 450, 8, 1, true, 8},
@@ -44,29 +44,29 @@ constexpr size_t kTowerKinds = size_t(TowerKind::kCount);
 
 struct TowerRule {
     const char* name;
-    std::array<int32_t, kLevels> price;     // coins, of each level beyond the one before
+    std::array<int32_t, kLevels> price;     // coins, per level above the previous one
     std::array<int32_t, kLevels> range;     // mm
-    std::array<int32_t, kLevels> strength;  // see below
+    std::array<int32_t, kLevels> strength;  // meaning by kind, see below
     int32_t nearest;                        // mm
-    int32_t reload;                         // ticks between two shots; 0: it streams
+    int32_t reload;                         // ticks between two shots; 0: a stream
 };
 constexpr std::array<TowerRule, kTowerKinds> kTowers{{
     {"nothing", {}, {}, {}, 0, 0},
-    // kW of its jet. The fuel sticks and burns on.
+    // strength: kW of its jet. The fuel sticks and keeps burning.
     {"flamethrower", {120, 90, 120}, {8600, 9200, 9800}, {500, 700, 1000}, 1500, 0},
-    // mm: radius of the fire where its ember comes down, a little downwind of where it was aimed
+    // strength: mm, radius of the fire where its ember lands, a little downwind of its aim
     {"ember mortar", {180, 130, 170}, {14000, 16000, 18000}, {700, 950, 1200}, 5000, 128},
-    // g of water on each square metre, eight times a second, where it strikes
+    // strength: g/m^2 of water where it strikes, eight times a second
     {"water cannon", {100, 80, 100}, {15000, 17000, 19000}, {60, 110, 180}, 0, 4},
-    // mm/s added to the valley's wind; and thousandths of their pace that it takes from enemies
-    // near it, a fifth of this
+    // strength: mm/s added to the valley's wind. A fifth of it, as thousandths of pace, slows
+    // nearby enemies.
     {"wind fan", {90, 70, 90}, {6500, 7000, 7500}, {1200, 1900, 2600}, 0, 0},
 }};
-constexpr int32_t kRefund = 700;  // thousandths of what was paid
+constexpr int32_t kRefund = 700;  // thousandths of the price
 
 struct Wave {
     std::array<int32_t, kEnemyKinds> count;
-    int32_t gap;  // ticks from one enemy to the next
+    int32_t gap;  // ticks between two enemies
 };
 constexpr std::array<Wave, 10> kWaves{{
     {{4, 0, 0, 0}, 72},
@@ -80,20 +80,20 @@ constexpr std::array<Wave, 10> kWaves{{
     {{14, 8, 4, 1}, 28},
     {{16, 8, 8, 2}, 26},
 }};
-constexpr int32_t kBeforeWave = 20 * kTicksPerSecond;  // ticks of peace; may be called off
+constexpr int32_t kBeforeWave = 20 * kTicksPerSecond;  // ticks of peace; the player may skip them
 constexpr int32_t kCoinsAtStart = 320, kLivesAtStart = 20;
-constexpr int32_t kCoinsPerSecondEarly = 1;  // for calling a wave before its time
-constexpr int32_t kCoinsPerWave = 40;        // for each that is over
+constexpr int32_t kCoinsPerSecondEarly = 1;  // bonus for calling a wave early
+constexpr int32_t kCoinsPerWave = 40;        // bonus per finished wave
 
-// The score: what was felled, what of the village stands, who never came to the mill.
+// The score: kills, unburnt village, lives left.
 constexpr int32_t kScorePerCoin = 10, kScorePerLife = 100, kScorePerHouse = 500,
                   kScorePerWave = 200;
-constexpr int32_t kScoreForFlash = 150;  // taken for each house that flashed over
+constexpr int32_t kScoreForFlash = 150;  // penalty per house that flashed over
 constexpr int32_t kHouseIsLost = 500;    // thousandths burnt
 
-// A roof does not touch the walls that carry it: what falls from it lights them, piece by piece.
-constexpr int32_t kBeams = 32;                               // of a house
+// A roof does not touch its walls. Its falling beams ignite them, piece by piece.
+constexpr int32_t kBeams = 32;                               // per house
 constexpr int32_t kBeamsFallFrom = 60, kBeamsFallEvery = 8;  // thousandths burnt
-constexpr int32_t kBeamBurns = 320;                          // mm about where it lands
+constexpr int32_t kBeamBurns = 320;                          // mm around the landing point
 
 }  // namespace game

@@ -1,4 +1,4 @@
-// Ground and road with their relief as parallax.
+// Ground and road with a parallax relief.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define FW_LAND

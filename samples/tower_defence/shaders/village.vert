@@ -5,7 +5,7 @@
 layout(location = 0) in vec3 inPosition;
 layout(location = 1) in vec3 inNormal;
 layout(location = 2) in vec2 inUv;
-layout(location = 3) in vec4 inTraits;  // open sky, glow, softness; m of sway in 1 m/s
+layout(location = 3) in vec4 inTraits;  // open sky, glow, softness; m of sway at 1 m/s
 layout(location = 4) in vec4 inRow0;    // model to world, three rows
 layout(location = 5) in vec4 inRow1;
 layout(location = 6) in vec4 inRow2;
@@ -17,7 +17,7 @@ layout(location = 2) out vec2 outUv;
 layout(location = 3) out vec3 outTraits;
 layout(location = 4) out vec3 outTint;
 
-// Gusts lie over the land and go with the wind.
+// Gusts cover the land and move with the wind.
 vec2 windAt(vec2 place) {
     vec2 gusts = place - frame.wind.zw;
     return frame.wind.xy * (1.0 + 0.45 * sin(dot(gusts, vec2(0.55, 0.2))) +

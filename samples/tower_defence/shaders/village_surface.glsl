@@ -1,16 +1,16 @@
-// How everything solid of the village is shaded. With FW_LAND the relief of ground and road is
-// hollow: parallax occlusion, with its own depth and shadows.
+// Shading of all opaque surfaces of the village. FW_LAND adds parallax occlusion to ground and
+// road, with depth and shadows.
 #include "frame.glsl"
 
-// 0 a kit model, 1 the ground, 2 the road, 3 the pond
+// 0: a kit model, 1: the ground, 2: the road, 3: the pond
 layout(constant_id = 0) const int kSurface = 0;
 
 layout(set = 1, binding = 0) uniform sampler2D colorMap;
 layout(set = 1, binding = 1) uniform sampler2D reliefMap;
 
 layout(push_constant) uniform Push {
-    vec4 uvWindow;  // picture uv = (uv - xy) * zw
-    vec4 metres;    // xy: the picture's size in metres
+    vec4 uvWindow;  // image uv = (uv - xy) * zw
+    vec4 metres;  // xy: the image's size in m
 } push;
 
 layout(location = 0) in vec3 inPlace;
@@ -28,7 +28,7 @@ struct Skin {
     float roughness, metalness, soft;
 };
 
-// The sun's share that reaches a place: the four texels around it, weighted by nearness.
+// Returns the visible share of the sun: the four nearest texels, weighted by distance.
 float sunlight(vec3 place, vec3 normal) {
     vec3 from = place + normal * (1.6 * frame.toSun.w);
     vec4 s = frame.shadowMatrix * vec4(from, 1.0);
@@ -40,7 +40,7 @@ float sunlight(vec3 place, vec3 normal) {
 vec3 shade(Skin skin, vec3 n, vec3 toEye, vec3 toLight, vec3 light, float wrap) {
     float facing = clamp((dot(n, toLight) + wrap) / (1.0 + wrap), 0.0, 1.0);
     vec3 result = skin.albedo * (1.0 - 0.85 * skin.metalness) * (facing / kPi);
-    if (kSurface == 1) return light * result;  // grass and dirt do not shine
+    if (kSurface == 1) return light * result;  // grass and dirt have no specular highlight
     vec3 h = normalize(toLight + toEye);
     float a = skin.roughness * skin.roughness, a2 = a * a;
     float nh = clamp(dot(n, h), 0.0, 1.0), d = nh * nh * (a2 - 1.0) + 1.0;
@@ -51,7 +51,7 @@ vec3 shade(Skin skin, vec3 n, vec3 toEye, vec3 toLight, vec3 light, float wrap) 
     return light * (result + (f0 + (1.0 - f0) * fresnel) * gloss);
 }
 
-// The normal bent by the picture's slopes, through the surface gradient of the uv.
+// Bends the normal by the image's slopes, through the surface gradient of the uv.
 vec3 bend(vec3 n, vec2 slopes, vec2 metres) {
     vec3 px = dFdx(inPlace), py = dFdy(inPlace);
     vec2 ux = dFdx(metres), uy = dFdy(metres);
@@ -63,7 +63,7 @@ vec3 bend(vec3 n, vec2 slopes, vec2 metres) {
 
 #ifdef FW_LAND
 layout(depth_greater) out float gl_FragDepth;
-float deepest() { return kSurface == 2 ? 0.045 : 0.16; }  // m, as paint.h
+float deepest() { return kSurface == 2 ? 0.045 : 0.16; }  // m, as in paint.h
 float reliefLod;
 float reliefDepth(vec2 at) {
     float height = textureLod(reliefMap, at, reliefLod).a;
@@ -71,7 +71,7 @@ float reliefDepth(vec2 at) {
 }
 #include "parallax.h"
 
-// How far the picture's uv goes for each m that a direction goes along the surface.
+// Movement of the image's uv per m along the surface.
 struct Gradient {
     vec3 u, v;
 };
@@ -93,7 +93,7 @@ void main() {
     vec2 uv = (inUv - push.uvWindow.xy) * push.uvWindow.zw;
     vec2 metres = uv * push.metres.xy;  // of the surface, for its slopes
     vec3 place = inPlace, toEye = normalize(frame.eye.xyz - place);
-    float shadow = 1.0;  // of the relief itself
+    float shadow = 1.0;  // shadow of the relief itself
 #ifdef FW_LAND
     Gradient gradient = gradientOf(n, uv);
     vec2 texels = vec2(textureSize(reliefMap, 0));
@@ -109,10 +109,10 @@ void main() {
     ray.sag = 0.0;
     ray.most = 1e3;
     float crossed = length(ray.along * texels) * deep / ray.down;
-    float way = reliefHit(ray, deep, reliefLayers(ray.down, crossed, 6.0, 32.0));
-    float depth = reliefBelow(ray, way);
-    uv += ray.along * way;
-    place -= toEye * way;
+    float travel = reliefHit(ray, deep, reliefLayers(ray.down, crossed, 6.0, 32.0));
+    float depth = reliefBelow(ray, travel);
+    uv += ray.along * travel;
+    place -= toEye * travel;
     vec4 clip = frame.viewProjection * vec4(place, 1.0);
     gl_FragDepth = max(clip.z / clip.w, gl_FragCoord.z);
     float up = dot(frame.toSun.xyz, n);
@@ -155,7 +155,7 @@ void main() {
     vec3 f0 = mix(vec3(0.04), skin.albedo, skin.metalness);
     result += ambient * open *
               (skin.albedo * (1.0 - 0.85 * skin.metalness) + f0 * (0.9 * skin.metalness));
-    if (skin.soft > 0.5) {  // thin things glow when the sun stands behind them
+    if (skin.soft > 0.5) {  // thin surfaces glow against the sun
         float behind = clamp(-dot(toEye, frame.toSun.xyz), 0.0, 1.0);
         result += skin.albedo * frame.sun.rgb * (0.12 * behind * behind * behind * behind * open);
     }
@@ -166,7 +166,7 @@ void main() {
         vec3 mirrored = mix(frame.haze.rgb, frame.sky.rgb * 1.1, smoothstep(-0.1, 0.7, r.y));
         result += mirrored * (kSurface == 3 ? vec3(1.6 * fresnel) : 0.35 * skin.albedo * open);
     }
-    // Fires are large and near: their light is soft, and its gloss would not be seen.
+    // Fires are large and near: their light is soft and needs no specular term.
     int lights = int(frame.sun.w);
     vec3 fire = vec3(0.0);
     for (int i = 0; i < lights; ++i) {

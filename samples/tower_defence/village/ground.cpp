@@ -16,7 +16,7 @@ struct RoadLine {
     float length = 0;
 };
 
-// A Catmull-Rom curve through the bends; the first and last key only give the end tangents.
+// A Catmull-Rom curve through the bends. The first and last keys only define the end tangents.
 RoadLine makeRoadLine() {
     const std::array<Vec2, 15> keys{{{-38, 7.2f},
                                      {-28, 8.6f},
@@ -170,7 +170,7 @@ Model makeTerrain() {
     MeshBuilder b("terrain", 1, 1024);
     b.use(Texture::kGrass, Material::kGround, {1, 1, 1});
     b.crease = -1;
-    auto spread = [](float t) {  // finer in the middle, where the game is
+    auto spread = [](float t) {  // finer in the centre, where the game takes place
         const float k = 2 * t - 1;
         return 36 * (0.62f * k + 0.38f * k * k * k);
     };
@@ -211,7 +211,7 @@ Model makePondWater() {
     return b.finish();
 }
 
-// The place where a ray from the pond's middle reaches a given pond distance.
+// Returns the point where a ray from the pond's centre reaches a given pond distance.
 static Vec2 shorePoint(Vec2 direction, float distance) {
     float low = 0, high = 12;
     for (int k = 0; k < 24; ++k) {
@@ -221,8 +221,8 @@ static Vec2 shorePoint(Vec2 direction, float distance) {
     return kPondCentre + direction * low;
 }
 
-// A round bank over the coarse terrain, with lily pads and boulders. It stays shallow: a steep
-// bank lies in the low sun's shade and reads as a black crescent.
+// A round bank over the coarse terrain, with lily pads and boulders. A steep bank would lie in the
+// low sun's shade and read as a black crescent.
 Model makePondShore() {
     MeshBuilder b("pond shore", 5, 256);
     b.use(Texture::kGrass, Material::kGround, {1, 1, 1});

@@ -1,4 +1,4 @@
-// Puts the kit together in the order of Kit.
+// Assembles the kit in the order of Kit.
 #include "kit.h"
 
 #include "kit_parts.h"

@@ -1,5 +1,5 @@
-// The kit: every model of the village, by name.
-// Metres, y up, front = +z, origin on the ground with a little root below it for slopes.
+// The kit: all models of the village, by name. Metres, y up, front = +z, origin on the ground. A
+// short root reaches below it for slopes.
 #pragma once
 
 #include <vector>
@@ -54,7 +54,7 @@ enum class Kit : int {
     kCount,
 };
 
-// All models in the order of Kit. Deterministic.
+// Returns all models in the order of Kit. Deterministic.
 std::vector<Model> makeKit();
 
 }  // namespace village

@@ -5,16 +5,16 @@
 
 namespace village {
 
-// A closed thatched roof: rounded-rectangle rings lofted from the eave to the ridge in stepped
-// courses, each with a ragged lip over the one below.
+// A closed thatched roof: rounded-rectangle rings, lofted from eave to ridge in stepped courses
+// with ragged lips.
 struct Thatch {
     float length, width;  // m, of the walls below
     float eave, ridge;    // m, heights
-    float hip;            // m, how far the ridge's ends are drawn in
+    float hip;            // m, inset of the ridge's ends
     int courses;
     int sides;
     Vec3 tint;
-    bool cone = false;  // a round roof: length equals width and there is no ridge
+    bool cone = false;  // a round roof without a ridge: length equals width
 };
 
 struct ThatchRing {
@@ -54,7 +54,7 @@ static void addThatchShell(MeshBuilder& b, const Thatch& roof) {
         const float a =
             mix(roof.length / 2 - roof.hip, roof.length / 2 + kOverhang, t) + off * 0.55f;
         const float w = mix(0.05f, roof.width / 2 + kOverhang, t) + off * 0.55f;
-        // A superellipse: boxy at the eave where it meets the walls, round towards the ridge.
+        // A superellipse: boxy at the eave above the walls, round towards the ridge.
         const float power = roof.cone ? 1.0f : mix(0.75f, 0.42f, t);
         const float c = std::cos(angle), s = std::sin(angle);
         Vec3 p{a * std::copysign(std::pow(std::fabs(c), power), c), 0,
@@ -101,7 +101,7 @@ static void addThatch(MeshBuilder& b, const Thatch& roof) {
     b.crease = 0.6f;
 }
 
-// On a wall that faces +z.
+// A window on a wall that faces +z.
 static void addWindow(MeshBuilder& b, Vec3 c, Vec3 shutter, bool flowers) {
     b.use(Texture::kGlow, Material::kPaint, {0.10f, 0.075f, 0.045f}, 1);
     b.quad(c + Vec3{-0.27f, -0.32f, 0.02f}, c + Vec3{0.27f, -0.32f, 0.02f},
@@ -127,11 +127,11 @@ static void addWindow(MeshBuilder& b, Vec3 c, Vec3 shutter, bool flowers) {
     }
 }
 
-// The wall stands on the stone plinth, at this height.
+// Height of the stone plinth below the walls.
 constexpr float kSill = 0.35f;
 
-// Dark timbers stand a hand's breadth proud of the limewash. No hut shows its back to the camera,
-// which only has its corner posts.
+// Dark timbers protrude from the limewash. The back faces away from the camera and has only corner
+// posts.
 static void addHutFrame(MeshBuilder& b, const HutStyle& s) {
     const float y0 = kSill, y1 = kSill + s.wallHeight, a = s.length / 2, w = s.width / 2;
     useTimber(b);
@@ -202,7 +202,7 @@ Model makeRoundHut(uint32_t seed) {
     b.lathe({{1.62f, 0.5f}, {1.58f, 1.75f}}, 12);
     useTimber(b);
     for (int i = 0; i < 8; ++i) {
-        if (i == 5 || i == 6) continue;  // behind
+        if (i == 5 || i == 6) continue;  // hidden behind
         const float t = kPi * (float(i) + 0.5f) / 4, c = std::cos(t), s = std::sin(t);
         b.beam({1.62f * c, 0.55f, 1.62f * s}, {1.58f * c, 1.8f, 1.58f * s}, 0.14f, 0.14f, 1,
                kSidesOnly);
@@ -257,7 +257,7 @@ Model makeBarn(uint32_t seed) {
     b.blob({0, H + 0.55f, a + 0.1f}, {0.5f, 0.25f, 0.3f}, 7, 3, 0.25f);
     b.frame = Frame{};
     b.use(Texture::kPlank, Material::kWood, palette::kOldWood * 0.8f);
-    // a board roof in two stepped courses per slope, its ridge sagging a little
+    // A board roof in two stepped courses per slope; its ridge sags slightly.
     for (int s : {-1, 1})
         for (int c : {0, 1}) {
             float t0 = c ? 0 : 0.46f, t1 = c ? 0.56f : 1.17f, y = c ? 0.1f : 0;
@@ -286,7 +286,7 @@ Model makeWindmill(uint32_t seed) {
     b.crease = 0.6f;
     useTimber(b);
     for (int i = 0; i < 8; ++i) {
-        if (i == 5 || i == 6) continue;  // behind
+        if (i == 5 || i == 6) continue;  // hidden behind
         float t = kPi * (i + 0.5f) / 4, c = std::cos(t), s = std::sin(t);
         b.beam({2.02f * c, 2.2f, 2.02f * s}, {1.43f * c, 6.8f, 1.43f * s}, 0.15f, 0.15f, 0.9f,
                kSidesOnly);

@@ -3,7 +3,7 @@
 
 namespace village {
 
-// Two slanted embers at +-dx of c.
+// Two slanted ember eyes at +-dx of c.
 static void addEyes(MeshBuilder& b, Vec3 c, float dx, float s) {
     b.use(Texture::kGlow, Material::kStraw, {0.25f, 0.03f, 0.0f}, 5);
     for (int k : {-1, 1})
@@ -89,7 +89,7 @@ Model makeYuleGoat(uint32_t seed) {
 
 Model makeLogKnight(uint32_t seed) {
     MeshBuilder b("log knight", seed, 160);
-    enum Ends { kNone, kFar, kBoth };  // which of them show
+    enum Ends { kNone, kFar, kBoth };  // visible ends
     auto log = [&](Vec3 a, Vec3 c, float r0, float r1, int n, Ends ends) {
         b.use(Texture::kBark, Material::kWood, palette::kPeeledLog);
         b.tube({a, c}, {r0, r1}, n, false);

@@ -1,4 +1,4 @@
-// What grows and what is reaped: trees, fences, hay and the small tufts.
+// Plants and harvest: trees, fences, hay and small tufts.
 #include "kit_parts.h"
 
 namespace village {
@@ -31,16 +31,17 @@ Model makeWattle(uint32_t seed) {
     b.grid(6, 1, 0.8f, 2.0f, [](float u, float v) {
         return Vec3{2 * u - 1, 0.1f + 0.65f * v, 0.07f * std::cos(kPi * 3 * u)};
     });
-    b.fine = true;  // from afar the front shows on both sides
+    b.fine = true;  // from afar, the front side suffices
     b.grid(6, 1, 0.8f, 2.0f, [](float u, float v) {
         return Vec3{1 - 2 * u, 0.1f + 0.65f * v, 0.07f * std::cos(kPi * 3 * (1 - u)) - 0.02f};
     });
     return b.finish();
 }
 
-// A leaning trunk of the given height with limbs; leaves are the caller's, unless it is bare.
+// A leaning trunk of the given height with limbs. The caller adds leaves, unless it is bare.
 static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float reach, bool bare) {
-    b.sway.yield = bare ? 0 : 0.0008f;  // the whole tree, or its crown would part from it
+    b.sway.yield = bare ? 0 : 0.0008f;  // applies to the whole tree, or the crown would separate
+                                        // from it
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
     const float lean = b.random(-0.25f, 0.25f);
     b.tube({{0, -0.3f, 0},
@@ -48,7 +49,7 @@ static void addTrunk(MeshBuilder& b, float height, float top, int limbs, float r
             {lean * 0.5f, height * 0.35f, 0.1f},
             {lean, height * top, 0}},
            {0.42f, 0.26f, 0.2f, 0.1f}, 5, false);
-    b.fine = !bare;  // leaves hide most of a limb
+    b.fine = !bare;  // leaves hide most limbs
     for (int i = 0; i < limbs; ++i) {
         const float t = float(i) * 2.4f + b.random(), y = height * (0.3f + 0.07f * float(i));
         const Vec3 root{lean * 0.6f, y, 0};
@@ -100,7 +101,7 @@ Model makeBush(uint32_t seed) {
     return b.finish();
 }
 
-// Where leaves hide all but its foot.
+// A trunk whose leaves hide all but its foot.
 static void addPlainTrunk(MeshBuilder& b) {
     b.sway.yield = 0.0008f;
     b.use(Texture::kBark, Material::kWood, palette::kOldWood * 0.75f);
@@ -135,7 +136,7 @@ Model makeFarPine(uint32_t seed) {
         const float y = 1.1f + 1.6f * float(i), r = 1.75f - 0.48f * float(i);
         b.tint = palette::kLeafPine * (0.9f + 0.15f * float(i));
         std::vector<Vec2> tier{{r, y - 0.12f}, {r * 0.5f, y + 0.85f}, {0, y + 2.0f}};
-        if (i > 0) tier.erase(tier.begin() + 1);  // only the lowest shows its waist
+        if (i > 0) tier.erase(tier.begin() + 1);  // only the lowest tier shows its waist
         b.lathe(tier, 5, 0.22f, 0.5f * float(i));
     }
     return b.finish();
@@ -184,7 +185,7 @@ Model makeBales(uint32_t seed) {
     return b.finish();
 }
 
-// Blades are lit as one: their normals all agree.
+// All blades share one normal, so they are lit as one.
 static void useBlades(MeshBuilder& b, Material material, Vec3 tint) {
     b.use(Texture::kStraw, material, tint);
     b.crease = -1;
@@ -200,7 +201,7 @@ Model makeDryGrass(uint32_t seed) {
     return b.finish();
 }
 
-// A strip of two metres along x.
+// A strip of 2 m along x.
 Model makeWheat(uint32_t seed) {
     MeshBuilder b("wheat", seed, 64);
     b.sway.yield = 0.035f;

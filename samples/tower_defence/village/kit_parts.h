@@ -16,7 +16,7 @@ struct HutStyle {
     float length = 4, width = 3.2f;  // m, of the walls
     float wallHeight = 2.05f;        // m
     float rise = 2.15f;              // m, eave to ridge
-    float hip = 0.75f;               // m, how far the ridge's ends are drawn in
+    float hip = 0.75f;               // m, inset of the ridge's ends
     Vec3 wall = palette::kLime, trim = palette::kTeal, roof = palette::kThatch;
     int bays = 2;  // along the front; one of them is the door
 };

@@ -3,7 +3,7 @@
 
 namespace village {
 
-// Stands in the yz plane around c.
+// A wheel in the yz plane around c.
 static void addWheel(MeshBuilder& b, Vec3 c, float radius) {
     const Frame keep = b.frame;
     b.frame = b.frame * translate(c.x, c.y, c.z) * rotateZ(kPi / 2) * translate(0, -0.05f, 0);

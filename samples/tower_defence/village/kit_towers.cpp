@@ -33,7 +33,7 @@ Model makeFlamePlinth(uint32_t seed) {
     return b.finish();
 }
 
-// The turret alone: it turns on its plinth.
+// The turret only; it rotates on its plinth.
 Model makeFlamethrower(uint32_t seed) {
     MeshBuilder b("flamethrower", seed, 512);
     b.use(Texture::kMetal, Material::kMetal, palette::kIron);

@@ -1,4 +1,4 @@
-// The placement, by hand where it matters and by hash elsewhere.
+// The placement: by hand where it matters, by hash elsewhere.
 #include "layout.h"
 
 namespace village {
@@ -66,7 +66,7 @@ void placeTowers(Placer& p) {
     p.put(Kit::kWindFan, {-15.0f, -3.6f}, 1.25f);
 }
 
-// What stands between the houses carries the fire from one to the next.
+// Props between the houses carry the fire from one to the next.
 void placeProps(Placer& p) {
     p.put(Kit::kWell, {0.8f, -5.2f}, 0.4f);
     p.put(Kit::kMarketStall, {-0.6f, -8.2f}, -0.1f);
@@ -118,7 +118,7 @@ void placeTrees(Placer& p) {
     }
 }
 
-// A ragged belt frames the left, the back and the right.
+// A ragged belt of trees frames the left, the back and the right.
 void placeForest(Placer& p) {
     constexpr int kTrees = 42;
     for (int i = 0; i < kTrees; ++i) {
@@ -170,7 +170,7 @@ void placeFences(Placer& p) {
     }
 }
 
-// Dry grass where the ground is dry, flowers in the lush, reeds round the pond.
+// Dry grass on dry ground, flowers on lush ground, reeds around the pond.
 void placeTufts(Placer& p) {
     for (int i = 0; i < 420; ++i) {
         const float x = p.random(-21, 21), z = p.random(-15, 14);

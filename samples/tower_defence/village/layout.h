@@ -1,4 +1,4 @@
-// Where everything of the village stands.
+// Placement of all objects of the village.
 #pragma once
 
 #include <vector>
@@ -19,13 +19,13 @@ struct Scene {
     std::vector<Instance> instances;
 };
 
-// seed moves the trees, tufts and turns; houses, towers and fences always stand where they stand.
+// The seed varies trees, tufts and rotations. Houses, towers and fences have fixed places.
 Scene makeVillage(uint32_t seed);
 
-// A marcher's frame on the road, facing along it.
+// Returns the frame of an enemy on the road, facing along it.
 Frame marchFrame(float along, float side, float size);
 
-// The flamethrower's mouth in its model's space, and the tower's place.
+// The flamethrower's nozzle in its model's space, and the tower's position.
 constexpr Vec3 kNozzle{0, 2.72f, 2.55f};  // m
 constexpr Vec2 kFlamethrowerPlace{0.9f, 4.4f};
 

@@ -30,7 +30,9 @@ int MeshBuilder::addChart(float width, float height) {
 }
 
 void MeshBuilder::addTriangle(Vec3 a, Vec3 b, Vec3 c, Vec2 uvA, Vec2 uvB, Vec2 uvC, int chart) {
-    if (length(cross(b - a, c - a)) < 1e-6f) return;  // the poles of lathes and blobs
+    if (length(cross(b - a, c - a)) < 1e-6f)
+        return;  // degenerate triangles at the poles of lathes
+                 // and blobs
     const std::pair<Vec3, Vec2> points[3] = {{a, uvA}, {b, uvB}, {c, uvC}};
     for (const auto& [position, uv] : points) {
         Vertex vertex;
@@ -182,7 +184,7 @@ void MeshBuilder::lathe(const std::vector<Vec2>& profile, int sides, float ragge
         const int k = int(std::lround(u * float(sides))) % sides;
         const float t = -2 * kPi * (float(k) + phase) / float(sides);
         float r = profile[size_t(i)].x, y = profile[size_t(i)].y;
-        if (r > 0.01f) {  // a tip stays one point
+        if (r > 0.01f) {  // a tip stays a single point
             r += 0.5f * ragged * (random01(k, i, jitter + 99) - 0.5f);
             y += ragged * (random01(k, i, jitter) - 0.5f);
         }
@@ -229,7 +231,7 @@ Model MeshBuilder::finish() {
     return std::move(model_);
 }
 
-// Shelves of falling height. Charts are never turned: the grain must stay along V.
+// Shelves of decreasing height. Charts keep their orientation: the grain must stay along V.
 bool MeshBuilder::placeCharts(std::span<const int> order, float side) {
     const float gutter = side * 2 / float(model_.burnTexels);
     float x = gutter, y = gutter, shelf = 0;
@@ -279,7 +281,7 @@ void MeshBuilder::putFineLast() {
     corners_ = std::move(ordered);
 }
 
-// Smooth inside one shape, hard across a crease; faces weigh by their area.
+// Smooth within a shape, hard across a crease. Faces weigh by their area.
 void MeshBuilder::makeNormals() {
     using Place = std::tuple<int, int, int, int>;
     std::map<Place, std::vector<size_t>> meeting;

@@ -1,6 +1,6 @@
-// Builds one model from charts: grids, planar polygons, discs and blades, laid out in metres.
-// finish() packs the charts into one square burn atlas, makes normals and welds the corners.
-// Not a mesh editor: geometry is only ever added.
+// Builds one model from charts: grids, planar polygons, discs and blades, in metres. finish() packs
+// the charts into one square burn atlas, computes normals and welds the corners. Geometry can only
+// be added.
 #pragma once
 
 #include <functional>
@@ -12,7 +12,7 @@
 
 namespace village {
 
-// Which faces of a box are built, in the bit order +x -x +y -y +z -z.
+// Faces of a box to build, in the bit order +x -x +y -y +z -z.
 using FaceMask = unsigned;
 constexpr FaceMask kAllFaces = 0b111111;
 constexpr FaceMask kOpenBelow = 0b111011;
@@ -24,27 +24,27 @@ constexpr FaceMask kFrontOnly = 0b000010;
 
 class MeshBuilder {
  public:
-    // burnTexels: the burn map's side the gutters are made for.
+    // burnTexels: side of the burn map that the gutters fit.
     MeshBuilder(std::string name, uint32_t modelSeed, int burnTexels);
 
-    // State that the shapes below take up; change it freely between them.
-    Frame frame;          // shapes are placed by it
+    // State of the following shapes; may change at any time.
+    Frame frame;          // transform of the shapes
     Vec3 tint{1, 1, 1};   // linear albedo
     float crease = 0.6f;  // cosine below which an edge stays hard
-    uint32_t seed;        // every random draw moves it on
-    bool fine = false;    // what follows is left out from afar
-    // How it yields to the wind: with the square of its height above where it stands, or of its
-    // depth under where it hangs.
+    uint32_t seed;        // advances with every random draw
+    bool fine = false;    // fine parts are hidden from afar
+    // Sway in the wind: grows with the square of the height above the root, or of the depth below
+    // it for hanging parts.
     struct Sway {
         float root = 0;   // m, model space
-        float yield = 0;  // m, 1 m from the root, in a wind of 1 m/s
+        float yield = 0;  // m, sway at 1 m from the root in a wind of 1 m/s
     } sway;
 
     void use(Texture texture, Material material, Vec3 newTint, float glow = 0);
     float random();                       // [0, 1]
     float random(float low, float high);  // [low, high]
 
-    // One chart of width x height metres; place(u, v) gives the points, u and v in [0, 1].
+    // One chart of width x height metres. place(u, v) returns the points, u and v in [0, 1].
     // Outward is du x dv.
     void grid(int columns, int rows, float width, float height,
               const std::function<Vec3(float, float)>& place);
@@ -52,19 +52,20 @@ class MeshBuilder {
     void polygon(std::span<const Vec3> points, Vec3 grain);
     void quad(Vec3 a, Vec3 b, Vec3 c, Vec3 d, Vec3 grain);
     void triangle(Vec3 a, Vec3 b, Vec3 c, Vec3 grain);
-    // Stands on base; its top is scaled by taper and moved by lean along x.
+    // A box that stands on `base`. Its top is scaled by taper and shifted by lean along x.
     void box(Vec3 base, Vec3 size, float taper = 1, Vec3 grain = {0, 1, 0},
              FaceMask faces = kOpenBelow, float lean = 0);
     // A box from a to b with its grain along it.
     void beam(Vec3 a, Vec3 b, float width, float depth, float taper = 1,
               FaceMask faces = kOpenBelow);
     void disc(Vec3 centre, Vec3 axisX, Vec3 axisY, float radius, int sides);
-    // ragged: how far the end rings are torn along the tube, m.
+    // ragged: m, how far the end rings are torn along the tube.
     void tube(const std::vector<Vec3>& path, const std::vector<float>& radii, int sides,
               bool capped = true, float ragged = 0);
-    // Turns (radius, y) about the y axis; upwards is outward. ragged moves points by hash, m.
+    // Rotates (radius, y) around the y axis; upward profiles face outward. ragged: m, random offset
+    // of the points.
     void lathe(const std::vector<Vec2>& profile, int sides, float ragged = 0, float phase = 0);
-    // A lat-long lump for foliage, sacks and boilers.
+    // A latitude-longitude lump for foliage, sacks and boilers.
     void blob(Vec3 centre, Vec3 radius, int columns, int rows, float roughness);
     // A fan of leaning blades, one triangle each: grass, wheat, reeds, straw hands.
     void blades(Vec3 base, int count, float height, float width, float spread,
@@ -74,15 +75,15 @@ class MeshBuilder {
 
  private:
     struct Corner {
-        Vertex vertex;  // uv in metres within its chart until the charts are packed
+        Vertex vertex;  // uv in metres within its chart until packing
         int chart;
-        int group;  // corners share normals only inside one group
+        int group;  // corners share normals only within a group
         float crease;
         bool fine;
     };
     struct Chart {
         float width, height;  // m
-        float x = 0, y = 0;   // m, where it lies in the atlas
+        float x = 0, y = 0;   // m, position in the atlas
     };
 
     int addChart(float width, float height);
@@ -100,7 +101,7 @@ class MeshBuilder {
     Material material_ = Material::kWood;
     float glow_ = 0;
     int group_ = 0;
-    bool sideways_ = false;  // turns a grid's chart, so that masonry courses stay level
+    bool sideways_ = false;  // rotates a grid's chart, so that masonry courses stay level
 };
 
 }  // namespace village

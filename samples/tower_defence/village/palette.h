@@ -1,6 +1,6 @@
-// The village's colours: linear Rec.709 albedo.
-// Hue says who a thing is: cool grey road, brown houses, olive grass, yellow and crimson enemies,
-// one saturated accent per tower. Orange belongs to the fire.
+// The village's colours: linear Rec.709 albedo. The hue identifies the type: cool grey road, brown
+// houses, olive grass, yellow and crimson enemies, one saturated accent per tower. Orange is
+// reserved for fire.
 #pragma once
 
 #include "village_math.h"
@@ -13,7 +13,7 @@ constexpr Vec3 kBarn{0.29f, 0.050f, 0.030f}, kTeal{0.045f, 0.185f, 0.19f};
 constexpr Vec3 kMustard{0.50f, 0.29f, 0.05f}, kBlue{0.045f, 0.13f, 0.36f};
 constexpr Vec3 kWhite{0.72f, 0.68f, 0.58f};
 constexpr Vec3 kThatch{0.285f, 0.190f, 0.092f}, kGreyThatch{0.225f, 0.178f, 0.118f};
-constexpr Vec3 kStraw{0.76f, 0.52f, 0.14f};  // the enemies' yellow: brightest on the screen
+constexpr Vec3 kStraw{0.76f, 0.52f, 0.14f};  // the enemies' yellow: brightest on screen
 constexpr Vec3 kHay{0.40f, 0.285f, 0.105f};  // must stay browner than kStraw
 constexpr Vec3 kWicker{0.30f, 0.175f, 0.065f}, kPeeledLog{0.36f, 0.235f, 0.135f};
 constexpr Vec3 kLeafOak{0.105f, 0.185f, 0.030f}, kLeafPoplar{0.165f, 0.205f, 0.035f};

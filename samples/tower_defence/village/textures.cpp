@@ -1,4 +1,4 @@
-// The painters behind textures.h: one function per look.
+// The painters behind textures.h, one function per surface.
 #include "textures.h"
 
 namespace village {
@@ -62,7 +62,7 @@ static Surface thatch(float x, float y, float footprint, Vec3 tint, uint32_t see
     return s;
 }
 
-// Bright stalks with dark gaps; the gaps show only close by.
+// Bright stalks with dark gaps. The gaps show only at close range.
 static Surface straw(float x, float y, float footprint, Vec3 tint) {
     const float warped = x * 13 + 0.6f * noise(x * 2, y * 2, 41);
     const float stalks = fbm(warped, y * 1.3f, 3, 42, footprint * 13) +
@@ -78,7 +78,7 @@ static Surface straw(float x, float y, float footprint, Vec3 tint) {
     return s;
 }
 
-// Dabs in jittered cells, each a small lit dome with a hue of its own.
+// Dabs in jittered cells. Each is a small lit dome with its own hue.
 static Surface leaf(float x, float y, Vec3 tint) {
     constexpr float kCells = 4.2f;  // per metre
     const int i0 = int(std::floor(x * kCells)), j0 = int(std::floor(y * kCells));
@@ -146,7 +146,7 @@ static Surface metal(float x, float y, float footprint, Vec3 tint) {
     return s;
 }
 
-// Dark lumps between hot seams; a lit window uses only the tint.
+// Dark lumps between hot seams. A lit window uses only the tint.
 static Surface coals(float x, float y, Vec3 tint) {
     const float v =
         std::fabs(noise(x * 9, y * 9, 95)) + 0.5f * std::fabs(noise(x * 19, y * 19, 96));
@@ -280,7 +280,7 @@ Surface paintGround(Vec2 q, float footprint, const Splat& k) {
     const float row = std::fabs(std::fmod(furrow, 1.0f) - 0.5f) * 2;
     const Vec3 field = mix(Vec3{0.155f, 0.095f, 0.05f}, Vec3{0.46f, 0.32f, 0.09f},
                            smoothStep(0.25f, 0.8f, row + 0.4f * fine + 0.25f * mid));
-    // The edges between kinds are broken by the same noise: no airbrushed look.
+    // The same noise breaks the edges between ground types, which avoids an airbrushed look.
     const float ragged = 0.5f * mid + 0.35f * fine;
     const float isDry = smoothStep(0.35f, 0.65f, k.dry + 0.5f * ragged + 0.35f * broad);
     const float isDirt = smoothStep(0.40f, 0.60f, k.dirt + 0.45f * ragged);

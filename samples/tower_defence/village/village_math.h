@@ -1,5 +1,4 @@
-// The village's small maths: 2D and 3D vectors, rigid frames, hashes and value noise.
-// Only what the generator needs; not a general maths library.
+// The village's small maths library: 2D and 3D vectors, rigid frames, hashes and value noise.
 #pragma once
 
 #include <algorithm>
@@ -32,7 +31,7 @@ inline Vec3 cross(Vec3 a, Vec3 b) {
 }
 inline float length(Vec2 a) { return std::sqrt(dot(a, a)); }
 inline float length(Vec3 a) { return std::sqrt(dot(a, a)); }
-// The zero vector becomes straight up, so that a degenerate face still has a normal.
+// Maps the zero vector to straight up, so that a degenerate face still has a normal.
 inline Vec3 normalize(Vec3 a) {
     const float l = length(a);
     return l > 0 ? a * (1 / l) : Vec3{0, 1, 0};
@@ -47,7 +46,7 @@ inline Vec3 maximum(Vec3 a, Vec3 b) {
 inline float clamp01(float x) { return std::min(1.0f, std::max(0.0f, x)); }
 inline float mix(float a, float b, float t) { return a + (b - a) * t; }
 inline Vec3 mix(Vec3 a, Vec3 b, float t) { return a + (b - a) * t; }
-// Falling edges are allowed: a > b turns the step round.
+// Allows falling edges: a > b inverts the step.
 inline float smoothStep(float a, float b, float x) {
     const float t = clamp01((x - a) / (b - a));
     return t * t * (3 - 2 * t);
@@ -77,8 +76,8 @@ inline float noise(float x, float y, uint32_t seed) {
     const float high = mix(random01(i, j + 1, seed), random01(i + 1, j + 1, seed), u);
     return 2 * mix(low, high, v) - 1;
 }
-// Octaves of noise in about [-1, 1]. footprint: a texel's width in cells of the first octave;
-// octaves finer than two texels fade out, so that a bake never aliases.
+// Octaves of noise in about [-1, 1]. footprint: width of a texel in cells of the first octave.
+// Octaves finer than two texels fade out, so that a bake never aliases.
 inline float fbm(float x, float y, int octaves, uint32_t seed, float footprint = 0) {
     float sum = 0, amplitude = 0.5f;
     for (int o = 0; o < octaves; ++o) {

@@ -1,5 +1,5 @@
-// The kit's promises to the fire: unique texels, one material per triangle, UVs inside the atlas.
-// Not a picture test.
+// Checks what the fire requires of the kit: unique texels, one material per triangle, UVs inside
+// the atlas.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -59,7 +59,7 @@ TEST(Village, NoTwoTrianglesShareATexel) {
     for (const Model& model : allModels()) EXPECT_EQ(sharedTexels(model, 1024), 0) << model.name;
 }
 
-TEST(Village, SharedTexelsAreFound) {  // the check above can fail
+TEST(Village, SharedTexelsAreFound) {  // proves that the previous check can fail
     Model broken = village::makeKit()[size_t(village::Kit::kCottage)];
     for (size_t i = 0; i < broken.vertices.size() / 2; ++i) broken.vertices[i].uv.x += 0.05f;
     EXPECT_GT(sharedTexels(broken, 1024), 1000);
@@ -95,7 +95,7 @@ TEST(Village, VerticesAreFiniteWithUnitNormals) {
     }
 }
 
-// uv * atlasSide is metres; cones and blobs crowd towards their poles, nothing else may.
+// uv * atlasSide is in metres; only cones and blobs may be denser, at their poles
 TEST(Village, TexelDensityStaysNearNominal) {
     double thin = 0, all = 0;
     for (const Model& model : village::makeKit()) {
@@ -129,7 +129,7 @@ TEST(Village, SameSeedSameVillage) {
     EXPECT_NE(a.instances.back().seed, other.instances.back().seed);
 }
 
-// From afar all of it is in view, and fine parts are left out; from near most of it is not.
+// From afar, everything is in view without fine parts; from near, most is out of view.
 TEST(Village, DrawnTrianglesKeepToTheGuide) {
     constexpr int kGuide = 20000;
     const village::Scene scene = village::makeVillage(1);

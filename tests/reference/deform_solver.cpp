@@ -1,4 +1,4 @@
-#include "mesh/deform/solver.h"
+#include "reference/deform_solver.h"
 
 #include <algorithm>
 #include <cmath>
@@ -258,7 +258,7 @@ void springStep(const DeformModel& model, const gpu::DeformObject& object, float
 void resetDeform(const DeformModel& model, DeformState& state) {
     state.shown.assign(model.coats.size(), ShownVertex{});
     for (const DeformNode& node : model.nodes) place(state.shown[node.vertex], restOf(node));
-    drape(model, state);
+    skinVertices(model, state);
 }
 
 void recede(const DeformModel& model, const gpu::DeformObject& object,
@@ -282,7 +282,7 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
     }
 }
 
-void drape(const DeformModel& model, DeformState& state, bool tears) {
+void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
     for (size_t i = 0; i < model.coats.size(); ++i) {
         const gpu::DeformCoat& coat = model.coats[i];
         const ShownVertex& node = state.shown[coat.node];

@@ -1,6 +1,6 @@
 // Where every vertex in use lies now, and when it burns through. Corners, then edges, then
 // interiors: each reads only what stands before it.
-#include "mesh/refine/frame.h"
+#include "reference/refine_frame.h"
 
 #include <algorithm>
 

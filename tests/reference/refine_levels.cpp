@@ -1,6 +1,6 @@
 // Heat to levels, levels to triangles.
-#include "mesh/refine/frame.h"
 #include "mesh/refine/table.h"
+#include "reference/refine_frame.h"
 
 #include <algorithm>
 #include <cmath>

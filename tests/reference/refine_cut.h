@@ -2,7 +2,7 @@
 // walls along holes and open edges. Corners are named by slots and small edges, so that neighbours
 // agree by number; places follow from the frame's vertices.
 #pragma once
-#include "mesh/refine/frame.h"
+#include "reference/refine_frame.h"
 
 namespace fw::mesh {
 

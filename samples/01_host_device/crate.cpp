@@ -5,7 +5,7 @@
 
 namespace {
 
-struct Face {  // a side of the crate: u to the right, v up, w outwards
+struct Face {  // a side of the crate: u points right, v up, w outwards
     glm::vec3 center, u, v, w;
 };
 
@@ -18,8 +18,8 @@ struct Builder {
         return face.center + face.u * p.x + face.v * p.y + face.w * p.z;
     }
 
-    // A fan from its first corner over a polygon in the face's coordinates, counter-clockwise.
-    // The first corner must not lie on a line with the two that follow it. `along` is the grain.
+    // Fans a counter-clockwise polygon, in the face's coordinates, from its first corner. The first
+    // corner must not be collinear with the next two. `along`: direction of the grain.
     void polygon(const std::vector<glm::vec3>& corners, glm::vec2 along, float shade) {
         const auto base = static_cast<uint32_t>(mesh.positions.size() / 3);
         glm::vec3 normal(0);
@@ -29,7 +29,7 @@ struct Builder {
         }
         normal = glm::normalize(normal);
         const glm::vec2 grain = glm::normalize(along), across(grain.y, -grain.x);
-        // Every board comes from elsewhere in the tree.
+        // Offset each board to its own part of the wood texture.
         const glm::vec2 piece(0.37f * static_cast<float>(board % 17),
                               0.71f * static_cast<float>(board));
         const auto light = static_cast<uint32_t>(255.0f * shade);
@@ -49,18 +49,19 @@ struct Builder {
         }
     }
 
-    float nextBoard() {  // its shade
+    float nextBoard() {  // shade of the next board
         ++board;
         const uint32_t bits = (board * 2654435761u) >> 24;
         return 0.74f + 0.26f * static_cast<float>(bits) / 255.0f;
     }
 
-    // One side. Wherever a corner touches an edge, the polygon beyond has that corner, too.
+    // Adds one side. Wherever a corner touches an edge, the polygon beyond has that corner too, so
+    // the surface stays watertight.
     void side(float half) {
         const float inner = 0.78f * half, width = 0.24f * half;  // frame, half the batten
         const float split = inner - width;                       // where the batten ends
-        const float deep = -0.085f * half,
-                    lean = -0.030f * half;  // boards, batten: below the frame
+        const float wallDepth = -0.085f * half,
+                    lean = -0.030f * half;  // height of boards and batten: below the frame
         const float joints[3] = {-0.5f * inner, 0.0f, 0.5f * inner};  // between the boards
         const glm::vec3 quarter[4] = {{1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}};
         for (int k = 0; k < 4; ++k) {
@@ -69,20 +70,20 @@ struct Builder {
             const glm::vec3 left = -half * (x + y), right = half * (x - y);
             const glm::vec2 grain(x);
             const float tone = nextBoard();
-            if (k % 2 == 0) {  // the batten leans on the beginning of this edge
+            if (k % 2 == 0) {  // the batten meets the start of this edge
                 polygon({left, right, p(inner, 0), p(-split, 0), p(-inner, 0)}, grain, tone);
                 polygon({p(-inner, 0), p(-split, 0), p(-split, lean), p(-inner, lean)}, grain,
                         tone);
-                polygon(
-                    {p(inner, 0), p(inner, deep), p(-split, deep), p(-split, lean), p(-split, 0)},
-                    grain, tone);
-            } else {  // on its end; and the boards end here
+                polygon({p(inner, 0), p(inner, wallDepth), p(-split, wallDepth), p(-split, lean),
+                         p(-split, 0)},
+                        grain, tone);
+            } else {  // the batten meets its end, and the boards end here
                 polygon({left, right, p(inner, 0), p(split, 0), p(-inner, 0)}, grain, tone);
                 polygon({p(split, 0), p(inner, 0), p(inner, lean), p(split, lean)}, grain, tone);
-                polygon(
-                    {p(-inner, 0), p(split, 0), p(split, lean), p(split, deep), p(joints[2], deep),
-                     p(joints[1], deep), p(joints[0], deep), p(-inner, deep)},
-                    grain, tone);
+                polygon({p(-inner, 0), p(split, 0), p(split, lean), p(split, wallDepth),
+                         p(joints[2], wallDepth), p(joints[1], wallDepth), p(joints[0], wallDepth),
+                         p(-inner, wallDepth)},
+                        grain, tone);
             }
         }
         const float tone = nextBoard();
@@ -95,29 +96,33 @@ struct Builder {
                  high(inner, lean),
                  high(-split, lean)},
                 {1, 1}, tone);
-        polygon({low(-inner, lean), low(-inner, deep), low(joints[0], deep), low(joints[1], deep),
-                 low(joints[2], deep), low(split, deep), low(split, lean)},
+        polygon({low(-inner, lean), low(-inner, wallDepth), low(joints[0], wallDepth),
+                 low(joints[1], wallDepth), low(joints[2], wallDepth), low(split, wallDepth),
+                 low(split, lean)},
                 {1, 1}, tone);
-        polygon({high(inner, lean), high(inner, deep), high(joints[2], deep), high(joints[1], deep),
-                 high(joints[0], deep), high(-split, deep), high(-split, lean)},
+        polygon({high(inner, lean), high(inner, wallDepth), high(joints[2], wallDepth),
+                 high(joints[1], wallDepth), high(joints[0], wallDepth), high(-split, wallDepth),
+                 high(-split, lean)},
                 {1, 1}, tone);
-        auto wallR = [&](float v) { return glm::vec3(inner, v, deep); };
-        auto wallL = [&](float v) { return glm::vec3(-inner, v, deep); };
+        auto wallR = [&](float v) { return glm::vec3(inner, v, wallDepth); };
+        auto wallL = [&](float v) { return glm::vec3(-inner, v, wallDepth); };
         const glm::vec2 level(1, 0);
-        polygon({low(-inner, deep), wallR(-inner), wallR(joints[0]), low(joints[0], deep)}, level,
-                nextBoard());
+        polygon(
+            {low(-inner, wallDepth), wallR(-inner), wallR(joints[0]), low(joints[0], wallDepth)},
+            level, nextBoard());
         for (int i = 0; i < 2; ++i) {
-            polygon({low(joints[i], deep), wallR(joints[i]), wallR(joints[i + 1]),
-                     low(joints[i + 1], deep)},
+            polygon({low(joints[i], wallDepth), wallR(joints[i]), wallR(joints[i + 1]),
+                     low(joints[i + 1], wallDepth)},
                     level, nextBoard());
-            polygon({wallL(joints[i]), high(joints[i], deep), high(joints[i + 1], deep),
+            polygon({wallL(joints[i]), high(joints[i], wallDepth), high(joints[i + 1], wallDepth),
                      wallL(joints[i + 1])},
                     level, nextBoard());
         }
-        polygon({low(joints[2], deep), wallR(joints[2]), wallR(split)}, level, nextBoard());
-        polygon({wallL(-split), high(joints[0], deep), wallL(joints[0])}, level, nextBoard());
-        polygon({wallL(joints[2]), high(joints[2], deep), high(inner, deep), wallL(inner)}, level,
-                nextBoard());
+        polygon({low(joints[2], wallDepth), wallR(joints[2]), wallR(split)}, level, nextBoard());
+        polygon({wallL(-split), high(joints[0], wallDepth), wallL(joints[0])}, level, nextBoard());
+        polygon(
+            {wallL(joints[2]), high(joints[2], wallDepth), high(inner, wallDepth), wallL(inner)},
+            level, nextBoard());
     }
 };
 

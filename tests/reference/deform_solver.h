@@ -1,5 +1,5 @@
-// Deformation on the CPU, as the passes of the same names do it on a device: for tests, tools and
-// the bench. One object, in its own axes.
+// Deformation of one object on the CPU, in its own axes: the passes recede, ties, soft and springs
+// and the skinning of the drawn vertices are compared with it.
 #pragma once
 #include "mesh/deform/model.h"
 
@@ -47,7 +47,7 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
 void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state);
 // `tears`: a sheet, which has holes where it was torn.
-void drape(const DeformModel& model, DeformState& state, bool tears = false);
+void skinVertices(const DeformModel& model, DeformState& state, bool tears = false);
 // One step of a sheet: pass soft, and before every fourth pass ties.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);

@@ -20,7 +20,7 @@ struct RefineSettings {
     uint32_t budget = 400000;    // triangles aimed at; never less than one per coarse triangle
     uint32_t capacity = 600000;  // triangles there is room for, >= budget and coarse triangles
     bool morph = true;           // false: levels are whole, changes are sudden
-    bool skipStill = true;       // false: every vertex in use is placed anew each frame
+    bool skipStill = true;       // false: every vertex in use is placed again each frame
 };
 
 struct RefineFrame {

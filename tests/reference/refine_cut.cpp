@@ -1,5 +1,5 @@
 // One lane per small triangle: keep the polygon in front of the hole's line, and close it.
-#include "mesh/refine/cut.h"
+#include "reference/refine_cut.h"
 
 #include "mesh/refine/table.h"
 

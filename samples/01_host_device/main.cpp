@@ -1,6 +1,6 @@
-// An engine with its own Vulkan device and its own render pass has a crate burn in it. It draws the
-// room before the plugin and blocks of stone after it, all in one pass. The switches show the ways
-// in which engines differ: secondary command buffers, MSAA, depth, encoding, pacing, split screens.
+// A host with its own Vulkan device and render pass. It draws the room before the plugin and stone
+// blocks after it, in one pass. The switches cover the ways in which engines differ: secondary
+// command buffers, MSAA, depth, encoding, pacing, split screens.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -57,14 +57,14 @@ void loadCrate(sample::FireHost& fire, const CrateMesh& crate) {
     fire.check(fwWorld_Ignite(fire.world, &match, nullptr), "fwWorld_Ignite");
 }
 
-// A part of the frame, and who looks at it.
+// A part of the frame and its camera.
 struct Player {
     FwView view;
     sample::StageFrame frame;
-    std::unique_ptr<sample::Studio> studio;  // it holds one camera a frame
+    std::unique_ptr<sample::Studio> studio;  // holds one camera per frame
 };
 
-// Players side by side look at the crate from two sides.
+// Lets two players view the crate from opposite sides.
 void look(std::vector<Player>& players, const sample::Turntable& table,
           const sample::StageFrame& frame, bool reversed) {
     const auto count = static_cast<uint32_t>(players.size());
@@ -88,7 +88,7 @@ int run(const sample::Options& options, const Switches& switches) {
         // The engine's part: instance, device, window or pictures, render pass.
         const sample::VulkanHost host(sample::hostRequest(options, validation));
         sample::StageRequest stageRequest;
-        stageRequest.title = "Flamewright: a lent device";
+        stageRequest.title = "Flamewright: host device";
         stageRequest.colorFormat = formatOf(switches.target);
         stageRequest.samples = switches.msaa ? VK_SAMPLE_COUNT_4_BIT : VK_SAMPLE_COUNT_1_BIT;
         stageRequest.reversedDepth = switches.reversed;
@@ -101,7 +101,7 @@ int run(const sample::Options& options, const Switches& switches) {
             player.studio->addBlock({0.44f, 0.145f, 0.47f}, {0.07f, 0.035f, 0.06f});
         }
 
-        // The plugin's part: lend the device, say what the pass looks like, fill the world.
+        // The plugin's part: pass the device, describe the render pass, fill the world.
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.paceFactor = switches.pace;
         worldDef.seed = options.seed;
@@ -122,7 +122,7 @@ int run(const sample::Options& options, const Switches& switches) {
             player.studio->castShadow(crate.positions, crate.indices, glm::mat4(1.0f),
                                       {sun[0], sun[1], sun[2]});
 
-        sample::Filming filming(stage, options, {.name = "lent_device"});
+        sample::Filming filming(stage, options, {.name = "host_device"});
 
         sample::StageFrame frame;
         while (table.next(frame)) {
@@ -144,7 +144,7 @@ int run(const sample::Options& options, const Switches& switches) {
                 }
             };
 
-            // Outside any pass: the plugin simulates. Inside: room, fire, stones.
+            // Outside any pass the plugin simulates. Inside: room, fire, stones.
             if (switches.secondary) {
                 VkCommandBuffer outside = stage.beginSecondary(frame, false);
                 fire.recordOutside(frame, views, outside);
@@ -164,7 +164,7 @@ int run(const sample::Options& options, const Switches& switches) {
 
         if (options.headless) {
             sample::Summary summary;
-            summary.title = "A burning crate on a lent device";
+            summary.title = "A burning crate on the host's device";
             summary.rows = {
                 {"device", host.properties.deviceName},
                 {"target", switches.target + (switches.msaa ? ", 4 samples" : "") +
@@ -181,11 +181,11 @@ int run(const sample::Options& options, const Switches& switches) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    return sample::guardedMain("01_lent_device", [&] {
+    return sample::guardedMain("01_host_device", [&] {
         sample::Options options;
         options.fps = 12.0;
         Switches switches;
-        sample::OptionParser parser("01_lent_device", "a crate burns in an engine's render pass");
+        sample::OptionParser parser("01_host_device", "a crate burns in an engine's render pass");
         parser.addFlag("--secondary", "record into secondary command buffers", switches.secondary);
         parser.addFlag("--msaa", "four samples", switches.msaa);
         parser.addFlag("--reversed", "reversed depth", switches.reversed);
@@ -194,7 +194,7 @@ int main(int argc, char** argv) {
         parser.addText("--target", "NAME", "linear, srgb or unorm", switches.target);
         parser.addFlag("--split", "two views side by side, one recording", switches.split);
         parser.addVector("--wind", "m/s", switches.wind);
-        parser.addNumber("--pace", "how much faster than wood it burns", switches.pace, 0.1f,
+        parser.addNumber("--pace", "how many times faster than wood it burns", switches.pace, 0.1f,
                          1000.0f);
         if (!parser.parse(argc, argv, options)) return 0;
         if (options.list) {

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Runs 01_lent_device in every way that its switches allow, under core and synchronization validation:
-# primary and secondary command buffers, one and four samples, normal and reversed depth, both kinds
-# of pacing, three encodings, one view and two. Each must be silent and leave a picture.
+# Runs 01_host_device with every combination of its switches under core and synchronization
+# validation: primary and secondary command buffers, one and four samples, normal and reversed depth,
+# both kinds of pacing, three encodings, one view and two. Each run must be silent and leave a picture.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 turn=1
@@ -9,7 +9,7 @@ for secondary in "" --secondary; do
     for msaa in "" --msaa; do
         for reversed in "" --reversed; do
             for target in linear srgb unorm; do
-                # Pacing has to do with none of them: every second one.
+                # Pacing is independent of the others: every second run.
                 turn=$((1 - turn))
                 pacing=""
                 [[ $turn -eq 0 ]] || pacing=--slot-pacing
@@ -17,9 +17,9 @@ for secondary in "" --secondary; do
                 for switch in $secondary $msaa $reversed $pacing; do switches+=("$switch"); done
                 [[ $target != srgb ]] || switches+=(--split)
                 switches+=(--target "$target")
-                echo "01_lent_device ${switches[*]}"
+                echo "01_host_device ${switches[*]}"
                 status=0
-                "$here/sample.sh" 01_lent_device headless "${switches[@]}" || status=$?
+                "$here/sample.sh" 01_host_device headless "${switches[@]}" || status=$?
                 [[ $status -eq 0 ]] || exit "$status"
             done
         done
