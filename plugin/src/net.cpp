@@ -57,7 +57,7 @@ FwResult FW_CALL fwNet_Leave(FwWorld* world) {
     return onWorld("fwNet_Leave", world, [&](world::World& w) {
         world->server.reset();
         world->client.reset();
-        w.dropJournal();
+        w.stopRecording();
         return FW_OK;
     });
 }
@@ -119,7 +119,7 @@ FwResult FW_CALL fwNet_Read(FwWorld* world, FwPeerId from, const void* packet, u
 FwResult FW_CALL fwNet_Tell(FwWorld* world, const void* message, uint32_t size) {
     return onWorld("fwNet_Tell", world, [&](world::World& w) {
         if (size > 0) checkPointer(message, "message");
-        serverOf(*world).tell(w, {static_cast<const std::byte*>(message), size});
+        serverOf(*world).sendMessage(w, {static_cast<const std::byte*>(message), size});
         return FW_OK;
     });
 }

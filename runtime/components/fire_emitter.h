@@ -44,6 +44,12 @@ struct JetTouch {
     FwBurnableMeshId object{};
     uint64_t since = 0;  // tick
     bool seen = false;   // in this exchange
+
+    template <class A>
+    void serialize(A& a) {
+        a.object("a jet", object);
+        if (object.index1 != 0) a(since, seen);
+    }
 };
 
 struct EmitterAir {

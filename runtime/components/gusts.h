@@ -13,6 +13,11 @@ struct Gusts {
     std::array<int64_t, 3> drift{};
     uint32_t since = 0;  // tick
     bool operator==(const Gusts&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a(strength, size, drift, since);
+    }
 };
 
 // Throws core::Error naming the field. The drift continues from `before`.

@@ -14,6 +14,10 @@
 
 namespace fw::components {
 
+struct ShieldShape;
+// Whether makeShieldShape may have made it.
+[[nodiscard]] bool plausible(const ShieldShape& shape) noexcept;
+
 struct ShieldShape {  // places of the cells; counts of 0: there is no grid
     std::array<uint32_t, 3> counts{};
     std::array<int32_t, 3> origin{};  // mm, low corner
@@ -21,6 +25,12 @@ struct ShieldShape {  // places of the cells; counts of 0: there is no grid
     [[nodiscard]] uint32_t cells() const noexcept { return counts[0] * counts[1] * counts[2]; }
     [[nodiscard]] uint32_t words() const noexcept { return (cells() + 31) / 32; }
     bool operator==(const ShieldShape&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a(counts, origin, cell);
+        a.require(plausible(*this), "heat shield");
+    }
 };
 
 [[nodiscard]] uint32_t countsOf(const ShieldShape& shape) noexcept;  // packed as in ExchangePush
@@ -37,6 +47,38 @@ struct HeatShield {
     ShieldShape shape;
     std::pmr::vector<uint32_t> solid;    // a bit per cell: the host's
     std::pmr::vector<ShieldCell> baked;  // sorted by cell, one each
+
+    template <class A>
+    void serialize(A& a) {
+        constexpr const char* kName = "heat shield";
+        a(shape);
+        if constexpr (A::kReads) solid.assign(shape.words(), 0);
+        if (shape.cells() == 0) return;
+        const auto plane = [&](size_t count, uint32_t width, auto&& value) {
+            a.plane(kName, count, width, {}, 0xFFFFFFFFu, value,
+                    [&](size_t i, uint32_t read) { value(i) = read; });
+        };
+        plane(solid.size(), (shape.counts[0] + 31) / 32,
+              [&](size_t i) -> uint32_t& { return solid[i]; });
+        const uint32_t over = shape.cells() % 32;
+        a.require(over == 0 || solid.back() >> over == 0, kName);
+        auto count = uint32_t(baked.size());
+        a(count);
+        a.require(count <= gpu::kShieldBaked, kName);
+        if constexpr (A::kReads) baked.assign(count, {});
+        if (count == 0) return;
+        uint64_t before = 0;  // a cell is written as its distance from the one before
+        a.plane(
+            kName, count, count, {}, 0xFFFFFFFFu,
+            [&](size_t i) { return baked[i].cell - (i != 0 ? baked[i - 1].cell : 0); },
+            [&](size_t i, uint32_t step) {
+                before += step;
+                a.require(before < shape.cells() && (i == 0 || step != 0), kName);
+                baked[i].cell = uint32_t(before);
+            });
+        plane(count, count, [&](size_t i) -> uint32_t& { return baked[i].what; });
+        plane(count, count, [&](size_t i) -> uint32_t& { return baked[i].texel; });
+    }
 };
 
 // Throw core::Error naming the field.
@@ -44,9 +86,6 @@ struct HeatShield {
 // Calls the def's callback for every cell, and reads its bytes.
 void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
                      std::pmr::vector<uint32_t>& solid);
-
-// Whether makeShieldShape may have made it.
-[[nodiscard]] bool plausible(const ShieldShape& shape) noexcept;
 
 struct ShieldObject {  // an object that fills cells
     uint32_t slot = 0;

@@ -17,12 +17,23 @@ constexpr uint32_t kJetRays = 16;
 constexpr uint32_t kJetParcels = 16;  // in flight at once: two seconds of stream
 constexpr uint32_t kJetNever = 0xFFFFFFFFu;
 
+constexpr double kJetReach = 4e6;  // m: what a jet strikes lies beyond where it stands
+
 struct JetHit {  // of one ray of a jet
     bool met = false;
     float distance = 0;  // m from the ray's start
     float place[3] = {}, normal[3] = {};
     FwBurnableMeshId object{};  // null: a collider or blocker
     uint32_t texel = 0;
+
+    template <class A>
+    void serialize(A& a) {
+        a(met, distance, place, normal);
+        a.texel("a jet's ray", object, texel);
+        a.range("ray's distance", distance, -1e6, 1e6);
+        a.range("ray's place", place, -kJetReach, kJetReach);
+        a.range("ray's normal", normal, -1e6, 1e6);
+    }
 };
 using JetHits = std::array<JetHit, kJetRays>;
 
@@ -42,6 +53,12 @@ struct JetGate {
     uint32_t holeTicks = 0;          // ticks from ignition to burn-through
     float distance = 0;              // m from the ray's start
     bool operator==(const JetGate&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a.texel("a hole", object, texel);
+        a(holeTicks, distance);
+    }
 };
 constexpr uint32_t kJetGates = gpu::kGates;  // a ray ends at a further gate
 
@@ -53,6 +70,17 @@ struct JetRay {
     std::array<JetGate, kJetGates> gates{};
     std::array<uint32_t, kJetGates> passed{};  // exchanges, ticks
     uint32_t gateCount = 0;
+
+    // Of its version whether it is the present one: 1 or 0 while it is saved.
+    template <class A>
+    void serialize(A& a) {
+        bool present = version != 0;
+        a(way, hit, present, spent, gateCount);
+        version = present ? 1 : 0;
+        a.range("ray's direction", way, -1e6, 1e6);
+        a.require(gateCount <= kJetGates, "number of holes that a ray passed");
+        for (uint32_t i = 0; i < gateCount; ++i) a(gates[i], passed[i]);
+    }
 };
 
 struct JetParcel {
@@ -64,6 +92,16 @@ struct JetParcel {
     uint32_t most = 0;              // mm, length of its flight
     JetFlight flight{};
     std::array<JetRay, kJetRays> rays{};
+
+    template <class A>
+    void serialize(A& a) {
+        a(launched);
+        if (launched == kJetNever) return;
+        a(power, sticks, from, wide, most, flight, rays);
+        a.range("jet's origin", from, -2e6, 2e6);
+        a.range("jet's angle", wide, 0, 4);
+        a.range("jet's length", most, 0, 1e7);
+    }
 };
 
 // Stuck fuel where rays struck, in nW times the length of an exchange.
@@ -80,6 +118,18 @@ struct JetPatch {
     uint64_t water = 0;    // fuel that water removes at the first exchange from `waterAt` on
     uint32_t waterAt = 0;  // tick
     float place[3] = {}, normal[3] = {};  // m, world
+
+    template <class A>
+    void serialize(A& a) {
+        a(left);
+        if (left == 0) return;
+        a.texel("fuel that sticks", object, texel);
+        a(fuel, power, water, waterAt, place, normal);
+        a.range("fuel that sticks", fuel, 0, double(kPatchMost));
+        a.range("water on fuel that sticks", water, 0, double(kPatchMost));
+        a.range("place of fuel that sticks", place, -kJetReach, kJetReach);
+        a.range("normal of fuel that sticks", normal, -1e6, 1e6);
+    }
 };
 using JetPatches = std::array<JetPatch, kJetPatches>;
 // Burns a patch for one exchange and returns its power. The last exchange burns the last fuel.
@@ -96,6 +146,11 @@ struct JetStream {
     // As of exchange `patchedAt`, and before it: a failed frame is repeated from there.
     JetPatches patches{}, before{};
     uint32_t patchedAt = 0;  // tick
+
+    template <class A>
+    void serialize(A& a) {
+        a(parcels, kept, patches, patchedAt);
+    }
 };
 
 // Shares `power` nW as W/m^2 over texels with `areas` in 1e-9 m^2. Returns the rest: less than the

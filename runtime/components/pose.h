@@ -5,12 +5,23 @@
 
 namespace fw::components {
 
+constexpr double kFarthestPlace = 2e6;  // m: beyond 1e6 of places from before the origin moved
+
 struct Pose {
     float rotation[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};  // rows, object to world, no scale
     float scale = 1;               // mean of the three axes, [1e-3, 1e3]
     float stretch[3] = {1, 1, 1};  // of each object axis, beyond scale; x < 0: mirrored
     double translation[3] = {};    // m, [-1e6, 1e6]; double: exact however far the origin moved
     bool operator==(const Pose&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a(rotation, scale, stretch, translation);
+        a.range("rotation", rotation, -1.01, 1.01);
+        a.range("scale", scale, 1e-4, 1e4);
+        for (const float size : stretch) a.range("stretch", size < 0 ? -size : size, 1.0 / 64, 64);
+        a.range("place", translation, -kFarthestPlace, kFarthestPlace);
+    }
 };
 
 constexpr float kMostStretch = 16;  // longest axis over shortest

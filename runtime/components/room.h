@@ -7,6 +7,10 @@
 
 namespace fw::components {
 
+struct Room;
+// Whether makeRoom may have made it.
+[[nodiscard]] bool plausible(const Room& room) noexcept;
+
 struct Room {
     std::array<int64_t, 3> middle{};                     // mm
     std::array<int64_t, 3> half{};                       // mm, half of its sides
@@ -16,13 +20,16 @@ struct Room {
     uint32_t oxygen = 0;                                 // at the start, 2^-32 of the air
     [[nodiscard]] uint64_t flashPower() const noexcept;  // W of flashover
     bool operator==(const Room&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a(middle, half, axes, volume, vent, oxygen);
+        a.require(plausible(*this), "room");
+    }
 };
 
 // Throws core::Error naming the field.
 [[nodiscard]] Room makeRoom(const FwRoomDef& def);
-
-// Whether makeRoom may have made it.
-[[nodiscard]] bool plausible(const Room& room) noexcept;
 
 [[nodiscard]] bool isIn(const Room& room, const WindPlace& place) noexcept;
 

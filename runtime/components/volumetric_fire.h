@@ -1,10 +1,12 @@
 // A volumetric fire as plain data: its checked def and its reported state. Its flames are in
 // fire_flames.h. Cosmetic: floats, and no decision of the simulation depends on them.
 #pragma once
+#include "components/pose.h"
 #include "flamewright/flamewright.h"
 #include "shared/volume_draw.h"
 #include "volume/flame.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <memory_resource>
@@ -25,21 +27,48 @@ struct FireState {      // reported state, see FwVolumetricFireState
     float intensity = 0;  // W/sr
 };
 
-struct VolumetricFire {
+struct FireControls {        // that the host turns while it burns
+    float position[3] = {};  // m, world
+    float power = 0;         // kW
+    std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
+    uint32_t pointCount = 0;
+
+    bool operator==(const FireControls& other) const noexcept {
+        const auto same = [](const volume::ControlPoint& a, const volume::ControlPoint& b) {
+            return a.position == b.position && a.radius == b.radius;
+        };
+        return std::equal(position, position + 3, other.position) && power == other.power &&
+               std::equal(points.begin(), points.begin() + pointCount, other.points.begin(),
+                          other.points.begin() + other.pointCount, same);
+    }
+    template <class A>
+    void serialize(A& a) {
+        a(position, power, pointCount);
+        a.range("volumetric fire's place", position, -1e6, 1e6);
+        a.range("volumetric fire's power", power, 0, kMostPower);
+        a.require(pointCount != 1 && pointCount <= points.size(),
+                  "number of points of a volumetric fire");
+        for (uint32_t i = 0; i < pointCount; ++i) {
+            auto& [place, radius] = points[i];
+            for (int k = 0; k < 3; ++k) a(place[k]), a.range("fire's point", place[k], -1e6, 1e6);
+            a(radius);
+            a.range("radius of a fire's point", radius, 0, 100);
+        }
+    }
+};
+
+struct VolumetricFire : FireControls {
     explicit VolumetricFire(std::pmr::memory_resource* memory) : track(memory) {}
 
     volume::FlameLook look;
     uint32_t flags = 0;  // FwVolumetricFireFlags
     uint32_t tier = 0;   // FwFireTier
     uint32_t preset = 0, seed = 0;
-    uint32_t profile = 0;           // layer
-    FwFireProfileId ownProfile{};   // the host's, or null
-    float position[3] = {};         // m, world
-    float diameter = 0, power = 0;  // m; kW
+    uint32_t profile = 0;          // layer
+    FwFireProfileId ownProfile{};  // the host's, or null
+    float diameter = 0;            // m
     float windResponse = 1, blend = 0.3f;
     float wind[3] = {};  // m/s, at its place
-    std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
-    uint32_t pointCount = 0;
     volume::Track track;  // no keys: none
     float trackWeight = 1;
     uint32_t trackVersion = 0;

@@ -14,6 +14,10 @@ struct WindPlace {  // mm, world
     int64_t x = 0, y = 0, z = 0;
 };
 
+struct WindZone;
+// Whether makeWindZone may have made it.
+[[nodiscard]] bool plausible(const WindZone& zone) noexcept;
+
 struct WindZone {
     uint32_t shape = 0, flow = 0, blend = 0;  // FwWindShape, FwWindFlow, FwWindBlend
     int32_t priority = 0;
@@ -23,13 +27,16 @@ struct WindZone {
     int64_t speed = 0;                // 1/128 m/s
     int64_t fades = 0;                // Q14 of the distance from its middle to its edge
     bool operator==(const WindZone&) const = default;
+
+    template <class A>
+    void serialize(A& a) {
+        a(shape, flow, blend, priority, middle, axis, size, speed, fades);
+        a.require(plausible(*this), "wind zone");
+    }
 };
 
 // Throws core::Error naming the field.
 [[nodiscard]] WindZone makeWindZone(const FwWindZoneDef& def);
-
-// Whether makeWindZone may have made it.
-[[nodiscard]] bool plausible(const WindZone& zone) noexcept;
 
 // Sorts zones into their order of effect: by priority; zones of one priority keep their order.
 void sortWindZones(std::span<WindZone> zones) noexcept;

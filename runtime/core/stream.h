@@ -89,6 +89,7 @@ class Reader {
         return bytes_.subspan(at_ - size, size);
     }
     [[nodiscard]] size_t left() const noexcept { return bytes_.size() - at_; }
+    [[nodiscard]] const char* name() const noexcept { return what_; }
 
  private:
     std::span<const std::byte> bytes_;

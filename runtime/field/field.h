@@ -48,15 +48,29 @@ FieldRules fieldRules(const FieldDef& def) noexcept;
 // Rate of a source: an amount of 1 fills a cell to white in about 12 steps.
 uint32_t emissionRate(float amount) noexcept;
 
-struct Field {
-    explicit Field(std::pmr::memory_resource* memory)
-        : cells(memory), masks(memory), next(memory), given(memory) {}
+struct FieldCells {
+    explicit FieldCells(std::pmr::memory_resource* memory) : cells(memory) {}
     uint32_t width = 0, height = 0;
     uint32_t step = 0;
     std::pmr::vector<uint32_t> cells;  // gpu::fieldCell, rows from the bottom
-    std::pmr::vector<uint8_t> masks;   // kFieldWall: holds no particle and takes none
     // Invariant: total(field) + died + left == emitted + particles set from outside.
     uint64_t emitted = 0, died = 0, left = 0;
+
+    template <class A>
+    void serialize(A& a) {
+        a(width, height, step, emitted, died, left);
+        a.require(width - 1 < 256 && height - 1 < 256, "particle field");
+        if constexpr (A::kReads) cells.resize(size_t(width) * height);
+        a.plane(
+            "particle field", cells.size(), width, {}, 0xFFFFFFFFu,
+            [&](size_t i) { return cells[i]; }, [&](size_t i, uint32_t cell) { cells[i] = cell; });
+    }
+};
+
+struct Field : FieldCells {
+    explicit Field(std::pmr::memory_resource* memory)
+        : FieldCells(memory), masks(memory), next(memory), given(memory) {}
+    std::pmr::vector<uint8_t> masks;  // kFieldWall: holds no particle and takes none
     // Of the current step.
     std::pmr::vector<uint32_t> next;
     std::pmr::vector<std::array<uint16_t, 8>> given;

@@ -17,6 +17,14 @@ constexpr int32_t kMostWindUnits = int32_t(kMostWind / kWindUnit);
 struct WindFilter {
     std::array<int64_t, 3> value{};  // 1/128 m/s with 24 more bits
     WindVector latched{};            // the front's wind
+
+    template <class A>
+    void serialize(A& a) {
+        a(value, latched);
+        a.range("filtered wind", value, -kMostWindUnits * 16777216.0 - 1,
+                kMostWindUnits * 16777216.0 + 1);
+        a.range("latched wind", latched, -kMostWindUnits, kMostWindUnits);
+    }
 };
 
 // m/s to units, clamped to +-kMostWind; NaN becomes 0.

@@ -23,7 +23,7 @@ constexpr double kCatchUp = 8, kFastest = 1.25, kSlowest = 0.9;  // of real time
 Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resource* memory)
     : def_(def),
       memory_(memory),
-      journal_(world.keepJournal(true)),
+      recording_(world.startRecording(true)),
       state_(memory),
       own_(memory),
       ownBlocks_(memory),
@@ -336,9 +336,9 @@ void Client::load(world::World& world) {
             if (head.id / 2 != ownNumber_ || head.record != ownRecord_)
                 core::fail(FW_ERROR_BAD_DATA, "The tiles are of another state.");
             world.mergeBlocks(own_, state_.bytes(), merged);
-            world.performLoad(merged);
+            world.applyLoad(merged);
         } else {
-            world.performLoad(state_.bytes());
+            world.applyLoad(state_.bytes());
         }
     } catch (const core::Error& error) {
         world.log().write(FW_LOG_WARNING, "The server's state cannot be taken: %s", error.message);
@@ -361,15 +361,15 @@ void Client::load(world::World& world) {
     marks_.clear();
     theirHashes_.clear();
     ourHashes_.clear();
-    journal_.loaded = false;
+    recording_.loaded = false;
     owed_ = 0;
     due_ = true;
 }
 
 // Hashes of the same object at the same tick, whichever of them came first.
 void Client::compare(world::World& world) {
-    ourHashes_.insert(ourHashes_.end(), journal_.hashes.begin(), journal_.hashes.end());
-    journal_.hashes.clear();
+    ourHashes_.insert(ourHashes_.end(), recording_.hashes.begin(), recording_.hashes.end());
+    recording_.hashes.clear();
     const uint64_t now = world.tick();
     bool alike = true;
     std::erase_if(theirHashes_, [&](const world::ObjectHash& theirs) {
@@ -412,9 +412,9 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
         if (record_.step > now) break;
         if (record_.kind == RecordKind::message && holdsMessages()) break;
         if (record_.step < now) goWrong(world, "A record of the server's comes too late.", kNoSlot);
-        if (record_.kind == RecordKind::deed) {
+        if (record_.kind == RecordKind::command) {
             try {
-                world.perform(record_.deed);
+                world.apply(record_.command);
             } catch (const core::Error& error) {
                 goWrong(world, error.message, kNoSlot);
             }
@@ -451,7 +451,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
     if (owed_ >= most && double(seconds) < most)
         seconds = std::nextafter(seconds, std::numeric_limits<float>::infinity());
     owed_ = std::max(owed_ - double(seconds), 0.0);
-    journal_.until = uint64_t(until) * gpu::kStepTicks;
+    recording_.until = uint64_t(until) * gpu::kStepTicks;
     turn.kind = FW_TURN_STEP;
     turn.deltaTime = seconds;
 }

@@ -1,5 +1,5 @@
 // A client's side of a shared burn: it does what the server's host did, before the same steps, and
-// goes no further than it has heard of. Hashes of objects tell whether both burn alike; if not, or
+// goes no further than it has heard of. Hashes of objects show whether both burn alike; if not, or
 // if it has no state yet, it asks for one. Messages of the server's host are handed on in order and
 // once each, even where a state stands for the records between them.
 #pragma once
@@ -59,10 +59,10 @@ class Client {
 
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
-    world::Journal& journal_;
+    world::Recording& recording_;
     uint32_t session_ = 0, sent_ = 0;
     SequenceWindow came_;
-    bool welcome_ = false;  // the server told what its world is
+    bool welcome_ = false;  // the server sent the identity of its world
     bool refused_ = false;  // and it is another one
     bool joined_ = false;   // it is this one
     uint64_t theirs_ = 0;   // the server's identity
@@ -90,7 +90,7 @@ class Client {
     bool overloaded_ = false;      // the server says that its rate cannot carry the changes
     std::pmr::vector<Reached> marks_;
     uint32_t reached_ = 0;  // steps below it have all their records here
-    uint32_t heard_ = 0;    // step of the server's that it told last
+    uint32_t heard_ = 0;    // the last step that the server reported
     double owed_ = 0;       // s that the world is to be moved on
     double untilDue_ = 0;   // s
     double silent_ = 0;     // s

@@ -48,7 +48,9 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
         core::fail(FW_ERROR_BAD_DATA,
                    "The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic, kMagic);
     if (version != kPacketVersion)
-        core::fail(FW_ERROR_VERSION, "The packet has version %u; this library has version %u.",
+        core::fail(FW_ERROR_VERSION,
+                   "The packet has version %u; this library has version %u. Both sides need the "
+                   "same library.",
                    uint32_t(version), kPacketVersion);
     const uint32_t found = sumOf(packet);
     if (sum != found)

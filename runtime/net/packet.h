@@ -1,7 +1,7 @@
-// Packets between a server and its clients: a head that says of which session they are, a checksum
-// over all of it, and what one kind of them carries. What is damaged, cut, of another session or
-// came already is told from what is not before anything of it is used. A checksum finds damage; it
-// is no seal against those who know it: whoever needs that encrypts what a host sends.
+// Packets between a server and its clients: a head with their session, a checksum over the whole
+// packet, and a body by kind. Packets that are damaged, cut, of another session or duplicates are
+// refused before any of their content is used. The checksum finds damage, not forgery: hosts that
+// need authenticity encrypt their packets.
 #pragma once
 #include "core/stream.h"
 #include "flamewright/flamewright.h"
@@ -29,7 +29,7 @@ struct PacketHead {
     uint32_t sequence = 0;  // from 1 on, of all packets that went this way
 };
 
-constexpr uint32_t kPacketVersion = 2;
+constexpr uint32_t kPacketVersion = 3;
 constexpr size_t kPacketHead = 24;                        // bytes
 constexpr size_t kPacketLeast = 512, kPacketMost = 1400;  // that packets have at most
 

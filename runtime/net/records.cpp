@@ -3,19 +3,15 @@
 #include <algorithm>
 
 namespace fw::net {
-namespace {
-
-using Kind = world::Deed::Kind;
-
-}  // namespace
 
 void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
     core::Writer writer(out);
-    const uint32_t what = record.kind == RecordKind::deed ? uint32_t(record.deed.kind) : 0;
-    writer.number(uint16_t(uint32_t(record.kind) | what << 8));
+    const bool isCommand = record.kind == RecordKind::command;
+    const auto command = uint32_t(isCommand ? record.command.index() : 0);
+    writer.number(uint16_t(uint32_t(record.kind) | command << 8));
     writer.number(record.step);
-    if (record.kind == RecordKind::deed) {
-        world::putDeed(writer, record.deed);
+    if (isCommand) {
+        world::writeCommand(record.command, out);
     } else if (record.kind == RecordKind::hashes) {
         writer.number(record.tick);
         writer.number(record.first);
@@ -29,19 +25,17 @@ void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
 }
 
 void readRecord(std::span<const std::byte> bytes, Record& record) {
-    core::Reader reader(bytes, "record");
+    core::Reader reader(bytes, "packet");
     uint16_t head = 0;
     reader.number(head);
     reader.number(record.step);
-    const uint32_t kind = head & 0xFF, what = head >> 8;
-    const bool isDeed = kind == uint32_t(RecordKind::deed);
-    if (kind >= uint32_t(RecordKind::count) || (isDeed ? what >= uint32_t(Kind::count) : what != 0))
-        core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u, %u.", kind, what);
+    const uint32_t kind = head & 0xFF, command = head >> 8;
+    const bool isCommand = kind == uint32_t(RecordKind::command);
+    if (kind >= uint32_t(RecordKind::count) || (!isCommand && command != 0))
+        core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u, %u.", kind, command);
     record.kind = RecordKind(kind);
-    if (isDeed) {
-        record.deed = {};
-        record.deed.kind = Kind(what);
-        world::putDeed(reader, record.deed);
+    if (isCommand) {
+        world::readCommand(command, reader.take(reader.left()), record.command);
     } else if (record.kind == RecordKind::hashes) {
         reader.number(record.tick);
         reader.number(record.first);

@@ -3,7 +3,7 @@
 // gets a whole state instead, runs of records are sent as skipped, but never a message.
 #pragma once
 #include "core/stream.h"
-#include "world/journal.h"
+#include "world/recording.h"
 
 #include <array>
 #include <cstdint>
@@ -27,7 +27,7 @@ struct RecordRun {
 };
 
 enum class RecordKind : uint8_t {
-    deed,
+    command,
     hashes,
     message,
     capture,  // the server saved its state here, as number `tick`
@@ -38,7 +38,7 @@ enum class RecordKind : uint8_t {
 struct Record {
     RecordKind kind = RecordKind::count;
     uint32_t step = 0;
-    world::Deed deed;
+    world::Command command;
     // Of one round, which a tick names: slots `first`, `first` + `stride` and so on.
     uint64_t tick = 0;
     uint32_t first = 0, stride = 1;

@@ -49,7 +49,7 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
     : def_(def),
       memory_(memory),
       peers_("Peer", memory),
-      journal_(world.keepJournal(false)),
+      recording_(world.startRecording(false)),
       log_(memory),
       captures_(memory),
       packet_(memory) {
@@ -143,16 +143,16 @@ void Server::push(const Record& record) {
 // What the world noted since.
 void Server::drain(world::World& world) {
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
-    if (journal_.lost || journal_.loaded) {
-        journal_.lost = journal_.loaded = false;
+    if (recording_.lost || recording_.loaded) {
+        recording_.lost = recording_.loaded = false;
         loseAll();
     }
     const auto noteCapture = [&] {
-        journal_.captured = false;
+        recording_.captured = false;
         captureNoted_ = capturing_;
         if (!capturing_) return;
         record_.kind = RecordKind::capture;
-        record_.step = uint32_t(journal_.capturedAt / gpu::kStepTicks);
+        record_.step = uint32_t(recording_.capturedAt / gpu::kStepTicks);
         record_.tick = ++captureCount_;
         push(record_);
         noted_.id = 2 * captureCount_;
@@ -163,18 +163,18 @@ void Server::drain(world::World& world) {
                 peer.capture = captureCount_;
         });
     };
-    for (size_t i = 0; i < journal_.deeds.size(); ++i) {
-        if (journal_.captured && i == journal_.capturedBehind) noteCapture();
-        record_.kind = RecordKind::deed;
-        record_.step = uint32_t(journal_.deeds[i].tick / gpu::kStepTicks);
-        record_.deed = journal_.deeds[i].deed;
+    for (size_t i = 0; i < recording_.commands.size(); ++i) {
+        if (recording_.captured && i == recording_.capturedBehind) noteCapture();
+        record_.kind = RecordKind::command;
+        record_.step = uint32_t(recording_.commands[i].tick / gpu::kStepTicks);
+        record_.command = recording_.commands[i].command;
         push(record_);
     }
-    if (journal_.captured) noteCapture();
-    journal_.deeds.clear();
+    if (recording_.captured) noteCapture();
+    recording_.commands.clear();
     // Hashes of one tick are of one round; those of slots without an object are 0. A record is no
     // longer than a packet.
-    const std::pmr::vector<world::ObjectHash>& hashes = journal_.hashes;
+    const std::pmr::vector<world::ObjectHash>& hashes = recording_.hashes;
     const size_t room = def_.packetBytes - kPacketHead - kStreamHead - kRecordHead - kHashHead;
     const size_t most = std::min(record_.hashes.size(), room / sizeof(uint64_t));
     for (size_t i = 0; i < hashes.size();) {
@@ -194,12 +194,12 @@ void Server::drain(world::World& world) {
         if (record_.hashCount == 0) break;
         push(record_);
     }
-    journal_.hashes.clear();
+    recording_.hashes.clear();
     step_ = now;
     stepEnd_ = log_.end();
 }
 
-void Server::tell(world::World& world, std::span<const std::byte> message) {
+void Server::sendMessage(world::World& world, std::span<const std::byte> message) {
     if (message.size() > kMessageMost || message.size() + 64 > def_.packetBytes)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The message has %zu bytes; the limit is %u, and FwNetDef::packetBytes less 64.",
@@ -240,7 +240,7 @@ void Server::trim(const world::World& world) noexcept {
                 world.log().write(FW_LOG_WARNING,
                                   "Peer %u has not answered for %.1f s: of messages that wait, the "
                                   "server keeps %zu bytes, and this peer misses the others. Remove "
-                                  "it, or tell it in another way what it missed.",
+                                  "it, or send it what it missed in another way.",
                                   name, peer.silent, kKeptMost);
         });
     }

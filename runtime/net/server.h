@@ -28,7 +28,7 @@ class Server {
     // False: nothing is due.
     bool write(FwPeerId to, std::span<std::byte> room, uint32_t& size);
     void read(world::World& world, FwPeerId from, std::span<const std::byte> packet);
-    void tell(world::World& world, std::span<const std::byte> message);
+    void sendMessage(world::World& world, std::span<const std::byte> message);
     void fillState(world::World& world, FwPeerId peer, FwNetState& state);
 
  private:
@@ -138,7 +138,7 @@ class Server {
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
     core::HandlePool<FwPeerId, Peer> peers_;
-    world::Journal& journal_;
+    world::Recording& recording_;
     RecordLog log_;
     uint32_t step_ = 0, stepEnd_ = 0;  // how far it is, and the records that are before that
     double now_ = 0;                   // s

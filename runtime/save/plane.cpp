@@ -10,8 +10,8 @@ namespace {
 
 constexpr uint32_t kContexts = 18;  // by how much the neighbours differ, in powers of two
 
-// What a cell's neighbours tell of it. Without left, upper and upper left: what of them there is,
-// and at last the value before.
+// The prediction of a cell from its left, upper and upper left neighbours, from those of them that
+// there are, or else from the value before.
 struct Seen {
     uint32_t guess = 0;
     uint32_t context = 0;

@@ -197,28 +197,14 @@ void World::takeBreaks(Object& object, const gpu::BurnMap& map,
     findBreaks(object, map.ticks, map.heat, readback.endTick, &readback.frameIndex);
 }
 
-// With the readback of a save's frame, after it was looked at for breaks.
-void World::noteBreaks(const Object& object, SavedBreaks& saved, PlaneScratch& scratch,
-                       std::pmr::vector<std::byte>& out) const {
-    const Breaks& breaks = *object.breaks;
-    const mesh::BurnDomain& domain = domainOf(object);
-    saved.share = breaks.share;
-    saved.area = breaks.area;
-    saved.shareTold = breaks.shareTold;
-    saved.waits = breaks.waits;
-    scratch.values.assign(breaks.lost.begin(), breaks.lost.end());
-    save::writePlane(scratch.values, domain.width, {}, out);
-}
-
 // Null, or of who asked for something else: what is gone by now passes for told.
-void World::restoreBreaks(Object& object, const SavedBreaks* saved, const ImageStore& store,
+void World::restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
                           uint32_t now) noexcept {
     Breaks& breaks = *object.breaks;
     breaks.lookCount = 0;
     breaks.shareTold = breaks.waits = false;
     if (saved && saved->share == breaks.share && saved->area == breaks.area) {
-        breaks.shareTold = saved->shareTold;
-        breaks.waits = saved->waits;
+        static_cast<BreakState&>(breaks) = *saved;
         std::copy(store.lost.begin(), store.lost.end(), breaks.lost.begin());
         return;
     }

@@ -66,7 +66,7 @@ void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     to.firstEvent = std::min(to.firstEvent, now);
     from.carryEnd = to.carryEnd = endOfStep(now);
     carriesUntil_ = std::max<uint64_t>(carriesUntil_, to.carryEnd);
-    note({Deed::Kind::transferBurn, to.slot, 0, from.slot + 1, {}});
+    record(TransferBurn{to.slot, from.slot});
 }
 
 // With the readback of the frame that carried it: its fire is the other's, its own counts stay.

@@ -16,6 +16,14 @@ struct Clock {
     uint64_t tick = 0;      // of the next step's start; a multiple of gpu::kStepTicks
     uint64_t fraction = 0;  // host time past `tick`, 2^-44 s, below kStepUnits
 
+    template <class A>
+    void serialize(A& a) {
+        a(tick, fraction);
+        a.range("tick", tick, 0, double(kLastTick));
+        a.range("part of a step", fraction, 0, double(kStepUnits - 1));
+        a.require(tick % gpu::kStepTicks == 0, "tick");
+    }
+
     // Tick that the host's present falls on.
     [[nodiscard]] uint64_t hostTick() const noexcept {
         return tick + (fraction >> (kFractionBits - 12));

@@ -98,9 +98,10 @@ void World::moveFireEmitter(FwFireEmitterId id, const float position[3], const f
     if (burns) mayChange();
     components::moveFireEmitter(emitter, position, direction);
     if (!burns) return;
-    float numbers[6] = {position[0], position[1], position[2]};
-    if (direction) std::copy_n(direction, 3, numbers + 3);
-    noteMove(Deed::Kind::moveEmitter, id.index1 - 1, numbers, 6, direction ? 1 : 0);
+    MoveEmitter command{id.index1 - 1, direction != nullptr};
+    std::copy_n(position, 3, command.position);
+    if (direction) std::copy_n(direction, 3, command.direction);
+    record(command);
 }
 
 void World::setFireEmitterPower(FwFireEmitterId id, float power) {
@@ -108,7 +109,7 @@ void World::setFireEmitterPower(FwFireEmitterId id, float power) {
     const bool burns = bool(emitter.stream);
     if (burns) mayChange();
     components::setEmitterPower(emitter, power);
-    if (burns) noteMove(Deed::Kind::emitterPower, id.index1 - 1, &power, 1);
+    if (burns) record(SetEmitterPower{id.index1 - 1, power});
 }
 
 void World::setFireEmitterHidden(FwFireEmitterId id, bool hidden) {

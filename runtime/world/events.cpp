@@ -83,7 +83,7 @@ void World::collectReadbacks() {
             if (map.object >= objects_.slotCount()) continue;
             auto* owned = objects_.at(map.object);
             if (!owned || (*owned)->firstFrame > readback->frameIndex) continue;
-            if (journal_) noteHash(map, *readback);
+            if (recording_) recordHash(map, *readback);
             if ((*owned)->forecast && (*owned)->forecast->pending)
                 takeForecast(**owned, map, *readback);
             if ((*owned)->breaks) takeBreaks(**owned, map, *readback);

@@ -49,9 +49,10 @@ void World::moveParticleField(FwParticleFieldId id, const float position[3],
     components::setFieldPlace(field, position, rotation);
     backend_.setFieldRules(id.index1 - 1, rulesOf(field));
     if (!wets) return;
-    float numbers[7] = {position[0], position[1], position[2]};
-    if (rotation) std::copy_n(rotation, 4, numbers + 3);
-    noteMove(Deed::Kind::moveField, id.index1 - 1, numbers, 7, rotation ? 1 : 0);
+    MoveField command{id.index1 - 1, rotation != nullptr};
+    std::copy_n(position, 3, command.position);
+    if (rotation) std::copy_n(rotation, 4, command.rotation);
+    record(command);
 }
 
 void World::setParticleFieldAmount(FwParticleFieldId id, float amount) {
@@ -60,7 +61,7 @@ void World::setParticleFieldAmount(FwParticleFieldId id, float amount) {
     if (wets) mayChange();
     components::setFieldAmount(field, amount);
     backend_.setFieldRules(id.index1 - 1, rulesOf(field));
-    if (wets) noteMove(Deed::Kind::fieldAmount, id.index1 - 1, &amount, 1);
+    if (wets) record(SetFieldAmount{id.index1 - 1, amount});
 }
 
 void World::setParticleFieldHidden(FwParticleFieldId id, bool hidden) {

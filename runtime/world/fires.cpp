@@ -77,7 +77,7 @@ void World::moveVolumetricFire(FwVolumetricFireId id, const float position[3]) {
     if (burns) mayChange();
     components::setFirePosition(fire, position);
     foresee(fire);
-    if (burns) noteMove(Deed::Kind::moveFire, id.index1 - 1, position, 3);
+    if (burns) record(MoveFire{id.index1 - 1, {position[0], position[1], position[2]}});
 }
 
 void World::setVolumetricFirePower(FwVolumetricFireId id, float power) {
@@ -87,7 +87,7 @@ void World::setVolumetricFirePower(FwVolumetricFireId id, float power) {
     findFireRoom(components::mostParts(power, fire.diameter));
     components::setFirePower(fire, power);
     foresee(fire);
-    if (burns) noteMove(Deed::Kind::firePower, id.index1 - 1, &power, 1);
+    if (burns) record(SetFirePower{id.index1 - 1, power});
 }
 
 void World::setVolumetricFirePoints(FwVolumetricFireId id, const FwFirePoint* points,

@@ -636,18 +636,22 @@ void World::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t 
     for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
         FireEmitter* emitter = emitters_.at(i);
         if (!emitter || !emitter->stream) continue;
-        for (components::JetPatches* patches :
-             {&emitter->stream->patches, &emitter->stream->before})
-            for (JetPatch& patch : *patches) {
-                float apart = 0;
-                for (int k = 0; k < 3; ++k)
-                    apart +=
-                        (patch.place[k] - def.position[k]) * (patch.place[k] - def.position[k]);
-                const float far = def.radius + components::kPatchRadius;
-                if (patch.left > 0 && patch.object.index1 == object.id.index1 &&
-                    patch.object.generation == object.id.generation && apart < far * far)
-                    components::wetPatch(patch, grams, tick);
-            }
+        const auto isHit = [&](const JetPatch& patch) {
+            float apart = 0;
+            for (int k = 0; k < 3; ++k)
+                apart += (patch.place[k] - def.position[k]) * (patch.place[k] - def.position[k]);
+            const float far = def.radius + components::kPatchRadius;
+            return patch.left > 0 && patch.object.index1 == object.id.index1 &&
+                   patch.object.generation == object.id.generation && apart < far * far;
+        };
+        for (uint32_t k = 0; k < components::kJetPatches; ++k) {
+            JetPatch& patch = emitter->stream->patches[k];
+            JetPatch& before = emitter->stream->before[k];
+            if (isHit(before)) components::wetPatch(before, grams, tick);
+            if (!isHit(patch)) continue;
+            components::wetPatch(patch, grams, tick);
+            record(WetPatch{i, k, grams, tick});
+        }
     }
 }
 

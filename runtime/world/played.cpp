@@ -151,7 +151,7 @@ void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, floa
                    static_cast<unsigned long long>(mesh));
     Play play;
     play.burn1 = burnId.index1;
-    // Its first texel catches in the step after the one that tells the backend.
+    // Its first texel catches in the step after the one that starts it in the backend.
     play.first = std::max(tick, uint32_t(clock_.tick) + gpu::kStepTicks);
     play.rate = playRate(speed);
     play.most = mostAtOnce(burn, play, def_.maxStepsPerFrame);
@@ -161,14 +161,14 @@ void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, floa
     object.play = play;
     object.firstEvent = std::min(object.firstEvent, play.first);
     ++object.changes;
-    note({Deed::Kind::playBurn, object.slot, tick, burnId.index1, {speed}});
+    record(PlayBurn{object.slot, burnId.index1, tick, speed});
 }
 
 void World::stopBurn(FwBurnableMeshId id) {
     mayChange();
     Object& object = *objects_.get(id);
     object.play.ends = object.play.burn1 != 0;
-    note({Deed::Kind::stopBurn, object.slot, 0, 0, {}});
+    record(StopBurn{object.slot});
 }
 
 // ---- a frame ------------------------------------------------------------------------------------
@@ -255,9 +255,9 @@ void World::turnPlay(const Object& object) noexcept {
         if (entry.object == &object && entry.play.began != 0) entry.play.ends = true;
 }
 
-void World::settlePlays(SavedWorld& saved) {
+void World::settlePlays(Snapshot& saved) {
     size_t events = saved.pending.size(), count = 0;
-    for (SavedObject& object : saved.objects) {
+    for (ObjectSnapshot& object : saved.objects) {
         Play& play = object.play;
         if (play.burn1 == 0) continue;
         const core::Owned<Burn>* burn =

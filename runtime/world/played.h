@@ -1,6 +1,6 @@
-// Baked burns: when each texel of a mesh caught, as bytes, and what an object has to know to play
-// one. While it does no front runs on it: its texels catch at the ticks of the burn, and all else
-// (heat, flames, lights, what it does to others) follows as ever. Who disturbs it makes it live.
+// Baked burns: the tick at which each texel of a mesh caught, as bytes, and the state of an object
+// that plays one. No front runs on such an object: its texels catch at the ticks of the burn, and
+// heat, flames, lights and exchange follow as for any other. A disturbance makes it live.
 #pragma once
 #include "shared/burn.h"
 
@@ -21,10 +21,10 @@ struct Burn {
     std::pmr::vector<uint32_t> order;  // texels that did, by tick
 };
 
-// `state`: an object's codes. Ticks are told from the first on.
+// `state`: an object's codes. Ticks count from the first ignition.
 void writeBurn(std::span<const uint32_t> state, uint64_t mesh, uint32_t width, uint32_t height,
                std::pmr::vector<std::byte>& out);
-// Throws FW_ERROR_BAD_DATA where the bytes are none of writeBurn's.
+// Throws FW_ERROR_BAD_DATA unless writeBurn wrote the bytes.
 void readBurn(std::span<const std::byte> bytes, Burn& burn);
 
 constexpr uint32_t kPlayRate = 1u << 16;  // of a burn that plays as fast as it burnt
@@ -36,6 +36,11 @@ struct Play {
     uint32_t began = 0;  // end of the step that began it; 0: that is the next
     uint32_t most = 0;   // texels that may catch in a frame; follows from the rest
     bool ends = false;   // with the next step: its wind or pose turned, or the host asks
+    template <class A>
+    void serialize(A& a) {
+        a(burn1);
+        if (burn1 != 0) a(first, rate, began, ends);
+    }
     [[nodiscard]] uint64_t tickOf(uint32_t recorded) const noexcept {
         return first + uint64_t(recorded) * kPlayRate / rate;
     }

@@ -61,7 +61,7 @@ void World::setFlags(uint32_t given) {
     if (remote_.flags & ~flags & kWarm)
         remote_.fades = clock_.tick + 2 * gpu::kExchangeTurns * gpu::kExchangeTicks;
     remote_.flags = flags;
-    note({Deed::Kind::flags, 0, 0, given, {}});
+    record(SetFlags{given});
 }
 
 namespace {
@@ -108,7 +108,7 @@ void World::moveBlocker(FwBlockerId id, const float transform[16]) {
     checkBlocker(pose, entry.halfSize, "transform");
     entry.pose = pose;
     remote_.blockersDue = true;
-    notePose(Deed::Kind::moveBlocker, id.index1 - 1, transform);
+    record(MoveBlocker{id.index1 - 1, Transform(transform)});
 }
 
 void World::removeBlocker(FwBlockerId id) {

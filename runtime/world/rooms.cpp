@@ -85,16 +85,15 @@ FwRoomId World::createRoom(const FwRoomDef& def) {
     return id;
 }
 
-void World::setRoom(FwRoomId id, const FwRoomDef& def) {
+void World::setRoom(FwRoomId id, const components::Room& room, bool refills) {
     mayChange();
     RoomEntry& entry = rooms_.get(id);
-    const components::Room before = entry.room;
-    entry.room = components::makeRoom(def);
-    if ((def.flags & FW_ROOM_REFILL) != 0) fillRoom(entry, entry.room.oxygen);
+    const components::Room before = std::exchange(entry.room, room);
+    if (refills) fillRoom(entry, entry.room.oxygen);
     sendRoom(id.index1 - 1);
     roomTurns(before);
     roomTurns(entry.room);
-    noteDef(Deed::Kind::room, id.index1 - 1, def);
+    record(SetRoom{id.index1 - 1, refills, room});
 }
 
 void World::destroyRoom(FwRoomId id) {

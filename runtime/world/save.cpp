@@ -1,11 +1,10 @@
-// Saving and loading a world mid-burn. What the world knows is noted at the frame that was asked
-// for, the objects' planes come with its readback, and then it is bytes. Loading checks all of it
-// before anything changes; the backend goes first, since it alone may still fail.
+// Saving and loading a world mid-burn. The snapshot is captured at the frame that was asked for,
+// the objects' images come with its readback. Loading checks all of a snapshot before anything
+// changes; the backend goes first, since it alone may still fail.
 #include "world/save.h"
 
 #include "components/sparks.h"
 #include "core/hash.h"
-#include "save/plane.h"
 #include "shared/field_draw.h"
 #include "shared/heat.h"
 
@@ -17,10 +16,8 @@
 namespace fw::world {
 namespace {
 
-using components::checkValue;
-using components::checkValues;
-
 constexpr uint64_t kNoEvents = ~uint64_t(0);
+constexpr uint32_t kEmitterKind = FW_EMITTER_JET | FW_EMITTER_IGNITES;
 
 void hashMore(uint64_t& hash, const void* data, size_t bytes) noexcept {
     const auto* from = static_cast<const unsigned char*>(data);
@@ -43,20 +40,6 @@ uint64_t hashOf(const mesh::BurnDomain& domain) noexcept {
     return hash;
 }
 
-void checkPose(const components::Pose& pose, uint32_t object, double far = 1e6) {
-    bool good = pose.scale >= 1e-4f && pose.scale <= 1e4f;
-    for (const auto& row : pose.rotation)
-        for (const float value : row) good &= std::abs(value) <= 1.01f;
-    for (const float value : pose.stretch) {
-        const float size = std::abs(value);
-        good &= size >= 1.0f / 64 && size <= 64;
-    }
-    for (const double value : pose.translation) good &= std::abs(value) <= far;
-    if (!good)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The save has a transform that none can be for burnable mesh %u.", object + 1);
-}
-
 void checkRule(float saved, float mine, const char* name) {
     if (!(saved == mine))
         core::fail(FW_ERROR_BAD_DATA, "The save's FwWorldDef::%s is %g; this world's is %g.", name,
@@ -67,28 +50,113 @@ void checkRule(uint32_t saved, uint32_t mine, const char* name) {
         core::fail(FW_ERROR_BAD_DATA, "The save's FwWorldDef::%s is %u; this world's is %u.", name,
                    saved, mine);
 }
-void checkCount(size_t saved, size_t mine, const char* name) {
-    if (saved != mine)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; this world has %zu.", saved, name,
-                   mine);
+// The same things in the same slots.
+template <class List, class Pool>
+void checkSlots(const List& saved, const Pool& pool, const char* name, const char* names) {
+    if (saved.size() != pool.live())
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; this world has %u.", saved.size(),
+                   names, pool.live());
+    uint32_t next = 0;
+    for (const auto& one : saved) {
+        if (one.slot < next || one.slot >= pool.slotCount() || !pool.at(one.slot))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has %s %u, which this world does not. Create the same things in "
+                       "the same order.",
+                       name, one.slot + 1);
+        next = one.slot + 1;
+    }
+}
+// Refuses one that the world has with another def.
+void checkSame(bool same, const char* name, uint32_t slot) {
+    if (!same)
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The save's %s %u has another def here, or a time after the save's.", name,
+                   slot + 1);
+}
+void checkLimit(size_t count, size_t limit, const char* name) {
+    if (count > limit)
+        core::fail(FW_ERROR_BAD_DATA, "The save has %zu %s; the limit is %zu.", count, name, limit);
+}
+
+// An entry for each that is there.
+template <class Pool, class List, class Fill>
+void captureEach(Pool& pool, List& to, const Fill& fill) {
+    to.clear();
+    for (uint32_t i = 0; i < pool.slotCount(); ++i)
+        if (auto* entry = pool.at(i)) {
+            auto& made = to.emplace_back();
+            made.slot = i;
+            fill(*entry, made);
+        }
 }
 
 // With the next frame?
 bool startsSave(const core::Owned<Save>& save) noexcept {
-    return save && save->wished && !save->pending;
-}
-
-SavedTouch savedTouch(const FireTouch& touch) noexcept {
-    SavedTouch saved;
-    saved.object1 = touch.object.index1;
-    saved.since = touch.since;
-    std::copy_n(touch.fireAt, 3, saved.fireAt);
-    std::copy_n(touch.objectAt, 3, saved.objectAt);
-    saved.flag = touch.lit;
-    return saved;
+    return save && save->requested && !save->pending;
 }
 
 }  // namespace
+
+// Refuses values out of range and references to what this world does not have. Ids become this
+// world's.
+class World::SnapshotChecker : public save::Archive<SnapshotChecker> {
+ public:
+    static constexpr bool kReads = false;
+    explicit SnapshotChecker(const World& world) : world_(world) {}
+
+    template <class T>
+    void number(const T&) noexcept {}
+    void blob(const char*, std::span<const std::byte>) noexcept {}
+    template <class Get, class Set>
+    void plane(const char*, size_t, uint32_t, save::PlaneMask, uint32_t, const Get&,
+               const Set&) noexcept {}
+    template <class List>
+    void list(const char*, List& entries, size_t) {
+        for (auto& entry : entries) (*this)(entry);
+    }
+    template <class T>
+    void optional(core::Owned<T>& value) {
+        if (value) (*this)(*value);
+    }
+    void object(const char* name, uint32_t slot) const {
+        if (slot >= world_.objects_.slotCount() || !world_.objects_.at(slot))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has %s of burnable mesh %u, which is not there.", name, slot + 1);
+    }
+    void object(const char* name, FwBurnableMeshId& id) const {
+        if (id.index1 == 0) return;
+        object(name, id.index1 - 1);
+        id = world_.objects_.idOf(id.index1 - 1);
+    }
+    void texel(const char* name, uint32_t slot, uint32_t texel) const {
+        object(name, slot);
+        const mesh::BurnDomain& domain = world_.domainOf(**world_.objects_.at(slot));
+        if (texel >= domain.texelCount() || !domain.real(texel))
+            core::fail(FW_ERROR_BAD_DATA,
+                       "The save has %s at texel %u of burnable mesh %u, which is not there.", name,
+                       texel, slot + 1);
+    }
+    void texel(const char* name, FwBurnableMeshId& id, uint32_t at) const {
+        object(name, id);
+        if (id.index1 != 0) texel(name, id.index1 - 1, at);
+    }
+    template <class T>
+    void range(const char* name, const T& value, double low, double high) const {
+        if constexpr (std::is_arithmetic_v<T>) {
+            if (!(double(value) >= low && double(value) <= high))
+                core::fail(FW_ERROR_BAD_DATA, "The save's %s is %.9g; the limits are [%.9g, %.9g].",
+                           name, double(value), low, high);
+        } else {
+            for (const auto& one : value) range(name, one, low, high);
+        }
+    }
+    void require(bool good, const char* name) const {
+        if (!good) core::fail(FW_ERROR_BAD_DATA, "The save's %s is out of its limits.", name);
+    }
+
+ private:
+    const World& world_;
+};
 
 uint64_t World::meshHash(const Object& object) noexcept {
     MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
@@ -124,8 +192,6 @@ uint32_t World::windowOf(const Object& object) noexcept {
     return std::min(window, 1u << 24) + 2 * gpu::kStepTicks;
 }
 
-// ---- saving ------------------------------------------------------------------------------------
-
 uint32_t World::unsavable() noexcept {
     for (uint32_t i = 0; i < objects_.slotCount(); ++i)
         if (auto* object = objects_.at(i);
@@ -141,7 +207,7 @@ void World::requestSave(SaveFor who) {
                    object1);
     core::Owned<Save>& save = saves_[size_t(who)];
     if (!save) save = core::Owned<Save>::make(memory_, memory_);
-    save->wished = true;
+    save->requested = true;
     save->ready = false;
 }
 
@@ -149,13 +215,13 @@ void World::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
 
 const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
     const core::Owned<Save>& save = saves_[size_t(who)];
-    if (!save || (!save->wished && !save->pending && !save->ready))
+    if (!save || (!save->requested && !save->pending && !save->ready))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
     if (save->failed) {
         save->failed = false;
         throw std::bad_alloc();
     }
-    return save->ready && !save->wished ? &save->bytes : nullptr;
+    return save->ready && !save->requested ? &save->bytes : nullptr;
 }
 
 // Before a frame's plan: the objects that have something to save.
@@ -176,9 +242,9 @@ void World::commitSave(uint64_t frameIndex) noexcept {
     for (size_t who = 0; who < saves_.size(); ++who) {
         if (!startsSave(saves_[who])) continue;
         Save& save = *saves_[who];
-        save.wished = save.ready = false;
+        save.requested = save.ready = false;
         try {
-            noteSaved(save.saved);
+            capture(save.snapshot);
             save.pending = true;
             save.frameIndex = frameIndex;
             // A network's are for who was not there: they are of no past of theirs.
@@ -186,32 +252,23 @@ void World::commitSave(uint64_t frameIndex) noexcept {
         } catch (...) {
             save.failed = true;
         }
-        if (who == size_t(SaveFor::host)) noteSaveInLog();
-        if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->done;
-        if (who != size_t(SaveFor::net) || !journal_) continue;
-        journal_->captured = true;
-        journal_->capturedAt = clock_.tick;
-        journal_->capturedBehind = journal_->deeds.size();
+        if (who == size_t(SaveFor::host)) recordSave();
+        if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->applied;
+        if (who != size_t(SaveFor::net) || !recording_) continue;
+        recording_->captured = true;
+        recording_->capturedAt = clock_.tick;
+        recording_->capturedBehind = recording_->commands.size();
     }
 }
 
-void World::noteSaved(SavedWorld& to) {
-    to.pace = def_.paceFactor;
-    std::copy_n(def_.up, 3, to.up);
-    to.spreadChance = def_.spreadChance;
-    to.timeToLive = def_.timeToLive;
-    to.seed = def_.seed;
-    to.maxHops = def_.maxHops;
-    to.maxBurningTiles = def_.maxBurningTiles;
+void World::capture(Snapshot& to) {
+    to.rules = def_;
     to.clock = clock_;
     to.droppedSteps = droppedSteps_;
     to.order = order_;
     std::copy_n(wind_, 3, to.wind);
-    to.windGrid.shape = windGrid_.shape;
-    to.windGrid.points.assign(windGrid_.points.begin(), windGrid_.points.end());
-    to.heatShield.shape = shield_.grid.shape;
-    to.heatShield.solid.assign(shield_.grid.solid.begin(), shield_.grid.solid.end());
-    to.heatShield.baked.assign(shield_.grid.baked.begin(), shield_.grid.baked.end());
+    to.windGrid = windGrid_;
+    to.heatShield = shield_.grid;
     to.gusts = gusts_;
     std::copy_n(origin_, 3, to.origin);
     to.flags = remote_.flags | remote_.objectFlags;
@@ -219,124 +276,67 @@ void World::noteSaved(SavedWorld& to) {
     to.blockersDue = remote_.blockersDue;
     to.fades = remote_.fades;
     to.gustsShown = gustsShown_;
-    to.objects.clear();
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* owned = objects_.at(i)) noteObject(**owned, to.objects.emplace_back());
-    to.pending.assign(pending_.begin(), pending_.end());
-    to.tags.clear();
-    for (const Tag& tag : tags_) to.tags.push_back({tag.object.index1 - 1, tag.texel, tag.tag});
+    captureEach(objects_, to.objects,
+                [&](auto& object, ObjectSnapshot& made) { captureObject(*object, made); });
+    to.pending = pending_;
+    to.tags = tags_;
     to.pairs.clear();
-    for (const PairContacts& pair : remote_.pairs)
-        if (pair.touches) to.pairs.push_back({{pair.slots[0], pair.slots[1]}, pair.since});
-    std::sort(to.pairs.begin(), to.pairs.end(), [](const SavedPair& a, const SavedPair& b) {
+    std::copy_if(remote_.pairs.begin(), remote_.pairs.end(), std::back_inserter(to.pairs),
+                 [](const PairContacts& pair) { return pair.touches; });
+    std::sort(to.pairs.begin(), to.pairs.end(), [](const PairContacts& a, const PairContacts& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     });
     to.seen.clear();
     noteSeen(to.seen);
-    to.blockers.clear();
-    for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
-        if (const BlockerEntry* entry = blockers_.at(i)) {
-            SavedBlocker& saved = to.blockers.emplace_back();
-            saved.slot = i;
-            saved.pose = entry->pose;
-            std::copy_n(entry->halfSize, 3, saved.halfSize);
-        }
-    to.latchedBlockers.assign(remote_.blockers.begin(), remote_.blockers.end());
-    to.windZones.clear();
-    for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
-        if (const components::WindZone* zone = windPool_.at(i)) to.windZones.push_back({i, *zone});
-    to.rooms.clear();
-    for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
-        if (const RoomEntry* entry = rooms_.at(i))
-            to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.power,
-                                entry->air.flash, entry->air.drawn, entry->air.stirs,
-                                entry->air.epoch});
-    to.fires.clear();
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-        if (const auto* fire = fires_.at(i)) {
-            SavedFire& saved = to.fires.emplace_back();
-            saved.slot = i;
-            saved.flags = (*fire)->data.flags & FW_FIRE_IGNITES;
-            std::copy_n((*fire)->data.position, 3, saved.position);
-            saved.power = (*fire)->data.power;
-            saved.pointCount = (*fire)->data.pointCount;
-            saved.points = (*fire)->data.points;
-            for (size_t k = 0; k < saved.touches.size(); ++k)
-                saved.touches[k] = savedTouch((*fire)->touches[k]);
-        }
-    to.emitters.clear();
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
-        if (const auto* emitter = emitters_.at(i)) noteEmitter(i, *emitter, to.emitters);
-    to.fields.clear();
-    for (uint32_t i = 0; i < fields_.slotCount(); ++i)
-        if (const auto* field = fields_.at(i)) {
-            SavedField& saved = to.fields.emplace_back();
-            saved.slot = i;
-            saved.width = (*field)->data.def.width;
-            saved.height = (*field)->data.def.height;
-            saved.began = (*field)->began;
-            std::copy_n((*field)->data.position, 3, saved.position);
-            std::copy_n((*field)->data.rotation, 4, saved.rotation);
-            saved.amount = (*field)->data.def.look.amount;
-            saved.wets = bool((*field)->cells);
-            if (!saved.wets) continue;
-            const field::Field& cells = *(*field)->cells;
-            saved.step = cells.step;
-            saved.emitted = cells.emitted;
-            saved.died = cells.died;
-            saved.left = cells.left;
-            saved.cells.assign(cells.cells.begin(), cells.cells.end());
-        }
+    to.latchedBlockers = remote_.blockers;
+    const auto copy = [](const auto& from, auto& made) {
+        static_cast<std::remove_cvref_t<decltype(from)>&>(made) = from;
+    };
+    captureEach(blockers_, to.blockers, copy);
+    captureEach(windPool_, to.windZones, copy);
+    captureEach(rooms_, to.rooms, copy);
+    captureEach(fires_, to.fires, [&](const auto& fire, FireSnapshot& made) {
+        static_cast<components::FireControls&>(made) = fire->data;
+        made.flags = fire->data.flags & FW_FIRE_IGNITES;
+        made.touches = fire->touches;
+    });
+    captureEach(
+        emitters_, to.emitters, [&](const components::FireEmitter& emitter, EmitterSnapshot& made) {
+            made.flags = emitter.def.flags & kEmitterKind;
+            std::copy_n(emitter.position, 3, made.position);
+            std::copy_n(emitter.direction, 3, made.direction);
+            made.power = emitter.def.power;
+            made.touches = emitter.touches;
+            if (!emitter.stream) return;
+            made.stream = core::Owned<components::JetStream>::make(memory_, *emitter.stream);
+            for (components::JetParcel& parcel : made.stream->parcels)
+                for (components::JetRay& ray : parcel.rays) {
+                    ray.version = ray.version == geometry_ ? 1 : 0;
+                    if (ray.version == 0) ray.hit = {};  // it may be of what is gone
+                }
+        });
+    captureEach(fields_, to.fields, [&](const auto& field, FieldSnapshot& made) {
+        made.width = field->data.def.width;
+        made.height = field->data.def.height;
+        made.began = field->began;
+        std::copy_n(field->data.position, 3, made.position);
+        std::copy_n(field->data.rotation, 4, made.rotation);
+        made.amount = field->data.def.look.amount;
+        if (!field->cells) return;
+        made.cells = core::Owned<field::FieldCells>::make(memory_, memory_);
+        *made.cells = *field->cells;
+    });
 }
 
-void World::noteObject(Object& object, SavedObject& saved) noexcept {
-    saved = {};
-    saved.slot = object.slot;
-    saved.asset = assetOf(object);
-    saved.pose = object.data.pose;
-    saved.firstEvent = object.firstEvent;
-    saved.play = object.play;
-    if (object.play.burn1 != 0) saved.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
-    saved.zoneWind = object.zoneWind;
-    saved.placed = object.remoteVersion != 0;
-    saved.due = object.remoteDue;
-    saved.remote = object.remote;
-    saved.remote.neighbourFirst = saved.remote.neighbourCount = 0;
-    saved.touched = object.touched;
-    if (!object.touched) return;
-    saved.filters = object.latch.filters;
-    saved.latched = object.latch.pose;
-}
-
-void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
-                        std::pmr::vector<SavedEmitter>& to) const {
-    SavedEmitter& saved = to.emplace_back();
-    saved.slot = slot;
-    saved.flags = emitter.def.flags & (FW_EMITTER_JET | FW_EMITTER_IGNITES);
-    std::copy_n(emitter.position, 3, saved.position);
-    std::copy_n(emitter.direction, 3, saved.direction);
-    saved.power = emitter.def.power;
-    for (size_t k = 0; k < saved.touches.size(); ++k) {
-        saved.touches[k].object1 = emitter.touches[k].object.index1;
-        saved.touches[k].since = emitter.touches[k].since;
-        saved.touches[k].flag = emitter.touches[k].seen;
-    }
-    saved.streams = bool(emitter.stream);
-    if (!saved.streams) return;
-    saved.kept = emitter.stream->kept;
-    saved.patchedAt = emitter.stream->patchedAt;
-    saved.patches = emitter.stream->patches;
-    for (uint32_t place = 0; place < components::kJetParcels; ++place) {
-        const components::JetParcel& parcel = emitter.stream->parcels[place];
-        if (parcel.launched == components::kJetNever) continue;
-        saved.places.push_back(place);
-        saved.parcels.push_back(parcel);
-        for (components::JetRay& ray : saved.parcels.back().rays) {
-            const bool swept = ray.version == geometry_;
-            saved.swept.push_back(swept ? 1 : 0);
-            if (!swept) ray.hit = {};  // it is sought anew, and may be of what is gone
-        }
-    }
+void World::captureObject(Object& object, ObjectSnapshot& to) noexcept {
+    static_cast<ObjectState&>(to) = object;
+    to.asset = assetOf(object);
+    to.pose = object.data.pose;
+    if (object.play.burn1 != 0) to.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
+    to.placed = object.remoteVersion != 0;
+    to.remote.neighbourFirst = to.remote.neighbourCount = 0;
+    to.filters = object.latch.filters;
+    to.latched = object.latch.pose;
 }
 
 // With a readback, after the counters were taken.
@@ -350,59 +350,62 @@ void World::takeSaves(const gpu::Readback& readback) noexcept {
             save->failed = true;
         }
     }
-    keepMoment();
+    keepKeyframe();
 }
 
 void World::takeSave(Save& save, const gpu::Readback& readback) {
-    SavedWorld& saved = save.saved;
+    Snapshot& saved = save.snapshot;
     size_t touched = 0;
     bool whole = readback.frameIndex == save.frameIndex;
-    for (const SavedObject& object : saved.objects) {
+    for (const ObjectSnapshot& object : saved.objects) {
         touched += object.touched ? 1 : 0;
         const auto* now = object.slot < objects_.slotCount() ? objects_.at(object.slot) : nullptr;
         whole = whole && now && (*now)->firstFrame <= save.frameIndex;
     }
     // What came is of less than was noted: objects went since. The next frame tries again.
     if (!whole || touched != readback.images.size()) {
-        save.wished = true;
+        save.requested = true;
         return;
     }
     save.planes.clear();
     struct Ends {
         size_t image = 0, all = 0;
-        SavedBreaks breaks;
     };
     std::pmr::vector<Ends> ends(memory_);
+    std::pmr::vector<uint32_t> lost(memory_);
     for (const gpu::ObjectImage& image : readback.images) {
         const Object& object = **objects_.at(image.object);
-        writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.scratch,
-                   save.planes);
+        writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.planes);
         Ends& end = ends.emplace_back();
         end.image = save.planes.size();
-        if (object.breaks) noteBreaks(object, end.breaks, save.scratch, save.planes);
+        if (object.breaks) {
+            lost.assign(object.breaks->lost.begin(), object.breaks->lost.end());
+            save::writePlane(lost, domainOf(object).width, {}, save.planes);
+        }
         end.all = save.planes.size();
     }
-    noteEvents(save);
+    captureEvents(save);
     size_t next = 0, from = 0;
-    for (SavedObject& object : saved.objects) {
+    for (ObjectSnapshot& object : saved.objects) {
         if (!object.touched) {
             if (object.slot < readback.objects.size())
-                object.air = readback.objects[object.slot].air;
+                object.counters.air = readback.objects[object.slot].air;
             continue;
         }
         const gpu::ObjectImage& image = readback.images[next];
         if (image.object != object.slot) {
-            save.wished = true;
+            save.requested = true;
             return;
         }
         const Ends& end = ends[next++];
+        const Object& live = **objects_.at(object.slot);
         object.planes = std::span(save.planes).subspan(from, end.image - from);
-        object.asksBreaks = bool((*objects_.at(object.slot))->breaks);
-        object.breaks = end.breaks;
-        object.breaks.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
+        object.findsBreaks = bool(live.breaks);
+        if (live.breaks) object.breaks = *live.breaks;
+        object.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
         from = end.all;
-        object.carried = (*objects_.at(object.slot))->carried;
-        object.story = (*objects_.at(object.slot))->story;
+        object.carried = live.carried;
+        object.story = live.story;
         object.counters = image.counters;
         object.counters.refined = 0;
         // Of what the backend alone knew at that frame.
@@ -410,37 +413,32 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             !gpu::playsAt(image.counters.playsUntil, uint32_t(saved.clock.tick)))
             object.play = {};
     }
-    for (SavedRoom& room : saved.rooms)  // its air goes on from what the frame left
-        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.epoch) {
-            const gpu::RoomAir& air = readback.rooms[room.slot];
-            room.oxygen = air.oxygen;
-            room.power = air.power;
-            room.flash = air.flash;
-            room.drawn = air.drawn;
-            room.stirs = air.stirs;
-        }
+    for (Slotted<RoomEntry>& room : saved.rooms)  // its air goes on from what the frame left
+        if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.air.epoch)
+            room.air = readback.rooms[room.slot];
     saved.steps = steps_;
     saved.idle = seenIdle_;
     saved.lastStimulus = seenStimulus_;
     saved.roomsStirred = seenRoomsStirred_;
     saved.stats = {frontTiles_, burningTiles_, hotTiles_, receivers_, lateClamps_};
-    writeSaved(saved, save.bytes);
+    writeSnapshot(saved, save.bytes);
     save.ready = true;
 }
 
 // A tag that the readback of a frame says is reached: its event is in the save, it is not.
 void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
     if (frameIndex > save.frameIndex) return;
-    std::pmr::vector<SavedTag>& tags = save.saved.tags;
-    const auto same = std::find_if(tags.begin(), tags.end(), [&](const SavedTag& one) {
-        return one.object == tag.object.index1 - 1 && one.texel == tag.texel && one.tag == tag.tag;
+    std::pmr::vector<Tag>& tags = save.snapshot.tags;
+    const auto same = std::find_if(tags.begin(), tags.end(), [&](const Tag& one) {
+        return one.object.index1 == tag.object.index1 && one.texel == tag.texel &&
+               one.tag == tag.tag;
     });
     if (same != tags.end()) tags.erase(same);
 }
 
 // What the host had not polled at the save's frame, and what came of that frame since.
-void World::noteEvents(Save& save) {
-    std::pmr::vector<SavedEvent>& to = save.saved.events;
+void World::captureEvents(Save& save) {
+    std::pmr::vector<SavedEvent>& to = save.snapshot.events;
     to.clear();
     std::pmr::vector<std::pair<uint64_t, uint64_t>> found(memory_);  // frame and number
     for (uint64_t i = std::max(save.eventsFrom, events_.oldest()); i < events_.end(); ++i) {
@@ -454,61 +452,38 @@ void World::noteEvents(Save& save) {
          k < found.size(); ++k) {
         const FwEvent& event = events_.at(found[k].second);
         SavedEvent& saved = to.emplace_back();
-        saved.type = event.type;
-        saved.tag = event.tag;
-        saved.object1 = event.object.index1;
-        saved.other1 = objects_.find(event.other) ? event.other.index1 : 0;
-        std::copy_n(event.position, 3, saved.position);
+        static_cast<FwEvent&>(saved) = event;
+        if (!objects_.find(event.other)) saved.other = {};
         for (int i = 0; event.type != FW_EVENT_TIME_DROPPED && i < 3; ++i)  // moved since
             saved.position[i] =
-                float(double(saved.position[i]) + save.saved.origin[i] - origin_[i]);
-        saved.value = event.value;
+                float(double(saved.position[i]) + save.snapshot.origin[i] - origin_[i]);
     }
 }
 
-// ---- loading -----------------------------------------------------------------------------------
-
-void World::checkSaved(const SavedWorld& saved) {
-    checkRule(saved.pace, def_.paceFactor, "paceFactor");
-    for (int i = 0; i < 3; ++i) checkRule(saved.up[i], def_.up[i], "up");
-    checkRule(saved.spreadChance, def_.spreadChance, "spreadChance");
-    checkRule(saved.timeToLive, def_.timeToLive, "timeToLive");
-    checkRule(saved.seed, def_.seed, "seed");
-    checkRule(saved.maxHops, def_.maxHops, "maxHops");
-    checkRule(saved.maxBurningTiles, def_.maxBurningTiles, "maxBurningTiles");
-    const Clock& clock = saved.clock;
-    if (clock.tick > Clock::kLastTick || clock.tick % gpu::kStepTicks != 0 ||
-        clock.fraction >= Clock::kStepUnits)
-        core::fail(FW_ERROR_BAD_DATA, "The save is of tick %llu, which no world has.",
-                   static_cast<unsigned long long>(clock.tick));
-    for (const float value : saved.wind)
-        if (!(std::abs(value) <= fire::kMostWind))
-            core::fail(FW_ERROR_BAD_DATA, "The save's wind is %g m/s; the limits are [%g, %g].",
-                       double(value), double(-fire::kMostWind), double(fire::kMostWind));
+void World::checkSnapshot(Snapshot& saved) {
+    const FwWorldDef& rules = saved.rules;
+    checkRule(rules.paceFactor, def_.paceFactor, "paceFactor");
+    for (int i = 0; i < 3; ++i) checkRule(rules.up[i], def_.up[i], "up");
+    checkRule(rules.spreadChance, def_.spreadChance, "spreadChance");
+    checkRule(rules.timeToLive, def_.timeToLive, "timeToLive");
+    checkRule(rules.seed, def_.seed, "seed");
+    checkRule(rules.maxHops, def_.maxHops, "maxHops");
+    checkRule(rules.maxBurningTiles, def_.maxBurningTiles, "maxBurningTiles");
+    checkSlots(saved.objects, objects_, "burnable mesh", "burnable meshes");
+    checkSlots(saved.blockers, blockers_, "blocker", "blockers");
+    checkSlots(saved.windZones, windPool_, "wind zone", "wind zones");
+    checkSlots(saved.rooms, rooms_, "room", "rooms");
+    checkSlots(saved.fires, fires_, "volumetric fire", "volumetric fires");
+    checkSlots(saved.emitters, emitters_, "fire emitter", "fire emitters");
+    checkSlots(saved.fields, fields_, "particle field", "particle fields");
+    SnapshotChecker check(*this);
+    check(saved);
     for (const double metres : saved.origin)
-        if (!(std::abs(metres) <= 1e9) || metres != std::floor(metres))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save's origin has moved by %g m; it moves by whole "
-                       "metres, to +-1e9 m.",
-                       metres);
+        check.require(metres == std::floor(metres), "origin, which moves by whole metres,");
     if ((saved.flags & ~kWorldFlags) != 0)
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
-    checkCount(saved.objects.size(), objects_.live(), "burnable meshes");
-    checkCount(saved.blockers.size(), blockers_.live(), "blockers");
-    checkCount(saved.windZones.size(), windPool_.live(), "wind zones");
-    checkCount(saved.rooms.size(), rooms_.live(), "rooms");
-    checkCount(saved.fires.size(), fires_.live(), "volumetric fires");
-    checkCount(saved.emitters.size(), emitters_.live(), "fire emitters");
-    checkCount(saved.fields.size(), fields_.live(), "particle fields");
-    uint32_t next = 0;
-    for (const SavedObject& object : saved.objects) {
-        if (object.slot < next || object.slot >= objects_.slotCount() || !objects_.at(object.slot))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has burnable mesh %u, which this world does not. Create what it "
-                       "was made with in the same order.",
-                       object.slot + 1);
-        next = object.slot + 1;
+    for (const ObjectSnapshot& object : saved.objects) {
         const uint64_t mine = assetOf(**objects_.at(object.slot));
         if (object.asset != mine)
             core::fail(FW_ERROR_BAD_DATA,
@@ -516,212 +491,65 @@ void World::checkSaved(const SavedWorld& saved) {
                        "0x%016llX, the save's to 0x%016llX.",
                        object.slot + 1, static_cast<unsigned long long>(mine),
                        static_cast<unsigned long long>(object.asset));
-        checkPose(object.pose, object.slot);
-        if (object.touched) checkPose(object.latched, object.slot, kFarPast);
-        for (const fire::WindFilter& filter : object.filters)
-            for (int i = 0; i < 3; ++i)
-                if (std::abs(int64_t(filter.latched[size_t(i)])) > fire::kMostWindUnits ||
-                    std::abs(double(filter.value[size_t(i)])) >
-                        double(fire::kMostWindUnits) * 16777216 + 1)
-                    core::fail(FW_ERROR_BAD_DATA, "The save's wind at burnable mesh %u is absurd.",
-                               object.slot + 1);
     }
-    const auto checkObject = [&](uint32_t slot, const char* what) {
-        if (slot >= objects_.slotCount() || !objects_.at(slot))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has %s of burnable mesh %u, which is not there.", what, slot + 1);
-    };
-    const auto checkTexel = [&](uint32_t slot, uint32_t texel, const char* what) {
-        checkObject(slot, what);
-        const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
-        if (texel >= domain.texelCount() || !domain.real(texel))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has %s at texel %u of burnable mesh %u, which is not there.", what,
-                       texel, slot + 1);
-    };
-    if (saved.pending.size() > kMaxPending)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
-                   saved.pending.size(), kMaxPending);
+    checkLimit(saved.pending.size(), kMaxPending, "events that wait");
     for (const PendingTexel& event : saved.pending) {
         if (event.texel == kAllTexels && event.kind <= gpu::kEventExtinguish)
-            checkObject(event.object, "an event");
+            check.object("an event", event.object);
         else
-            checkTexel(event.object, event.texel, "an event");
+            check.texel("an event", event.object, event.texel);
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
-            checkCarry(event, clock);
-        else if (event.kind > gpu::kEventHeat)
-            core::fail(FW_ERROR_BAD_DATA, "The save has an event of kind %u; the limit is %u.",
-                       event.kind, gpu::kEventHeat);
-        for (uint32_t g = 0; g < event.gateCount; ++g)
-            checkTexel(event.gates[g].object, event.gates[g].texel, "a hole");
+            checkCarry(event, saved.clock);
+        else
+            check.range("kind of an event", event.kind, 0, gpu::kEventHeat);
     }
-    if (saved.tags.size() > kMaxTags)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu tags; the limit is %u.", saved.tags.size(),
-                   kMaxTags);
-    for (const SavedTag& tag : saved.tags) checkTexel(tag.object, tag.texel, "a tag");
-    for (const SavedPair& pair : saved.pairs) {
-        checkObject(pair.slots[0], "a contact");
-        checkObject(pair.slots[1], "a contact");
-    }
+    checkLimit(saved.tags.size(), kMaxTags, "tags");
+    checkLimit(saved.events.size(), kMostSavedEvents, "events");
+    checkLimit(saved.latchedBlockers.size(), gpu::kMaxBlockers, "latched blockers");
     uint64_t before = 0;
     for (const Seen& seen : saved.seen) {
-        checkObject(seen.slots[0], "what is seen");
-        checkObject(seen.slots[1], "what is seen");
         const uint64_t pair = (uint64_t(seen.slots[0]) << 32 | seen.slots[1]) + 1;
-        if (pair <= before || seen.part > 255)
-            core::fail(FW_ERROR_BAD_DATA, "The save has sights of objects that none can be.");
+        check.require(pair > before, "order of lines of sight");
         before = pair;
     }
-    if (saved.events.size() > kMostSavedEvents)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu events; the limit is %u.",
-                   saved.events.size(), kMostSavedEvents);
-    for (const SavedEvent& event : saved.events) {
-        if (event.type < FW_EVENT_IGNITED || event.type > FW_EVENT_STRUCTURE_BROKE)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has an event of type %u; the limits are [1, %u].", event.type,
-                       uint32_t(FW_EVENT_STRUCTURE_BROKE));
-        if (event.object1 != 0) checkObject(event.object1 - 1, "an event");
-        if (event.other1 != 0) checkObject(event.other1 - 1, "an event");
-        for (const float value : event.position)
-            if (!std::isfinite(value) || !std::isfinite(event.value))
-                core::fail(FW_ERROR_BAD_DATA, "The save has an event at %g m of value %g.",
-                           double(value), double(event.value));
-    }
-    for (const SavedBlocker& blocker : saved.blockers) {
-        if (blocker.slot >= blockers_.slotCount() || !blockers_.at(blocker.slot))
-            core::fail(FW_ERROR_BAD_DATA, "The save has blocker %u, which this world does not.",
-                       blocker.slot + 1);
-        checkPose(blocker.pose, blocker.slot);
-        for (const float half : blocker.halfSize)
-            if (!(half >= 0 && half <= 30))
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The save has a blocker of half size %g m; the limits are [0, 30].",
-                           double(half));
-    }
-    if (saved.latchedBlockers.size() > gpu::kMaxBlockers)
-        core::fail(FW_ERROR_BAD_DATA, "The save has %zu latched blockers; the limit is %u.",
-                   saved.latchedBlockers.size(), gpu::kMaxBlockers);
-    if (!components::plausible(saved.windGrid.shape) ||
-        saved.windGrid.shape.points() != saved.windGrid.points.size() ||
-        !components::plausible(saved.gusts, clock.tick))
-        core::fail(FW_ERROR_BAD_DATA, "The save has a grid of wind or gusts that none can be.");
+    check.require(components::plausible(saved.gusts, saved.clock.tick), "state of gusts");
     for (const components::ShieldCell& cell : saved.heatShield.baked)
-        checkTexel(cell.what & gpu::kShieldSlot, cell.texel, "a cell of the shield");
-    for (const SavedWindZone& zone : saved.windZones)
-        if (zone.slot >= windPool_.slotCount() || !windPool_.at(zone.slot) ||
-            !components::plausible(zone.zone))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has wind zone %u, which is not here or is absurd.", zone.slot + 1);
-    for (const SavedRoom& room : saved.rooms)
-        if (room.slot >= rooms_.slotCount() || !rooms_.at(room.slot) ||
-            !components::plausible(room.room) ||
-            room.power > gpu::kFlashMost * (gpu::kRoomMeans - 1))
-            core::fail(FW_ERROR_BAD_DATA, "The save has room %u, which is not here or is absurd.",
-                       room.slot + 1);
-    const auto checkTouches = [&](const std::array<SavedTouch, 8>& touches) {
-        for (const SavedTouch& touch : touches)
-            if (touch.object1 != 0) checkObject(touch.object1 - 1, "a flame");
-    };
-    const auto checkPlace = [](const float(&place)[3], const char* what, float most = 1e6f) {
-        for (const float value : place)
-            if (!(std::abs(value) <= most))
-                core::fail(FW_ERROR_BAD_DATA, "The save has %s at %g m; the limits are +-%g.", what,
-                           double(value), double(most));
-    };
-    constexpr float kReached = 4e6f;  // m: a jet, or a mesh, reaches beyond where it stands
-    for (const SavedFire& fire : saved.fires) {
-        const auto* mine = fire.slot < fires_.slotCount() ? fires_.at(fire.slot) : nullptr;
-        if (!mine || ((*mine)->data.flags & FW_FIRE_IGNITES) != fire.flags)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has volumetric fire %u, which is none or another one here.",
-                       fire.slot + 1);
-        checkPlace(fire.position, "a volumetric fire");
-        if (!(fire.power >= 0 && fire.power <= components::kMostPower))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has a volumetric fire of %g kW; the limits are [0, %g].",
-                       double(fire.power), double(components::kMostPower));
-        for (uint32_t i = 0; i < fire.pointCount; ++i) {
-            const volume::ControlPoint& point = fire.points[i];
-            checkPlace({point.position.x, point.position.y, point.position.z}, "a fire's point");
-            if (!(point.radius >= 0 && point.radius <= 100))
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The save has a fire's point of radius %g m; the limits are [0, 100].",
-                           double(point.radius));
-        }
-        checkTouches(fire.touches);
+        check.texel("a cell of the shield", cell.what & gpu::kShieldSlot, cell.texel);
+    for (const Slotted<FireSnapshot>& fire : saved.fires)
+        checkSame(((*fires_.at(fire.slot))->data.flags & FW_FIRE_IGNITES) == fire.flags,
+                  "volumetric fire", fire.slot);
+    for (const Slotted<EmitterSnapshot>& emitter : saved.emitters) {
+        const components::FireEmitter& mine = *emitters_.at(emitter.slot);
+        bool same = (mine.def.flags & kEmitterKind) == emitter.flags &&
+                    bool(mine.stream) == bool(emitter.stream);
+        if (emitter.stream)
+            for (const components::JetParcel& parcel : emitter.stream->parcels)
+                same &=
+                    parcel.launched == components::kJetNever || parcel.launched <= saved.clock.tick;
+        checkSame(same, "fire emitter", emitter.slot);
     }
-    for (const SavedEmitter& emitter : saved.emitters) {
-        const auto* mine =
-            emitter.slot < emitters_.slotCount() ? emitters_.at(emitter.slot) : nullptr;
-        constexpr uint32_t kKind = FW_EMITTER_JET | FW_EMITTER_IGNITES;
-        if (!mine || (mine->def.flags & kKind) != emitter.flags ||
-            bool(mine->stream) != emitter.streams)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has fire emitter %u, which is none or another one here.",
-                       emitter.slot + 1);
-        checkPlace(emitter.position, "a fire emitter");
-        checkPlace(emitter.direction, "a direction");
-        if (!(emitter.power >= 0 && emitter.power <= 100000))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has an emitter of %g kW; the limits are [0, 100000].",
-                       double(emitter.power));
-        checkTouches(emitter.touches);
-        for (const components::JetPatch& patch : emitter.patches) {
-            if (patch.left == 0) continue;
-            checkPlace(patch.place, "fuel that sticks", kReached);
-            checkPlace(patch.normal, "fuel that sticks");
-            if (patch.fuel > components::kPatchMost || patch.water > components::kPatchMost)
-                core::fail(FW_ERROR_BAD_DATA, "The save has fuel that sticks and is too much.");
-            if (patch.object.index1 != 0)
-                checkTexel(patch.object.index1 - 1, patch.texel, "fuel that sticks");
-        }
-        for (const components::JetParcel& parcel : emitter.parcels) {
-            checkPlace(parcel.from, "a jet's stream", float(kFarPast));
-            if (!(parcel.wide >= 0 && parcel.wide <= 4) || parcel.most > 10000000 ||
-                parcel.launched > clock.tick)
-                core::fail(FW_ERROR_BAD_DATA, "The save has a jet's stream that none can be.");
-            for (const components::JetRay& ray : parcel.rays) {
-                checkPlace(ray.way, "a ray");
-                checkPlace(ray.hit.place, "a ray", kReached);
-                checkPlace(ray.hit.normal, "a ray");
-                if (!(std::abs(ray.hit.distance) <= 1e6f))
-                    core::fail(FW_ERROR_BAD_DATA, "The save has a ray that none can be.");
-                if (ray.hit.object.index1 != 0)
-                    checkTexel(ray.hit.object.index1 - 1, ray.hit.texel, "a ray");
-                for (uint32_t g = 0; g < ray.gateCount; ++g)
-                    checkTexel(ray.gates[g].object, ray.gates[g].texel, "a hole");
-            }
-        }
-    }
-    for (const SavedField& field : saved.fields) {
-        const auto* mine = field.slot < fields_.slotCount() ? fields_.at(field.slot) : nullptr;
-        if (!mine || bool((*mine)->cells) != field.wets || (*mine)->data.def.width != field.width ||
-            (*mine)->data.def.height != field.height || field.began > clock.tick)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has particle field %u, which is none or another one here.",
-                       field.slot + 1);
-        checkPlace(field.position, "a particle field");
-        float length = 0;
-        for (const float value : field.rotation) length += value * value;
-        if (!(std::abs(length - 1) <= 0.01f) || !(field.amount >= 0 && field.amount <= 4))
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The save has particle field %u with amount %g and a rotation of length %g.",
-                       field.slot + 1, double(field.amount), double(length));
+    for (const Slotted<FieldSnapshot>& field : saved.fields) {
+        const Field& mine = **fields_.at(field.slot);
+        checkSame(bool(mine.cells) == bool(field.cells) && mine.data.def.width == field.width &&
+                      mine.data.def.height == field.height && field.began <= saved.clock.tick &&
+                      (!field.cells ||
+                       (field.cells->width == field.width && field.cells->height == field.height)),
+                  "particle field", field.slot);
     }
 }
 
-SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
-                              components::Latch& latch) {
+BurnRecords World::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
+                             components::Latch& latch) {
     const Object& object = **objects_.at(from.slot);
     const mesh::BurnDomain& domain = domainOf(object);
     components::DriveInput drive = driveInput(object, clock_.tick);
     drive.wind =
-        windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones, saved.seed},
+        windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones, def_.seed},
                windPlaceOf(from.pose, domain), saved.clock.tick);
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
-    SavedRecords made;
+    BurnRecords made;
     // What has not burnt yet: the backend may have records of another wind, of this world's past.
     latch.sent = from.touched;
     if (!from.touched) return made;
@@ -739,9 +567,9 @@ SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
 
 void World::load(std::span<const std::byte> bytes) {
     mayChange();
-    SavedWorld saved(memory_);
-    readSaved(bytes, saved);
-    checkSaved(saved);
+    Snapshot saved(memory_);
+    readSnapshot(bytes, saved);
+    checkSnapshot(saved);
     settlePlays(saved);
     // The latches first: what the backend gets follows from them.
     std::pmr::vector<components::Latch> latches(memory_);
@@ -750,25 +578,24 @@ void World::load(std::span<const std::byte> bytes) {
     latches.reserve(saved.objects.size());
     stores.reserve(saved.objects.size());
     restored.reserve(saved.objects.size());
-    PlaneScratch scratch(memory_);
-    for (const SavedObject& from : saved.objects) {
-        const SavedRecords made = recordsOf(saved, from, latches.emplace_back());
-        if (!from.touched && from.air != 0) {
+    for (const ObjectSnapshot& from : saved.objects) {
+        const BurnRecords made = recordsOf(saved, from, latches.emplace_back());
+        if (!from.touched && from.counters.air != 0) {
             gpu::RestoredObject& one = restored.emplace_back();
             one.image.object = from.slot;
-            one.image.counters.air = from.air;
+            one.image.counters.air = from.counters.air;
             one.rests = true;
         }
         if (!from.touched) continue;
         ImageStore& store = stores.emplace_back(memory_);
         readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
-                  made.window, made.heatSpan(), scratch, store);
-        if (from.asksBreaks && (*objects_.at(from.slot))->breaks) {
+                  made.window, made.heatSpan(), store);
+        if (from.findsBreaks && (*objects_.at(from.slot))->breaks) {
             const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
             store.lost.resize(domain.texelCount());
-            if (!save::readPlane(from.breaks.lost, domain.width, {}, store.lost))
+            if (!save::readPlane(from.lost, domain.width, {}, store.lost))
                 core::fail(FW_ERROR_BAD_DATA,
-                           "The save's plane of what broke of burnable mesh %u is damaged.",
+                           "The save's plane of broken texels of burnable mesh %u is damaged.",
                            from.slot + 1);
         }
         gpu::RestoredObject& one = restored.emplace_back();
@@ -780,15 +607,12 @@ void World::load(std::span<const std::byte> bytes) {
     }
     remote_.pairs.reserve(saved.pairs.size());
     remote_.loadedSeen.reserve(saved.seen.size());
-    std::pmr::vector<Tag> tags(memory_);
-    for (const SavedTag& tag : saved.tags)
-        tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
     touched_.reserve(objects_.slotCount());
     playing_.reserve(objects_.slotCount());
     remote_.due.reserve(objects_.slotCount());
     remote_.blockers.reserve(saved.latchedBlockers.size());
     uint32_t flames = 0;
-    for (const SavedFire& from : saved.fires)
+    for (const Slotted<FireSnapshot>& from : saved.fires)
         flames += components::mostParts(from.power, (*fires_.at(from.slot))->data.diameter);
     findFireRoom(flames);
     places_.reserveMoves(objects_.live());
@@ -813,42 +637,43 @@ void World::load(std::span<const std::byte> bytes) {
     shield_.grid.baked.swap(saved.heatShield.baked);
     shield_.told.clear();
     shield_.unsent = shield_.unpacked = true;
-    applySaved(saved, latches);
+    apply(saved, latches);
     size_t next = 0;
-    for (const SavedObject& from : saved.objects) {
+    for (const ObjectSnapshot& from : saved.objects) {
         if (!from.touched) continue;
         const ImageStore& store = stores[next++];
         if (Object& object = **objects_.at(from.slot); object.breaks)
-            restoreBreaks(object, from.asksBreaks ? &from.breaks : nullptr, store,
+            restoreBreaks(object, from.findsBreaks ? &from.breaks : nullptr, store,
                           uint32_t(clock_.tick));
     }
-    tags_.swap(tags);
+    tags_.swap(saved.tags);
     pending_.swap(saved.pending);
     settlePending();
-    for (SavedField& field : saved.fields)
-        if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
+    for (Slotted<FieldSnapshot>& field : saved.fields)
+        if (field.cells)
+            static_cast<field::FieldCells&>(*(*fields_.at(field.slot))->cells) =
+                std::move(*field.cells);
 }
 
-void World::applySaved(const SavedWorld& saved,
-                       std::span<const components::Latch> latches) noexcept {
+void World::apply(const Snapshot& saved, std::span<const components::Latch> latches) noexcept {
     clock_ = saved.clock;
     steps_ = saved.steps;
     droppedSteps_ = saved.droppedSteps;
     order_ = saved.order;
     std::copy_n(saved.wind, 3, wind_);
     gusts_ = saved.gusts;
-    for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
+    for (const auto& zone : saved.windZones) *windPool_.at(zone.slot) = zone;
     listWindZones();
     windKept_ = true;  // objects find theirs below, one by one
     windTurns();
     gustsShown_ = saved.gustsShown;
     roomsMet_ = !saved.rooms.empty();
-    for (const SavedRoom& from : saved.rooms) {
+    for (const Slotted<RoomEntry>& from : saved.rooms) {
         RoomEntry& entry = *rooms_.at(from.slot);
         entry.room = from.room;
-        fillRoom(entry, from.oxygen, from.power, from.flash);
-        entry.air.drawn = from.drawn;
-        entry.air.stirs = from.stirs;
+        fillRoom(entry, from.air.oxygen, from.air.power, from.air.flash);
+        entry.air.drawn = from.air.drawn;
+        entry.air.stirs = from.air.stirs;
         sendRoom(from.slot);
     }
     roomsStirred_ = seenRoomsStirred_ = saved.roomsStirred;
@@ -863,28 +688,28 @@ void World::applySaved(const SavedWorld& saved,
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending) continue;
         save->pending = false;  // of the world that was
-        save->wished = true;
+        save->requested = true;
     }
     if (timeline_) {
-        const bool anew = !timeline_->seeks;  // it begins here, or is in its own past
-        if (anew) timeline_->restart(clock_.tick);
-        saves_[size_t(SaveFor::timeline)]->wished = anew;
+        const bool restarts = !timeline_->seeks;  // it begins here, or is in its own past
+        if (restarts) timeline_->restart(clock_.tick);
+        saves_[size_t(SaveFor::timeline)]->requested = restarts;
     }
-    if (journal_) {
-        journal_->loaded = true;
-        journal_->captured = false;
-        journal_->deeds.clear();
-        journal_->hashes.clear();
+    if (recording_) {
+        recording_->loaded = true;
+        recording_->captured = false;
+        recording_->commands.clear();
+        recording_->hashes.clear();
     }
-    // What was asked of frames before is asked anew.
+    // Requests to earlier frames are made again.
     for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
     for (uint32_t i = 0; i < queries_.slotCount(); ++i)
         if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;
     events_.clear();
-    for (const SavedEvent& event : saved.events)
-        raise(event.type, event.object1 != 0 ? objects_.at(event.object1 - 1)->get() : nullptr,
-              event.tag, lastFrame_, event.position, event.value,
-              event.other1 != 0 ? objects_.idOf(event.other1 - 1) : FwBurnableMeshId{});
+    for (const FwEvent& event : saved.events)
+        raise(event.type,
+              event.object.index1 != 0 ? objects_.at(event.object.index1 - 1)->get() : nullptr,
+              event.tag, lastFrame_, event.position, event.value, event.other);
     readbackTick_ = clock_.tick;
     // Awake it would see the wind from here on, and not from where its first fire begins.
     idle_ = seenIdle_ = saved.idle;
@@ -903,38 +728,24 @@ void World::applySaved(const SavedWorld& saved,
     remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
     remote_.rebuild = true;
     remote_.due.clear();
-    for (const SavedBlocker& blocker : saved.blockers) {
-        BlockerEntry& entry = *blockers_.at(blocker.slot);
-        entry.pose = blocker.pose;
-        std::copy_n(blocker.halfSize, 3, entry.halfSize);
-    }
+    for (const auto& blocker : saved.blockers) *blockers_.at(blocker.slot) = blocker;
     touched_.clear();
     playing_.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
         applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
     showSavedLights();
     remote_.pairs.clear();
-    for (const SavedPair& from : saved.pairs) {
-        PairContacts pair{{from.slots[0], from.slots[1]}};
+    for (PairContacts pair : saved.pairs) {
         for (int k = 0; k < 2; ++k) pair.ids[k] = objects_.idOf(pair.slots[k]);
-        pair.since = from.since;  // of links that are found anew
+        pair.versions[0] = pair.versions[1] = 0;  // its links are found again
+        pair.stamp = 0;
         pair.touches = true;
         remote_.pairs.push_back(pair);
     }
     remote_.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
-    const auto idOf = [&](uint32_t plus1) {
-        return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};
-    };
-    for (const SavedFire& from : saved.fires) {
+    for (const Slotted<FireSnapshot>& from : saved.fires) {
         Fire& fire = **fires_.at(from.slot);
-        const auto same = [](const volume::ControlPoint& a, const volume::ControlPoint& b) {
-            return a.position == b.position && a.radius == b.radius;
-        };
-        const bool led = from.pointCount == fire.data.pointCount &&
-                         std::equal(from.points.begin(), from.points.begin() + from.pointCount,
-                                    fire.data.points.begin(), same);
-        if (!led || !std::equal(from.position, from.position + 3, fire.data.position) ||
-            from.power != fire.data.power) {  // as if it had always burnt so
+        if (!(from == fire.data)) {  // as if it had always burnt so
             burning_.drop(fire.data);
             fire.data.state = {};
             fire.data.points = from.points;
@@ -944,17 +755,31 @@ void World::applySaved(const SavedWorld& saved,
             foresee(fire.data);
         }
         for (size_t k = 0; k < from.touches.size(); ++k) {
-            FireTouch& touch = fire.touches[k];
-            touch.object = idOf(from.touches[k].object1);
-            touch.since = from.touches[k].since;
-            std::copy_n(from.touches[k].fireAt, 3, touch.fireAt);
-            std::copy_n(from.touches[k].objectAt, 3, touch.objectAt);
-            touch.lit = from.touches[k].flag;
+            const bool seen = fire.touches[k].seen;
+            fire.touches[k] = from.touches[k];
+            fire.touches[k].seen = seen;
         }
     }
     emitterTime_ = double(clock_.tick) / double(gpu::kTicksPerSecond);
-    for (const SavedEmitter& from : saved.emitters) applyEmitter(from, *emitters_.at(from.slot));
-    for (const SavedField& from : saved.fields) {
+    for (const Slotted<EmitterSnapshot>& from : saved.emitters) {
+        components::FireEmitter& emitter = emitters_.get(emitters_.idOf(from.slot));
+        std::copy_n(from.position, 3, emitter.position);
+        std::copy_n(from.direction, 3, emitter.direction);
+        if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
+        emitter.births = {};  // particles in flight belong to another time
+        emitter.births.warms = true;
+        emitter.lastShields = {};
+        components::settleSparks(emitter, emitterTime_);
+        emitter.swept = 0;
+        emitter.touches = from.touches;
+        if (!emitter.stream) continue;
+        *emitter.stream = *from.stream;
+        emitter.stream->before = emitter.stream->patches;
+        for (components::JetParcel& parcel : emitter.stream->parcels)
+            for (components::JetRay& ray : parcel.rays)
+                ray.version = ray.version != 0 ? geometry_ : 0;
+    }
+    for (const Slotted<FieldSnapshot>& from : saved.fields) {
         Field& field = **fields_.at(from.slot);
         // The backend counts its own steps: what it shows goes on from where it is.
         const uint32_t ran = field.steps - field.shownBase;
@@ -964,38 +789,30 @@ void World::applySaved(const SavedWorld& saved,
         field.data.def.look.amount = from.amount;
         field.steps = components::fieldSteps(field.data, clock_.tick - field.began);
         field.shownBase = field.steps - ran;
-        if (!from.wets) continue;
-        field.cells->step = from.step;
-        field.cells->emitted = from.emitted;
-        field.cells->died = from.died;
-        field.cells->left = from.left;
     }
     sendFieldRules();
 }
 
-void World::applyObject(const SavedObject& from, const components::Latch& latch,
+void World::applyObject(const ObjectSnapshot& from, const components::Latch& latch,
                         Object& object) noexcept {
+    static_cast<ObjectState&>(object) = from;
     object.data.pose = from.pose;
-    object.zoneWind = from.zoneWind;
     backend_.setObjectWind(object.slot, object.zoneWind);
     placeNow(object);
     object.restsUnder = 0;
     object.room1 = roomOf(object);
-    roomsMet_ |= (from.touched ? from.counters.air : from.air) != 0;
+    roomsMet_ |= from.counters.air != 0;
     sendPose(object);
     object.latch = latch;
-    object.firstEvent = from.firstEvent;
-    object.play = from.play;
     if (object.play.burn1 != 0) startPlay(object);
     object.firstFrame = lastFrame_ + 1;
-    object.touched = from.touched;
     ++object.changes;
-    // What was read back for it and is lost is wished again.
-    const auto again = [&](bool& wished, bool& pending) {
+    // Requests whose readback is lost are made again.
+    const auto again = [&](bool& requested, bool& pending) {
         if (!pending) return;
         pending = false;
-        if (!wished) ++mapsWished_;
-        wished = true;
+        if (!requested) ++mapsWished_;
+        requested = true;
     };
     again(object.map.wished, object.map.pending);
     if (object.forecast) {
@@ -1009,12 +826,11 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     }
     object.remote = {};
     object.remoteSent = false;
-    object.remoteDue = from.due;
     object.remoteVersion = from.placed ? ++remote_.version : 0;
-    if (from.due) remote_.due.push_back(object.slot);
+    if (from.remoteDue) remote_.due.push_back(object.slot);
     if (from.placed) {
         const mesh::BurnDomain& domain = domainOf(object);
-        if (from.due) {
+        if (from.remoteDue) {
             object.remote = from.remote;
         } else {
             components::placeRemote(object.data.pose, domain, object.remote);
@@ -1025,54 +841,17 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
         object.reach = components::remoteReach(object.data, domain,
                                                meshes_.at(object.data.meshSlot)->texelsOf);
     }
-    object.story = from.story;
-    object.carried = from.carried;
     object.carryEnd = 0;  // what the save carries is settled with its events
     object.stimuli = 0;
     object.ignites = false;
-    object.counters = from.counters;
-    if (!from.touched) return;
+    if (!from.touched) {
+        object.counters = {};
+        return;
+    }
     touched_.push_back(&object);
     if (object.story.ignitionKnown)
         backend_.startBoundary(object.slot, object.story.ignitionPoint,
                                uint32_t(object.story.firstIgnition));
-}
-
-void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept {
-    std::copy_n(from.position, 3, emitter.position);
-    std::copy_n(from.direction, 3, emitter.direction);
-    if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
-    emitter.births = {};  // what flew belongs to another time
-    emitter.births.warms = true;
-    emitter.lastShields = {};
-    components::settleSparks(emitter, emitterTime_);
-    emitter.swept = 0;
-    for (size_t k = 0; k < from.touches.size(); ++k) {
-        components::JetTouch& touch = emitter.touches[k];
-        const uint32_t object1 = from.touches[k].object1;
-        touch.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
-        touch.since = from.touches[k].since;
-        touch.seen = from.touches[k].flag;
-    }
-    if (!emitter.stream) return;
-    emitter.stream->kept = from.kept;
-    emitter.stream->patches = from.patches;
-    for (components::JetPatch& patch : emitter.stream->patches)
-        patch.object =
-            patch.object.index1 != 0 ? objects_.idOf(patch.object.index1 - 1) : FwBurnableMeshId{};
-    emitter.stream->before = emitter.stream->patches;
-    emitter.stream->patchedAt = from.patchedAt;
-    for (components::JetParcel& parcel : emitter.stream->parcels) parcel = {};
-    for (size_t i = 0; i < from.parcels.size(); ++i) {
-        components::JetParcel& parcel = emitter.stream->parcels[from.places[i]];
-        parcel = from.parcels[i];
-        for (uint32_t r = 0; r < components::kJetRays; ++r) {
-            components::JetRay& ray = parcel.rays[r];
-            const uint32_t object1 = ray.hit.object.index1;
-            ray.hit.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
-            ray.version = from.swept[i * components::kJetRays + r] != 0 ? geometry_ : 0;
-        }
-    }
 }
 
 }  // namespace fw::world

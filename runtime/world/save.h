@@ -1,133 +1,131 @@
-// A world as bytes: what is in a save, besides the planes of its objects. Filled from a world, or
-// read from a file and checked against one before anything of it changes.
+// Saves: a Snapshot holds what a world knows as of one frame, and its objects' images come with
+// that frame's readback. As bytes it is a header and the snapshot, serialized.
 #pragma once
 #include "components/remote.h"
+#include "save/archive.h"
 #include "world/world.h"
 
 namespace fw::world {
 
-// m: of places that their owners may have left before the origin moved, see shift.cpp.
-constexpr double kFarPast = 2e6;
+template <class T>
+struct Slotted : T {  // of a pool
+    uint32_t slot = 0;
 
-struct SavedTouch {        // of a fire or a jet
-    uint32_t object1 = 0;  // slot + 1; 0: none
-    uint64_t since = 0;
-    float fireAt[3] = {}, objectAt[3] = {};
-    bool flag = false;  // it lit it, or saw it
-};
-
-struct SavedFire {
-    uint32_t slot = 0, flags = 0;
-    float position[3] = {}, power = 0;
-    uint32_t pointCount = 0;
-    std::array<volume::ControlPoint, volume::kMaxControlPoints> points{};
-    std::array<SavedTouch, 8> touches{};
-};
-
-struct SavedEmitter {
-    uint32_t slot = 0, flags = 0;
-    float position[3] = {}, direction[3] = {}, power = 0;
-    std::array<SavedTouch, 8> touches{};
-    bool streams = false;
-    uint64_t kept = 0;
-    components::JetPatches patches{};  // fuel that sticks
-    uint32_t patchedAt = 0;
-    std::pmr::vector<components::JetParcel> parcels;  // in flight, by their place
-    std::pmr::vector<uint32_t> places;
-    std::pmr::vector<uint8_t> swept;  // by parcel and ray: its hit is of the world as it is
-    using allocator_type = std::pmr::polymorphic_allocator<>;
-    explicit SavedEmitter(const allocator_type& a) : parcels(a), places(a), swept(a) {}
-    SavedEmitter(SavedEmitter&& other, const allocator_type& a) : parcels(a), places(a), swept(a) {
-        *this = std::move(other);
+    template <class A>
+    void serialize(A& a) {
+        a(slot);
+        T::serialize(a);
     }
-    SavedEmitter(SavedEmitter&&) = default;
-    SavedEmitter& operator=(SavedEmitter&&) = default;
 };
 
-struct SavedField {
-    uint32_t slot = 0, width = 0, height = 0;
-    uint64_t began = 0;
+struct FireSnapshot : components::FireControls {
+    uint32_t flags = 0;  // FW_FIRE_IGNITES
+    std::array<FireTouch, 8> touches{};
+
+    template <class A>
+    void serialize(A& a) {
+        components::FireControls::serialize(a);
+        a(flags, touches);
+    }
+};
+
+struct EmitterSnapshot {
+    uint32_t flags = 0;  // FW_EMITTER_JET, FW_EMITTER_IGNITES
+    float position[3] = {}, direction[3] = {}, power = 0;
+    std::array<components::JetTouch, 8> touches{};
+    core::Owned<components::JetStream> stream;
+
+    template <class A>
+    void serialize(A& a) {
+        a(flags, position, direction, power, touches);
+        a.optional(stream);
+        a.range("fire emitter's place", position, -1e6, 1e6);
+        a.range("fire emitter's direction", direction, -1e6, 1e6);
+        a.range("fire emitter's power", power, 0, components::kMostPower);
+    }
+};
+
+struct FieldSnapshot {
+    uint32_t width = 0, height = 0;
+    uint64_t began = 0;  // tick
     float position[3] = {}, rotation[4] = {}, amount = 0;
-    bool wets = false;
-    uint32_t step = 0;
-    uint64_t emitted = 0, died = 0, left = 0;
-    std::pmr::vector<uint32_t> cells;
-    using allocator_type = std::pmr::polymorphic_allocator<>;
-    explicit SavedField(const allocator_type& a) : cells(a) {}
-    SavedField(SavedField&& other, const allocator_type& a) : cells(a) { *this = std::move(other); }
-    SavedField(SavedField&&) = default;
-    SavedField& operator=(SavedField&&) = default;
+    core::Owned<field::FieldCells> cells;  // of one that wets
+
+    template <class A>
+    void serialize(A& a) {
+        a(width, height, began, position, rotation, amount);
+        a.optional(cells);
+        a.range("particle field's place", position, -1e6, 1e6);
+        a.range("particle field's amount", amount, 0, 4);
+        double length = 0;
+        for (const float value : rotation) length += double(value) * double(value);
+        a.range("square of the length of a particle field's rotation", length, 0.99, 1.01);
+    }
 };
 
-struct SavedBlocker {
+struct ObjectSnapshot : ObjectState {
     uint32_t slot = 0;
+    uint64_t asset = 0;  // hash of its mesh, materials and rules
     components::Pose pose;
-    float halfSize[3] = {};
-};
-
-struct SavedWindZone {
-    uint32_t slot = 0;
-    components::WindZone zone;
-};
-
-struct SavedRoom {
-    uint32_t slot = 0;
-    components::Room room;
-    uint32_t oxygen = 0;  // of its air, as power and flash
-    uint32_t power = 0, flash = 0, drawn = 0, stirs = 0;
-    uint32_t epoch = 0;  // which beginning's; not in files
-};
-
-struct SavedTag {
-    uint32_t object = 0, texel = 0, tag = 0;
-};
-
-struct SavedEvent {  // that was not polled yet
-    uint32_t type = 0, tag = 0;
-    uint32_t object1 = 0, other1 = 0;  // slot + 1; 0: none
-    float position[3] = {}, value = 0;
-};
-
-// Of an object whose host asks what breaks, see Breaks.
-struct SavedBreaks {
-    float share = 0, area = 0;
-    bool shareTold = false, waits = false;
-    std::span<const std::byte> lost;  // a plane, 1 by texel that hung on nothing
-};
-
-struct SavedPair {  // that touch, since when
-    uint32_t slots[2] = {}, since = 0;
-};
-
-struct SavedStats {  // as of the readback
-    uint32_t frontTiles = 0, burningTiles = 0, hotTiles = 0, receivers = 0;
-    uint32_t lateClamps = 0;
-};
-
-struct SavedObject {
-    uint32_t slot = 0;
-    uint64_t asset = 0;  // of its mesh, materials and rules
-    components::Pose pose;
-    uint32_t firstEvent = 0;
-    Play play;
-    uint64_t burnHash = 0;
-    uint32_t zoneWind = 0;             // that zones and gusts add where it is, packed
-    bool placed = false, due = false;  // as others see it; it is to be seen anew
-    gpu::RemoteObject remote{};        // where it is due; else its wind alone
-    bool touched = false;
-    uint32_t air = 0;      // of its room, if it is not touched; the rest is of those
-    bool carried = false;  // another's burn, which its power does not count yet
+    uint64_t burnHash = 0;  // of the baked burn that it plays
+    bool placed = false;
     std::array<fire::WindFilter, components::kMaterials> filters{};
     components::Pose latched;
-    Story story;  // as of its last readback
-    gpu::ObjectCounters counters{};
-    bool asksBreaks = false;
-    SavedBreaks breaks;
+    bool findsBreaks = false;
+    BreakState breaks;
+    std::span<const std::byte> lost;    // plane of the texels that hung on nothing
     std::span<const std::byte> planes;  // of its image
+
+    template <class A>
+    void serialize(A& a) {
+        a(slot, asset, pose, firstEvent, play, zoneWind, placed, remoteDue);
+        a.range("burnable mesh's place", pose.translation, -1e6, 1e6);
+        if (play.burn1 != 0) a(burnHash);
+        // A latched record follows from the pose, but for the wind that it was latched in.
+        if (placed && remoteDue) a(remote);
+        if (placed && !remoteDue) a(remote.high.w);
+        a(touched, carried);
+        if (!touched) {
+            a(counters.air);
+            return;
+        }
+        a(filters, latched, story, counters, findsBreaks);
+        if (findsBreaks) {
+            a(breaks);
+            a.blob("bytes of broken texels", lost);
+        }
+        a.blob("bytes of a burnable mesh's planes", planes);
+    }
 };
 
-struct SavedWorld {
-    explicit SavedWorld(std::pmr::memory_resource* memory)
+struct ReadbackStats {  // as of the readback
+    uint32_t frontTiles = 0, burningTiles = 0, hotTiles = 0, receivers = 0, lateClamps = 0;
+
+    FW_SERIALIZE(frontTiles, burningTiles, hotTiles, receivers, lateClamps)
+};
+
+struct SavedEvent : FwEvent {  // that was not polled yet
+    template <class A>
+    void serialize(A& a) {
+        a(type, tag);
+        a.object("an event", object);
+        a.object("an event", other);
+        a(position, value);
+        a.range("event's type", type, FW_EVENT_IGNITED, FW_EVENT_STRUCTURE_BROKE);
+        a.range("event's place", position, -3.5e38, 3.5e38);
+        a.range("event's value", value, -3.5e38, 3.5e38);
+    }
+};
+
+// The fields of a def that two worlds must share to follow each other.
+template <class A, class Def>
+void serializeRules(A& a, Def& def) {
+    a(def.paceFactor, def.up, def.spreadChance, def.timeToLive, def.seed, def.maxHops,
+      def.maxBurningTiles);
+}
+
+struct Snapshot {
+    explicit Snapshot(std::pmr::memory_resource* memory)
         : windGrid(memory),
           heatShield(memory),
           objects(memory),
@@ -138,16 +136,13 @@ struct SavedWorld {
           blockers(memory),
           latchedBlockers(memory),
           windZones(memory),
-          zones(memory),
           rooms(memory),
           fires(memory),
           emitters(memory),
           fields(memory),
-          events(memory) {}
-    // Rules, which must be the world's.
-    float pace = 1, up[3] = {}, spreadChance = 1, timeToLive = 0;
-    uint32_t seed = 0, maxHops = 0, maxBurningTiles = 0;
-    // State.
+          events(memory),
+          zones(memory) {}
+    FwWorldDef rules{};  // which must be the world's
     Clock clock;
     uint64_t steps = 0, droppedSteps = 0, order = 0;
     float wind[3] = {};
@@ -162,34 +157,47 @@ struct SavedWorld {
     uint64_t lastStimulus = 0;
     uint64_t gustsShown = 0;    // tick of the gusts that objects keep
     uint64_t roomsStirred = 0;  // tick
-    SavedStats stats;
-    std::pmr::vector<SavedObject> objects;
+    ReadbackStats stats;
+    std::pmr::vector<ObjectSnapshot> objects;
     std::pmr::vector<PendingTexel> pending;
-    std::pmr::vector<SavedTag> tags;
-    std::pmr::vector<SavedPair> pairs;
+    std::pmr::vector<Tag> tags;
+    std::pmr::vector<PairContacts> pairs;  // that touch
     std::pmr::vector<Seen> seen;
-    std::pmr::vector<SavedBlocker> blockers;
+    std::pmr::vector<Slotted<BlockerEntry>> blockers;
     std::pmr::vector<gpu::Blocker> latchedBlockers;
-    std::pmr::vector<SavedWindZone> windZones;
-    std::pmr::vector<components::WindZone> zones;  // the same in the order in which they count
-    std::pmr::vector<SavedRoom> rooms;
-    std::pmr::vector<SavedFire> fires;
-    std::pmr::vector<SavedEmitter> emitters;
-    std::pmr::vector<SavedField> fields;
-    std::pmr::vector<SavedEvent> events;  // oldest first
+    std::pmr::vector<Slotted<components::WindZone>> windZones;
+    std::pmr::vector<Slotted<RoomEntry>> rooms;
+    std::pmr::vector<Slotted<FireSnapshot>> fires;
+    std::pmr::vector<Slotted<EmitterSnapshot>> emitters;
+    std::pmr::vector<Slotted<FieldSnapshot>> fields;
+    std::pmr::vector<SavedEvent> events;           // oldest first
+    std::pmr::vector<components::WindZone> zones;  // windZones in the order in which they apply
+
+    template <class A>
+    void serialize(A& a) {
+        serializeRules(a, rules);
+        a(clock, steps, droppedSteps, order, wind, flags, warms, blockersDue, fades, idle,
+          lastStimulus, gustsShown, roomsStirred, stats);
+        a.range("wind", wind, -double(fire::kMostWind), double(fire::kMostWind));
+        a.list("burnable meshes", objects, 64);
+        a.list("events that wait", pending, 32);
+        a.list("tags", tags, 12);
+        a.list("pairs that touch", pairs, 12);
+        a.list("pairs whose sight is known", seen, 12);
+        a.list("blockers", blockers, 64);
+        a.list("latched blockers", latchedBlockers, 64);
+        a(windGrid, heatShield, gusts, origin);
+        a.range("origin", origin, -1e9, 1e9);
+        a.list("wind zones", windZones, 108);
+        a.list("rooms", rooms, 164);
+        a.list("volumetric fires", fires, 28);
+        a.list("fire emitters", emitters, 36);
+        a.list("particle fields", fields, 53);
+        a.list("events", events, 32);
+    }
 };
 
-// The planes of an image, which together are `planes` of a SavedObject.
-struct PlaneScratch {
-    explicit PlaneScratch(std::pmr::memory_resource* memory)
-        : real(memory), sources(memory), values(memory) {}
-    std::pmr::vector<uint8_t> real, sources;
-    std::pmr::vector<uint32_t> values;
-};
-void writeImage(const gpu::ObjectImage& image, const mesh::BurnDomain& domain, uint32_t tick,
-                uint32_t windowMost, PlaneScratch& scratch, std::pmr::vector<std::byte>& out);
-
-struct ImageStore {  // what a read ObjectImage points to
+struct ImageStore {  // the arrays of a read ObjectImage
     explicit ImageStore(std::pmr::memory_resource* memory)
         : ticks(memory), heat(memory), tiles(memory), tileHeat(memory), lost(memory) {}
     std::pmr::vector<uint32_t> ticks;
@@ -198,14 +206,16 @@ struct ImageStore {  // what a read ObjectImage points to
     std::pmr::vector<gpu::TileHeat> tileHeat;
     std::pmr::vector<uint32_t> lost;  // of its breaks, apart from the image; empty: none are saved
 };
-// Throws where the planes are none of writeImage's. `heat`: of its materials; empty: it has none.
+// `window`: ticks beyond which nobody asks when a tile last changed.
+void writeImage(const gpu::ObjectImage& image, const mesh::BurnDomain& domain, uint32_t tick,
+                uint32_t window, std::pmr::vector<std::byte>& out);
+// Throws unless writeImage wrote the planes. `heat`: of its materials; empty: it has none.
 void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain, uint32_t tick,
-               uint32_t windowMost, std::span<const gpu::HeatMaterial> heat, PlaneScratch& scratch,
-               ImageStore& store);
+               uint32_t window, std::span<const gpu::HeatMaterial> heat, ImageStore& store);
 
-struct SavedRecords {  // what a saved object's planes are read by
+struct BurnRecords {  // with which a saved object's planes are read
     components::Records records;
-    uint32_t window = 0;  // ticks beyond which nobody asks when a tile last changed
+    uint32_t window = 0;
     bool heated = false;
     std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat{};
     [[nodiscard]] std::span<const gpu::HeatMaterial> heatSpan() const noexcept {
@@ -213,21 +223,20 @@ struct SavedRecords {  // what a saved object's planes are read by
     }
 };
 
-struct Save {  // on its way, and the last one
+struct Save {  // that is under way, and the last one
     explicit Save(std::pmr::memory_resource* memory)
-        : saved(memory), scratch(memory), planes(memory), bytes(memory) {}
-    bool wished = false, pending = false, ready = false, failed = false;
+        : snapshot(memory), planes(memory), bytes(memory) {}
+    bool requested = false, pending = false, ready = false, failed = false;
     uint64_t frameIndex = 0;  // whose state is taken
     uint64_t eventsFrom = 0;  // number of the first that was not polled then
-    SavedWorld saved;
-    PlaneScratch scratch;
+    Snapshot snapshot;
     std::pmr::vector<std::byte> planes, bytes;
 };
 
 // The whole file: a header, and what it sums up.
-constexpr uint32_t kSaveVersion = 8;
+constexpr uint32_t kSaveVersion = 9;
 constexpr uint32_t kMostSavedEvents = EventQueue::kCapacity;
-void writeSaved(const SavedWorld& saved, std::pmr::vector<std::byte>& out);
-void readSaved(std::span<const std::byte> bytes, SavedWorld& saved);  // throws
+void writeSnapshot(const Snapshot& snapshot, std::pmr::vector<std::byte>& out);
+void readSnapshot(std::span<const std::byte> bytes, Snapshot& snapshot);  // throws
 
 }  // namespace fw::world

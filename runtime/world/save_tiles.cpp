@@ -75,12 +75,12 @@ ImageStore takeBlocks(const ImageStore& whole, const mesh::BurnDomain& domain,
     return part;
 }
 
-gpu::ObjectImage imageOf(const ImageStore& store, const SavedObject& object) noexcept {
+gpu::ObjectImage imageOf(const ImageStore& store, const ObjectSnapshot& object) noexcept {
     return {object.slot, store.ticks, store.heat, store.tiles, store.tileHeat, object.counters};
 }
 
-SavedObject* findObject(SavedWorld& saved, uint32_t slot) noexcept {
-    for (SavedObject& object : saved.objects)
+ObjectSnapshot* findObject(Snapshot& saved, uint32_t slot) noexcept {
+    for (ObjectSnapshot& object : saved.objects)
         if (object.slot == slot) return &object;
     return nullptr;
 }
@@ -111,33 +111,31 @@ std::pmr::vector<uint32_t> hashesOf(const ImageStore& store, const mesh::BurnDom
 }  // namespace
 
 // Reads an object's planes; false: it has none in this save.
-bool World::readObject(std::span<const std::byte> save, uint32_t slot, SavedWorld& saved,
-                       ImageStore& store, PlaneScratch& scratch) {
-    readSaved(save, saved);
-    checkSaved(saved);
-    const SavedObject* object = findObject(saved, slot);
+bool World::readObject(std::span<const std::byte> save, uint32_t slot, Snapshot& saved,
+                       ImageStore& store) {
+    readSnapshot(save, saved);
+    checkSnapshot(saved);
+    const ObjectSnapshot* object = findObject(saved, slot);
     if (!object || !object->touched) return false;
     components::Latch latch;
-    const SavedRecords records = recordsOf(saved, *object, latch);
+    const BurnRecords records = recordsOf(saved, *object, latch);
     readImage(object->planes, domainOf(**objects_.at(slot)), uint32_t(saved.clock.tick),
-              records.window, records.heatSpan(), scratch, store);
+              records.window, records.heatSpan(), store);
     return true;
 }
 
 std::pmr::vector<uint32_t> World::hashBlocks(std::span<const std::byte> save, uint32_t slot) {
-    SavedWorld saved(memory_);
+    Snapshot saved(memory_);
     ImageStore store(memory_);
-    PlaneScratch scratch(memory_);
-    if (!readObject(save, slot, saved, store, scratch)) return std::pmr::vector<uint32_t>(memory_);
+    if (!readObject(save, slot, saved, store)) return std::pmr::vector<uint32_t>(memory_);
     return hashesOf(store, domainOf(**objects_.at(slot)), memory_);
 }
 
 bool World::writeBlocks(std::span<const std::byte> save, uint32_t slot,
                         std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out) {
-    SavedWorld saved(memory_);
+    Snapshot saved(memory_);
     ImageStore store(memory_);
-    PlaneScratch scratch(memory_);
-    if (!readObject(save, slot, saved, store, scratch)) return false;
+    if (!readObject(save, slot, saved, store)) return false;
     const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
     const BlockGrid grid = gridOf(domain);
     const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, memory_);
@@ -145,9 +143,9 @@ bool World::writeBlocks(std::span<const std::byte> save, uint32_t slot,
     std::pmr::vector<uint32_t> blocks(memory_);
     for (uint32_t i = 0; i < ours.size(); ++i)
         if (ours[i] != theirs[i]) blocks.push_back(i);
-    SavedWorld part(memory_);
+    Snapshot part(memory_);
     part.clock = saved.clock;
-    SavedObject& object = part.objects.emplace_back(*findObject(saved, slot));
+    ObjectSnapshot& object = part.objects.emplace_back(*findObject(saved, slot));
     components::Latch latch;
     const uint32_t window = recordsOf(saved, object, latch).window;
     std::pmr::vector<std::byte> planes(memory_);
@@ -156,24 +154,22 @@ bool World::writeBlocks(std::span<const std::byte> save, uint32_t slot,
     for (const uint32_t block : blocks) writer.number(block);
     const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, memory_);
     const ImageStore taken = takeBlocks(store, domain, grid, blocks, memory_);
-    writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, scratch, planes);
+    writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, planes);
     object.planes = planes;
-    writeSaved(part, out);
+    writeSnapshot(part, out);
     return true;
 }
 
 void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
                         std::pmr::vector<std::byte>& out) {
-    SavedWorld part(memory_), saved(memory_);
-    readSaved(theirs, part);
+    Snapshot part(memory_), saved(memory_);
+    readSnapshot(theirs, part);
     ImageStore store(memory_), taken(memory_);
-    PlaneScratch scratch(memory_);
-    if (part.objects.size() != 1 ||
-        !readObject(save, part.objects[0].slot, saved, store, scratch) ||
+    if (part.objects.size() != 1 || !readObject(save, part.objects[0].slot, saved, store) ||
         part.clock.tick != saved.clock.tick || !part.objects[0].touched)
         core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
                    static_cast<unsigned long long>(part.clock.tick));
-    const SavedObject& from = part.objects[0];
+    const ObjectSnapshot& from = part.objects[0];
     const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
     const BlockGrid grid = gridOf(domain);
     core::Reader reader(from.planes, "state");
@@ -185,14 +181,14 @@ void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::by
             core::fail(FW_ERROR_BAD_DATA, "The tiles are of block %u; there are %u.", blocks[i],
                        grid.count());
     }
-    SavedObject& object = *findObject(saved, from.slot);
+    ObjectSnapshot& object = *findObject(saved, from.slot);
     object = from;
-    checkSaved(saved);
+    checkSnapshot(saved);
     components::Latch latch;
-    const SavedRecords records = recordsOf(saved, object, latch);
+    const BurnRecords records = recordsOf(saved, object, latch);
     const auto tick = uint32_t(saved.clock.tick);
     readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, memory_), tick,
-              records.window, records.heatSpan(), scratch, taken);
+              records.window, records.heatSpan(), taken);
     eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t at, size_t to) {
         store.ticks[to] = taken.ticks[at];
         if (!store.heat.empty()) store.heat[to] = taken.heat[at];
@@ -202,9 +198,9 @@ void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::by
         store.tileHeat[to] = taken.tileHeat[at];
     });
     std::pmr::vector<std::byte> planes(memory_);
-    writeImage(imageOf(store, object), domain, tick, records.window, scratch, planes);
+    writeImage(imageOf(store, object), domain, tick, records.window, planes);
     object.planes = planes;
-    writeSaved(saved, out);
+    writeSnapshot(saved, out);
 }
 
 }  // namespace fw::world

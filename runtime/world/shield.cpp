@@ -11,19 +11,6 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kCellsOfNumber = 24;  // a float holds them exactly
-constexpr uint32_t kNumbersOfDeed = 12;
-constexpr uint32_t kCellsOfDeed = kCellsOfNumber * kNumbersOfDeed;
-
-// 24 cells from `first` on, as far as there are any.
-uint32_t cellsFrom(std::span<const uint32_t> solid, uint32_t first) noexcept {
-    const uint32_t word = first / 32, shift = first % 32;
-    if (word >= solid.size()) return 0;
-    uint64_t two = solid[word];
-    if (word + 1 < solid.size()) two |= uint64_t(solid[word + 1]) << 32;
-    return uint32_t(two >> shift) & ((1u << kCellsOfNumber) - 1);
-}
-
 // Where it is, and as far around it as texels fill cells of it.
 mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
     mesh::Box box;
@@ -80,7 +67,7 @@ void World::setHeatShield(const FwHeatShieldDef& def) {
         components::readShieldCells(def, made.shape, made.solid);
     }
     bakeHeatShield(made.shape, slots, made.baked);
-    noteShield(def, made, slots);
+    recordShield(made, slots);
     adoptShield(made);
 }
 
@@ -97,88 +84,72 @@ void World::shieldChanged() noexcept {
     ++geometry_;
 }
 
-// The grid's place, if it is another; then what of the host's cells is another; then all objects.
-void World::noteShield(const FwHeatShieldDef& def, const components::HeatShield& made,
-                       std::span<const uint32_t> slots) noexcept {
-    if (!notes()) return;
+// The grid's shape if it is another, then the words of the host's cells that differ, then all
+// objects.
+void World::recordShield(const components::HeatShield& made,
+                         std::span<const uint32_t> slots) noexcept {
+    if (!records()) return;
     const bool stays = made.shape == shield_.grid.shape;
-    if (!stays) noteDef(Deed::Kind::heatShield, 0, def);
-    const std::span<const uint32_t> before =
-        stays ? std::span<const uint32_t>(shield_.grid.solid) : std::span<const uint32_t>();
-    for (uint32_t first = 0; first < made.shape.cells(); first += kCellsOfDeed) {
-        Deed deed;
-        deed.kind = Deed::Kind::shieldCells;
-        deed.slot = first / kCellsOfDeed;
-        bool other = false;
-        for (uint32_t k = 0; k < kNumbersOfDeed; ++k) {
-            const uint32_t cells = cellsFrom(made.solid, first + k * kCellsOfNumber);
-            other |= cells != cellsFrom(before, first + k * kCellsOfNumber);
-            deed.numbers[k] = float(cells);
+    if (!stays) record(SetHeatShield{made.shape});
+    const auto words = uint32_t(made.solid.size());
+    for (uint32_t first = 0; first < words; first += SetShieldCells::kWords) {
+        SetShieldCells command{first};
+        bool differs = false;
+        for (uint32_t k = 0; k < command.kWords && first + k < words; ++k) {
+            command.words[k] = made.solid[first + k];
+            differs |= command.words[k] != (stays ? shield_.grid.solid[first + k] : 0);
         }
-        if (other) note(deed);
+        if (differs) record(command);
     }
-    Deed deed;
-    deed.kind = Deed::Kind::shieldObject;
-    for (size_t i = 0; i < slots.size(); ++i) {
-        deed.slot = slots[i] + 1;
-        deed.word = i + 1 == slots.size() ? 1 : 0;
-        note(deed);
-    }
-    deed.slot = 0;
-    deed.word = 1;
-    if (slots.empty() && stays && !shield_.grid.baked.empty()) note(deed);
+    for (size_t i = 0; i < slots.size(); ++i)
+        record(AddShieldObject{slots[i] + 1, i + 1 == slots.size()});
+    if (slots.empty() && stays && !shield_.grid.baked.empty()) record(AddShieldObject{0, true});
 }
 
-void World::takeShield(const Deed& deed) {
+void World::applyShield(const SetHeatShield& command) {
     mayChange();
-    const FwHeatShieldDef def = heatShieldDefOf(deed);
     components::HeatShield made(memory_);
-    if (def.counts[0] != 0) made.shape = components::makeShieldShape(def);
+    made.shape = command.shape;
     made.solid.assign(made.shape.words(), 0);
     adoptShield(made);
     shield_.told.clear();
-    note(deed);
+    record(command);
 }
 
-void World::takeShieldCells(const Deed& deed) {
+void World::applyShieldCells(const SetShieldCells& command) {
     mayChange();
     components::HeatShield& grid = shield_.grid;
-    if (uint64_t{deed.slot} * kCellsOfDeed >= grid.shape.cells())
-        core::fail(FW_ERROR_BAD_DATA, "A deed is of cells %u x %u of the shield, which has %u.",
-                   deed.slot, kCellsOfDeed, grid.shape.cells());
-    for (uint32_t k = 0; k < kNumbersOfDeed; ++k) {
-        const float number = deed.numbers[k];
-        if (!(number >= 0 && number < float(1u << kCellsOfNumber)) || number != std::floor(number))
-            core::fail(FW_ERROR_BAD_DATA, "A deed has %g for cells of the shield.", double(number));
-    }
-    for (uint32_t i = 0; i < kCellsOfDeed; ++i) {
-        const uint32_t cell = deed.slot * kCellsOfDeed + i;
-        if (cell >= grid.shape.cells()) break;
-        const uint32_t bit = 1u << cell % 32;
-        const bool there = uint32_t(deed.numbers[i / kCellsOfNumber]) >> i % kCellsOfNumber & 1;
-        grid.solid[cell / 32] = (grid.solid[cell / 32] & ~bit) | (there ? bit : 0u);
-    }
+    if (command.first >= grid.solid.size())
+        core::fail(FW_ERROR_BAD_DATA, "A command is of word %u of the shield, which has %zu.",
+                   command.first, grid.solid.size());
+    std::copy_n(command.words.begin(),
+                std::min<size_t>(command.kWords, grid.solid.size() - command.first),
+                grid.solid.begin() + std::ptrdiff_t(command.first));
+    if (const uint32_t over = grid.shape.cells() % 32; over != 0)
+        grid.solid.back() &= (1u << over) - 1;
     shieldChanged();
-    note(deed);
+    record(command);
 }
 
-void World::takeShieldObject(const Deed& deed) {
+void World::applyShieldObject(const AddShieldObject& command) {
     mayChange();
-    if (deed.slot != 0 && (deed.slot > objects_.slotCount() || !objects_.at(deed.slot - 1)))
-        core::fail(FW_ERROR_BAD_DATA, "A deed shields by object %u, which is not there.",
-                   deed.slot);
-    if (deed.slot != 0 && shield_.told.size() >= objects_.live())
-        core::fail(FW_ERROR_BAD_DATA,
-                   "Commands name more objects for one shield than the %u that there are.",
-                   objects_.live());
-    if (deed.slot != 0) shield_.told.push_back(deed.slot - 1);
-    if (deed.word != 0) {
+    if (command.object1 != 0) {
+        if (command.object1 > objects_.slotCount() || !objects_.at(command.object1 - 1))
+            core::fail(FW_ERROR_BAD_DATA, "A command shields by object %u, which is not there.",
+                       command.object1);
+        if (shield_.told.size() >= objects_.live())
+            core::fail(FW_ERROR_BAD_DATA,
+                       "Commands name more objects for one shield than the %u that there are.",
+                       objects_.live());
+        shield_.told.push_back(command.object1 - 1);
+    }
+    if (command.last) {
         std::pmr::vector<uint32_t> slots(memory_);
         slots.swap(shield_.told);
         bakeHeatShield(shield_.grid.shape, slots, shield_.grid.baked);
         shield_.unsent = shield_.unpacked = true;
     }
-    note(deed);
+    record(command);
 }
 
 // Who is destroyed stands in nobody's way, and its slot may be another's.

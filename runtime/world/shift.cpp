@@ -27,12 +27,12 @@ template <class Place>
 void movePast(Place& place, const double (&by)[3]) noexcept {
     for (int i = 0; i < 3; ++i) {
         auto& metres = place[i];
-        metres = std::remove_reference_t<decltype(metres)>(
-            std::clamp(double(metres) + by[i], -kFarPast, kFarPast));
+        metres = std::remove_reference_t<decltype(metres)>(std::clamp(
+            double(metres) + by[i], -components::kFarthestPlace, components::kFarthestPlace));
     }
 }
 void movePast(int& millimetres, double metres) noexcept {
-    constexpr double kMost = kFarPast * 1000;
+    constexpr double kMost = components::kFarthestPlace * 1000;
     millimetres = int(std::clamp(double(millimetres) + metres * 1000, -kMost, kMost));
 }
 // Wraps where a load goes to an origin so far off that only its save has places there.
@@ -153,7 +153,7 @@ void World::shiftOrigin(const float offset[3], float applied[3]) {
     shiftBy(by);
     if (remote_.rebuild) remote_.loadedSeen.swap(seen);
     if (applied) std::copy_n(whole, 3, applied);
-    noteMove(Deed::Kind::shiftOrigin, 0, whole, 3);
+    record(ShiftOrigin{{int32_t(by[0]), int32_t(by[1]), int32_t(by[2])}});
 }
 
 // Places in a readback of a frame before `lastFrame_` + 1 are relative to the old origin.

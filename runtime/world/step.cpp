@@ -37,9 +37,9 @@ void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
                    "The world has simulated %llu s, which is the limit; create a new one. With "
                    "deltaTime 0 it can still be drawn and asked.",
                    static_cast<unsigned long long>(Clock::kLastTick / 4096));
-    if (!journal_ || !journal_->follows) return;
+    if (!recording_ || !recording_->follows) return;
     const uint64_t end = fw::world::advance(clock_, deltaTime, def_.maxStepsPerFrame).after.tick;
-    if (end > std::max(journal_->until, clock_.tick))
+    if (end > std::max(recording_->until, clock_.tick))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "deltaTime is %g; the world follows a server's, and fwNet_TakeTurn says how "
                    "far a frame may go.",
@@ -57,7 +57,7 @@ void World::advance(uint64_t frameIndex, float deltaTime) {
         touchByFires(time.after.tick);
         planSteps(time);
         planProbes();
-        if (journal_) planHashes(time);
+        if (recording_) planHashes(time);
         planTimeline(time.after.tick);
         planSave();
         planBreaks(time.after.tick);

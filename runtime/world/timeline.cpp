@@ -1,5 +1,5 @@
-// See timeline.h. Moments are asked for, kept and taken out as frames go by; seeking loads the last
-// one before a tick and does again what the host did since, step by step.
+// Keyframes are requested, kept and removed as frames go by. Seeking loads the last one before a
+// tick and applies the commands since, step by step.
 #include "world/timeline.h"
 
 #include "world/save.h"
@@ -12,7 +12,7 @@ namespace fw::world {
 namespace {
 
 constexpr uint64_t kLeastTimeline = uint64_t(1) << 16;   // bytes
-constexpr float kShortest = 1.0f / 32, kLongest = 3600;  // s between two moments
+constexpr float kShortest = 1.0f / 32, kLongest = 3600;  // s between two keyframes
 
 uint64_t ticksOf(float seconds) noexcept {
     return uint64_t(std::llround(double(seconds) * 32)) * gpu::kStepTicks;
@@ -29,48 +29,48 @@ struct Seeking {
 }  // namespace
 
 uint64_t Timeline::bytes() const noexcept {
-    uint64_t sum = deeds.entries.size() * sizeof(LogEntry);
-    for (const Moment& moment : moments) sum += moment.save.size();
+    uint64_t sum = commands.entries.size() * sizeof(LogEntry);
+    for (const Keyframe& keyframe : keyframes) sum += keyframe.save.size();
     return sum;
 }
 
 void Timeline::fit() noexcept {
-    while (moments.size() > 1 && bytes() > most) {
+    while (keyframes.size() > 1 && bytes() > most) {
         if (apart * 2 <= farthest) {
             apart *= 2;
-            uint64_t last = moments.front().tick;
-            const auto near = [&](const Moment& moment) {
-                if (moment.tick - last < apart) return true;
-                last = moment.tick;
+            uint64_t last = keyframes.front().tick;
+            const auto near = [&](const Keyframe& keyframe) {
+                if (keyframe.tick - last < apart) return true;
+                last = keyframe.tick;
                 return false;
             };
-            moments.erase(std::remove_if(moments.begin() + 1, moments.end(), near), moments.end());
+            keyframes.erase(std::remove_if(keyframes.begin() + 1, keyframes.end(), near),
+                            keyframes.end());
             continue;
         }
-        moments.erase(moments.begin());
-        const size_t before = moments.front().deeds;  // nobody plays these any more
-        deeds.entries.erase(deeds.entries.begin(), deeds.entries.begin() + ptrdiff_t(before));
-        for (Moment& moment : moments) moment.deeds -= before;
-        done -= std::min(done, before);
+        keyframes.erase(keyframes.begin());
+        const size_t before = keyframes.front().commands;  // nobody plays these any more
+        commands.entries.erase(commands.entries.begin(),
+                               commands.entries.begin() + ptrdiff_t(before));
+        for (Keyframe& keyframe : keyframes) keyframe.commands -= before;
+        applied -= std::min(applied, before);
         captured -= std::min(captured, before);
     }
 }
 
 void Timeline::forget(uint64_t now) noexcept {
-    std::erase_if(moments, [&](const Moment& moment) { return moment.tick > now; });
-    deeds.entries.resize(std::min(done, deeds.entries.size()));
+    std::erase_if(keyframes, [&](const Keyframe& keyframe) { return keyframe.tick > now; });
+    commands.entries.resize(std::min(applied, commands.entries.size()));
     end = now;
 }
 
 void Timeline::restart(uint64_t now) noexcept {
-    moments.clear();
-    deeds.entries.clear();
-    deeds.lost = false;
-    done = captured = 0;
+    keyframes.clear();
+    commands.entries.clear();
+    commands.lost = false;
+    applied = captured = 0;
     end = granted = now;
 }
-
-// ---- World --------------------------------------------------------------------------------------
 
 void World::startTimeline(const FwTimelineDef& def) {
     components::checkValue(def.interval, "FwTimelineDef::interval", kShortest, kLongest);
@@ -99,15 +99,16 @@ void World::stopTimeline() noexcept {
     saves_[size_t(SaveFor::timeline)] = {};
 }
 
-// Before a frame's plan: is one of its moments to be kept? Of what burnt before, none.
+// Before a frame's plan. Nothing is kept of what burnt before.
 void World::planTimeline(uint64_t after) noexcept {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     const core::Owned<Save>& save = saves_[size_t(SaveFor::timeline)];
-    if (!save || save->wished || save->pending || after < timeline.end) return;
-    if (!timeline.moments.empty() && after < timeline.moments.back().tick + timeline.apart) return;
+    if (!save || save->requested || save->pending || after < timeline.end) return;
+    if (!timeline.keyframes.empty() && after < timeline.keyframes.back().tick + timeline.apart)
+        return;
     if (unsavable() != 0) return;
-    save->wished = true;
+    save->requested = true;
     save->ready = false;
 }
 
@@ -120,14 +121,14 @@ void World::commitTimeline(uint64_t before) noexcept {
     timeline.end = std::max(timeline.end, clock_.tick);
 }
 
-void World::keepMoment() noexcept {
+void World::keepKeyframe() noexcept {
     if (!timeline_ || !saves_[size_t(SaveFor::timeline)]->ready) return;
     Save& save = *saves_[size_t(SaveFor::timeline)];
     save.ready = false;
     Timeline& timeline = *timeline_;
     try {
-        timeline.moments.push_back(
-            {save.saved.clock.tick, timeline.captured,
+        timeline.keyframes.push_back(
+            {save.snapshot.clock.tick, timeline.captured,
              std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), memory_)});
     } catch (...) {  // there will be another one
         return;
@@ -135,13 +136,14 @@ void World::keepMoment() noexcept {
     timeline.fit();
 }
 
-// What the host does: in the past it makes another future.
-void World::noteInTimeline(const Deed& deed) noexcept {
+// A command in the past makes another future.
+void World::recordInTimeline(const Command& command) noexcept {
     if (!timeline_ || timeline_->seeks) return;
     Timeline& timeline = *timeline_;
     if (clock_.tick < timeline.end) timeline.forget(clock_.tick);
-    timeline.deeds.push({clock_.tick, false, deed});
-    timeline.done = timeline.deeds.entries.size();
+    timeline.commands.push({clock_.tick, false, command});
+    timeline.applied = timeline.commands.entries.size();
+    timeline.fit();
 }
 
 bool World::seek(uint64_t untilTick, float& seconds) {
@@ -155,41 +157,42 @@ bool World::seek(uint64_t untilTick, float& seconds) {
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be sought.",
                    object1);
     Timeline& timeline = *timeline_;
-    if (timeline.deeds.lost)
+    if (timeline.commands.lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the timeline was kept; it has a gap.");
     const uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (timeline.moments.empty() && until <= timeline.end) return until == clock_.tick;
-    if (timeline.moments.empty() || until < timeline.moments.front().tick || until > timeline.end)
+    if (timeline.keyframes.empty() && until <= timeline.end) return until == clock_.tick;
+    if (timeline.keyframes.empty() || until < timeline.keyframes.front().tick ||
+        until > timeline.end)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "untilTick is %llu; the timeline has %llu to %llu.",
                    static_cast<unsigned long long>(untilTick),
                    static_cast<unsigned long long>(
-                       timeline.moments.empty() ? timeline.end : timeline.moments.front().tick),
+                       timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick),
                    static_cast<unsigned long long>(timeline.end));
     const Seeking seeking(timeline);
-    auto from = std::upper_bound(timeline.moments.begin(), timeline.moments.end(), until,
-                                 [](uint64_t tick, const Moment& m) { return tick < m.tick; });
+    auto from = std::upper_bound(timeline.keyframes.begin(), timeline.keyframes.end(), until,
+                                 [](uint64_t tick, const Keyframe& m) { return tick < m.tick; });
     --from;
     if (until < clock_.tick || from->tick > clock_.tick) {
         load(from->save);
-        timeline.done = from->deeds;
+        timeline.applied = from->commands;
     }
-    const auto& entries = timeline.deeds.entries;
-    const bool present = clock_.tick == timeline.end;  // with all that was done in it
+    const auto& entries = timeline.commands.entries;
+    const bool present = clock_.tick == timeline.end;
     if (clock_.tick < until || present) {
-        for (; timeline.done < entries.size() && entries[timeline.done].tick <= clock_.tick;
-             ++timeline.done) {
+        for (; timeline.applied < entries.size() && entries[timeline.applied].tick <= clock_.tick;
+             ++timeline.applied) {
             try {
-                perform(entries[timeline.done].deed);
+                apply(entries[timeline.applied].command);
             } catch (const core::Error& error) {
-                log_.write(FW_LOG_WARNING, "A call of the timeline at tick %llu is refused: %s",
+                log_.write(FW_LOG_WARNING, "A command of the timeline at tick %llu is refused: %s",
                            static_cast<unsigned long long>(clock_.tick), error.message);
             }
         }
     }
     if (clock_.tick >= until) return true;
     uint64_t next = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
-    if (timeline.done < entries.size()) next = std::min(next, entries[timeline.done].tick);
+    if (timeline.applied < entries.size()) next = std::min(next, entries[timeline.applied].tick);
     timeline.granted = next;
     seconds = secondsUpTo(next);
     return true;
@@ -198,8 +201,8 @@ bool World::seek(uint64_t untilTick, float& seconds) {
 void World::timelineState(FwTimelineState& state) {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
-    state.moments = uint32_t(timeline.moments.size());
-    state.firstTick = timeline.moments.empty() ? timeline.end : timeline.moments.front().tick;
+    state.moments = uint32_t(timeline.keyframes.size());
+    state.firstTick = timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick;
     state.endTick = timeline.end;
     state.bytes = timeline.bytes();
     state.interval = float(double(timeline.apart) / gpu::kTicksPerSecond);

@@ -17,8 +17,6 @@ using fire::WindVector;
 
 namespace {
 
-constexpr uint32_t kPointsOfDeed = 4;  // of a grid
-
 // m/s: what blows everywhere, and what `here` has more of.
 std::array<float, 3> withMore(const float (&wind)[3], const WindVector& here) noexcept {
     const WindVector around = fire::windUnits(wind);
@@ -157,17 +155,16 @@ FwWindZoneId World::createWindZone(const FwWindZoneDef& def) {
     return id;
 }
 
-void World::setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
+void World::setWindZone(FwWindZoneId id, const WindZone& made) {
     mayChange();
     WindZone& zone = windPool_.get(id);
-    const WindZone made = components::makeWindZone(def);
     if (!(zone == made)) {
         const WindZone before = std::exchange(zone, made);
         listWindZones();
         zoneTurns(before);
         zoneTurns(made);
     }
-    noteDef(Deed::Kind::windZone, id.index1 - 1, def);
+    record(SetWindZone{id.index1 - 1, made});
 }
 
 // Before a frame: parts of a grid may have come one by one, and gusts go on.
@@ -177,16 +174,24 @@ void World::settleWind() noexcept {
 }
 
 void World::setGusts(const FwGustDef& def) {
-    mayChange();
     const components::Gusts gusts = components::makeGusts(def, gusts_);
+    applyGusts({gusts.strength, gusts.size});
+}
+
+void World::applyGusts(const SetGusts& command) {
+    mayChange();
+    components::Gusts gusts = gusts_;
+    gusts.strength = command.strength;
+    gusts.size = command.size;
+    if (!components::plausible(gusts, clock_.tick))
+        core::fail(FW_ERROR_BAD_DATA, "A command's gusts are out of their limits.");
     if (!(gusts == gusts_)) ++driveChanges_;
     gusts_ = gusts;
     windTurns();
-    const float numbers[] = {def.strength, def.size};
-    noteMove(Deed::Kind::gusts, 0, numbers, std::size(numbers));
+    record(command);
 }
 
-// Of a deed the grid's place, and calm on it; then what of its points is not.
+// The grid's shape is recorded with calm on it, then the points that differ.
 void World::setWindGrid(const FwWindGridDef& def) {
     mayChange();
     components::WindGrid grid(memory_);
@@ -195,19 +200,16 @@ void World::setWindGrid(const FwWindGridDef& def) {
         components::readWindPoints(def, grid.points);
     }
     const bool stays = grid.shape == windGrid_.shape;
-    if (!stays) noteDef(Deed::Kind::windGrid, 0, def);
-    for (uint32_t first = 0; first < grid.points.size(); first += kPointsOfDeed) {
-        Deed deed;
-        deed.kind = Deed::Kind::windPoints;
-        deed.slot = first;
-        bool other = false;
-        for (uint32_t k = 0; k < kPointsOfDeed && first + k < grid.points.size(); ++k)
-            for (size_t i = 0; i < 3; ++i) {
-                const int16_t units = grid.points[first + k][i];
-                other |= units != (stays ? windGrid_.points[first + k][i] : 0);
-                deed.numbers[3 * k + i] = float(units) * fire::kWindUnit;
-            }
-        if (other && notes()) note(deed);
+    if (!stays) record(SetWindGrid{grid.shape});
+    for (uint32_t first = 0; first < grid.points.size(); first += SetWindPoints::kPoints) {
+        SetWindPoints command{first};
+        bool differs = false;
+        for (uint32_t k = 0; k < command.kPoints && first + k < grid.points.size(); ++k) {
+            command.points[k] = grid.points[first + k];
+            differs |= command.points[k] !=
+                       (stays ? windGrid_.points[first + k] : components::WindPoint{});
+        }
+        if (differs) record(command);
     }
     windGrid_.shape = grid.shape;
     windGrid_.points.swap(grid.points);
@@ -215,32 +217,27 @@ void World::setWindGrid(const FwWindGridDef& def) {
     windTurns();
 }
 
-void World::takeWindGrid(const Deed& deed) {
+void World::applyWindGrid(const SetWindGrid& command) {
     mayChange();
-    const FwWindGridDef def = windGridDefOf(deed);
-    components::WindGridShape shape;
-    if (def.counts[0] != 0) shape = components::makeWindGridShape(def);
-    std::pmr::vector<components::WindPoint> calm(shape.points(), memory_);
+    std::pmr::vector<components::WindPoint> calm(command.shape.points(), memory_);
     windGrid_.points.swap(calm);
-    windGrid_.shape = shape;
+    windGrid_.shape = command.shape;
     ++driveChanges_;
     windDue_ = true;
-    note(deed);
+    record(command);
 }
 
-void World::takeWindPoints(const Deed& deed) {
+void World::applyWindPoints(const SetWindPoints& command) {
     mayChange();
-    if (deed.slot >= windGrid_.points.size())
-        core::fail(FW_ERROR_BAD_DATA, "A deed is of point %u of the wind's grid, which has %zu.",
-                   deed.slot, windGrid_.points.size());
-    std::array<components::WindPoint, kPointsOfDeed> points;
-    for (uint32_t k = 0; k < kPointsOfDeed; ++k)
-        points[k] = components::makeWindPoint(deed.numbers.data() + size_t{3} * k, deed.slot + k);
-    const size_t count = std::min<size_t>(kPointsOfDeed, windGrid_.points.size() - deed.slot);
-    std::copy_n(points.begin(), count, windGrid_.points.begin() + std::ptrdiff_t(deed.slot));
+    const size_t points = windGrid_.points.size();
+    if (command.first >= points)
+        core::fail(FW_ERROR_BAD_DATA, "A command is of point %u of the wind grid, which has %zu.",
+                   command.first, points);
+    std::copy_n(command.points.begin(), std::min<size_t>(command.kPoints, points - command.first),
+                windGrid_.points.begin() + std::ptrdiff_t(command.first));
     ++driveChanges_;
     windDue_ = true;
-    note(deed);
+    record(command);
 }
 
 void World::destroyWindZone(FwWindZoneId id) {

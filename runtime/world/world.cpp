@@ -202,7 +202,7 @@ void World::setWind(const float wind[3]) {
     components::windChanges(gusts_, fire::windUnits(wind_), clock_.tick);
     std::copy_n(wind, 3, wind_);
     windTurns();
-    noteMove(Deed::Kind::wind, 0, wind, 3);
+    record(SetWind{{wind[0], wind[1], wind[2]}});
 }
 
 // ---- materials and images ---------------------------------------------------------------------
@@ -644,7 +644,7 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
         stirRooms();
     }
     sendPose(object);
-    notePose(Deed::Kind::pose, object.slot, transform);
+    record(SetPose{object.slot, Transform(transform)});
 }
 
 uint32_t World::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
@@ -869,12 +869,7 @@ uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
         else
             for (const uint32_t slot : objectsNear(def.position, def.radius))
                 texels += igniteObject(**objects_.at(slot), def, tick);
-        if (pending_.size() > before)
-            note({Deed::Kind::ignite,
-                  def.object.index1,
-                  tick,
-                  def.kind,
-                  {def.position[0], def.position[1], def.position[2], def.radius, def.water}});
+        recordTexels(before);
         return texels;
     } catch (...) {
         pending_.resize(before);

@@ -24,12 +24,12 @@
 #include "mesh/remote_tiles.h"
 #include "volume/depth_picture.h"
 #include "world/clock.h"
-#include "world/deed_log.h"
+#include "world/command_log.h"
 #include "world/event_queue.h"
 #include "world/governor.h"
-#include "world/journal.h"
 #include "world/neighbours.h"
 #include "world/played.h"
+#include "world/recording.h"
 #include "world/timeline.h"
 
 #include <algorithm>
@@ -90,18 +90,26 @@ struct Forecast {  // of an object that was asked when fire arrives
     bool pending = false;                      // that is on its way
 };
 
+struct BreakState {
+    float share = 0, area = 0;  // as in its def; 0: not asked
+    bool shareTold = false;
+    bool waits = false;  // some of what caught is not gone yet
+
+    template <class A>
+    void serialize(A& a) {
+        a(share, area, shareTold, waits);
+    }
+};
+
 // Of an object whose host asks what breaks, see breaks.cpp.
-struct Breaks {
+struct Breaks : BreakState {
     explicit Breaks(std::pmr::memory_resource* memory) : lost(memory) {}
-    float share = 0, area = 0;    // as in its def; 0: not asked
     bool hangs = false;           // from its pins; else it stands
     std::array<FwPin, 8> pins{};  // object space
     uint32_t pinCount = 0;
     std::pmr::vector<bool> lost;       // by texel: it hung on nothing when it was last looked for
     core::Owned<mesh::Pieces> pieces;  // of an object with cut-outs; null: its mesh's
-    bool shareTold = false;
-    bool waits = false;               // some of what caught is not gone yet
-    std::array<uint64_t, 8> looks{};  // frames whose state of it is on its way, oldest first
+    std::array<uint64_t, 8> looks{};   // frames whose state of it is on its way, oldest first
     uint32_t lookCount = 0;
 };
 
@@ -136,6 +144,13 @@ struct Story {
     uint32_t clampsTold = 0;             // late clamps that an event has told
     uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
     float power = 0;                     // W, at pace 1; of objects with heat
+
+    template <class A>
+    void serialize(A& a) {
+        a(active, sawFire, ignitionKnown, lastStimulus, lastDouse, douseCause, flames, wentOut,
+          halvedUntil, outCause, lastBurning, firstIgnition, ignitionPoint, litTold, spotsTold,
+          mostIgnited, clampsTold, energy, heatSteps, power);
+    }
 };
 
 // Effects of one frame on an object's fire. The object's record applies them with the readback of
@@ -156,7 +171,19 @@ struct Stimulus {
     core::Owned<Story> given{};  // of that other one, if it is gone before the readback comes
 };
 
-struct Object {
+struct ObjectState {                    // of an object, that a save has as it is
+    uint32_t firstEvent = 0xFFFFFFFFu;  // tick of the first event ever
+    Play play;                          // the baked burn that it plays
+    uint32_t zoneWind = 0;              // that zones add where it is, packed
+    bool touched = false;               // an event ever addressed it: it filters wind and latches
+    bool carried = false;        // from another: what it got so far counts as no power of its own
+    bool remoteDue = false;      // pose or def changed since its latch: it is in remote_.due
+    gpu::RemoteObject remote{};  // as others see it, latched every kRemoteLatchTicks
+    Story story;
+    gpu::ObjectCounters counters{};  // as of the last readback
+};
+
+struct Object : ObjectState {
     explicit Object(std::pmr::memory_resource* memory)
         : slowness(memory), map(memory), skin(memory), skinNormals(memory) {}
 
@@ -169,28 +196,21 @@ struct Object {
     uint64_t firstFrame = 0;              // readbacks of older frames speak of another object
     std::pmr::vector<uint16_t> slowness;  // per texel, Q7; empty: the mesh's own
     uint64_t memoryBytes = 0;             // of it in World::memoryCounts_
-    bool touched = false;                 // an event ever addressed it: it filters wind and latches
-    uint32_t firstEvent = 0xFFFFFFFFu;    // tick of the first event ever
-    Story story;
-    uint32_t stimuli = 0;               // of World::stimuli_ that it has
-    uint32_t stimulusAt = mesh::kNone;  // of those, the one of the frame that is committed
-    bool ignites = false;               // some of those ignite it
+    uint32_t stimuli = 0;                 // of World::stimuli_ that it has
+    uint32_t stimulusAt = mesh::kNone;    // of those, the one of the frame that is committed
+    bool ignites = false;                 // some of those ignite it
     // Fire at a distance: as others see it, latched every kRemoteLatchTicks.
     components::Governance governance;
-    gpu::RemoteObject remote{};
     uint32_t reach = 0;          // mm
     uint32_t remoteVersion = 0;  // grows with every latch; 0: never placed
     uint64_t planStamp = 0;      // of the plan whose latches hold it
     size_t latchIndex = 0;       // of frame_.latches, in that plan
     uint64_t restsUnder = 0;   // driveChanges_ + 1 under which its latch, as it is, rests; 0: none
-    bool remoteDue = false;    // pose or def changed since its latch: it is in remote_.due
     bool remoteSent = true;    // the backend has the latched record; else it is in remote_.unsent
     bool contactsDue = false;  // it is in remote_.contactsDue
     bool seenDue = false;      // it is in remote_.seenDue
-    uint32_t zoneWind = 0;     // that zones add where it is, packed
     uint32_t room1 = 0;        // slot + 1 of the room that it is in; 0: none
     // As of the last readback.
-    gpu::ObjectCounters counters{};
     uint64_t countersFrame = 0;
     BurnMapCopy map;
     core::Owned<Forecast> forecast;  // null: never asked for
@@ -198,8 +218,6 @@ struct Object {
     uint64_t changes = 0;            // of what its fire will do, that we know of
     // A burn is carried from or to it: its other events wait until the end of that step.
     uint32_t carryEnd = 0;  // tick
-    bool carried = false;   // from another: what it got so far counts as no power of its own
-    Play play;              // the baked burn that it plays
     // Of a skinned object: the host's vertices, m, in its mesh's shape; 3 each. Normals are
     // scratch.
     std::pmr::vector<float> skin, skinNormals;
@@ -216,6 +234,12 @@ struct StateCopy {            // of the object in a slot
 struct Tag {
     FwBurnableMeshId object{};
     uint32_t texel = 0, tag = 0;
+
+    template <class A>
+    void serialize(A& a) {
+        a.texel("a tag", object, texel);
+        a(tag);
+    }
 };
 
 struct Query {
@@ -236,11 +260,25 @@ constexpr uint32_t kWorldFlags =
 struct BlockerEntry {
     components::Pose pose;
     float halfSize[3] = {};
+
+    template <class A>
+    void serialize(A& a) {
+        a(pose, halfSize);
+        a.range("blocker's place", pose.translation, -1e6, 1e6);
+        a.range("blocker's half size", halfSize, 0, 30);
+    }
 };
 
 struct RoomEntry {
     components::Room room;
     gpu::RoomAir air{};  // as of the last readback, or as it begins
+
+    template <class A>
+    void serialize(A& a) {
+        a(room, air.oxygen, air.power, air.flash, air.drawn, air.stirs);
+        a.range("power of a room's fires", air.power, 0,
+                double(gpu::kFlashMost * (gpu::kRoomMeans - 1)));
+    }
 };
 
 // A burnable mesh within a fire's flame, since when and where; of fires that ignite.
@@ -251,6 +289,12 @@ struct FireTouch {
     float objectAt[3] = {};  // and the object's
     bool lit = false;        // it caught already
     bool seen = false;       // in this exchange
+
+    template <class A>
+    void serialize(A& a) {
+        a.object("a flame", object);
+        if (object.index1 != 0) a(since, fireAt, objectAt, lit);
+    }
 };
 
 struct Fire {
@@ -304,6 +348,12 @@ struct PairContacts {
     uint32_t since = 0;  // tick, while they touch
     bool touches = false;
     uint64_t stamp = 0;  // RemoteBook::contactStamp when it was last found near
+
+    template <class A>
+    void serialize(A& a) {
+        for (uint32_t& slot : slots) a.object("a contact", slot);
+        a(since);
+    }
 };
 
 // An object whose box is so near that the two may touch.
@@ -315,6 +365,13 @@ struct CloseObject {
 struct Seen {  // what the host said that a fire of slots[1] sees of slots[0]
     uint32_t slots[2] = {};
     uint32_t part = 255;  // of 255
+
+    template <class A>
+    void serialize(A& a) {
+        for (uint32_t& slot : slots) a.object("a line of sight", slot);
+        a(part);
+        a.range("visible share", part, 0, 255);
+    }
 };
 
 // What the frame plans of who is where. Kept across frames, so that what did not move is not sought
@@ -380,7 +437,7 @@ struct ShieldBook {
     explicit ShieldBook(std::pmr::memory_resource* memory)
         : grid(memory), told(memory), words(memory), fallen(memory) {}
     components::HeatShield grid;
-    std::pmr::vector<uint32_t> told;   // slots that deeds named so far
+    std::pmr::vector<uint32_t> told;   // slots that commands named so far
     std::pmr::vector<uint32_t> words;  // as the backend gets it
     std::pmr::vector<uint8_t> fallen;  // scratch
     gpu::ShieldUpdate update;
@@ -412,6 +469,13 @@ struct PendingTexel {  // an event that waits for its step; texel kAllTexels: of
     std::array<components::JetGate, components::kJetGates> gates{};
     uint32_t gateCount = 0;
     bool shut = false;
+
+    template <class A>
+    void serialize(A& a) {
+        a(object, texel, kind, tick, water, order, gateCount, shut);
+        a.require(gateCount <= components::kJetGates, "number of holes that an event waits for");
+        for (uint32_t i = 0; i < gateCount; ++i) a(gates[i]);
+    }
 };
 inline bool isCarry(const PendingTexel& event) noexcept {
     return gpu::eventKind(event.kind) == gpu::kEventCarry;
@@ -434,14 +498,10 @@ struct Winds {
 void checkWorldDef(const FwWorldDef& def);  // throws
 
 // save.h
-struct SavedWorld;
-struct SavedObject;
-struct SavedEmitter;
-struct SavedRecords;
-struct SavedBreaks;
+struct Snapshot;
+struct ObjectSnapshot;
+struct BurnRecords;
 struct ImageStore;
-struct PlaneScratch;
-struct Story;
 struct Save;
 
 class World {
@@ -465,10 +525,16 @@ class World {
     void setWindGrid(const FwWindGridDef& def);      // of structSize 0: none any more
     void setGusts(const FwGustDef& def);
     FwWindZoneId createWindZone(const FwWindZoneDef& def);
-    void setWindZone(FwWindZoneId id, const FwWindZoneDef& def);
+    void setWindZone(FwWindZoneId id, const FwWindZoneDef& def) {
+        setWindZone(id, components::makeWindZone(def));
+    }
+    void setWindZone(FwWindZoneId id, const components::WindZone& zone);
     void destroyWindZone(FwWindZoneId id);
     FwRoomId createRoom(const FwRoomDef& def);
-    void setRoom(FwRoomId id, const FwRoomDef& def);
+    void setRoom(FwRoomId id, const FwRoomDef& def) {
+        setRoom(id, components::makeRoom(def), (def.flags & FW_ROOM_REFILL) != 0);
+    }
+    void setRoom(FwRoomId id, const components::Room& room, bool refills);
     void destroyRoom(FwRoomId id);
     void roomState(FwRoomId id, FwRoomState& state);
     void energyBook(FwEnergyBook& book) noexcept;
@@ -584,15 +650,16 @@ class World {
     void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
     void stopBurn(FwBurnableMeshId id);
 
-    // journal.cpp
-    Journal& keepJournal(bool follows);  // from here on
-    void dropJournal() noexcept { journal_ = {}; }
-    // deed_log.cpp
+    // recording.cpp
+    Recording& startRecording(bool follows);
+    void stopRecording() noexcept { recording_ = {}; }
+    // command_log.cpp
     void startLog();
     void stopLog() noexcept;
     const std::pmr::vector<std::byte>& fetchLog();  // until the next call
     void openLog(std::span<const std::byte> bytes);
-    // Does what comes before the next step; s that the world may go then. 0: `untilTick` is there.
+    // Applies the commands before the next step; s that the world may go then. 0: `untilTick` is
+    // there.
     float playLog(uint64_t untilTick);
     // timeline.cpp
     void startTimeline(const FwTimelineDef& def);
@@ -609,9 +676,9 @@ class World {
                      std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out);
     void mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
                      std::pmr::vector<std::byte>& out);
-    // Another world's deed, before this one's next step. Throws where it is none for this world.
-    void perform(const Deed& deed);
-    void performLoad(std::span<const std::byte> bytes);  // of its save
+    // Another world's command, before this one's next step. Throws unless this world can apply it.
+    void apply(const Command& command);
+    void applyLoad(std::span<const std::byte> bytes);  // of its save
     [[nodiscard]] uint64_t tick() const noexcept { return clock_.tick; }
     [[nodiscard]] double seconds() const noexcept;  // since its beginning
     // s from the present to the beginning of a later tick.
@@ -818,7 +885,7 @@ class World {
     size_t beginPlays(uint64_t end);
     void planPlays(uint32_t now, std::span<const Frame::Due> due);
     void turnPlay(const Object& object) noexcept;
-    void settlePlays(SavedWorld& saved);  // of a save: throws where this world has other burns
+    void settlePlays(Snapshot& snapshot);  // of a save: throws where this world has other burns
     void commitPlays(uint64_t frameIndex) noexcept;
     // latch.cpp
     void planLatches(uint32_t now, size_t firstEvent, bool placed);
@@ -840,19 +907,19 @@ class World {
     components::ShieldObject shieldObjectOf(uint32_t slot) noexcept;
     void bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
                         std::pmr::vector<components::ShieldCell>& baked);
-    void noteShield(const FwHeatShieldDef& def, const components::HeatShield& made,
-                    std::span<const uint32_t> slots) noexcept;
-    void takeShield(const Deed& deed);
-    void takeShieldCells(const Deed& deed);
-    void takeShieldObject(const Deed& deed);
+    void recordShield(const components::HeatShield& made, std::span<const uint32_t> slots) noexcept;
+    void applyShield(const SetHeatShield& command);
+    void applyShieldCells(const SetShieldCells& command);
+    void applyShieldObject(const AddShieldObject& command);
     void adoptShield(components::HeatShield& made) noexcept;  // takes its cells
     void shieldChanged() noexcept;
     void dropFromShield(uint32_t slot) noexcept;
     void packHeatShield();
     components::ShieldView shieldView();
     void planShield(gpu::StepPlan& step, bool awake);
-    void takeWindGrid(const Deed& deed);
-    void takeWindPoints(const Deed& deed);
+    void applyWindGrid(const SetWindGrid& command);
+    void applyWindPoints(const SetWindPoints& command);
+    void applyGusts(const SetGusts& command);
     void windTurns() noexcept;
     void zoneTurns(const components::WindZone& zone) noexcept;
     void settleWind() noexcept;
@@ -947,9 +1014,7 @@ class World {
                     std::span<const gpu::uvec2> heat, uint32_t now, const uint64_t* tells) noexcept;
     void takeBreaks(Object& object, const gpu::BurnMap& map,
                     const gpu::Readback& readback) noexcept;
-    void noteBreaks(const Object& object, SavedBreaks& saved, PlaneScratch& scratch,
-                    std::pmr::vector<std::byte>& out) const;
-    void restoreBreaks(Object& object, const SavedBreaks* saved, const ImageStore& store,
+    void restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
                        uint32_t now) noexcept;
     // save.cpp
     [[nodiscard]] uint64_t meshHash(const Object& object) noexcept;
@@ -962,43 +1027,36 @@ class World {
     // timeline.cpp
     void planTimeline(uint64_t after) noexcept;
     void commitTimeline(uint64_t before) noexcept;
-    void keepMoment() noexcept;
-    void noteInTimeline(const Deed& deed) noexcept;
-    void noteSaved(SavedWorld& to);
-    void noteObject(Object& object, SavedObject& saved) noexcept;
-    void noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
-                     std::pmr::vector<SavedEmitter>& to) const;
+    void keepKeyframe() noexcept;
+    void recordInTimeline(const Command& command) noexcept;
+    void capture(Snapshot& to);
+    void captureObject(Object& object, ObjectSnapshot& to) noexcept;
     void takeSave(Save& save, const gpu::Readback& readback);
-    void noteEvents(Save& save);
+    void captureEvents(Save& save);
     static void forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept;
-    // journal.cpp
-    void mayChange() const;  // throws where another machine's deeds alone count
-    [[nodiscard]] bool notes() const noexcept { return journal_ || noted_ || timeline_; }
-    void note(const Deed& deed) noexcept;
-    void noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
-                  uint32_t word = 0) noexcept;
-    template <class Def>
-    void noteDef(Deed::Kind kind, uint32_t slot, const Def& def) noexcept {
-        if (!notes()) return;
-        Deed deed = deedOf(def);
-        deed.kind = kind;
-        deed.slot = slot;
-        note(deed);
-    }
-    void notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept;
+    // recording.cpp
+    void mayChange() const;  // throws where another machine's commands alone count
+    [[nodiscard]] bool records() const noexcept { return recording_ || commandLog_ || timeline_; }
+    void record(const Command& command) noexcept;
+    void recordTexels(size_t first) noexcept;
+    void checkCommandTick(uint32_t tick) const;
+    void igniteTexels(const IgniteTexels& command);
+    void igniteObjects(const IgniteObjects& command);
+    void addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels);
     void planHashes(const ClockAdvance& time);
-    void noteSaveInLog() noexcept;
-    void noteHash(const gpu::BurnMap& map, const gpu::Readback& readback);
-    void checkSaved(const SavedWorld& saved);  // throws
+    void recordSave() noexcept;
+    void recordHash(const gpu::BurnMap& map, const gpu::Readback& readback);
+    class SnapshotChecker;
+    // Throws unless the snapshot fits this world, whose ids it then has.
+    void checkSnapshot(Snapshot& snapshot);
     // Its latch, too, as it was.
-    SavedRecords recordsOf(const SavedWorld& saved, const SavedObject& from,
-                           components::Latch& latch);
-    bool readObject(std::span<const std::byte> save, uint32_t slot, SavedWorld& saved,
-                    ImageStore& store, PlaneScratch& scratch);
-    void applySaved(const SavedWorld& saved, std::span<const components::Latch> latches) noexcept;
-    void applyObject(const SavedObject& from, const components::Latch& latch,
+    BurnRecords recordsOf(const Snapshot& snapshot, const ObjectSnapshot& from,
+                          components::Latch& latch);
+    bool readObject(std::span<const std::byte> save, uint32_t slot, Snapshot& snapshot,
+                    ImageStore& store);
+    void apply(const Snapshot& snapshot, std::span<const components::Latch> latches) noexcept;
+    void applyObject(const ObjectSnapshot& from, const components::Latch& latch,
                      Object& object) noexcept;
-    void applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept;
     // queries.cpp
     Query makeQuery(FwBurnableMeshId id, const float position[3]);
     Query& openQuery(FwQueryId id, bool isArrival);
@@ -1158,8 +1216,8 @@ class World {
     uint32_t switches_ = 0;
     uint64_t planStamp_ = 0;
     std::array<core::Owned<Save>, size_t(SaveFor::count)> saves_;  // once one was asked for
-    core::Owned<Journal> journal_;                                 // null: nobody asks
-    core::Owned<DeedLog> noted_, played_;                          // null: none
+    core::Owned<Recording> recording_;                             // null: nobody asks
+    core::Owned<CommandLog> commandLog_, playedLog_;               // null: none
     core::Owned<Timeline> timeline_;                               // null: none is kept
     uint64_t loadedFrame_ = 0;     // readbacks up to this frame are of another past
     uint64_t loadedTick_ = ~0ull;  // of the save that was loaded last

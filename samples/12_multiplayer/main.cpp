@@ -183,7 +183,7 @@ class Server : public Side {
     // Returns true if the client reached the end.
     bool run() {
         uint32_t step = 0;
-        std::string told;
+        std::string message;
         double heard = 0;
         for (;;) {
             const double now = seconds();
@@ -192,10 +192,10 @@ class Server : public Side {
                 check(fwWorld_Step(world_, kStep));
             }
             // The last that it says, to a client that is there.
-            if (step == settings_.steps && told.empty() && follows()) {
-                told = hash();
-                check(fwNet_Tell(world_, told.data(), uint32_t(told.size())));
-                leave(told);
+            if (step == settings_.steps && message.empty() && follows()) {
+                message = hash();
+                check(fwNet_Tell(world_, message.data(), uint32_t(message.size())));
+                leave(message);
                 heard = now;
             }
             exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
@@ -212,7 +212,7 @@ class Server : public Side {
                 }
             });
             if (client_ != 0) send(peer_, client_, now);
-            if (!told.empty() && state().records == 0) return true;
+            if (!message.empty() && state().records == 0) return true;
             if (step < settings_.steps) heard = now;
             if (now - heard > kPatience) return false;
             std::this_thread::sleep_for(std::chrono::milliseconds(4));
@@ -280,10 +280,10 @@ class Client : public Side {
                     check(fwWorld_Step(world_, turn.deltaTime));
                     continue;
                 }
-                const std::string told(turn.message, turn.message + turn.messageSize);
+                const std::string message(turn.message, turn.message + turn.messageSize);
                 const std::string mine = hash();
                 leave(mine);
-                equal = told == mine;
+                equal = message == mine;
                 done = true;
                 doneAt = now;
             }

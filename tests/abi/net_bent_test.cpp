@@ -296,7 +296,7 @@ class HandClient {
     }
     FwResult send(uint16_t kind, uint32_t inSession, const Bytes& body) {
         Bytes packet;
-        put(packet, 0x504E5746u, 4), put(packet, 2, 2), put(packet, kind, 2), put(packet, 0, 4);
+        put(packet, 0x504E5746u, 4), put(packet, 3, 2), put(packet, kind, 2), put(packet, 0, 4);
         put(packet, inSession, 4), put(packet, token_, 4), put(packet, ++sequence_, 4);
         packet.insert(packet.end(), body.begin(), body.end());
         signPacket(packet);

@@ -165,8 +165,8 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
     wrong[0] ^= 1;
     expectSaveRefused(w, wrong, "\"FWSV\"");
     wrong = bytes;
-    wrong[4] = 9;
-    expectSaveRefused(w, wrong, "format version 9");
+    wrong[4] = 99;
+    expectSaveRefused(w, wrong, "format version 99");
     wrong = bytes;
     wrong[bytes.size() / 2] ^= 0x10;
     expectSaveRefused(w, wrong, "checksum");

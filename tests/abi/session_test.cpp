@@ -281,9 +281,9 @@ TEST(Save, RefusesAnOlderVersionByItsNumber) {
     {
         TouchingSheets w(context);
         Bytes bytes = saveOf(w.world);
-        bytes[4] = 7;
+        bytes[4] = 8;
         EXPECT_EQ(FW_ERROR_BAD_DATA, w.load(bytes));
-        EXPECT_NE(std::string::npos, lastMessage(w.world).find("version 7"))
+        EXPECT_NE(std::string::npos, lastMessage(w.world).find("version 8"))
             << lastMessage(w.world);
         EXPECT_NE(std::string::npos, lastMessage(w.world).find("older library"));
     }

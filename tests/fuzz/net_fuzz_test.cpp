@@ -114,7 +114,7 @@ class Storm {
     }
 
     // What hosts do to the burn; on a client it is refused.
-    void deed(BusyWorld& w) {
+    void changeBurn(BusyWorld& w) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         ball.kind = below(4);
         ball.water = number() * 50;
@@ -190,7 +190,7 @@ class Storm {
                 break;
             }
             default:
-                deed(*server_);
+                changeBurn(*server_);
                 break;
         }
     }
@@ -235,7 +235,7 @@ class Storm {
                 break;
             }
             default:
-                deed(*party.world);
+                changeBurn(*party.world);
                 break;
         }
     }

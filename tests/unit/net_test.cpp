@@ -49,17 +49,31 @@ TEST(NetPacket, WhatCameIsKnown) {
     EXPECT_TRUE(window.isNew(71));
 }
 
+template <uint32_t... I>
+world::Command ofKind(uint32_t kind, std::integer_sequence<uint32_t, I...>) {
+    world::Command command;
+    ((kind == I ? void(command.emplace<I>()) : void()), ...);
+    return command;
+}
+world::Command commandOf(uint32_t i) {
+    if (i % 2 == 0) {
+        world::IgniteTexels command{i, {FW_WET, 3 * i, 20}, {}};
+        for (const uint32_t texel : {i, i + 1, i + 7}) EXPECT_TRUE(command.texels.add(texel));
+        return command;
+    }
+    return ofKind(i % world::kCommandKinds,
+                  std::make_integer_sequence<uint32_t, world::kCommandKinds>());
+}
+
 TEST(NetRecords, ComeBackAsTheyWere) {
     net::RecordLog log(std::pmr::get_default_resource());
     for (uint32_t i = 0; i < 500; ++i) {
         net::Record record;
         record.step = i;
         record.kind = i % 3 == 0   ? net::RecordKind::hashes
-                      : i % 3 == 1 ? net::RecordKind::deed
+                      : i % 3 == 1 ? net::RecordKind::command
                                    : net::RecordKind::capture;
-        record.deed.kind = world::Deed::Kind(i % uint32_t(world::Deed::Kind::count));
-        record.deed.slot = i;
-        record.deed.numbers.fill(float(i));
+        record.command = commandOf(i);
         record.tick = 1000 + i;
         record.stride = 16;
         record.hashCount = i % 5;
@@ -72,10 +86,12 @@ TEST(NetRecords, ComeBackAsTheyWere) {
         net::Record record;
         net::readRecord(log.at(i), record);
         EXPECT_EQ(i, record.step);
-        if (record.kind == net::RecordKind::deed) {
-            EXPECT_EQ(world::Deed::Kind(i % uint32_t(world::Deed::Kind::count)), record.deed.kind);
-            EXPECT_TRUE(record.deed.numbers[0] == float(i) ||
-                        record.deed.kind == world::Deed::Kind::flags);
+        if (record.kind == net::RecordKind::command) {
+            EXPECT_EQ(commandOf(i).index(), record.command.index());
+            Bytes expected, found;
+            world::writeCommand(commandOf(i), expected);
+            world::writeCommand(record.command, found);
+            EXPECT_EQ(expected, found);
         } else {
             EXPECT_EQ(1000 + i, record.tick);
             EXPECT_EQ(record.kind == net::RecordKind::hashes ? i % 5 : 0, record.hashCount);

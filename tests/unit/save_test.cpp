@@ -142,12 +142,12 @@ TEST(SavedEvents, AreOfTexelsOfTheSurface) {
     uint32_t beside = 0;
     while (beside < domain.texelCount() && domain.real(beside)) ++beside;
     ASSERT_LT(beside, domain.texelCount());
-    world::SavedWorld saved(memory);
-    world::readSaved(*bytes, saved);
+    world::Snapshot saved(memory);
+    world::readSnapshot(*bytes, saved);
     ASSERT_FALSE(saved.pending.empty());
     saved.pending[0].texel = beside;
     Bytes bent;
-    world::writeSaved(saved, bent);
+    world::writeSnapshot(saved, bent);
     EXPECT_THROW(world.load(bent), core::Error);
 }
 

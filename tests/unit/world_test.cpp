@@ -395,14 +395,9 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
 
 // For commands of a log or a server: one occluder list names each object once.
 TEST_F(PlannedWorld, OccluderCommandsNameEachObjectOnce) {
-    world::Deed command;
-    command.kind = world::Deed::Kind::shieldObject;
-    command.slot = id.index1;
-    world->perform(command);
-    EXPECT_THROW(world->perform(command), core::Error);
-    command.slot = 0;
-    command.word = 1;
-    world->perform(command);
+    world->apply(world::AddShieldObject{id.index1, false});
+    EXPECT_THROW(world->apply(world::AddShieldObject{id.index1, false}), core::Error);
+    world->apply(world::AddShieldObject{0, true});
 }
 
 TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirFrame) {

@@ -350,7 +350,7 @@ static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
  * one cell of a flame or of a heated surface. Cells of the host and of these two objects it ignores within a few cells. Burnt
  * holes let fire pass without another call. If an object moves, its cells stay until the next call; if it is destroyed, they
  * are gone. Objects fill at most 262144 cells. The result is the same on every backend and goes to saves, command logs and
- * networks. Size there: 9 bytes for each object, and 57 for each row of 288 cells in which a host's cell changed. If the grid
+ * networks. Size there: 9 bytes for each object, and 58 for each row of 384 cells in which a host's cell changed. If the grid
  * differs, all rows with solid cells count. Cost: about 5 ns a cell, the time of the callback, and about 40 ns a texel of the
  * objects. [world] */
 FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
@@ -411,7 +411,7 @@ static inline FwWindGridDef fwDefaultWindGridDef(void) {
     FwWindGridDef d; fwInitDef(FW_DEF_WIND_GRID, &d, (uint32_t)sizeof d); return d;
 }
 /* Replaces the wind grid; null removes it. Takes effect at the next step and is filtered like the world's wind. Velocities
- * are rounded to 1/128 m/s. Meant for a few calls a second: a command log or network carries about 55 bytes for each four
+ * are rounded to 1/128 m/s. Meant for a few calls a second: a command log or network carries about 58 bytes for each eight
  * points in a row of which one changed. If the grid moves, it carries all points that are not calm. [world] */
 FW_API FwResult FW_CALL fwWorld_SetWindGrid(FwWorld*, const FwWindGridDef* def);
 /* Gusts: noise that drifts with the wind scales the world's wind and that of its grid. Gusts reach fronts, embers, plumes,

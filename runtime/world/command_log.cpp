@@ -1,4 +1,4 @@
-#include "world/deed_log.h"
+#include "world/command_log.h"
 
 #include "core/hash.h"
 #include "core/stream.h"
@@ -12,14 +12,14 @@ namespace fw::world {
 namespace {
 
 constexpr uint32_t kMagic = 0x474C5746;  // "FWLG"
-constexpr uint32_t kLogVersion = 1;
+constexpr uint32_t kLogVersion = 2;
 constexpr size_t kHeadBytes = 24;  // magic, version, identity, checksum of the rest
 constexpr uint16_t kSaveEntry = 0xFFFF;
 constexpr size_t kLeastEntry = sizeof(uint32_t) + sizeof(uint16_t);
 
 }  // namespace
 
-void DeedLog::push(const LogEntry& entry) noexcept {
+void CommandLog::push(const LogEntry& entry) noexcept {
     try {
         entries.push_back(entry);
     } catch (...) {
@@ -38,8 +38,8 @@ void writeLog(std::span<const LogEntry> entries, uint64_t identity,
     writer.number(uint32_t(entries.size()));
     for (const LogEntry& entry : entries) {
         writer.number(uint32_t(entry.tick));
-        writer.number(entry.save ? kSaveEntry : uint16_t(entry.deed.kind));
-        if (!entry.save) putDeed(writer, entry.deed);
+        writer.number(entry.save ? kSaveEntry : uint16_t(entry.command.index()));
+        if (!entry.save) writeCommand(entry.command, out);
     }
     writer.numberAt(kHeadBytes - sizeof(uint64_t),
                     core::hashBytes(std::span(out).subspan(kHeadBytes)));
@@ -47,15 +47,18 @@ void writeLog(std::span<const LogEntry> entries, uint64_t identity,
 
 void readLog(std::span<const std::byte> bytes, uint64_t identity,
              std::pmr::vector<LogEntry>& entries) {
-    core::Reader reader(bytes, "log");
+    save::Reader reader(bytes, "log", entries.get_allocator().resource());
     uint32_t magic = 0, version = 0;
     uint64_t world = 0, sum = 0;
     reader.number(magic);
     if (magic != kMagic) core::fail(FW_ERROR_BAD_DATA, "The log does not begin with \"FWLG\".");
     reader.number(version);
     if (version != kLogVersion)
-        core::fail(FW_ERROR_BAD_DATA, "The log has format version %u; %u is read.", version,
-                   kLogVersion);
+        core::fail(FW_ERROR_BAD_DATA,
+                   "The log has format version %u; this library reads version %u alone. %s",
+                   version, kLogVersion,
+                   version < kLogVersion ? "Play it with the older library that wrote it."
+                                         : "Play it with the newer library that wrote it.");
     reader.number(world);
     reader.number(sum);
     if (sum != core::hashBytes(bytes.subspan(kHeadBytes)))
@@ -76,12 +79,7 @@ void readLog(std::span<const std::byte> bytes, uint64_t identity,
         if (tick % gpu::kStepTicks != 0 || (i > 0 && entry.tick < entries.back().tick))
             core::fail(FW_ERROR_BAD_DATA, "Entry %u of the log is at tick %u.", i, tick);
         entry.save = kind == kSaveEntry;
-        if (!entry.save) {
-            if (kind >= uint32_t(Deed::Kind::count))
-                core::fail(FW_ERROR_BAD_DATA, "Entry %u of the log is of kind %u.", i, kind);
-            entry.deed.kind = Deed::Kind(kind);
-            putDeed(reader, entry.deed);
-        }
+        if (!entry.save) readCommand(kind, reader, entry.command);
         entries.push_back(entry);
     }
     if (reader.left() != 0)
@@ -101,45 +99,44 @@ std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t t
     return entries.subspan(size_t(at - entries.begin()));
 }
 
-// ---- World --------------------------------------------------------------------------------------
+void World::startLog() { commandLog_ = core::Owned<CommandLog>::make(memory_, memory_); }
 
-void World::startLog() { noted_ = core::Owned<DeedLog>::make(memory_, memory_); }
-
-void World::stopLog() noexcept { noted_ = {}; }
+void World::stopLog() noexcept { commandLog_ = {}; }
 
 const std::pmr::vector<std::byte>& World::fetchLog() {
-    if (!noted_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world notes no log; fwWorld_StartLog first.");
-    if (noted_->lost)
-        core::fail(FW_ERROR_OUT_OF_MEMORY, "Memory ended while the log was noted; it has a gap.");
-    writeLog(noted_->entries, identity(), noted_->bytes);
-    return noted_->bytes;
+    if (!commandLog_)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world records no log; fwWorld_StartLog first.");
+    if (commandLog_->lost)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "Memory ended while the log was recorded; it has a gap.");
+    writeLog(commandLog_->entries, identity(), commandLog_->bytes);
+    return commandLog_->bytes;
 }
 
 void World::openLog(std::span<const std::byte> bytes) {
     if (bytes.empty()) {
-        played_ = {};
+        playedLog_ = {};
         return;
     }
-    auto log = core::Owned<DeedLog>::make(memory_, memory_);
+    auto log = core::Owned<CommandLog>::make(memory_, memory_);
     readLog(bytes, identity(), log->entries);
-    played_ = std::move(log);
+    playedLog_ = std::move(log);
 }
 
 float World::playLog(uint64_t untilTick) {
-    if (!played_)
+    if (!playedLog_)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "There is no log to play; fwWorld_OpenLog first.");
     mayChange();
     std::span<const LogEntry> ahead =
-        fromTick(played_->entries, clock_.tick, loadedTick_ == clock_.tick);
+        fromTick(playedLog_->entries, clock_.tick, loadedTick_ == clock_.tick);
     uint64_t until = untilTick - untilTick % gpu::kStepTicks;
     if (until <= clock_.tick) return 0;
     for (; !ahead.empty() && ahead.front().tick == clock_.tick; ahead = ahead.subspan(1)) {
         if (ahead.front().save) continue;
         try {
-            perform(ahead.front().deed);
+            apply(ahead.front().command);
         } catch (const core::Error& error) {
-            log_.write(FW_LOG_WARNING, "A call of the log at tick %llu is refused: %s",
+            log_.write(FW_LOG_WARNING, "A command of the log at tick %llu is refused: %s",
                        static_cast<unsigned long long>(clock_.tick), error.message);
         }
     }

@@ -1,7 +1,7 @@
-// What the host did to a burn, in order, from a moment on: noted while someone asks for it, as
-// bytes in a file, and played on a world that a save brought back.
+// The commands of a host, in order, as bytes in a file, which a world that loaded an earlier save
+// applies again.
 #pragma once
-#include "world/journal.h"
+#include "world/recording.h"
 
 #include <cstddef>
 
@@ -9,12 +9,12 @@ namespace fw::world {
 
 struct LogEntry {
     uint64_t tick = 0;  // of the step that it came before
-    bool save = false;  // a save was taken here: what of this tick is before it is in that save
-    Deed deed;          // else
+    bool save = false;  // a save was taken here: it has the commands of this tick before it
+    Command command;    // else
 };
 
-struct DeedLog {
-    explicit DeedLog(std::pmr::memory_resource* memory) : entries(memory), bytes(memory) {}
+struct CommandLog {
+    explicit CommandLog(std::pmr::memory_resource* memory) : entries(memory), bytes(memory) {}
     std::pmr::vector<LogEntry> entries;  // by tick
     std::pmr::vector<std::byte> bytes;   // as of the last fetch
     bool lost = false;                   // memory ended, and with it what came then
@@ -24,12 +24,12 @@ struct DeedLog {
 // The whole file: a header, and what it sums up. `identity`: of its world (World::identity).
 void writeLog(std::span<const LogEntry> entries, uint64_t identity,
               std::pmr::vector<std::byte>& out);
-// Throws FW_ERROR_BAD_DATA where the bytes are none of writeLog's for such a world.
+// Throws FW_ERROR_BAD_DATA unless writeLog wrote the bytes for such a world.
 void readLog(std::span<const std::byte> bytes, uint64_t identity,
              std::pmr::vector<LogEntry>& entries);
 
-// The entries from the first that a world at `tick` has not done yet. `loaded`: it is as a save of
-// that tick was.
+// The entries from the first that a world at `tick` has not applied yet. `loaded`: it is as a save
+// of that tick was.
 [[nodiscard]] std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t tick,
                                                  bool loaded) noexcept;
 

@@ -1,0 +1,286 @@
+// Commands: the host's calls that change what burns, as values. A command log, a timeline and a
+// network carry them; World::apply makes each of them again. Creating and destroying is no command:
+// every host does that by itself. Things are named by slot.
+#pragma once
+#include "components/heat_shield.h"
+#include "components/room.h"
+#include "components/wind_grid.h"
+#include "save/archive.h"
+
+#include <variant>
+
+namespace fw::world {
+
+struct SetWind {
+    float wind[3] = {};  // m/s
+
+    FW_SERIALIZE(wind)
+};
+
+struct SetFlags {
+    uint32_t flags = 0;  // FwWorldFlags
+
+    FW_SERIALIZE(flags)
+};
+
+// Ascending numbers as runs of consecutive ones.
+struct Runs {
+    static constexpr uint32_t kMost = 8;
+    struct Run {
+        uint32_t first = 0;
+        uint16_t count = 0;
+
+        FW_SERIALIZE(first, count)
+    };
+    uint16_t count = 0;
+    std::array<Run, kMost> runs{};
+
+    // False: there is no run left for it.
+    bool add(uint32_t value) noexcept {
+        if (count > 0) {
+            Run& last = runs[count - 1u];
+            if (value == uint64_t(last.first) + last.count && last.count < 0xFFFF) {
+                ++last.count;
+                return true;
+            }
+        }
+        if (count == kMost) return false;
+        runs[count++] = {value, 1};
+        return true;
+    }
+    template <class Visit>
+    void each(const Visit& visit) const {
+        for (uint32_t i = 0; i < count; ++i)
+            for (uint32_t k = 0; k < runs[i].count; ++k) visit(runs[i].first + k);
+    }
+    template <class A>
+    void serialize(A& a) {
+        a(count);
+        a.require(count <= kMost, "number of runs");
+        for (uint32_t i = 0; i < count; ++i) a(runs[i]);
+    }
+};
+
+struct TexelChange {     // that an ignition, water or a puff brings
+    uint32_t kind = 0;   // FwIgnitionKind
+    uint32_t tick = 0;   // at which it takes effect
+    uint32_t water = 0;  // g/m^2
+
+    FW_SERIALIZE(kind, tick, water)
+};
+
+// The place that a host lights is resolved to texels before it is recorded: no floating point
+// decides what a command changes.
+struct IgniteTexels {
+    uint32_t slot = 0;
+    TexelChange change;
+    Runs texels;
+
+    FW_SERIALIZE(slot, change, texels)
+};
+
+struct IgniteObjects {  // all of their texels
+    TexelChange change;
+    Runs slots;
+
+    FW_SERIALIZE(change, slots)
+};
+
+struct WetPatch {  // of a jet's fuel that sticks
+    uint32_t emitter = 0, patch = 0;
+    uint32_t grams = 0;  // per m^2; components::kPatchDrowned: all that it takes
+    uint32_t tick = 0;
+
+    FW_SERIALIZE(emitter, patch, grams, tick)
+};
+
+struct Transform {  // an affine matrix without its last row, in columns
+    float columns[12] = {};
+
+    Transform() = default;
+    explicit Transform(const float matrix[16]) noexcept {
+        for (int c = 0; c < 4; ++c) std::copy_n(matrix + 4 * c, 3, columns + 3 * c);
+    }
+    [[nodiscard]] std::array<float, 16> matrix() const noexcept {
+        std::array<float, 16> all{};
+        for (int c = 0; c < 4; ++c) std::copy_n(columns + 3 * c, 3, all.data() + 4 * c);
+        all[15] = 1;
+        return all;
+    }
+    template <class A>
+    void serialize(A& a) {
+        a(columns);
+    }
+};
+
+struct SetPose {
+    uint32_t slot = 0;
+    Transform transform;
+
+    FW_SERIALIZE(slot, transform)
+};
+
+struct MoveBlocker {
+    uint32_t slot = 0;
+    Transform transform;
+
+    FW_SERIALIZE(slot, transform)
+};
+
+struct MoveFire {
+    uint32_t slot = 0;
+    float position[3] = {};
+
+    FW_SERIALIZE(slot, position)
+};
+
+struct SetFirePower {
+    uint32_t slot = 0;
+    float power = 0;  // kW
+
+    FW_SERIALIZE(slot, power)
+};
+
+struct MoveEmitter {
+    uint32_t slot = 0;
+    bool turns = false;  // else it keeps its direction
+    float position[3] = {}, direction[3] = {};
+
+    template <class A>
+    void serialize(A& a) {
+        a(slot, turns, position);
+        if (turns) a(direction);
+    }
+};
+
+struct SetEmitterPower {
+    uint32_t slot = 0;
+    float power = 0;  // kW
+
+    FW_SERIALIZE(slot, power)
+};
+
+struct MoveField {
+    uint32_t slot = 0;
+    bool turns = false;  // else it keeps its rotation
+    float position[3] = {}, rotation[4] = {};
+
+    template <class A>
+    void serialize(A& a) {
+        a(slot, turns, position);
+        if (turns) a(rotation);
+    }
+};
+
+struct SetFieldAmount {
+    uint32_t slot = 0;
+    float amount = 0;
+
+    FW_SERIALIZE(slot, amount)
+};
+
+struct SetWindZone {
+    uint32_t slot = 0;
+    components::WindZone zone;
+
+    FW_SERIALIZE(slot, zone)
+};
+
+struct SetRoom {
+    uint32_t slot = 0;
+    bool refills = false;
+    components::Room room;
+
+    FW_SERIALIZE(slot, refills, room)
+};
+
+struct PlayBurn {
+    uint32_t slot = 0;
+    uint32_t burn1 = 0;  // slot + 1
+    uint32_t tick = 0;   // of the first ignition
+    float speed = 0;
+
+    FW_SERIALIZE(slot, burn1, tick, speed)
+};
+
+struct StopBurn {
+    uint32_t slot = 0;
+
+    FW_SERIALIZE(slot)
+};
+
+struct SetWindGrid {  // calm, until SetWindPoints follow
+    components::WindGridShape shape;
+
+    FW_SERIALIZE(shape)
+};
+
+struct SetWindPoints {
+    static constexpr uint32_t kPoints = 8;
+    uint32_t first = 0;
+    std::array<components::WindPoint, kPoints> points{};
+
+    template <class A>
+    void serialize(A& a) {
+        a(first, points);
+        for (const components::WindPoint& point : points)
+            for (const int16_t units : point)
+                a.require(units >= -fire::kMostWindUnits && units <= fire::kMostWindUnits,
+                          "wind at a grid point");
+    }
+};
+
+struct SetGusts {
+    int64_t strength = 0, size = 0;  // as in components::Gusts
+
+    FW_SERIALIZE(strength, size)
+};
+
+struct SetHeatShield {  // empty, until SetShieldCells and AddShieldObject follow
+    components::ShieldShape shape;
+
+    FW_SERIALIZE(shape)
+};
+
+struct SetShieldCells {
+    static constexpr uint32_t kWords = 12;  // of 32 cells each
+    uint32_t first = 0;                     // word
+    std::array<uint32_t, kWords> words{};
+
+    FW_SERIALIZE(first, words)
+};
+
+struct AddShieldObject {
+    uint32_t object1 = 0;  // slot + 1; 0: none
+    bool last = false;     // the objects added so far fill their cells
+
+    FW_SERIALIZE(object1, last)
+};
+
+struct ShiftOrigin {
+    int32_t metres[3] = {};
+
+    FW_SERIALIZE(metres)
+};
+
+struct TransferBurn {
+    uint32_t to = 0, from = 0;
+
+    FW_SERIALIZE(to, from)
+};
+
+// In files and packets a command is its place in this list, then its fields.
+using Command =
+    std::variant<SetWind, SetFlags, IgniteTexels, IgniteObjects, WetPatch, SetPose, MoveBlocker,
+                 MoveFire, SetFirePower, MoveEmitter, SetEmitterPower, MoveField, SetFieldAmount,
+                 SetWindZone, SetRoom, PlayBurn, StopBurn, SetWindGrid, SetWindPoints, SetGusts,
+                 SetHeatShield, SetShieldCells, AddShieldObject, ShiftOrigin, TransferBurn>;
+constexpr uint32_t kCommandKinds = std::variant_size_v<Command>;
+
+// The fields alone; the kind is the caller's to write.
+void writeCommand(const Command& command, std::pmr::vector<std::byte>& out);
+// Throw unless `kind` is one and the bytes have its fields; the second: of a packet, all of them.
+void readCommand(uint32_t kind, save::Reader& reader, Command& command);
+void readCommand(uint32_t kind, std::span<const std::byte> bytes, Command& command);
+
+}  // namespace fw::world
