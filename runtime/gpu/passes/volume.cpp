@@ -1,7 +1,7 @@
 // Volumetric flames of one view: a draw each, farthest first. Where the host's depth can be sampled
 // a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
 // place, so that a log in a flame hides what is behind it and no more.
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/draw.h"
 #include "gpu/passes/volume_tiers.h"
 #include "shared/volume_march.h"
 
@@ -10,11 +10,6 @@
 
 namespace fw::gpu {
 namespace {
-
-constexpr Use kVolumeUses[] = {
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_VOLUMES, Access::drawEach},
-};
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
 constexpr float kLeastW = 1e-4f;     // of clip space: what is nearer is beside the eye or behind it
@@ -73,18 +68,6 @@ BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
 }
 
 }  // namespace
-
-const DrawPass kVolumePass{.name = "volume",
-                           .vertexShader = "volume.vert",
-                           .fragmentShader = "volume.frag",
-                           .uses = kVolumeUses,
-                           .vertexInput = VertexInput::none,
-                           .blend = Blend::premultiplied,
-                           .writeDepth = false,
-                           .pushBytes = sizeof(VolumeDraw),
-                           .softShader = "volume_soft.frag",
-                           .softShaderMultisampled = "volume_soft_ms.frag",
-                           .atHalf = AtHalf::soft};
 
 vec4 volumeClip(const ViewParams& view) noexcept {
     const vec3 forward(view.forward);
@@ -225,11 +208,6 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
         if (nodes[k].squeeze.w > 0.0f) bent += 1.0f;
     }
     return std::clamp(2u + uint32_t(4.0f * std::min(bent, 100.0f)), 2u, kFlameIntervals);
-}
-
-void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items) {
-    for (const VolumeItem& item : items)
-        recorder.drawVolume(item.flame, &item.draw, kVolumeSplit, item.draw.slabs);
 }
 
 }  // namespace fw::gpu

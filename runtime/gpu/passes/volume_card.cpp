@@ -10,8 +10,6 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kVolumeCardUses[] = {{FW_BIND_VOLUME_RAYS, Access::drawTexels}};
-
 constexpr float kCardCells = 24.0f;  // of a flame's diameter, where its smoke leaves as many
 constexpr float kGrows = 1.15f;      // cells, until they are few enough
 
@@ -28,23 +26,7 @@ vec3 placeOf(const ViewParams& view, vec3 point) {
     return {clip.x / clip.w, clip.y / clip.w, glm::dot(from, vec3(view.forward))};
 }
 
-constexpr const char* kCardTexelShaders[] = {
-    "volume_card_texels.frag", "volume_card_texels_soft.frag", "volume_card_texels_soft_ms.frag"};
-
 }  // namespace
-
-const DrawPass kVolumeCardPass{.name = "volume card",
-                               .vertexShader = "volume_card.vert",
-                               .fragmentShader = "volume_card.frag",
-                               .uses = kVolumeCardUses,
-                               .vertexInput = VertexInput::none,
-                               .blend = Blend::premultiplied,
-                               .writeDepth = false,
-                               .pushBytes = sizeof(VolumeCard),
-                               .softShader = "volume_card_soft.frag",
-                               .softShaderMultisampled = "volume_card_soft_ms.frag",
-                               .texelShaders = kCardTexelShaders,
-                               .atHalf = AtHalf::soft};
 
 bool cardFits(const VolumeItem& item) noexcept {
     return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;
@@ -120,10 +102,6 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     out.samples = slot * kCardWords + kCardTiles * kVolumeTileWords;
     out.to = 1.0f;
     return true;
-}
-
-void recordVolumeCards(DrawRecorder& recorder, std::span<const VolumeCard> cards) {
-    for (const VolumeCard& card : cards) recorder.drawVertices(&card, kVolumeSplit);
 }
 
 }  // namespace fw::gpu

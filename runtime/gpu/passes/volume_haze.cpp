@@ -6,25 +6,6 @@
 #include <algorithm>
 
 namespace fw::gpu {
-namespace {
-
-constexpr Use kVolumeHazeUses[] = {
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_VOLUMES, Access::drawEach},
-};
-
-}  // namespace
-
-const DrawPass kVolumeHazePass{.name = "volume haze",
-                               .vertexShader = "volume_haze.vert",
-                               .fragmentShader = nullptr,
-                               .uses = kVolumeHazeUses,
-                               .vertexInput = VertexInput::none,
-                               .blend = Blend::premultiplied,
-                               .writeDepth = false,
-                               .pushBytes = sizeof(VolumeHaze),
-                               .softShader = "volume_haze_soft.frag",
-                               .softShaderMultisampled = "volume_haze_soft_ms.frag"};
 
 void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
                       vec4& high) {
@@ -50,11 +31,6 @@ bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, fl
     if (!(strength > 0.0f) || !volumeDraw(view, low, high, 1, draw)) return false;
     out = {draw.rect, draw.rayX, draw.rayY, draw.rayO, draw.clip, strength, 0, 0, 0};
     return true;
-}
-
-void recordVolumeHazes(DrawRecorder& recorder, std::span<const HazedVolume> volumes) {
-    for (const HazedVolume& one : volumes)
-        recorder.drawVolume(one.flame, &one.draw, 6 * kHazeColumns * kHazeRows, 1);
 }
 
 }  // namespace fw::gpu

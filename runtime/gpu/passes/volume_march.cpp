@@ -2,7 +2,7 @@
 // pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
 // volume_probe finds worth it. Memory is bounded: where not all fits, those that take most of it
 // are marched in larger cells.
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/draw.h"
 #include "gpu/passes/volume_tiers.h"
 
 #include <algorithm>
@@ -11,13 +11,6 @@
 
 namespace fw::gpu {
 namespace {
-
-constexpr Use kVolumeMarchUses[] = {
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_VOLUMES, Access::each},
-    {FW_BIND_VOLUME_WORK, Access::indirect},
-    {FW_BIND_VOLUME_RAYS, Access::write},
-};
 
 constexpr float kMostCell = 64.0f;     // px
 constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
@@ -193,11 +186,6 @@ class Layout {
 };
 
 }  // namespace
-
-const ComputePass kVolumeMarchPass{
-    "volume march", "volume_march.comp", kVolumeMarchUses, sizeof(VolumeMarch), nullptr, true};
-const ComputePass kVolumeSmokePass{
-    "volume smoke", "volume_smoke.comp", kVolumeMarchUses, sizeof(VolumeMarch), nullptr, true};
 
 float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
     const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);

@@ -11,27 +11,10 @@
 namespace fw::gpu {
 namespace {
 
-constexpr Use kVolumeSlicesUses[] = {
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_VOLUMES, Access::drawEach},
-};
-
 constexpr float kFewest = 12.0f;  // slices of a flame
 constexpr float kApart = 0.5f;    // of VolumeDraw::spacing: sheets are closer than that
 
 }  // namespace
-
-const DrawPass kVolumeSlicesPass{.name = "volume slices",
-                                 .vertexShader = "volume_slices.vert",
-                                 .fragmentShader = "volume_slices.frag",
-                                 .uses = kVolumeSlicesUses,
-                                 .vertexInput = VertexInput::none,
-                                 .blend = Blend::premultiplied,
-                                 .writeDepth = false,
-                                 .pushBytes = sizeof(VolumeSlices),
-                                 .softShader = "volume_slices_soft.frag",
-                                 .softShaderMultisampled = "volume_slices_soft_ms.frag",
-                                 .atHalf = AtHalf::soft};
 
 bool slicesShow(uint32_t encoding) noexcept { return encoding == 0; }  // FW_OUTPUT_LINEAR
 
@@ -47,11 +30,6 @@ SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept {
     draw.spacing = deep / float(draw.slices);
     draw.to = 1.0f;
     return out;
-}
-
-void recordVolumeSlices(DrawRecorder& recorder, std::span<const SlicedVolume> volumes) {
-    for (const SlicedVolume& one : volumes)
-        recorder.drawVolume(one.flame, &one.draw, kFlamePieces * kSliceVertices, one.draw.slices);
 }
 
 }  // namespace fw::gpu

@@ -41,6 +41,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       arps(pmr),
       published(pmr),
       drawItems(pmr),
+      surfaceSteps(pmr),
       volumes(pmr),
       fields(pmr),
       fieldDraws(pmr),
@@ -119,7 +120,7 @@ VkBackend::State::~State() {
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
-        vk.DestroyDescriptorPool(device.handle, slot.lentPool, callbacks);
+        vk.DestroyDescriptorPool(device.handle, slot.hostPool, callbacks);
     }
     destroyFramebuffers();
     for (HalfImages& half : halves) {

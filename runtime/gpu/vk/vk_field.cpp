@@ -159,29 +159,4 @@ uint32_t VkBackend::State::orderFields(std::array<FieldItem, kMaxFields>& out) c
     return count;
 }
 
-void VkBackend::State::recordFieldDraws(VkCommandBuffer commands, const Target& target,
-                                        uint32_t firstPass, std::span<const FieldItem> items,
-                                        uint32_t viewOffset, VkDescriptorSet depth) noexcept {
-    const Table& vk = device.table;
-    uint32_t bound = kFieldVariants;
-    for (const FieldItem& item : items) {
-        if (item.variant != bound) {
-            bound = item.variant;
-            const uint32_t pass = firstPass + bound;
-            const VkPipelineLayout layout = context.pipelines.draw(pass).layout;
-            vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[pass]);
-            const VkDescriptorSet planesSet = sets.draw(pass, 0);
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
-                                     &planesSet, 1, &viewOffset);
-            const VkDescriptorSet textures[2] = {profiles.set.set, lookTextures.set.set};
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 2,
-                                     textures, 0, nullptr);
-            if (depth)
-                vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
-                                         &depth, 0, nullptr);
-        }
-        vk.CmdDraw(commands, item.vertices, 1, 0, item.draw);
-    }
-}
-
 }  // namespace fw::gpu::vk

@@ -216,7 +216,7 @@ void VkBackend::destroyImage(uint32_t slot) {
     ImageEntry& entry = s.images[slot];
     if (!entry.live) return;
     const auto shows = [&](uint32_t image) { return image == slot + 1; };
-    PassSet passes = 0;
+    DrawPassSet passes = 0;
     for (const ObjectEntry& object : s.objects)
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m)
             if (shows(object.images[m])) passes |= surfacePasses(object.materials[m], false);

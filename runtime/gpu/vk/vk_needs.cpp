@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
+#include "shared/published.h"
 #include "shared/spark.h"
 
 #include <algorithm>
@@ -10,7 +11,11 @@
 namespace fw::gpu::vk {
 namespace {
 
-constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor
+uint32_t publishedGroups(const BurnObject& object) {
+    const uint32_t blocks = object.width / kPublishedBlockX *
+                            ((object.height + kPublishedBlockY - 1) / kPublishedBlockY);
+    return groupsOf(blocks);
+}
 
 // A host-visible buffer of at least `bytes`; never shrinks. Throws and then left the old one.
 void ensure(VkBackend::State& s, Buffer& buffer, uint64_t bytes, VkBufferUsageFlags usage,

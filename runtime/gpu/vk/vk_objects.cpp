@@ -142,7 +142,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.mesh = init.mesh;
     fresh.record = init.record;
     fresh.seenFrame = last;
-    PassSet passes = 0;
+    DrawPassSet passes = 0;
     for (uint32_t m = 0, first = 0; m < kMaterialsPerObject; first = mesh.materialEnd[m++]) {
         if (mesh.materialEnd[m] == first) continue;
         const BurnMaterial material =
@@ -153,6 +153,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     try {
         core::growTo(s.quarantine, s.quarantine.size() + s.liveObjects + 1);
         core::growTo(s.drawItems, (s.liveObjects + 1) * kMaterialsPerObject);
+        core::growTo(s.surfaceSteps, (s.liveObjects + 1) * kMaterialsPerObject * kMostSurfaceSteps);
         core::growTo(s.published, s.liveObjects + 1);
         core::growTo(s.givenObjects, std::max<size_t>(slot + 1, s.objects.size()));
         (void)slotOf(s.objects, slot);
@@ -311,6 +312,7 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     entry = {};
     s.changed(slot);  // a record without kObjectLive: list entries fall out
     --s.liveObjects;
+    s.surfacesDirty = true;
     std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
 }
 

@@ -88,7 +88,7 @@ void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
 
 }  // namespace
 
-void VkBackend::State::recordArp(FrameInFlight& slot) {
+void VkBackend::State::refineAsPublished(FrameInFlight& slot) {
     if (arp.placeGroups == 0) return;
     lookFromViews();
     FrameRecorder recorder(recordTarget(slot, open.commands));
@@ -130,8 +130,8 @@ void VkBackend::State::recordArp(FrameInFlight& slot) {
     writer.end();
     recorder.copyIn(groups.at, FW_BIND_ARP_GROUPS, 0, groups.count * sizeof(WakeGroup));
     arp.lastTick = now;
-    recordRefinePublished(recorder, {0, shownTick, 0, kRefineRecede}, places,
-                          groups.count - places);
+    recordRefinementAsPublished(recorder, {0, shownTick, 0, kRefineRecede}, places,
+                                groups.count - places);
 }
 
 }  // namespace fw::gpu::vk

@@ -73,17 +73,16 @@ bool zPassed(const ObjectEntry& object) noexcept {
     return looksBurnt(object) && (object.record.flags & kObjectZPass) != 0;
 }
 
-// How `item`'s material is drawn, burnt and where no fire was.
-void chooseVariants(const VkBackend::State& s, const ObjectEntry& object, DrawItem& item) {
-    const BurnMaterial& material = object.materials[item.material];
-    const bool burnt = looksBurnt(object), image = item.image != 0;
-    item.variant = surfaceVariant(material, image, burnt);
+// How `item`'s material is drawn: whether fire may show on it, and its triangles far from fire
+// apart.
+void chooseSurface(const VkBackend::State& s, const ObjectEntry& object, DrawItem& item) {
+    item.family = familyOf(object.materials[item.material].look);
+    item.burns = looksBurnt(object);
+    item.selfIntersects = zPassed(object);
     item.coldReach = coldReach(s.meshes[object.mesh].texelEdge);
     const bool tells =
         (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
-    item.coldVariant = burnt && tells && !object.charred && !zPassed(object)
-                           ? surfaceVariant(material, image, false)
-                           : ~0u;
+    item.coldApart = item.burns && tells && !object.charred && !item.selfIntersects;
 }
 
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
@@ -138,6 +137,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         object.recordDirty = object.materialsDirty = object.deformDirty = false;
     }
     s.drawItems.clear();
+    s.surfacesDirty = true;
     for (uint32_t i = 0; i < s.objects.size(); ++i) {
         ObjectEntry& object = s.objects[i];
         if (object.resetDue) {
@@ -164,9 +164,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                     item.inside = item.insideShown ? object.shown.first + mesh.vertices
                                                    : mesh.innerVertices.first;
                 item.image = object.images[m];
-                chooseVariants(s, object, item);
+                chooseSurface(s, object, item);
                 item.inner = object.refine.inner;
-                item.zPass = zPassed(object);
                 item.draw = drawOf(s, object, m);
                 showRefined(object.refine, item);
                 s.drawItems.push_back(item);
@@ -289,9 +288,9 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
+    s.surfacesDirty = true;
     for (DrawItem& item : drawItemsOf(s, event.object)) {
-        chooseVariants(s, object, item);
-        item.zPass = zPassed(object);
+        chooseSurface(s, object, item);
         item.draw = drawOf(s, object, item.material);
     }
 }
@@ -323,25 +322,7 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     const uint32_t count = std::min(end - first, kMostTiles);
     s.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
-    recordSupport(recorder, plan.endTick, ticks, first, count);
-}
-
-// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
-// than hides where that part ends. Where nobody looks it is laid a few times a second.
-void recordSooting(VkBackend::State& s, bool seen, FrameRecorder& recorder) {
-    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
-    const uint32_t mostTicksOfAPart = seen ? kTicksPerSecond / 64 : kTicksPerSecond;
-    if (!seen && s.open.endTick - s.sootTick < kUnseenTicks) return;
-    const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
-    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
-    const uint32_t first = s.sootFirst < tiles ? s.sootFirst : 0;
-    const uint32_t count = std::min(tiles - first, kMostTiles);
-    const uint32_t ticks = std::min(s.open.endTick - s.sootTick, kTicksPerSecond);
-    s.sootTick = s.open.endTick;
-    if (count == 0 || ticks == 0) return;
-    s.sootFirst = first + count;
-    recordSoot(recorder, parts > 1 ? std::min(ticks * parts, mostTicksOfAPart) : ticks, first,
-               count);
+    recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
 
 }  // namespace
@@ -355,6 +336,25 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
         vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
                          s.planes.buffer(region.resource).handle, 1, &copy);
     }
+}
+
+// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
+// than hides where that part ends. Where nobody looks it is laid a few times a second.
+TileShare VkBackend::State::sootShare(bool looked) noexcept {
+    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
+    const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
+    if (!looked && open.endTick - sootTick < kUnseenTicks) return {};
+    const uint32_t tiles = planes.capacity(kSpaceObjectTiles);
+    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
+    TileShare share;
+    share.first = sootFirst < tiles ? sootFirst : 0;
+    share.count = std::min(tiles - share.first, kMostTiles);
+    share.ticks = std::min(open.endTick - sootTick, kTicksPerSecond);
+    sootTick = open.endTick;
+    if (share.count == 0 || share.ticks == 0) return {};
+    sootFirst = share.first + share.count;
+    if (parts > 1) share.ticks = std::min(share.ticks * parts, mostTicksOfAPart);
+    return share;
 }
 
 void VkBackend::State::openFrame(VkCommandBuffer commands, uint64_t ringFrame) {
@@ -525,7 +525,7 @@ void VkBackend::State::run(const FramePlan& plan) {
             }
             step.published = published;
         }
-        recordStep(recorder, lists, step);
+        recordSimulation(recorder, lists, step);
         frontWalks += step.iterate ? 1 : 0;
         burnWalks += step.reduce ? 1 : 0;
         hotWalks += step.heat ? 1 : 0;
@@ -559,57 +559,11 @@ void VkBackend::State::run(const FramePlan& plan) {
                             float(softStep % (4096 * 128)) * deform.push.step};
         deform.push.up = {limits.up[0], limits.up[1], limits.up[2],
                           tickFraction * float(kStepTicks)};
-        recordDeform(recorder, deform);
+        recordDeformation(recorder, deform);
     }
     softWay = (softWay + softSteps) % kArmWays;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
-}
-
-// Flames, particles and marches of each of the frame's views; where there is none, lights alone.
-void VkBackend::State::recordAppearance(FrameInFlight& slot) {
-    const std::span<OutsideView* const> from = seenFrom();
-    const bool looked = !from.empty(), particles = showsEmitters();
-    const bool fieldsShow = looked && !fieldDraws.empty(), marches = looked && !volumes.empty();
-    if ((burnEmpty && !marches && !particles && !fieldsShow) || !limits.looks.viewParams) return;
-    const VkViewport whole{0, 0, 1, 1, 0, 1};
-    RecordTarget target = recordTarget(slot, open.commands);
-    target.profiles = profiles.set.set;
-    // A step of an own device has no view: lights alone, which flicker with simulated time.
-    FwView none{};
-    none.time = float(double(open.endTick) / kTicksPerSecond);
-    target.viewOffset = pushView(slot, looked ? from[0]->view : none, whole);
-    FrameRecorder ofAll(target);
-    if (!burnEmpty) {
-        recordLights(ofAll, lists, open.endTick);
-        recordSooting(*this, looked, ofAll);
-    }
-    const SortPush room = quadRoom();
-    ParticlePush push{};
-    push.quads = room.particles;
-    push.firstQuad = room.tiles;
-    push.lights = room.lights;
-    push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-    push.moved = vec4(particlesMove, 0.0f);
-    if (particles && emittersMove && emitterGroups > 0) {
-        recordParticles(ofAll, push, emitterGroups);
-        particlesMove = vec3(0.0f);
-    }
-    for (OutsideView* const of : from) {
-        if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
-        target.view = of->number;
-        FrameRecorder looks(target);
-        // The lights begin the first view's quads.
-        if ((particles && burnEmpty) || (!burnEmpty && of->number != 0)) recordNoQuads(looks);
-        if (!burnEmpty) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
-        if (emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
-        if (sparkSources > 0)
-            recordSparks(looks, {room.lights, room.tiles + room.particles, push.burnRow, 0},
-                         sparkSources);
-        if (!burnEmpty || particles) recordFlameSort(looks, room);
-        if (marches) marchVolumes(*of, looks);
-    }
-    if (fieldsShow) recordFieldShow(ofAll, uint32_t(fieldDraws.size()));
 }
 
 void VkBackend::State::closeFrame() {
@@ -620,59 +574,15 @@ void VkBackend::State::closeFrame() {
         open = {};
         return;
     }
-    const Table& vk = device.table;
     FrameInFlight& slot = *open.slot;
-    recordAppearance(slot);
+    recordEffects(slot);
     if (!from.empty()) {
-        recordRefinement(slot);
-        recordArp(slot);
+        refineObjects(slot);
+        refineAsPublished(slot);
     }
     for (DrawItem& item : drawItems)
         if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
-    RecordTarget target = recordTarget(slot, open.commands);
-    if (!from.empty()) target.view = from[0]->number;  // whose quads are counted
-    FrameRecorder recorder(target);
-    const ReadbackLayout& layout = slot.layout;
-    const auto copyShown = [&] {
-        slot.layout.quads = !from.empty() && (!burnEmpty || showsEmitters());
-        slot.layout.bias = open.refined;
-        if (layout.quads) recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
-        if (layout.bias)
-            recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
-    };
-    if (open.planFrame == 0) {
-        if (!from.empty()) copyShown();  // a picture of an own device's
-    } else if (open.readback) {
-        // Counters before the lists: rows that this frame used, and the one its list ended in.
-        recorder.copyOut(FW_BIND_COUNTERS, 0, layout.countersAt,
-                         uint64_t(layout.rows + 1) * sizeof(IterationCounters));
-        if (layout.objects)
-            recorder.copyOut(FW_BIND_OBJECT_COUNTERS, 0, layout.objectsAt,
-                             layout.objects * sizeof(ObjectCounters));
-        if (layout.answers)
-            recorder.copyOut(FW_BIND_ANSWERS, 0, layout.answersAt,
-                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
-        if (layout.lights)
-            recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
-                             uint64_t(layout.lights) * sizeof(BurnLight));
-        copyShown();
-        if (layout.fields)
-            recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
-                             layout.fields * sizeof(FieldCounters));
-        if (layout.rooms)
-            recorder.copyOut(FW_BIND_ROOM_AIR, 0, layout.roomsAt, kMaxRooms * sizeof(RoomAir));
-        for (uint32_t i = 0; i < layout.mapCount; ++i) {
-            const ReadbackLayout::MapAt& map = layout.maps[i];
-            const BurnObject& object = objects[map.object].record;
-            recorder.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at,
-                             uint64_t(map.texels) * 4);
-            if (map.heat)
-                recorder.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2),
-                                 map.heatAt, uint64_t(map.texels) * sizeof(uvec2));
-        }
-        if (layout.images) recordImages(*this, recorder);
-        slot.readbackPending = true;
-    }
+    recordReadback(slot);
     if (open.planFrame) {
         PendingReadback one;
         one.ringFrame = open.ringFrame;
@@ -681,7 +591,7 @@ void VkBackend::State::closeFrame() {
         one.endTick = open.endTick;
         pushPending(one);
     }
-    barriers.end(vk, open.commands);
+    barriers.end(device.table, open.commands);
     open = {};
 }
 

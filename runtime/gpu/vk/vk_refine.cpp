@@ -285,7 +285,7 @@ bool VkBackend::State::chooseDue(double now) noexcept {
 }
 
 // The views' eyes and the heights of their last pictures limit levels.
-void VkBackend::State::recordRefinement(FrameInFlight& slot) {
+void VkBackend::State::refineObjects(FrameInFlight& slot) {
     RefinePush& push = refine.push;
     if (push.objects == 0) return;
     lookFromViews();
@@ -352,7 +352,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot) {
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    recordRefine(recorder, lists, push, turn, cuts, fresh);
+    recordRefinement(recorder, lists, {push, turn, cuts, fresh});
 }
 
 void VkBackend::State::lookFromViews() noexcept {

@@ -120,24 +120,15 @@ void VkBackend::moveWorld(const double (&by)[3]) noexcept {
 
 namespace {
 
-// BurnTiles of the burn list as it is: see kSwitchShows.
-void recordShown(VkBackend::State& s, FrameRecorder& recorder) {
-    const uint32_t row = kRowBurn + s.lists.burnParity;
-    recorder.fillZero(FW_BIND_COUNTERS,
-                      row * sizeof(IterationCounters) + offsetof(IterationCounters, runX),
-                      4 * sizeof(uint32_t));
-    StepPush push{};
-    push.burnParity = s.lists.burnParity;
-    push.now = s.shownTick;
-    push.switches = kSwitchShows;
-    recorder.dispatchList(kReducePass, &push, row);
+void showTiles(VkBackend::State& s, FrameRecorder& recorder) {
+    recordShownTiles(recorder, s.lists, s.shownTick);
     s.tilesMoved = false;
 }
 
 }  // namespace
 
 void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder) {
-    if (s.tilesMoved && !s.burnEmpty) recordShown(s, recorder);
+    if (s.tilesMoved && !s.burnEmpty) showTiles(s, recorder);
 }
 
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
@@ -152,12 +143,6 @@ void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
         s.retired.push(s.open.ringFrame, upload.staging);
     }
     s.restores.clear();
-    StepPush push{};
-    push.parity = s.lists.parity;
-    push.row = s.lists.row;
-    push.burnParity = s.lists.burnParity;
-    push.predictParity = s.lists.predictParity;
-    push.hotParity = s.lists.hotParity;
     for (const uint32_t slot : s.restoredObjects) {
         const ObjectEntry& object = s.objects[slot];
         if (!object.live) continue;
@@ -166,11 +151,10 @@ void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
                           texels / 8 * 4);
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              texels * 4);
-        push.object = slot;
-        recorder.dispatch(kRestorePass, &push, std::max((object.record.tileCount + 63) / 64, 1u));
+        recordRestore(recorder, s.lists, slot, object.record.tileCount);
     }
     s.restoredObjects.clear();
-    recordShown(s, recorder);
+    showTiles(s, recorder);
 }
 
 void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,

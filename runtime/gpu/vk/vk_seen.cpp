@@ -159,7 +159,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
     }
     // A ring a round: long frames need more to stay ahead of a fast front.
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
-    recordPredict(recorder, s.lists, plan.endTick, seen);
+    recordPrediction(recorder, s.lists, plan.endTick, seen);
     if (rings > 0) {
         rounds += rings;
         for (const uint32_t i : s.awake)
@@ -167,7 +167,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                 tell(i, s.objects[i].record.flags);
     }
     for (uint32_t i = 1; seen && i < rounds; ++i)
-        recordPredict(recorder, s.lists, plan.endTick, seen);
+        recordPrediction(recorder, s.lists, plan.endTick, seen);
     s.predictWalks += seen ? rounds : 1;
 }
 

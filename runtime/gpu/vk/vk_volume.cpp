@@ -183,16 +183,16 @@ uint32_t VkBackend::State::orderHazes(
     return count;
 }
 
-void VkBackend::State::marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept {
+MarchRecord VkBackend::State::marchVolumes(OutsideView& of) noexcept {
     March& march = of.march;
     march.count = march.cardCount = march.slicedCount = march.order.count = 0;
     march.there = false;
     march.screen.steps = volumeSteps();
-    if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
+    if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return {};
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t count = orderVolumes(march.screen.slabs, items);
-    if (count == 0) return;
-    layMarch(of, {items.data(), count}, recorder);
+    if (count == 0) return {};
+    return layMarch(of, {items.data(), count});
 }
 
 void VkBackend::State::showPair(March& march, const VolumeItem& item,
@@ -210,7 +210,7 @@ void VkBackend::State::showPair(March& march, const VolumeItem& item,
             !showCard(seen, item, march.screen, 2 * place + half, pair.shapes[half], card))
             return;
         card.from = first, card.to = last;
-        march.order.add(kVolumeCardPass, march.cardCount++);
+        march.order.add(draw::volume_card, march.cardCount++);
     };
     show(pair.newest, from, border);
     show(older, border, to);
@@ -271,14 +271,14 @@ void VkBackend::State::showBook(March& march, const VolumeItem& item, uint32_t p
                       march.books[book].pages[page], mirrored, card))
             return;
         card.from = first, card.to = last;
-        march.order.add(kVolumeCardPass, march.cardCount++);
+        march.order.add(draw::volume_card, march.cardCount++);
     };
     show(reader.book, reader.at, reader.mirrored, from, border);
     if (border < to) show(reader.bookBefore, reader.before, reader.mirroredBefore, border, to);
 }
 
-void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> items,
-                                FrameRecorder& recorder) noexcept {
+MarchRecord VkBackend::State::layMarch(OutsideView& of,
+                                       std::span<const VolumeItem> items) noexcept {
     March& march = of.march;
     const uint32_t capacity = planes.capacity(spaceOf(kSpaceVolumeRays, of.number));
     if (capacity != march.capacity)
@@ -346,7 +346,7 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
     if (count > 0) {
         laid = layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
                           std::min(capacity, first + rays), march.items, first);
-        if (laid.end == 0) return;
+        if (laid.end == 0) return {};
     }
     for (uint32_t i = 0, k = 0; k < laid.count; ++k) {
         MarchedVolume& one = march.items[k];
@@ -417,12 +417,12 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
         if (places[i] == kMaxVolumeFlames) continue;
         const TierLife& life = march.lives[places[i]];
         for (; shown < laid.count && march.items[shown].flame == items[i].flame; ++shown)
-            march.order.add(kVolumeCompositePass, shown);
+            march.order.add(draw::volume_composite, shown);
         if (life.shows(FW_FIRE_TIER_SLICES)) {
             SlicedVolume& one = march.sliced[march.slicedCount];
             one = layVolumeSlices(items[i]);
             setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
-            march.order.add(kVolumeSlicesPass, march.slicedCount++);
+            march.order.add(draw::volume_slices, march.slicedCount++);
         }
         if (life.shows(FW_FIRE_TIER_FLIPBOOK))
             showBook(march, items[i], places[i], numbers[i]);
@@ -434,7 +434,7 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
     march.view = of.view;
     march.count = laid.count;
     march.there = true;
-    recordVolumeMarch(recorder, {march.items.data(), laid.count + cards}, first, laid.end, cards);
+    return {{march.items.data(), laid.count + cards}, first, laid.end, cards};
 }
 
 bool VkBackend::State::marchedFor(const OutsideView& of, const FwView& view,

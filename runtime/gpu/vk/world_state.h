@@ -2,7 +2,7 @@
 // uploaded with the next frame. Internal to the backend's .cpp files.
 #pragma once
 #include "gpu/passes/draw.h"
-#include "gpu/passes/frame_graph.h"
+#include "gpu/vk/frame.h"
 #include "gpu/vk/outside_view.h"
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
@@ -78,9 +78,6 @@ struct ArpUse {
     mesh::ArpSettings settings;
     mesh::ArpState state;
 };
-
-// Groups of 64 that hold so many.
-constexpr uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
 
 constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
     return published ? kRefineDepth + 1 + depth : depth;
@@ -243,6 +240,13 @@ struct HalfImages {
 // that over it.
 enum class DrawPart : uint8_t { all, half, over };
 
+// Sets with images that a view's draws read, or null.
+struct HostImages {
+    VkDescriptorSet depth = VK_NULL_HANDLE;  // the host's, of half resolution where they draw there
+    VkDescriptorSet color = VK_NULL_HANDLE;  // a copy of what the host's target holds
+    const HalfImages* half = nullptr;        // what was drawn at half resolution
+};
+
 struct OwnDevice {  // command pool and offscreen images of the own-device mode
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -348,9 +352,11 @@ struct VkBackend::State {
         std::array<OutsideView*, kMaxViews> views{};  // that it is recorded for
         uint32_t viewCount = 0;
     } open;
-    std::pmr::vector<PublishedStep> published;  // scratch of run
-    std::pmr::vector<DrawItem> drawItems;       // objects that draws show
-    struct VolumeBox {                          // as in FlameRecord
+    std::pmr::vector<PublishedStep> published;   // scratch of run
+    std::pmr::vector<DrawItem> drawItems;        // objects that draws show
+    std::pmr::vector<SurfaceStep> surfaceSteps;  // their draws, in order
+    bool surfacesDirty = false;                  // `drawItems` changed since
+    struct VolumeBox {                           // as in FlameRecord
         vec4 low{}, high{};
         vec4 flameLow{}, flameHigh{};  // without its smoke
         uint32_t intervals = 1;        // see VolumeDraw
@@ -439,7 +445,11 @@ struct VkBackend::State {
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);
     void closeFrame();
-    void recordAppearance(FrameInFlight& slot);
+    // Whose soot is due; count 0: none is. `looked`: some view may show it.
+    TileShare sootShare(bool looked) noexcept;
+    // frame.cpp
+    void recordEffects(FrameInFlight& slot);
+    void recordReadback(FrameInFlight& slot);
     RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
     // vk_views.cpp
@@ -462,7 +472,7 @@ struct VkBackend::State {
     [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
     void listRefined(bool all);
-    void recordRefinement(FrameInFlight& slot);
+    void refineObjects(FrameInFlight& slot);
     bool chooseDue(double now) noexcept;
     [[nodiscard]] bool isDue(const ObjectEntry& object, const RefineObject& record,
                              double now) const noexcept;
@@ -477,7 +487,7 @@ struct VkBackend::State {
     void takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh, uint64_t last);
     void dropArp(RefineUse& use) noexcept;
     uint64_t planArp();
-    void recordArp(FrameInFlight& slot);
+    void refineAsPublished(FrameInFlight& slot);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     void takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
@@ -499,9 +509,8 @@ struct VkBackend::State {
     void makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last);
     [[nodiscard]] uint32_t rayWords(const March& march) const noexcept;  // at the frame's detail
     // For the view that was last pushed, which is `of`'s.
-    void marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept;
-    void layMarch(OutsideView& of, std::span<const VolumeItem> items,
-                  FrameRecorder& recorder) noexcept;
+    [[nodiscard]] MarchRecord marchVolumes(OutsideView& of) noexcept;
+    [[nodiscard]] MarchRecord layMarch(OutsideView& of, std::span<const VolumeItem> items) noexcept;
     // What a flame's card shows, of the last two marches of it.
     void showPair(March& march, const VolumeItem& item, uint32_t place) const noexcept;
     // Which of `room` books each item may show.
@@ -535,32 +544,18 @@ struct VkBackend::State {
     [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_field.cpp
     uint32_t orderFields(std::array<FieldItem, kMaxFields>& out) const noexcept;  // how many
-    void recordFieldDraws(VkCommandBuffer commands, const Target& target, uint32_t firstPass,
-                          std::span<const FieldItem> items, uint32_t viewOffset,
-                          VkDescriptorSet depth) noexcept;
     // vk_draw.cpp
-    struct Lent {  // sets with what the host lends of its scene, or null
-        VkDescriptorSet depth = VK_NULL_HANDLE;
-        VkDescriptorSet color = VK_NULL_HANDLE;  // haze is drawn
-    };
-    // Neighbours of volumetric flames that one pass draws; or all haze.
-    void recordTransparency(VkCommandBuffer commands, const Target& target,
-                            const Lent& lent) const noexcept;
-    void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                           const DrawList& list, const VolumeRun& run, uint32_t viewOffset,
-                           const Lent& lent);
-    // `half`: with what was drawn at half resolution, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                     const FwView& view, const VkViewport& viewport, const Lent& lent,
-                     DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
+                     const FwView& view, const VkViewport& viewport, const HostImages& host,
+                     DrawPart part = DrawPart::all);
     uint32_t drawnView = 0;  // of the call that is recorded: OutsideView::number
     float transparency = 0;  // of the call that is recorded
     VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
-    Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
-                 VkImageView depth, VkImageLayout depthLayout);
+    HostImages hostImagesFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
+                             VkImageView depth, VkImageLayout depthLayout);
     [[nodiscard]] bool turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept;
-    VkDescriptorSet lentSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
+    VkDescriptorSet hostSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
     VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);
     // Of targets that are gone, and of `forget`; what the device may still use goes later.
@@ -569,10 +564,9 @@ struct VkBackend::State {
     // vk_half.cpp
     // Outside any pass: what is soft of a view, in images of half resolution. Null: nothing is.
     HalfImages* recordHalf(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                           const FwView& view, const VkViewport& viewport, const Lent& lent);
-    // Over the picture; a view was pushed for it.
-    void recordHalfComposite(VkCommandBuffer commands, const Target& target, const HalfImages& half,
-                             const VkViewport& viewport, const Lent& lent) noexcept;
+                           const FwView& view, const VkViewport& viewport, const HostImages& host);
+    // For the view that was last pushed.
+    [[nodiscard]] HalfPush halfPushFor(const VkViewport& viewport) const noexcept;
     HalfImages& halfFor(VkFormat format, uint32_t width, uint32_t height, uint64_t frame);
     void makeHalf(HalfImages& half, VkFormat format, uint32_t width, uint32_t height);
     void dropHalf(HalfImages& half) noexcept;  // once its last frame is done

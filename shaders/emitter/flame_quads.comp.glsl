@@ -21,6 +21,7 @@ layout(local_size_x = 64) in;
 #define FW_EMITTER_DRAW_ARGS
 #define FW_EMITTER_BOOKS
 #include "emitter/buffers.glsl"
+#define FW_CELLS readonly
 #include "emitter/cells.glsl"
 #include "emitter/nearer.glsl"
 #include "lib/turn.glsl"
