@@ -44,7 +44,7 @@ struct LookSources {
 };
 
 // One material of one object as `surface` draws it. Ranges are in the shared vertex and index
-// planes.
+// buffers.
 struct DrawItem {
     uint32_t object = 0;  // slot
     uint32_t material = 0;
@@ -59,7 +59,7 @@ struct DrawItem {
     bool burns = false;      // fire may show on it
     bool coldApart = false;  // its triangles where nothing shows are drawn as SurfaceState::cold
     float coldReach = 0;     // texels, of those
-    bool refined = false;    // its triangles are in the refinement's planes
+    bool refined = false;    // its triangles are in the refinement's buffers
     bool cut = false;        // and some of them are cut
     bool told = false;       // by what stands along open edges: its holes are its texels'
     uint32_t inner = 0;      // from a vertex's place to that on the inner skin; 0: has none

@@ -42,7 +42,7 @@ void PassSets::drop(uint32_t view, uint64_t lastFrame) {
     of.draw.clear();
 }
 
-void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes,
+void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const WorldBuffers& buffers,
                      VkBuffer views, VkDeviceSize viewBytes, uint32_t of) const {
     std::array<VkDescriptorBufferInfo, ShaderInterface::kMost> infos{};
     std::array<VkWriteDescriptorSet, ShaderInterface::kMost> writes{};
@@ -50,7 +50,7 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
     for (const Use& use : uses) {
         const DescriptorSlot slot = descriptorSlot(use);
         const bool texels = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
-        const Buffer& buffer = planes.buffer(resourceOf(use.resource, of));
+        const Buffer& buffer = buffers.buffer(resourceOf(use.resource, of));
         infos[count] = use.resource == FW_BIND_VIEW
                            ? VkDescriptorBufferInfo{views, 0, viewBytes}
                            : VkDescriptorBufferInfo{
@@ -71,10 +71,10 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
     device_.table.UpdateDescriptorSets(device_.handle, count, writes.data(), 0, nullptr);
 }
 
-void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes,
+void PassSets::update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize viewBytes,
                       uint64_t lastFrame, uint32_t view) {
     OfView& of = views_[view];
-    if (of.generation == planes.generation()) return;
+    if (of.generation == buffers.generation()) return;
     const size_t computeCount = computePasses().size(), drawCount = drawPasses().size();
     of.compute.resize(computeCount);
     of.draw.resize(drawCount);
@@ -123,9 +123,9 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     of.pool = pool;
     for (uint32_t i = 0; i < sets; ++i) {
         *places[i] = made[i];
-        write(made[i], uses[i], planes, views, viewBytes, view);
+        write(made[i], uses[i], buffers, views, viewBytes, view);
     }
-    of.generation = planes.generation();
+    of.generation = buffers.generation();
 }
 
 ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view,

@@ -55,7 +55,7 @@ struct StepRecord {
     bool parts = false;    // some mesh has parts that touch
 };
 
-// Runs in their plane: `masked` fields, then the groups of each round of steps.
+// Runs in their buffer: `masked` fields, then the groups of each round of steps.
 struct FieldsRecord {
     Staged runs;
     uint32_t masked = 0, rounds = 0;

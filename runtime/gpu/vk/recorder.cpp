@@ -11,7 +11,7 @@ void FrameRecorder::barrier(std::span<const Use> uses) {
 }
 
 VkBuffer FrameRecorder::buffer(uint32_t resource) const {
-    return t_.planes->buffer(resourceOf(resource, t_.view)).handle;
+    return t_.buffers->buffer(resourceOf(resource, t_.view)).handle;
 }
 
 const PassObjects& FrameRecorder::begin(uint32_t pass, uint32_t arguments) {

@@ -12,7 +12,7 @@ struct RecordTarget {  // what a recorder works on; all of it outlives the recor
     const Device* device = nullptr;
     const Pipelines* pipelines = nullptr;
     const PassSets* sets = nullptr;
-    const Planes* planes = nullptr;
+    const WorldBuffers* buffers = nullptr;
     BarrierTracker* barriers = nullptr;
     FrameInFlight* slot = nullptr;
     VkCommandBuffer commands = VK_NULL_HANDLE;

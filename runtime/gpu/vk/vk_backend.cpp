@@ -22,10 +22,10 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       log(logTo),
       retired(device, deviceMemory, pmr),
       ring(device),
-      planes(device, deviceMemory, retired,
-             {std::max(worldLimits.maxLights, kSurfaceLights),
-              std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
-             pmr),
+      buffers(device, deviceMemory, retired,
+              {std::max(worldLimits.maxLights, kSurfaceLights),
+               std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
+              pmr),
       sets(device, contextState.pipelines, retired, pmr),
       meshes(pmr),
       objects(pmr),
@@ -84,7 +84,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
             upload.regions[upload.regionCount++] = {
                 FW_BIND_LOOKS, 0, 0,
                 std::min<uint64_t>(limits.looks.table.size_bytes(),
-                                   planes.buffer(FW_BIND_LOOKS).size)};
+                                   buffers.buffer(FW_BIND_LOOKS).size)};
         }
     } catch (...) {
         for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
@@ -168,7 +168,7 @@ void VkBackend::State::freeQuarantine() noexcept {
                             (predictWalks > one.predictWalks || predictEmpty) &&
                             (hotWalks > one.hotWalks || hotEmpty);
         if (passed)
-            planes.release(kSpaceObjectTiles, one.tiles.first, one.tiles.units);
+            buffers.release(kPoolObjectTiles, one.tiles.first, one.tiles.units);
         else
             quarantine[kept++] = one;
     }
@@ -224,6 +224,6 @@ void VkBackend::renderOffscreen(const FwOffscreenDef& def) { state_->renderOffsc
 const Readback* VkBackend::nextReadback() { return state_->nextReadback(); }
 std::span<const PassTime> VkBackend::passTimes() { return state_->times; }
 
-void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->planes.rows(out); }
+void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->buffers.rows(out); }
 
 }  // namespace fw::gpu::vk

@@ -40,7 +40,7 @@ bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
     return now <= last + object.deformTicks;
 }
 
-// A host's vertex buffer into our plane, and from there to what is drawn.
+// A host's vertex buffer into our buffer, and from there to what is drawn.
 void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry& object,
                  const Skin& skin) {
     const Table& vk = s.device.table;
@@ -63,7 +63,7 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
     const Use uses[] = {{FW_BIND_SKIN_GIVEN, Access::copyWrite}};
     s.barriers.use(vk, s.open.commands, uses);
     const VkBufferCopy copy{from.offset, uint64_t(skin.words.first) * 4, std::min(used, bytes)};
-    vk.CmdCopyBuffer(s.open.commands, from.buffer, s.planes.buffer(FW_BIND_SKIN_GIVEN).handle, 1,
+    vk.CmdCopyBuffer(s.open.commands, from.buffer, s.buffers.buffer(FW_BIND_SKIN_GIVEN).handle, 1,
                      &copy);
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     barrier.dstAccessMask = from.accessAfter;

@@ -81,7 +81,7 @@ class PassRecorder {
         if (item.refined != refined_) {
             vk.CmdBindIndexBuffer(
                 commands_,
-                item.refined ? s_.planes.buffer(FW_BIND_REFINE_INDICES).handle : s_.drawIndices, 0,
+                item.refined ? s_.buffers.buffer(FW_BIND_REFINE_INDICES).handle : s_.drawIndices, 0,
                 VK_INDEX_TYPE_UINT32);
             refined_ = item.refined;
         }
@@ -89,7 +89,7 @@ class PassRecorder {
         // One draw per call: several would need a feature.
         if (item.refined)
             vk.CmdDrawIndexedIndirect(
-                commands_, s_.planes.buffer(FW_BIND_REFINE_DRAWS).handle,
+                commands_, s_.buffers.buffer(FW_BIND_REFINE_DRAWS).handle,
                 (uint64_t(item.object) * kMaterialsPerObject + item.material) *
                     sizeof(VkDrawIndexedIndirectCommand),
                 1, 0);
@@ -101,7 +101,7 @@ class PassRecorder {
     void drawCut(const DrawItem& item, const void* push) {
         bindFor(item, push);
         if (shown_ != kCuts) {
-            const VkBuffer cuts = s_.planes.buffer(FW_BIND_REFINE_CUTS).handle;
+            const VkBuffer cuts = s_.buffers.buffer(FW_BIND_REFINE_CUTS).handle;
             const VkBuffer buffers[2] = {cuts, cuts};
             const VkDeviceSize zeros[2] = {};
             s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, zeros);
@@ -138,7 +138,7 @@ class PassRecorder {
     }
     // A VkDrawIndirectCommand at `offset` bytes of the resource.
     void drawIndirect(uint32_t resource, uint64_t offset) {
-        const Buffer& buffer = s_.planes.buffer(resourceOf(resource, s_.drawnView));
+        const Buffer& buffer = s_.buffers.buffer(resourceOf(resource, s_.drawnView));
         s_.device.table.CmdDrawIndirect(commands_, buffer.handle, offset, 1, 0);
     }
     // A volumetric flame, of vertices that the shader makes.

@@ -17,10 +17,10 @@ uint32_t VkBackend::State::tileQuads() const noexcept {
 void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t last) {
     lightShare = 0.0f;
     if (update.count == 0 && update.sparkCount == 0) return;
-    planes.atLeast(kSpaceParticles, update.particleEnd, last);
-    planes.atLeast(kSpaceEmitters, update.count, last);
-    planes.atLeast(kSpaceEmitterGroups, uint32_t(update.groups.size()), last);
-    planes.atLeast(kSpaceSparks, update.sparkCount, last);
+    buffers.atLeast(kPoolParticles, update.particleEnd, last);
+    buffers.atLeast(kPoolEmitters, update.count, last);
+    buffers.atLeast(kPoolEmitterGroups, uint32_t(update.groups.size()), last);
+    buffers.atLeast(kPoolSparks, update.sparkCount, last);
     const uint32_t tiles = tileQuads();
     const uint32_t hiding = update.particles + update.particles / 4 + 16;
     const uint32_t lights = update.sparkQuads + update.lightParticles;
@@ -30,8 +30,8 @@ void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t las
     // a twelfth of them does in part (shareShows).
     const float share = detail.memory < 1 ? std::min(detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
     const auto shown = uint32_t(float(wished) * share);
-    planes.fit(kSpaceFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
-               last);
+    buffers.fit(kPoolFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
+                last);
 }
 
 void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,
@@ -63,7 +63,7 @@ bool VkBackend::State::pagesAlone() const noexcept {
 SortPush VkBackend::State::quadRoom() const noexcept {
     SortPush room{};
     room.tiles = tileQuads();
-    const uint32_t all = std::min(planes.capacity(kSpaceFlames) - quadUnits(0), kMostQuads);
+    const uint32_t all = std::min(buffers.capacity(kPoolFlames) - quadUnits(0), kMostQuads);
     // What emits alone has places of its own; who has more than wished for, or less, both have.
     const uint32_t behind = all - std::min(all, room.tiles);
     room.lights = std::min(uint32_t(std::ceil(float(behind) * lightShare)), behind);

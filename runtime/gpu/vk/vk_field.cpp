@@ -1,4 +1,4 @@
-// Particle fields on the device: their places in the planes, and what a frame has to do for them.
+// Particle fields on the device: their places in the buffers, and what a frame has to do for them.
 #include "gpu/passes/field_units.h"
 #include "gpu/vk/frame_needs.h"
 
@@ -27,14 +27,14 @@ void VkBackend::createField(uint32_t slot, const FieldRules& rules,
     State& s = *state_;
     const uint64_t last = s.ring.newest();
     (void)slotOf(s.fields, slot);
-    s.planes.atLeast(kSpaceFields, uint32_t(s.fields.size()), last);
+    s.buffers.atLeast(kPoolFields, uint32_t(s.fields.size()), last);
     FieldEntry field;
     field.cells.units = cellUnits(rules);
-    field.cells.first = s.planes.allocate(kSpaceFieldCells, field.cells.units, last);
+    field.cells.first = s.buffers.allocate(kPoolFieldCells, field.cells.units, last);
     try {
         stageMasks(s, field.cells, masks);
     } catch (...) {
-        s.planes.release(kSpaceFieldCells, field.cells.first, field.cells.units);
+        s.buffers.release(kPoolFieldCells, field.cells.first, field.cells.units);
         throw;
     }
     field.live = field.recordDirty = field.masksDue = field.fresh = true;
@@ -47,7 +47,7 @@ void VkBackend::destroyField(uint32_t slot) noexcept {
     State& s = *state_;
     if (slot >= s.fields.size() || !s.fields[slot].live) return;
     FieldEntry& field = s.fields[slot];
-    s.planes.release(kSpaceFieldCells, field.cells.first, field.cells.units);
+    s.buffers.release(kPoolFieldCells, field.cells.first, field.cells.units);
     field = {};
 }
 

@@ -160,7 +160,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
                    plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
-    const auto mostIterations = uint64_t(s.planes.capacity(kSpaceIterations)) - kRowIteration - 1;
+    const auto mostIterations = uint64_t(s.buffers.capacity(kPoolIterations)) - kRowIteration - 1;
     if (needs.iterations > mostIterations)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
                    (unsigned long long)needs.iterations, (unsigned long long)mostIterations);
@@ -198,26 +198,26 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
                  (s.showsEmitters() && !s.open.unseen) || (!s.volumes.empty() && !s.open.unseen) ||
                  needs.placing || s.recordsDirty || s.roomsDirty || s.fieldsDirty ||
-                 needs.fieldsShow || !s.uploads.empty() || s.planes.movesPending();
+                 needs.fieldsShow || !s.uploads.empty() || s.buffers.movesPending();
     return needs;
 }
 
 FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs) {
     const uint64_t last = s.ring.newest();
-    s.planes.atLeast(kSpaceEvents, needs.events, last);
-    s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
-    s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
-    s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
-    s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
-    s.planes.atLeast(kSpaceContacts, needs.links, last);
-    s.planes.atLeast(kSpaceShield, needs.shieldWords, last);
-    s.planes.atLeast(kSpaceFieldRuns, needs.fieldRuns, last);
+    s.buffers.atLeast(kPoolEvents, needs.events, last);
+    s.buffers.atLeast(kPoolWakeGroups, needs.wakeGroups, last);
+    s.buffers.atLeast(kPoolProbes, uint32_t(plan.probes.size()), last);
+    s.buffers.atLeast(kPoolDeformGroups, needs.deformGroups(), last);
+    s.buffers.atLeast(kPoolNeighbours, needs.neighbours, last);
+    s.buffers.atLeast(kPoolContacts, needs.links, last);
+    s.buffers.atLeast(kPoolShield, needs.shieldWords, last);
+    s.buffers.atLeast(kPoolFieldRuns, needs.fieldRuns, last);
     if (plan.fields) {
-        s.planes.atLeast(kSpaceFieldDraws, uint32_t(plan.fields->drawn.size()), last);
+        s.buffers.atLeast(kPoolFieldDraws, uint32_t(plan.fields->drawn.size()), last);
         s.fieldDraws.reserve(plan.fields->drawn.size());
     }
     if (plan.volumes) {
-        s.planes.atLeast(kSpaceVolumes, kVolumeWorks * plan.volumes->count, last);
+        s.buffers.atLeast(kPoolVolumes, kVolumeWorks * plan.volumes->count, last);
         s.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
@@ -235,9 +235,9 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     if (reads)
         ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                MemoryKind::readback, kComponentReadback, "frame readback");
-    s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);
+    s.sets.update(s.buffers, s.views.handle, sizeof(ViewParams), last);
     for (const OutsideView* of : s.seenFrom())
-        s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last, of->number);
+        s.sets.update(s.buffers, s.views.handle, sizeof(ViewParams), last, of->number);
     slot.layout = layout;
     return slot;
 }

@@ -88,22 +88,22 @@ void stageSkin(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnO
 // All of an object's but its tiles, which lists may still name.
 void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
     if (entry.slowness.units)
-        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+        s.buffers.release(kPoolSlowness, entry.slowness.first, entry.slowness.units);
     if (entry.published.units)
-        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+        s.buffers.release(kPoolPublished, entry.published.first, entry.published.units);
     if (entry.heatTiles.units)
-        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+        s.buffers.release(kPoolHeat, entry.heatTiles.first, entry.heatTiles.units);
     if (entry.sources.units)
-        s.planes.release(kSpaceSources, entry.sources.first, entry.sources.units);
+        s.buffers.release(kPoolSources, entry.sources.first, entry.sources.units);
     if (entry.deformer.units)
-        s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
-    if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
-    if (entry.shown.units) s.planes.release(kSpaceShown, entry.shown.first, entry.shown.units);
+        s.buffers.release(kPoolDeformers, entry.deformer.first, entry.deformer.units);
+    if (entry.soft.units) s.buffers.release(kPoolSoft, entry.soft.first, entry.soft.units);
+    if (entry.shown.units) s.buffers.release(kPoolShown, entry.shown.first, entry.shown.units);
     if (entry.skinPlus1) {
         s.skins[entry.skinPlus1 - 1].shown.clear();
         Skin& skin = s.skins[entry.skinPlus1 - 1];
         skin.dirty = skin.givenDue = false;
-        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = {};
     }
 }
@@ -158,9 +158,9 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         core::growTo(s.givenObjects, std::max<size_t>(slot + 1, s.objects.size()));
         (void)slotOf(s.objects, slot);
         s.awake.atLeast(slot + 1);
-        s.planes.atLeast(kSpaceObjects, slot + 1, last);
+        s.buffers.atLeast(kPoolObjects, slot + 1, last);
         s.freeQuarantine();
-        fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        fresh.tiles = {s.buffers.allocate(kPoolObjectTiles, mesh.tiles, last), mesh.tiles};
         fresh.inner = init.inner;
         if (init.refine) {
             fresh.refine.on = true;
@@ -171,11 +171,11 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             if (init.arpModel)
                 s.takeArp(fresh.refine, init, refined, last);
             else
-                fresh.refine.allocate(s.planes, refined, (init.record.flags & kObjectTwoSided) == 0,
-                                      last);
+                fresh.refine.allocate(s.buffers, refined,
+                                      (init.record.flags & kObjectTwoSided) == 0, last);
         }
         if (!init.slowness.empty()) {
-            fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
+            fresh.slowness = {s.buffers.allocate(kPoolSlowness, mesh.tiles, last), mesh.tiles};
             PendingUpload& upload = s.stage(init.slowness.size_bytes(), "slowness staging");
             std::memcpy(upload.staging.mapped, init.slowness.data(), init.slowness.size_bytes());
             upload.regions[upload.regionCount++] = {
@@ -183,31 +183,31 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                 init.slowness.size_bytes()};
         }
         if (init.record.flags & kObjectPublished)
-            fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
-        fresh.sources = {s.planes.allocate(kSpaceSources, mesh.sourceCells, last),
+            fresh.published = {s.buffers.allocate(kPoolPublished, mesh.tiles, last), mesh.tiles};
+        fresh.sources = {s.buffers.allocate(kPoolSources, mesh.sourceCells, last),
                          mesh.sourceCells};
         if (!init.heat.empty())
-            fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
+            fresh.heatTiles = {s.buffers.allocate(kPoolHeat, mesh.tiles, last), mesh.tiles};
         if (init.deform) {
             const mesh::DeformModel& model = *init.deformModel;
-            fresh.deformer = {s.planes.allocate(kSpaceDeformers, 1, last), 1};
+            fresh.deformer = {s.buffers.allocate(kPoolDeformers, 1, last), 1};
             const auto count = uint32_t(model.nodes.size());
             if (init.deform->flags & (kDeformShell | kDeformSprings))
-                fresh.soft = {s.planes.allocate(kSpaceSoft, count, last), count};
+                fresh.soft = {s.buffers.allocate(kPoolSoft, count, last), count};
             // And once more for the inner skin.
             const uint32_t shown = mesh.vertices * (init.inner ? 2 : 1);
-            fresh.shown = {s.planes.allocate(kSpaceShown, shown, last), shown};
+            fresh.shown = {s.buffers.allocate(kPoolShown, shown, last), shown};
             if (nodes.units == 0) {
-                nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
-                coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
+                nodes = {s.buffers.allocate(kPoolNodes, count, last), count};
+                coats = {s.buffers.allocate(kPoolCoats, mesh.vertices, last), mesh.vertices};
                 stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
             }
         }
         if (init.record.flags & kObjectSkinned) {
             const DrawnOrder order(*mesh.domain, s.memory);
             if (skin.units == 0) {
-                skin = {s.planes.allocate(kSpaceSkin, mesh.tiles, last), mesh.tiles};
-                sources = {s.planes.allocate(kSpaceSkinSources, mesh.vertices, last),
+                skin = {s.buffers.allocate(kPoolSkin, mesh.tiles, last), mesh.tiles};
+                sources = {s.buffers.allocate(kPoolSkinSources, mesh.vertices, last),
                            mesh.vertices};
                 stageSkinTexels(s, *mesh.domain, order, skin.first, sources.first);
             }
@@ -221,18 +221,18 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         }
     } catch (...) {
         s.dropArp(fresh.refine);
-        fresh.refine.release(s.planes);
+        fresh.refine.release(s.buffers);
         if (mesh.nodes.units == 0) {
-            if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
-            if (coats.units) s.planes.release(kSpaceCoats, coats.first, coats.units);
+            if (nodes.units) s.buffers.release(kPoolNodes, nodes.first, nodes.units);
+            if (coats.units) s.buffers.release(kPoolCoats, coats.first, coats.units);
         }
         if (mesh.skin.units == 0) {
-            if (skin.units) s.planes.release(kSpaceSkin, skin.first, skin.units);
-            if (sources.units) s.planes.release(kSpaceSkinSources, sources.first, sources.units);
+            if (skin.units) s.buffers.release(kPoolSkin, skin.first, skin.units);
+            if (sources.units) s.buffers.release(kPoolSkinSources, sources.first, sources.units);
         }
         releaseRanges(s, fresh);
         if (fresh.tiles.units)
-            s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
+            s.buffers.release(kPoolObjectTiles, fresh.tiles.first, fresh.tiles.units);
         s.dropUploads(uploadsBefore);
         throw;
     }
@@ -304,10 +304,10 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
         s.quarantine.push_back(
             {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
     else
-        s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
+        s.buffers.release(kPoolObjectTiles, entry.tiles.first, entry.tiles.units);
     (entry.refine.arpPlus1 ? s.arp.users : s.refine.users) -= entry.refine.on ? 1 : 0;
     s.dropArp(entry.refine);
-    entry.refine.release(s.planes);
+    entry.refine.release(s.buffers);
     releaseRanges(s, entry);
     entry = {};
     s.changed(slot);  // a record without kObjectLive: list entries fall out
@@ -369,9 +369,9 @@ void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices,
     const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
     const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
     if (skin.words.units < words) {
-        const RangeOf fresh{s.planes.allocate(kSpaceSkinGiven, uint32_t(words), s.ring.newest()),
+        const RangeOf fresh{s.buffers.allocate(kPoolSkinGiven, uint32_t(words), s.ring.newest()),
                             uint32_t(words)};
-        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = fresh;
     }
     skin.given = vertices;

@@ -21,7 +21,7 @@ void VkBackend::State::takeArp(RefineUse& use, const ObjectInit& init, const Ref
     if (free == arps.size()) arps.push_back(core::Owned<ArpUse>::make(memory, memory));
     ArpUse& taken = *arps[free];
     taken.state.reset(*init.arpModel);
-    use.allocateArp(planes, mesh, last);
+    use.allocateArp(buffers, mesh, last);
     taken.model = init.arpModel;
     taken.settings = init.arp;
     use.arpPlus1 = free + 1;
@@ -60,7 +60,7 @@ uint64_t VkBackend::State::planArp() {
                  uploaded(kMaterialsPerObject * sizeof(VkDrawIndexedIndirectCommand));
     }
     if (bytes == 0) return 0;
-    planes.atLeast(kSpaceArpGroups, arp.placeGroups + arp.nameGroups, ring.newest());
+    buffers.atLeast(kPoolArpGroups, arp.placeGroups + arp.nameGroups, ring.newest());
     return bytes + uploaded((arp.placeGroups + arp.nameGroups) * sizeof(WakeGroup));
 }
 

@@ -325,6 +325,123 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
 
+// What was created, moved or restored since the last frame, and what the plan brings that is no
+// step.
+void recordChanges(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                   FrameRecorder& recorder, UploadWriter& writer) {
+    const Table& vk = s.device.table;
+    if (s.buffers.recordMoves(vk, s.open.commands, s.open.ringFrame))
+        s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
+    if (!s.initialized) {
+        for (const uint32_t resource :
+             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
+              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
+            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
+        s.initialized = true;
+    }
+    recordUploads(s);
+    if (s.recordsDirty) recordObjects(s, recorder, writer);
+    if (s.roomsDirty) recordRooms(s, recorder, writer);
+    recordRestores(s, recorder);
+    recordMovedTiles(s, recorder);
+    recordForgetting(s, recorder);
+    s.drawVertices = s.buffers.buffer(kResourceVertices).handle;
+    s.drawIndices = s.buffers.buffer(kResourceIndices).handle;
+    s.drawShown = s.buffers.buffer(FW_BIND_SHOWN).handle;
+    recordFieldSteps(s, plan, recorder, writer);
+    if (plan.volumes) recordVolumes(s, *plan.volumes, recorder, writer);
+    s.emittersMove = plan.emitters != nullptr;
+    if (plan.emitters) recordEmitters(s, *plan.emitters, recorder, writer);
+    if (needs.skins) recordSkins(s, recorder, writer);
+}
+
+// Uploads what step `planned` brings. `first`: the plan's first; `iterate`: its front may move.
+StepRecord stepOf(VkBackend::State& s, const FramePlan& plan, const StepPlan& planned,
+                  const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder,
+                  UploadWriter& writer) {
+    StepRecord step;
+    step.now = planned.now;
+    step.stepShift = planned.substepShift;
+    step.switches = plan.switches;
+    step.objectSlots = uint32_t(s.objects.size());
+    step.iterate = iterate;
+    step.reduce = planned.reduce && needs.burning;
+    step.heat = planned.heat && needs.heating;
+    step.rooms = planned.rooms;
+    s.airs = s.airs || planned.rooms;
+    step.exchange = step.reduce && planned.exchange;
+    step.governed = planned.governed;
+    step.capped = planned.capped;
+    step.plays = planned.plays;
+    step.rules = planned.rules;
+    if (planned.remote) recordRemote(s, *planned.remote, recorder, writer);
+    step.links = s.links;
+    step.parts = s.partMeshes != 0;
+    if (planned.shield) recordShield(s, *planned.shield, recorder, writer);
+    step.rules.blockers = s.blockers;
+    placeShield(s.shield, step.rules);
+    recordMaterials(s, planned.materials, recorder, writer);
+    step.wakeGroups =
+        writeWakeGroups(s, planned.materials, needs.dense, needs.findsAnew && first, writer);
+    step.events = writer.write(planned.events);
+    step.eventList = planned.events;
+    for (const TexelEvent& event : planned.events) {
+        noteEvent(s, event, planned.now);
+        if (addressesAll(event))
+            step.allTiles = std::max(step.allTiles, s.objects[event.object].record.tileCount);
+    }
+    if (!needs.publishedRuns) return step;
+    for (PublishedStep& one : s.published) {
+        one.parity = s.objects[one.object].publishedParity;
+        s.objects[one.object].publishedParity ^= 1;
+    }
+    step.published = s.published;
+    return step;
+}
+
+void recordSteps(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                 FrameRecorder& recorder, UploadWriter& writer) {
+    ReadbackLayout& layout = s.open.slot->layout;
+    if (needs.iterations) recordCounters(recorder, s.lists, uint32_t(needs.iterations));
+    layout.firstRow = s.lists.row;
+    bool iterates = !s.frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& planned : plan.steps) {
+        iterates |= bringsNews(planned) || (planned.exchange && !s.burnEmpty);
+        const bool first = &planned == plan.steps.data();
+        const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder, writer);
+        recordSimulation(recorder, s.lists, step);
+        s.frontWalks += step.iterate ? 1 : 0;
+        s.burnWalks += step.reduce ? 1 : 0;
+        s.hotWalks += step.heat ? 1 : 0;
+    }
+    layout.rows = s.lists.row;
+    layout.burnParity = s.lists.burnParity;
+    layout.hotParity = s.lists.hotParity;
+    if (!needs.stimulus) return;
+    s.lastStimulus = s.open.ringFrame;
+    s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;
+}
+
+DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadWriter& writer) {
+    DeformRecord deform;
+    deform.nodeGroups = needs.nodeGroups;
+    deform.sheetGroups = needs.sheetGroups;
+    deform.springGroups = needs.springGroups;
+    deform.steps = s.softSteps;
+    deform.way = s.softWay;
+    deform.begins = needs.sheetsBegin;
+    deform.vertexGroups = needs.vertexGroups;
+    deform.innerGroups = needs.innerGroups;
+    deform.groups = writeDeformGroups(s, writer);
+    DeformPush& push = deform.push;
+    push.now = s.open.endTick;
+    push.step = float(kSoftTicks) / float(kTicksPerSecond);
+    push.wind = {s.wind[0], s.wind[1], s.wind[2], float(s.softStep % (4096 * 128)) * push.step};
+    push.up = {s.limits.up[0], s.limits.up[1], s.limits.up[2], s.tickFraction * float(kStepTicks)};
+    return deform;
+}
+
 }  // namespace
 
 void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& upload) {
@@ -334,7 +451,7 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
         s.barriers.use(vk, s.open.commands, uses);
         const VkBufferCopy copy{region.from, region.at, region.bytes};
         vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
-                         s.planes.buffer(region.resource).handle, 1, &copy);
+                         s.buffers.buffer(region.resource).handle, 1, &copy);
     }
 }
 
@@ -344,7 +461,7 @@ TileShare VkBackend::State::sootShare(bool looked) noexcept {
     constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
     const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
     if (!looked && open.endTick - sootTick < kUnseenTicks) return {};
-    const uint32_t tiles = planes.capacity(kSpaceObjectTiles);
+    const uint32_t tiles = buffers.capacity(kPoolObjectTiles);
     const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
     TileShare share;
     share.first = sootFirst < tiles ? sootFirst : 0;
@@ -370,7 +487,7 @@ RecordTarget VkBackend::State::recordTarget(FrameInFlight& slot,
     target.device = &device;
     target.pipelines = &context.pipelines;
     target.sets = &sets;
-    target.planes = &planes;
+    target.buffers = &buffers;
     target.barriers = &barriers;
     target.slot = &slot;
     target.commands = commands;
@@ -410,6 +527,17 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     return offset;
 }
 
+// What a frame's plan says of detail, which comes and goes little by little.
+void VkBackend::State::followDetail(const Detail& planned) noexcept {
+    const auto toward = [](auto& now, auto wanted, auto turn) {
+        now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);
+    };
+    detail = planned;
+    toward(volumeStepsNow, detail.volumeSteps, kStepsTurn);
+    toward(quadShare, detail.quads, kQuadsTurn);
+    toward(lightCount, float(lightsOf(detail, limits.maxLights)), kLightsTurn);
+}
+
 void VkBackend::State::run(const FramePlan& plan) {
     if (!open.open || open.ran)
         core::fail(FW_ERROR_INTERNAL, "A frame's plan is run once, after the frame is begun.");
@@ -425,15 +553,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     open.readback = needs.readback;
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
     tickFraction = plan.tickFraction;
-    detail = plan.detail;
-    volumeStepsNow = volumeStepsNow > detail.volumeSteps
-                         ? std::max(volumeStepsNow - kStepsTurn, detail.volumeSteps)
-                         : std::min(volumeStepsNow + kStepsTurn, detail.volumeSteps);
-    quadShare = quadShare > detail.quads ? std::max(quadShare - kQuadsTurn, detail.quads)
-                                         : std::min(quadShare + kQuadsTurn, detail.quads);
-    const auto lights = float(lightsOf(detail, limits.maxLights));
-    lightCount = lightCount > lights ? std::max(lightCount - kLightsTurn, lights)
-                                     : std::min(lightCount + kLightsTurn, lights);
+    followDetail(plan.detail);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     if (!needs.work) {
         open.ran = true;
@@ -449,118 +569,21 @@ void VkBackend::State::run(const FramePlan& plan) {
     FrameInFlight& slot = makeRoom(*this, plan, needs);
 
     // From here on nothing fails.
-    const Table& vk = device.table;
     open.ran = true;
     open.slot = &slot;
     open.recording = true;
-    barriers.begin(vk, open.commands);
+    barriers.begin(device.table, open.commands);
     slot.timers.reset(device, open.commands);
     FrameRecorder recorder(recordTarget(slot, open.commands));
     UploadWriter writer(slot);
-    if (planes.recordMoves(vk, open.commands, open.ringFrame))
-        barriers.begin(vk, open.commands);  // rare: waits for all of the moves
-    if (!initialized) {
-        for (const uint32_t resource :
-             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
-              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
-            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
-        initialized = true;
-    }
-    recordUploads(*this);
-    if (recordsDirty) recordObjects(*this, recorder, writer);
-    if (roomsDirty) recordRooms(*this, recorder, writer);
-    recordRestores(*this, recorder);
-    recordMovedTiles(*this, recorder);
-    recordForgetting(*this, recorder);
-    drawVertices = planes.buffer(kResourceVertices).handle;
-    drawIndices = planes.buffer(kResourceIndices).handle;
-    drawShown = planes.buffer(FW_BIND_SHOWN).handle;
-    recordFieldSteps(*this, plan, recorder, writer);
-    if (plan.volumes) recordVolumes(*this, *plan.volumes, recorder, writer);
-    emittersMove = plan.emitters != nullptr;
-    if (plan.emitters) recordEmitters(*this, *plan.emitters, recorder, writer);
-    if (needs.skins) recordSkins(*this, recorder, writer);
-
-    if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
-    slot.layout.firstRow = lists.row;
-    bool iterates = !frontEmpty || needs.dense || needs.never;
-    for (const StepPlan& planned : plan.steps) {
-        iterates |= bringsNews(planned) || (planned.exchange && !burnEmpty);
-        StepRecord step;
-        step.now = planned.now;
-        step.stepShift = planned.substepShift;
-        step.switches = plan.switches;
-        step.objectSlots = uint32_t(objects.size());
-        step.iterate = iterates;
-        step.reduce = planned.reduce && needs.burning;
-        step.heat = planned.heat && needs.heating;
-        step.rooms = planned.rooms;
-        airs = airs || planned.rooms;
-        step.exchange = step.reduce && planned.exchange;
-        step.governed = planned.governed;
-        step.capped = planned.capped;
-        step.plays = planned.plays;
-        step.rules = planned.rules;
-        if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
-        step.links = links;
-        step.parts = partMeshes != 0;
-        if (planned.shield) recordShield(*this, *planned.shield, recorder, writer);
-        step.rules.blockers = blockers;
-        placeShield(shield, step.rules);
-        recordMaterials(*this, planned.materials, recorder, writer);
-        const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
-        step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
-        step.events = writer.write(planned.events);
-        step.eventList = planned.events;
-        for (const TexelEvent& event : planned.events) {
-            noteEvent(*this, event, planned.now);
-            if (addressesAll(event))
-                step.allTiles = std::max(step.allTiles, objects[event.object].record.tileCount);
-        }
-        if (needs.publishedRuns) {
-            for (PublishedStep& one : published) {
-                one.parity = objects[one.object].publishedParity;
-                objects[one.object].publishedParity ^= 1;
-            }
-            step.published = published;
-        }
-        recordSimulation(recorder, lists, step);
-        frontWalks += step.iterate ? 1 : 0;
-        burnWalks += step.reduce ? 1 : 0;
-        hotWalks += step.heat ? 1 : 0;
-    }
-    slot.layout.rows = lists.row;
-    slot.layout.burnParity = lists.burnParity;
-    slot.layout.hotParity = lists.hotParity;
-    if (needs.stimulus) {
-        lastStimulus = open.ringFrame;
-        frontEmpty = burnEmpty = predictEmpty = hotEmpty = false;
-    }
+    recordChanges(*this, plan, needs, recorder, writer);
+    recordSteps(*this, plan, needs, recorder, writer);
     shownTick = plan.endTick;
     if (needs.predicting && predictsNow(*this, needs, plan.endTick))
         recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = lists.predictParity;
-    if (needs.vertexGroups) {
-        DeformRecord deform;
-        deform.nodeGroups = needs.nodeGroups;
-        deform.sheetGroups = needs.sheetGroups;
-        deform.springGroups = needs.springGroups;
-        deform.steps = softSteps;
-        deform.way = softWay;
-        deform.begins = needs.sheetsBegin;
-        deform.vertexGroups = needs.vertexGroups;
-        deform.innerGroups = needs.innerGroups;
-        deform.groups = writeDeformGroups(*this, writer);
-        deform.push.now = plan.endTick;
-        deform.push.step = float(kSoftTicks) / float(kTicksPerSecond);
-        deform.push.wind = {wind[0], wind[1], wind[2],
-                            float(softStep % (4096 * 128)) * deform.push.step};
-        deform.push.up = {limits.up[0], limits.up[1], limits.up[2],
-                          tickFraction * float(kStepTicks)};
-        recordDeformation(recorder, deform);
-    }
+    if (needs.vertexGroups) recordDeformation(recorder, deformationOf(*this, needs, writer));
     softWay = (softWay + softSteps) % kArmWays;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));

@@ -1,4 +1,4 @@
-// Adaptive refinement's side of the backend: what a mesh and an object bring to the planes, and
+// Adaptive refinement's side of the backend: what a mesh and an object bring to the buffers, and
 // which objects a frame refines. What their passes do is in shaders/refine.
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
@@ -42,14 +42,14 @@ void append(PendingUpload& upload, uint64_t& from, uint32_t resource, uint64_t f
     from += data.size_bytes();
 }
 
-void releaseAll(Planes& planes, std::span<const SpaceRange> ranges) noexcept {
-    for (const SpaceRange& one : ranges)
-        if (one.range->units) planes.release(one.space, one.range->first, one.range->units);
+void releaseAll(WorldBuffers& buffers, std::span<const PoolRange> ranges) noexcept {
+    for (const PoolRange& one : ranges)
+        if (one.range->units) buffers.release(one.pool, one.range->first, one.range->units);
 }
 
 }  // namespace
 
-// The pattern table is the first thing in the plane of words. Of the look textures the noise of
+// The pattern table is the first thing in the buffer of words. Of the look textures the noise of
 // holes is kept: a mip of the first layer, its first channel.
 void VkBackend::State::uploadRefineTable() {
     const size_t texels = size_t(kNoiseSide) * kNoiseSide;
@@ -58,7 +58,7 @@ void VkBackend::State::uploadRefineTable() {
     if (limits.looks.textures.size() >= first + texels * 4)
         for (size_t i = 0; i < texels; ++i)
             refine.noise.push_back(uint8_t(limits.looks.textures[first + i * 4]));
-    const uint32_t table = planes.allocate(kSpaceRefineWords, kTableWords, 0);
+    const uint32_t table = buffers.allocate(kPoolRefineWords, kTableWords, 0);
     PendingUpload& upload = stage(kTableWords * 4, "refinement table");
     uint64_t from = 0;
     append(upload, from, FW_BIND_REFINE_WORDS, uint64_t(table) * 2,
@@ -103,18 +103,18 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     const auto units = [](size_t count) { return std::max(1u, uint32_t(count)); };
     const size_t words = model.tileStart.size() + model.tileItems.size();
     const struct {
-        SpaceRange place;
+        PoolRange place;
         uint32_t units;
     } wanted[] = {
-        {{&fresh.triangles, kSpaceRefineMeshTriangles}, units(fresh.triangleCount)},
-        {{&fresh.edges, kSpaceRefineMeshEdges}, units(fresh.edgeCount)},
-        {{&fresh.slots, kSpaceRefineMeshSlots}, units(fresh.slotCount)},
-        {{&fresh.words, kSpaceRefineWords}, units(words)},
-        {{&fresh.draws, kSpaceVertices}, units(vertices.size())},
+        {{&fresh.triangles, kPoolRefineMeshTriangles}, units(fresh.triangleCount)},
+        {{&fresh.edges, kPoolRefineMeshEdges}, units(fresh.edgeCount)},
+        {{&fresh.slots, kPoolRefineMeshSlots}, units(fresh.slotCount)},
+        {{&fresh.words, kPoolRefineWords}, units(words)},
+        {{&fresh.draws, kPoolVertices}, units(vertices.size())},
     };
     try {
         for (const auto& one : wanted)
-            *one.place.range = {s.planes.allocate(one.place.space, one.units, last), one.units};
+            *one.place.range = {s.buffers.allocate(one.place.pool, one.units, last), one.units};
         PendingUpload& upload = s.stage(model.triangles.size() * sizeof(RefineTriangle) +
                                             model.edges.size() * sizeof(RefineEdge) +
                                             model.slots.size() * sizeof(RefineSlot) + words * 4 +
@@ -134,52 +134,52 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
         append(upload, from, kResourceVertices, fresh.draws.first,
                std::span<const mesh::RenderVertex>(vertices));
     } catch (...) {
-        fresh.release(s.planes);
+        fresh.release(s.buffers);
         s.dropUploads(uploadsBefore);
         throw;
     }
     s.meshes[slot].refine[refineKey(published, depth)] = fresh;
 }
 
-void RefineMesh::release(Planes& planes) noexcept {
-    const SpaceRange all[] = {{&triangles, kSpaceRefineMeshTriangles},
-                              {&edges, kSpaceRefineMeshEdges},
-                              {&slots, kSpaceRefineMeshSlots},
-                              {&words, kSpaceRefineWords},
-                              {&draws, kSpaceVertices}};
-    releaseAll(planes, all);
+void RefineMesh::release(WorldBuffers& buffers) noexcept {
+    const PoolRange all[] = {{&triangles, kPoolRefineMeshTriangles},
+                             {&edges, kPoolRefineMeshEdges},
+                             {&slots, kPoolRefineMeshSlots},
+                             {&words, kPoolRefineWords},
+                             {&draws, kPoolVertices}};
+    releaseAll(buffers, all);
     *this = {};
 }
 
-void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last) {
+void RefineUse::allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last) {
     inner = thick && mesh.solid ? mesh.slotCount : 0;
     border = inner != 0 && mesh.openEdges > 0;
-    const auto take = [&](RangeOf& range, Space space, uint32_t units) {
+    const auto take = [&](RangeOf& range, BufferPool pool, uint32_t units) {
         units = std::max(1u, units);
-        range = {planes.allocate(space, units, last), units};
+        range = {buffers.allocate(pool, units, last), units};
     };
-    take(items, kSpaceRefineItems, mesh.edgeCount + mesh.triangleCount);
-    take(triangles, kSpaceRefineTriangles, mesh.triangleCount + kRefineSums);
-    take(slots, kSpaceRefineSlots, mesh.slotCount + inner);
-    take(indices, kSpaceRefineIndices, mesh.fullCount * 3);
+    take(items, kPoolRefineItems, mesh.edgeCount + mesh.triangleCount);
+    take(triangles, kPoolRefineTriangles, mesh.triangleCount + kRefineSums);
+    take(slots, kPoolRefineSlots, mesh.slotCount + inner);
+    take(indices, kPoolRefineIndices, mesh.fullCount * 3);
     // Along rims, of up to four for a small triangle; with an inner skin and along borders more.
     const uint32_t rims = mesh.fullCount / (inner ? 3 : 4) + 64;
     const uint32_t walls = border ? mesh.openEdges << (kRefineDepth + 1) : 0;
-    take(cuts, kSpaceRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
+    take(cuts, kPoolRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
 }
 
-void RefineUse::allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last) {
-    slots = {planes.allocate(kSpaceRefineSlots, mesh.slotCount, last), mesh.slotCount};
+void RefineUse::allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last) {
+    slots = {buffers.allocate(kPoolRefineSlots, mesh.slotCount, last), mesh.slotCount};
     const uint32_t listed = groupsOf(mesh.fullCount) * 64;
-    arpList = {planes.allocate(kSpaceArpList, listed, last), listed};
-    indices = {planes.allocate(kSpaceRefineIndices, listed * 3, last), listed * 3};
+    arpList = {buffers.allocate(kPoolArpList, listed, last), listed};
+    indices = {buffers.allocate(kPoolRefineIndices, listed * 3, last), listed * 3};
 }
 
-void RefineUse::release(Planes& planes) noexcept {
-    const SpaceRange all[] = {{&items, kSpaceRefineItems}, {&triangles, kSpaceRefineTriangles},
-                              {&slots, kSpaceRefineSlots}, {&indices, kSpaceRefineIndices},
-                              {&cuts, kSpaceRefineCuts},   {&arpList, kSpaceArpList}};
-    releaseAll(planes, all);
+void RefineUse::release(WorldBuffers& buffers) noexcept {
+    const PoolRange all[] = {{&items, kPoolRefineItems}, {&triangles, kPoolRefineTriangles},
+                             {&slots, kPoolRefineSlots}, {&indices, kPoolRefineIndices},
+                             {&cuts, kPoolRefineCuts},   {&arpList, kPoolArpList}};
+    releaseAll(buffers, all);
     *this = {};
 }
 
@@ -211,11 +211,11 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     const RefinePush& push = refine.push;
     if (push.objects == 0) return 0;
     const uint32_t jobs = (push.cutJobs - push.placeJobs) / 2;
-    planes.atLeast(kSpaceRefineWork, push.cutJobs + jobs + 2 * 64 * push.edgeGroups, ring.newest());
+    buffers.atLeast(kPoolRefineWork, push.cutJobs + jobs + 2 * 64 * push.edgeGroups, ring.newest());
     return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
 }
 
-// The work plane of the objects that are due, or of all that refine. Throws only where it has more
+// The work buffer of the objects that are due, or of all that refine. Throws only where it has more
 // to list than ever.
 void VkBackend::State::listRefined(bool all) {
     refine.lists.clear();

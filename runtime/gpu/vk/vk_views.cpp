@@ -51,7 +51,7 @@ void VkBackend::State::openViews(std::span<const FwView> from) {
         if (!of) continue;
         of->given = contains(taken, of.get());
         if (of->given || of->number == 0 || of->frame + kViewKept >= open.ringFrame) continue;
-        planes.dropView(of->number, ring.newest());
+        buffers.dropView(of->number, ring.newest());
         sets.drop(of->number, ring.newest());
         of = {};
     }
@@ -67,10 +67,10 @@ void VkBackend::State::openViews(std::span<const FwView> from) {
 void VkBackend::State::makeViewRoom(uint32_t flames, bool marches, uint64_t last) {
     for (OutsideView* const of : seenFrom()) {
         if (of->number > 0) {
-            planes.makeView(of->number, last);
-            planes.fit(spaceOf(kSpaceFlames, of->number), planes.capacity(kSpaceFlames),
-                       detail.memory < 1, last);
-            planes.atLeast(spaceOf(kSpaceVolumes, of->number), kVolumeWorks * flames, last);
+            buffers.makeView(of->number, last);
+            buffers.fit(poolOf(kPoolFlames, of->number), buffers.capacity(kPoolFlames),
+                        detail.memory < 1, last);
+            buffers.atLeast(poolOf(kPoolVolumes, of->number), kVolumeWorks * flames, last);
         }
         if (marches && flames > 0) makeMarchRoom(*of, flames, last);
     }

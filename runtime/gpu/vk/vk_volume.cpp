@@ -132,9 +132,9 @@ void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t 
     March& march = of.march;
     while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.fit(spaceOf(kSpaceVolumeRays, of.number),
-                   march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
-                   detail.memory < 1 || march.bookSpare, last);
+        buffers.fit(poolOf(kPoolVolumeRays, of.number),
+                    march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
+                    detail.memory < 1 || march.bookSpare, last);
         march.bookSpare = false;
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
@@ -280,7 +280,7 @@ void VkBackend::State::showBook(March& march, const VolumeItem& item, uint32_t p
 MarchRecord VkBackend::State::layMarch(OutsideView& of,
                                        std::span<const VolumeItem> items) noexcept {
     March& march = of.march;
-    const uint32_t capacity = planes.capacity(spaceOf(kSpaceVolumeRays, of.number));
+    const uint32_t capacity = buffers.capacity(poolOf(kPoolVolumeRays, of.number));
     if (capacity != march.capacity)
         for (VolumeCardPair& pair : march.pairs)
             for (VolumeCardShape& shape : pair.shapes) shape.there = false;
@@ -461,8 +461,8 @@ uint64_t VkBackend::detailBytes() const noexcept {
         const uint64_t cards =
             (uint64_t(of->march.slots) * kPairWords + of->march.bookRoom * kVolumeBookWords) *
             sizeof(uint32_t);
-        const uint64_t rays = s.planes.bytes(spaceOf(kSpaceVolumeRays, of->number));
-        all += rays - std::min(rays, cards) + s.planes.bytes(spaceOf(kSpaceFlames, of->number));
+        const uint64_t rays = s.buffers.bytes(poolOf(kPoolVolumeRays, of->number));
+        all += rays - std::min(rays, cards) + s.buffers.bytes(poolOf(kPoolFlames, of->number));
     }
     return all;
 }

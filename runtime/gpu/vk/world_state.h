@@ -24,13 +24,13 @@ struct Context::State {
     Pipelines pipelines;
 };
 
-struct RangeOf {  // of a space
+struct RangeOf {  // of a pool
     uint32_t first = 0, units = 0;
 };
 
-struct SpaceRange {
+struct PoolRange {
     RangeOf* range;
-    Space space;
+    BufferPool pool;
 };
 
 // A mesh's refinement at one depth: what its objects share.
@@ -43,7 +43,7 @@ struct RefineMesh {
     float edgeLength = 0;                            // m, mean of its edges
     uint32_t materialEnd[kMaterialsPerObject] = {};  // of its triangles
     RangeOf triangles, edges, slots, words, draws;
-    void release(Planes& planes) noexcept;
+    void release(WorldBuffers& buffers) noexcept;
 };
 
 struct RefineUse {  // an object's own
@@ -66,9 +66,9 @@ struct RefineUse {  // an object's own
     uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
     RangeOf arpList;
     // `thick`: with an inner skin, where the mesh has an inside.
-    void allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last);
-    void allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last);
-    void release(Planes& planes) noexcept;
+    void allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last);
+    void allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last);
+    void release(WorldBuffers& buffers) noexcept;
 };
 
 // What the published scheme keeps of an object.
@@ -180,7 +180,7 @@ struct ImageEntry {
     bool live = false;
 };
 
-// Bytes for the planes or an image, in a staging buffer of their own until the next frame.
+// Bytes for the buffers or an image, in a staging buffer of their own until the next frame.
 struct PendingUpload {
     Buffer staging;
     struct Region {
@@ -283,7 +283,7 @@ struct VkBackend::State {
 
     RetireQueue retired;
     FrameRing ring;
-    Planes planes;
+    WorldBuffers buffers;
     PassSets sets;
     BarrierTracker barriers;
     Buffer views;             // view ring: frame in flight, then view
@@ -309,7 +309,7 @@ struct VkBackend::State {
     std::pmr::vector<Skin> skins;
     std::pmr::vector<core::Owned<ArpUse>> arps;
     uint32_t liveObjects = 0;
-    bool initialized = false;  // the planes that must start as zero do
+    bool initialized = false;  // the buffers that must start as zero do
     // As last recorded.
     VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
              drawShown = VK_NULL_HANDLE;
@@ -382,7 +382,7 @@ struct VkBackend::State {
     std::array<Room, kMaxRooms> rooms{};
     bool roomsDirty = false;
     bool airs = false;                       // some step had rooms
-    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
+    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their buffer has them
     bool fieldsDirty = false;                // one of them has something for the next frame
     ViewParams seen{};                       // of the last pushView
     // Of RecordOutside, by number; null: not there. The first is always there.
@@ -390,7 +390,7 @@ struct VkBackend::State {
     uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
-        std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
+        std::pmr::vector<uint32_t> lists;  // of the frame's work buffer, as it begins
         std::pmr::vector<uint8_t> noise;   // of holes, tiling
         RefinePush push{};                 // of the frame; no objects: nothing is refined
         RefinePush last{};                 // of the last frame that refined
@@ -444,6 +444,7 @@ struct VkBackend::State {
     // vk_record.cpp
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);
+    void followDetail(const Detail& planned) noexcept;
     void closeFrame();
     // Whose soot is due; count 0: none is. `looked`: some view may show it.
     TileShare sootShare(bool looked) noexcept;
