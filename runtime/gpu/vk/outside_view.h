@@ -3,8 +3,8 @@
 // see resourceOf; all share the simulation, lights and meshes.
 #pragma once
 #include "gpu/passes/draw.h"
-#include "gpu/passes/volume_books.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/impostor_atlas.h"
+#include "lod/tiers.h"
 
 #include <array>
 

@@ -2,13 +2,13 @@
 // the device into a convex polygon per piece of the lattice. Nothing is marched before. Only where
 // light is added as it is, not where it is tone mapped: there many thin slices would be brighter
 // than their sum.
+#include "lod/volumes.h"
 #include "shared/volume_slices.h"
-#include "gpu/passes/draw.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kFewest = 12.0f;  // slices of a flame
@@ -32,4 +32,4 @@ SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept {
     return out;
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

@@ -2,14 +2,14 @@
 // pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
 // volume_probe finds worth it. Memory is bounded: where not all fits, those that take most of it
 // are marched in larger cells.
-#include "gpu/passes/draw.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/tiers.h"
+#include "lod/volumes.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kMostCell = 64.0f;     // px
@@ -285,4 +285,4 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
     return laid;
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

@@ -9,7 +9,9 @@
 #include <cstdint>
 #include <span>
 
-namespace fw::gpu {
+namespace fw::lod {
+
+using namespace gpu;  // what shaders share
 
 constexpr uint32_t kTierFrames = 16;  // of the way from one tier to the next
 constexpr uint32_t kStepsTurn = 2;    // a frame, from many samples to few
@@ -65,4 +67,4 @@ uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept;
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
                  TierLives& lives, std::span<uint32_t> places) noexcept;
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

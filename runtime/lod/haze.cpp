@@ -1,11 +1,11 @@
 // Heat haze over volumetric flames, before anything else of a view that is not solid: what the host
 // lends of its scene, drawn anew where hot gas bends it. Flames then go over it.
+#include "lod/volumes.h"
 #include "shared/volume_haze.h"
-#include "gpu/passes/draw.h"
 
 #include <algorithm>
 
-namespace fw::gpu {
+namespace fw::lod {
 
 void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
                       vec4& high) {
@@ -33,4 +33,4 @@ bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, fl
     return true;
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

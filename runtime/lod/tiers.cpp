@@ -1,8 +1,8 @@
-#include "gpu/passes/volume_tiers.h"
+#include "lod/tiers.h"
 
 #include <algorithm>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kKeeps = 1.25f;  // as much larger counts what is marched already
@@ -115,4 +115,4 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLim
     }
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

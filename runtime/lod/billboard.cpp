@@ -1,13 +1,13 @@
 // Volumetric flames as cards: a flame is marched into cells as wide as a part of its diameter,
 // whatever its size on the screen, and for some frames shown as it was, facing the camera, where
 // and as large as it is now.
-#include "gpu/passes/draw.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/tiers.h"
+#include "lod/volumes.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kCardCells = 24.0f;  // of a flame's diameter, where its smoke leaves as many
@@ -104,4 +104,4 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     return true;
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

@@ -2,13 +2,13 @@
 // the last frames of it are a book. The others show its pages, each some frames late, as wide and
 // as high as they are and leaning as they do. What a page looks like is volume_card's.
 #pragma once
-#include "gpu/passes/draw.h"
+#include "lod/volumes.h"
 
 #include <array>
 #include <cstdint>
 #include <span>
 
-namespace fw::gpu {
+namespace fw::lod {
 
 constexpr uint32_t kVolumeBooks = 4;
 constexpr uint32_t kBookPages = 32;
@@ -83,4 +83,4 @@ void layPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
 bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
               uint32_t slot, const BookPage& page, bool mirrored, VolumeCard& out) noexcept;
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

@@ -1,4 +1,4 @@
-#include "gpu/passes/volume_books.h"
+#include "lod/impostor_atlas.h"
 
 #include "core/hash.h"
 #include "shared/volume.h"
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kWider = 1.3f;      // at most, than the book's flame, or narrower
@@ -202,4 +202,4 @@ bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     return true;
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod

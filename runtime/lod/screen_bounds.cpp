@@ -1,14 +1,14 @@
 // Volumetric flames of one view: a draw each, farthest first. Where the host's depth can be sampled
 // a ray ends there; where it can only be tested a flame is drawn in slabs, each tested at its
 // place, so that a log in a flame hides what is behind it and no more.
-#include "gpu/passes/draw.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/tiers.h"
+#include "lod/volumes.h"
 #include "shared/volume_march.h"
 
 #include <algorithm>
 #include <cmath>
 
-namespace fw::gpu {
+namespace fw::lod {
 namespace {
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
@@ -210,4 +210,4 @@ uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count) {
     return std::clamp(2u + uint32_t(4.0f * std::min(bent, 100.0f)), 2u, kFlameIntervals);
 }
 
-}  // namespace fw::gpu
+}  // namespace fw::lod
