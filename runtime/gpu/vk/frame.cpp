@@ -343,12 +343,13 @@ void clearMarch(FrameRecorder& r, const MarchRecord& march) {
 // Lights once a frame; flames, particles and marches of each view. Without a view lights alone.
 void VkBackend::State::recordEffects(FrameInFlight& slot) {
     const std::span<OutsideView* const> from = seenFrom();
-    const bool looked = !from.empty(), particles = showsEmitters(), burns = !burnEmpty;
-    const bool fieldsShow = looked && !fieldDraws.empty(), marches = looked && !volumes.empty();
-    if ((!burns && !marches && !particles && !fieldsShow) || !limits.looks.viewParams) return;
+    const bool looked = !from.empty(), emits = showsEmitters(), burns = !simulation.burnEmpty;
+    const bool fieldsShow = looked && !particleFields.fieldDraws.empty(),
+               marches = looked && !flames.volumes.empty();
+    if ((!burns && !marches && !emits && !fieldsShow) || !limits.looks.viewParams) return;
     const VkViewport whole{0, 0, 1, 1, 0, 1};
     RecordTarget target = recordTarget(slot, open.commands);
-    target.profiles = profiles.set.set;
+    target.profiles = scene.profiles.set.set;
     // A step of an own device has no view: lights alone, which flicker with simulated time.
     FwView none{};
     none.time = float(double(open.endTick) / kTicksPerSecond);
@@ -356,7 +357,7 @@ void VkBackend::State::recordEffects(FrameInFlight& slot) {
     FrameRecorder r(target);
     StepPush push{};
     push.now = open.endTick;
-    push.burnParity = lists.burnParity;
+    push.burnParity = simulation.lists.burnParity;
     if (burns) r.dispatch(pass::lights, push, 1);
     const TileShare soot = burns ? sootShare(looked) : TileShare{};
     if (soot.count > 0) r.dispatch(pass::soot, pushOf(soot), (soot.count + 7) / 8);
@@ -365,25 +366,27 @@ void VkBackend::State::recordEffects(FrameInFlight& slot) {
     moving.quads = room.particles;
     moving.firstQuad = room.tiles;
     moving.lights = room.lights;
-    moving.burnRow = burns ? kRowBurn + lists.burnParity : kNoBurnRow;
-    moving.moved = vec4(particlesMove, 0.0f);
-    if (particles && emittersMove && emitterGroups > 0) {
-        r.dispatch(pass::particles, moving, emitterGroups);
-        particlesMove = vec3(0.0f);
+    moving.burnRow = burns ? kRowBurn + simulation.lists.burnParity : kNoBurnRow;
+    moving.moved = vec4(particles.particlesMove, 0.0f);
+    if (emits && particles.emittersMove && particles.emitterGroups > 0) {
+        r.dispatch(pass::particles, moving, particles.emitterGroups);
+        particles.particlesMove = vec3(0.0f);
     }
-    push.count = books.live ? flameBooks : 0;
+    push.count = scene.books.live ? particles.flameBooks : 0;
     const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
     for (OutsideView* const of : from) {
         if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
         target.view = of->number;
         FrameRecorder view(target);
         // The lights begin the first view's quads.
-        if ((particles && !burns) || (burns && of->number != 0))
+        if ((emits && !burns) || (burns && of->number != 0))
             view.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
         if (burns) view.dispatch(pass::flame_quads, push, 16);
-        if (emitterGroups > 0) view.dispatch(pass::particle_quads, moving, emitterGroups);
-        if (sparkSources > 0) view.dispatch(pass::sparks, sparks, sparkSources * kSparkGroups);
-        if (burns || particles) view.dispatch(pass::flame_sort, room, 1);
+        if (particles.emitterGroups > 0)
+            view.dispatch(pass::particle_quads, moving, particles.emitterGroups);
+        if (particles.sparkSources > 0)
+            view.dispatch(pass::sparks, sparks, particles.sparkSources * kSparkGroups);
+        if (burns || emits) view.dispatch(pass::flame_sort, room, 1);
         if (const MarchRecord march = marches ? marchVolumes(*of) : MarchRecord{};
             !march.volumes.empty()) {
             clearMarch(view, march);
@@ -393,7 +396,8 @@ void VkBackend::State::recordEffects(FrameInFlight& slot) {
         }
     }
     if (fieldsShow)
-        r.dispatch(pass::field_show, NoPush{}, uint32_t(fieldDraws.size()) * kFieldShowGroups);
+        r.dispatch(pass::field_show, NoPush{},
+                   uint32_t(particleFields.fieldDraws.size()) * kFieldShowGroups);
 }
 
 // --- Refinement ---
@@ -462,7 +466,7 @@ void VkBackend::State::recordReadback(FrameInFlight& slot) {
     FrameRecorder r(target);
     ReadbackLayout& layout = slot.layout;
     const auto copyShown = [&] {
-        layout.quads = looked && (!burnEmpty || showsEmitters());
+        layout.quads = looked && (!simulation.burnEmpty || showsEmitters());
         layout.bias = open.refined;
         if (layout.quads) r.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
         if (layout.bias) r.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
@@ -482,7 +486,7 @@ void VkBackend::State::recordReadback(FrameInFlight& slot) {
     copy(FW_BIND_ROOM_AIR, layout.roomsAt, layout.rooms ? kMaxRooms * sizeof(RoomAir) : 0);
     for (uint32_t i = 0; i < layout.mapCount; ++i) {
         const ReadbackLayout::MapAt& map = layout.maps[i];
-        const BurnObject& object = objects[map.object].record;
+        const BurnObject& object = scene.objects[map.object].record;
         r.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at, uint64_t(map.texels) * 4);
         if (map.heat)
             r.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2), map.heatAt,

@@ -12,7 +12,7 @@ namespace {
 // its own, every other one; every fourth one where frames are short: fire takes seconds.
 bool recedes(const VkBackend::State& s, const ObjectEntry& object, uint32_t group) noexcept {
     constexpr uint32_t kLongFrame = 4;  // steps
-    const uint32_t turns = s.softSteps < kLongFrame ? 4 : 2;
+    const uint32_t turns = s.deforming.softSteps < kLongFrame ? 4 : 2;
     return (object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke ||
            (group - object.recedeTurn) % turns == 0;
 }
@@ -24,19 +24,19 @@ uint32_t deformGroups(uint32_t items) noexcept { return (items + kDeformGroup - 
 // Does it still move, as far as is known? What burns does, until the last texel that caught has
 // burnt out.
 bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
-    const ObjectEntry& object = s.objects[slot];
+    const ObjectEntry& object = s.scene.objects[slot];
     if (!object.live || object.shown.units == 0 || object.skinPlus1) return false;
     if (object.deformReset) return true;
     if (object.deform.flags & kDeformShell) {
-        const bool wind =
-            s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0 || object.record.zoneWind != 0;
+        const bool wind = s.simulation.wind[0] != 0 || s.simulation.wind[1] != 0 ||
+                          s.simulation.wind[2] != 0 || object.record.zoneWind != 0;
         const bool hidden = (object.record.flags & kObjectHidden) != 0;
         if (!hidden && (wind || now <= object.softUntil)) return true;
     }
     if (!object.touched) return false;
     uint64_t last = object.lastEvent;
-    if (slot < s.givenObjects.size())
-        last = std::max<uint64_t>(last, s.givenObjects[slot].lastIgnition);
+    if (slot < s.results.givenObjects.size())
+        last = std::max<uint64_t>(last, s.results.givenObjects[slot].lastIgnition);
     return now <= last + object.deformTicks;
 }
 
@@ -74,7 +74,7 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
                           &barrier, 0, nullptr);
     SkinPush push{};
     push.count = object.deform.vertexCount;
-    push.sourceBase = s.meshes[object.mesh].skinSources.first;
+    push.sourceBase = s.scene.meshes[object.mesh].skinSources.first;
     push.shownBase = object.shown.first;
     push.given = skin.words.first;
     push.stride = from.stride / 4;
@@ -88,7 +88,7 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
 }  // namespace
 
 void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs) {
-    ObjectEntry& object = s.objects[slot];
+    ObjectEntry& object = s.scene.objects[slot];
     if (object.soft.units && object.softUntil == 0) object.softUntil = endTick + kSettleTicks;
     object.deformWoke = !object.deformsNow;
     object.deformsNow = deforms(s, slot, endTick);
@@ -104,7 +104,7 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
         needs.vertexGroups += deformGroups(object.deform.vertexCount);
         if (object.inner) needs.innerGroups += deformGroups(object.deform.vertexCount);
     }
-    const Skin* moved = object.skinPlus1 ? &s.skins[object.skinPlus1 - 1] : nullptr;
+    const Skin* moved = object.skinPlus1 ? &s.deforming.skins[object.skinPlus1 - 1] : nullptr;
     if (moved && (moved->dirty || moved->givenDue)) {
         const Skin& skin = *moved;
         needs.skins = true;
@@ -116,10 +116,10 @@ void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameN
 }
 
 void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (const uint32_t i : s.awake) {
-        const ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
         if (!object.live || !object.skinPlus1) continue;
-        Skin& skin = s.skins[object.skinPlus1 - 1];
+        Skin& skin = s.deforming.skins[object.skinPlus1 - 1];
         if (skin.givenDue) recordGiven(s, recorder, object, skin);
         skin.givenDue = false;
         if (!skin.dirty) continue;
@@ -145,20 +145,21 @@ Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer) {
         }
     };
     for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
-        for (const uint32_t i : s.awake)
-            if (const ObjectEntry& object = s.objects[i];
+        for (const uint32_t i : s.scene.awake)
+            if (const ObjectEntry& object = s.scene.objects[i];
                 object.deformsNow && !object.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
                 append(object, object.deform.nodeCount, tier == ~0u);
-    for (const uint32_t i : s.awake)
-        if (s.objects[i].deformsNow) append(s.objects[i], s.objects[i].deform.vertexCount);
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake)
+        if (s.scene.objects[i].deformsNow)
+            append(s.scene.objects[i], s.scene.objects[i].deform.vertexCount);
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         if (!object.deformsNow) continue;
         if (object.inner) append(object, object.deform.vertexCount);
         object.deformReset = false;
         ++object.recedeTurn;
-        if (object.soft.units) object.softOdd ^= (s.softSteps & 1) != 0;
+        if (object.soft.units) object.softOdd ^= (s.deforming.softSteps & 1) != 0;
     }
     writer.end();
     return staged;

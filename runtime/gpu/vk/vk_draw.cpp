@@ -35,7 +35,7 @@ class PassRecorder {
             return use.resource == FW_BIND_VOLUMES;
         });
         if (!eachFlame && !uses.empty()) {
-            const VkDescriptorSet set = s_.sets.draw(number_, s_.drawnView);
+            const VkDescriptorSet set = s_.sets.draw(number_, s_.surfaces.drawnView);
             vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
                                      &set, objects_.declared.usesView() ? 1 : 0, &viewOffset_);
         }
@@ -44,9 +44,9 @@ class PassRecorder {
         if (pass_.softShader && host.depth) bindSet(3, host.depth);
         if (pass_.vertexInput == VertexInput::mesh) {
             const VkDeviceSize zeros[2] = {};
-            const VkBuffer vertices[2] = {s_.drawVertices, s_.drawVertices};
+            const VkBuffer vertices[2] = {s_.surfaces.drawVertices, s_.surfaces.drawVertices};
             vk.CmdBindVertexBuffers(commands_, 0, 2, vertices, zeros);
-            vk.CmdBindIndexBuffer(commands_, s_.drawIndices, 0, VK_INDEX_TYPE_UINT32);
+            vk.CmdBindIndexBuffer(commands_, s_.surfaces.drawIndices, 0, VK_INDEX_TYPE_UINT32);
         }
     }
 
@@ -79,10 +79,10 @@ class PassRecorder {
                                                   : kInside | item.inside;
         if (shown != shown_) bindVertices(item, shown);
         if (item.refined != refined_) {
-            vk.CmdBindIndexBuffer(
-                commands_,
-                item.refined ? s_.buffers.buffer(FW_BIND_REFINE_INDICES).handle : s_.drawIndices, 0,
-                VK_INDEX_TYPE_UINT32);
+            vk.CmdBindIndexBuffer(commands_,
+                                  item.refined ? s_.buffers.buffer(FW_BIND_REFINE_INDICES).handle
+                                               : s_.surfaces.drawIndices,
+                                  0, VK_INDEX_TYPE_UINT32);
             refined_ = item.refined;
         }
         const bool own = shown != kNoneTexel;
@@ -113,9 +113,10 @@ class PassRecorder {
     }
     void bindFor(const DrawItem& item, const void* push) {
         const Table& vk = s_.device.table;
-        VkDescriptorSet set = s_.white.set.set;
-        if (item.image && item.image - 1 < s_.images.size() && s_.images[item.image - 1].live)
-            set = s_.images[item.image - 1].set.set;
+        VkDescriptorSet set = s_.scene.white.set.set;
+        if (item.image && item.image - 1 < s_.scene.images.size() &&
+            s_.scene.images[item.image - 1].live)
+            set = s_.scene.images[item.image - 1].set.set;
         if (set != bound_) {
             vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
                                      &set, 0, nullptr);
@@ -128,8 +129,9 @@ class PassRecorder {
     void bindVertices(const DrawItem& item, uint64_t shown) {
         static_assert(sizeof(mesh::RenderVertex) == sizeof(ShownVertex));
         const bool own = shown != kNoneTexel, inside = own && (shown & kInside) != 0;
-        const VkBuffer buffers[2] = {s_.drawVertices,
-                                     own && !inside ? s_.drawShown : s_.drawVertices};
+        const VkBuffer buffers[2] = {s_.surfaces.drawVertices, own && !inside
+                                                                   ? s_.surfaces.drawShown
+                                                                   : s_.surfaces.drawVertices};
         const VkDeviceSize offsets[2] = {
             own ? VkDeviceSize(item.vertexOffset) * sizeof(mesh::RenderVertex) : 0,
             own ? VkDeviceSize(shown & ~kInside) * sizeof(ShownVertex) : 0};
@@ -138,14 +140,14 @@ class PassRecorder {
     }
     // A VkDrawIndirectCommand at `offset` bytes of the resource.
     void drawIndirect(uint32_t resource, uint64_t offset) {
-        const Buffer& buffer = s_.buffers.buffer(resourceOf(resource, s_.drawnView));
+        const Buffer& buffer = s_.buffers.buffer(resourceOf(resource, s_.surfaces.drawnView));
         s_.device.table.CmdDrawIndirect(commands_, buffer.handle, offset, 1, 0);
     }
     // A volumetric flame, of vertices that the shader makes.
     void drawVolume(uint32_t flame, const void* push, uint32_t vertices, uint32_t instances) {
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
-        const VkDescriptorSet set = s_.sets.draw(number_, s_.drawnView);
+        const VkDescriptorSet set = s_.sets.draw(number_, s_.surfaces.drawnView);
         s_.device.table.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_,
                                               0, 1, &set, uint32_t(offsets.size()), offsets.data());
         drawVertices(push, vertices, instances);
@@ -171,13 +173,13 @@ class PassRecorder {
             case Textures::ofItem:
                 return;  // bound with each item
             case Textures::flipbooks:
-                return bindSet(place, s_.books.set.set);
+                return bindSet(place, s_.scene.books.set.set);
             case Textures::hostColor:
                 return bindSet(place, host.color);
             case Textures::looks:
-                return bindSet(place, s_.lookTextures.set.set);
+                return bindSet(place, s_.scene.lookTextures.set.set);
             case Textures::profiles:
-                return bindSet(place, s_.profiles.set.set);
+                return bindSet(place, s_.scene.profiles.set.set);
             case Textures::halfColor:
                 return bindSet(place, host.half->colorSet.set);
             case Textures::halfDepth:
@@ -266,14 +268,16 @@ void VkBackend::State::setViewport(VkCommandBuffer commands,
     // Whole pixels: half of an odd number of them ends in one.
     shown.extent = {uint32_t(std::ceil(std::max(viewport.x + viewport.width - left, 0.0f))),
                     uint32_t(std::ceil(std::max(viewport.y + viewport.height - top, 0.0f)))};
-    if (scissor.extent.width != 0) {
+    if (surfaces.scissor.extent.width != 0) {
         const auto meet = [](int32_t& offset, uint32_t& extent, int32_t by, uint32_t byExtent) {
             const int64_t end = std::min(int64_t(offset) + extent, int64_t(by) + byExtent);
             offset = std::max(offset, by);
             extent = uint32_t(std::max<int64_t>(end - offset, 0));
         };
-        meet(shown.offset.x, shown.extent.width, scissor.offset.x, scissor.extent.width);
-        meet(shown.offset.y, shown.extent.height, scissor.offset.y, scissor.extent.height);
+        meet(shown.offset.x, shown.extent.width, surfaces.scissor.offset.x,
+             surfaces.scissor.extent.width);
+        meet(shown.offset.y, shown.extent.height, surfaces.scissor.offset.y,
+             surfaces.scissor.extent.height);
     }
     device.table.CmdSetScissor(commands, 0, 1, &shown);
 }
@@ -351,7 +355,7 @@ class ViewDraws {
 void ViewDraws::prepare(OutsideView& of, const FwView& view) {
     turned_ = s_.turnsFaces(view, viewport_);
     fieldCount_ = s_.orderFields(fields_);
-    if (!target_.key.flames || s_.volumes.empty()) return;
+    if (!target_.key.flames || s_.flames.volumes.empty()) return;
     const float share = part_ == DrawPart::over ? 0.5f : 1.0f;
     const VolumeScreen screen =
         s_.screenOf(target_.key, {share * viewport_.width, share * std::fabs(viewport_.height)});
@@ -366,7 +370,7 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
         const uint32_t least = s_.leastRays(of, view, screen);
         uint32_t whole = 0, cut = 0;
         for (uint32_t i = 0; i < count; ++i) {
-            if (s_.volumes[items_[i].flame].tier == FW_FIRE_TIER_SLICES &&
+            if (s_.flames.volumes[items_[i].flame].tier == FW_FIRE_TIER_SLICES &&
                 slicesShow(screen.encoding)) {
                 ownSlices_[cut] = layVolumeSlices(items_[i]);
                 ownOrder_.add(draw::volume_slices, cut++);
@@ -385,7 +389,7 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
 }
 
 bool ViewDraws::hasWork(DrawPhase phase) const noexcept {
-    const bool quads = !s_.burnEmpty || s_.showsEmitters();
+    const bool quads = !s_.simulation.burnEmpty || s_.showsEmitters();
     switch (phase) {
         case DrawPhase::OpaqueFresh:
         case DrawPhase::OpaqueBurning:
@@ -404,7 +408,7 @@ bool ViewDraws::hasWork(DrawPhase phase) const noexcept {
         case DrawPhase::Sparks:
             return quads && part_ == DrawPart::over;
         case DrawPhase::Transparency:
-            return s_.transparency > 0.0f;
+            return s_.surfaces.transparency > 0.0f;
         case DrawPhase::Count:
             break;
     }
@@ -433,9 +437,9 @@ void ViewDraws::record(DrawPhase phase) {
             return;
         case DrawPhase::Flames:
             return recordPass(
-                !s_.books.live    ? draw::flames
-                : s_.pagesAlone() ? draw::flipbook_flames_only
-                                  : draw::flipbook_flames,
+                !s_.scene.books.live ? draw::flames
+                : s_.pagesAlone()    ? draw::flipbook_flames_only
+                                     : draw::flipbook_flames,
                 [&](PassRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); });
         case DrawPhase::Volumes:
             for (const VolumeRun& run : std::span(order_->runs).first(order_->count))
@@ -447,13 +451,13 @@ void ViewDraws::record(DrawPhase phase) {
                 recorder.drawVertices(&push, 6 * push.tilesX * push.tilesY);
             });
         case DrawPhase::Sparks:
-            return recordPass(s_.books.live ? draw::half_flipbook_sparks : draw::half_sparks,
+            return recordPass(s_.scene.books.live ? draw::half_flipbook_sparks : draw::half_sparks,
                               [&](PassRecorder& recorder) {
                                   recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameLightDraw * 4);
                               });
         case DrawPhase::Transparency:
             return recordPass(draw::transparency, [&](PassRecorder& recorder) {
-                const float share = s_.transparency;
+                const float share = s_.surfaces.transparency;
                 const std::array<float, 4> constants{share, share, share, share};
                 s_.device.table.CmdSetBlendConstants(commands_, constants.data());
                 recorder.drawVertices(nullptr, 6);
@@ -465,7 +469,7 @@ void ViewDraws::record(DrawPhase phase) {
 
 std::span<const SurfaceStep> ViewDraws::surfacesOf(DrawPhase phase) const noexcept {
     const auto range = std::equal_range(
-        s_.surfaceSteps.begin(), s_.surfaceSteps.end(), SurfaceStep{phase},
+        s_.surfaces.surfaceSteps.begin(), s_.surfaces.surfaceSteps.end(), SurfaceStep{phase},
         [](const SurfaceStep& a, const SurfaceStep& b) { return a.phase < b.phase; });
     return {range.first, range.second};
 }
@@ -479,7 +483,7 @@ void ViewDraws::recordSurfaces(DrawPhase phase) {
         if (depthAlone && (s_.crossing & kSwitchNoZPass)) continue;
         recordPass(pass, [&](PassRecorder& recorder) {
             for (const SurfaceStep& step : steps.subspan(first, end - first)) {
-                const DrawItem& item = s_.drawItems[step.item];
+                const DrawItem& item = s_.surfaces.drawItems[step.item];
                 if (depthAlone)
                     recorder.drawItem(item, &item.draw, false);
                 else
@@ -523,9 +527,9 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
                                    const Target& target, const FwView& view,
                                    const VkViewport& viewport, const HostImages& host,
                                    DrawPart part) {
-    if (!showsAnything() || transparency >= 1.0f) return;
+    if (!showsAnything() || surfaces.transparency >= 1.0f) return;
     OutsideView& of = viewFor(view);
-    drawnView = of.number;
+    surfaces.drawnView = of.number;
     const uint32_t viewOffset = pushView(slot, view, viewport);
     if (part != DrawPart::half) {
         const float height = std::fabs(viewport.height);
@@ -533,8 +537,8 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         look(view, height, slot.frameIndex);
     }
     setViewport(commands, viewport);
-    if (surfacesDirty) orderSurfaces(drawItems, surfaceSteps);
-    surfacesDirty = false;
+    if (surfaces.surfacesDirty) orderSurfaces(surfaces.drawItems, surfaces.surfaceSteps);
+    surfaces.surfacesDirty = false;
     ViewDraws draws(*this, slot, commands, target, viewport, host, part, viewOffset);
     draws.prepare(of, view);
     draws.record();
@@ -649,8 +653,8 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
                    limits.maxViewportDimensions[1]);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    s.scissor = frame.scissor;
-    s.transparency = frame.transparency;
+    s.surfaces.scissor = frame.scissor;
+    s.surfaces.transparency = frame.transparency;
     s.recordDraws(
         slot, frame.commandBuffer, target, view, viewport,
         s.hostImagesFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
@@ -711,8 +715,8 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     HostImages host = s.hostImagesFor(slot, target, frame, images.depth.view,
                                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
-    s.scissor = frame.scissor;
-    s.transparency = frame.transparency;
+    s.surfaces.scissor = frame.scissor;
+    s.surfaces.transparency = frame.transparency;
 
     const Table& vk = s.device.table;
     const VkCommandBuffer commands = frame.commandBuffer;
@@ -771,7 +775,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
     const bool keep = (composite.flags & FW_COMPOSITE_KEEP) != 0;
     KeptFramebuffer* room = nullptr;
     if (!keep) dropFramebuffers(targetId);
-    for (KeptFramebuffer& one : framebuffers) {
+    for (KeptFramebuffer& one : surfaces.framebuffers) {
         if (!keep || one.dropped || one.target.index1 != targetId.index1 ||
             one.target.generation != targetId.generation || one.color != attachments[0] ||
             one.depth != attachments[1] || one.width != composite.width ||
@@ -782,7 +786,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
     }
     if (keep) {
         dropFramebuffers({});
-        for (KeptFramebuffer& one : framebuffers)
+        for (KeptFramebuffer& one : surfaces.framebuffers)
             if (!room && !one.handle) room = &one;
     }
     // More than are kept come and go with their frame.
@@ -809,7 +813,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
 }
 
 void VkBackend::State::dropFramebuffers(FwTargetId forget) noexcept {
-    for (KeptFramebuffer& one : framebuffers) {
+    for (KeptFramebuffer& one : surfaces.framebuffers) {
         if (!one.handle) continue;
         const bool forgotten =
             one.target.index1 == forget.index1 && one.target.generation == forget.generation;
@@ -821,9 +825,9 @@ void VkBackend::State::dropFramebuffers(FwTargetId forget) noexcept {
 }
 
 void VkBackend::State::destroyFramebuffers() noexcept {
-    for (KeptFramebuffer& one : framebuffers)
+    for (KeptFramebuffer& one : surfaces.framebuffers)
         device.table.DestroyFramebuffer(device.handle, one.handle, device.allocationCallbacks);
-    framebuffers = {};
+    surfaces.framebuffers = {};
 }
 
 }  // namespace fw::gpu::vk

@@ -80,15 +80,15 @@ void VkBackend::State::makeHalf(HalfImages& half, VkFormat format, uint32_t widt
 HalfImages& VkBackend::State::halfFor(VkFormat format, uint32_t width, uint32_t height,
                                       uint64_t frame) {
     HalfImages* found = nullptr;
-    for (HalfImages& one : halves)
+    for (HalfImages& one : surfaces.halves)
         if (one.format == format && one.width == width && one.height == height) found = &one;
     if (!found) {
         // Sizes that the host has left behind go, and where all are in use that of longest ago.
-        for (HalfImages& one : halves)
+        for (HalfImages& one : surfaces.halves)
             if (one.width && one.lastFrame + kHalfKept < frame) dropHalf(one);
-        found = &*std::min_element(halves.begin(), halves.end(), [](const auto& a, const auto& b) {
-            return a.lastFrame < b.lastFrame;
-        });
+        found = &*std::min_element(
+            surfaces.halves.begin(), surfaces.halves.end(),
+            [](const auto& a, const auto& b) { return a.lastFrame < b.lastFrame; });
         if (found->width) dropHalf(*found);
         makeHalf(*found, format, width, height);
     }
@@ -99,10 +99,12 @@ HalfImages& VkBackend::State::halfFor(VkFormat format, uint32_t width, uint32_t 
 HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer commands,
                                          const Target& target, const FwView& view,
                                          const VkViewport& viewport, const HostImages& host) {
-    const bool shows = !burnEmpty || showsEmitters() || !fieldDraws.empty() || !volumes.empty();
+    const bool shows = !simulation.burnEmpty || showsEmitters() ||
+                       !particleFields.fieldDraws.empty() || !flames.volumes.empty();
     if (!showsAnything() || !shows) return nullptr;
     const HalfPush push = halfPushFor(viewport);
-    const VkRect2D clip = std::exchange(scissor, {});  // of the picture that this goes over
+    const VkRect2D clip =
+        std::exchange(surfaces.scissor, {});  // of the picture that this goes over
     HalfImages& half = halfFor(target.key.halfColor, push.texelsX, push.texelsY, slot.frameIndex);
     const Table& vk = device.table;
     if (half.fresh) {
@@ -153,7 +155,7 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
 
     fill(draw::half_tiles, 1, half.colorSet.set,
          {0, float(half.height), float(push.tilesX), float(push.tilesY), 0, 1});
-    scissor = clip;
+    surfaces.scissor = clip;
     return &half;
 }
 

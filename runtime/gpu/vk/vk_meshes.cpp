@@ -40,7 +40,7 @@ void measureDrawn(const mesh::BurnDomain& domain, MeshEntry& entry) {
 void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    MeshEntry& entry = slotOf(s.meshes, slot);
+    MeshEntry& entry = slotOf(s.scene.meshes, slot);
     MeshEntry fresh;
     fresh.live = true;
     fresh.width = domain.width;
@@ -55,7 +55,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     std::pmr::vector<RemoteTile> remoteTiles(s.memory);
     fresh.sourceCells = mesh::remoteTiles(domain, remoteTiles);
     const DrawnOrder order(domain, s.memory);
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     const struct {
         RangeOf* range;
         BufferPool pool;
@@ -121,7 +121,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         throw;
     }
     entry = fresh;
-    if (entry.parts) ++s.partMeshes;
+    if (entry.parts) ++s.scene.partMeshes;
 }
 
 void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
@@ -145,14 +145,14 @@ void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
         s.buffers.release(kPoolVertices, range.first, range.units);
         throw;
     }
-    s.meshes[slot].innerVertices = range;
+    s.scene.meshes[slot].innerVertices = range;
 }
 
 void VkBackend::destroyMesh(uint32_t slot) noexcept {
     State& s = *state_;
-    MeshEntry& entry = s.meshes[slot];
+    MeshEntry& entry = s.scene.meshes[slot];
     if (!entry.live) return;
-    if (entry.parts) --s.partMeshes;
+    if (entry.parts) --s.scene.partMeshes;
     // Ranges are reused at once: all our work is in one queue's order, behind barriers.
     s.buffers.release(kPoolMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
     s.buffers.release(kPoolSlowness, entry.slowness.first, entry.slowness.units);

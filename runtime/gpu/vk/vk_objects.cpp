@@ -100,8 +100,8 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
     if (entry.soft.units) s.buffers.release(kPoolSoft, entry.soft.first, entry.soft.units);
     if (entry.shown.units) s.buffers.release(kPoolShown, entry.shown.first, entry.shown.units);
     if (entry.skinPlus1) {
-        s.skins[entry.skinPlus1 - 1].shown.clear();
-        Skin& skin = s.skins[entry.skinPlus1 - 1];
+        s.deforming.skins[entry.skinPlus1 - 1].shown.clear();
+        Skin& skin = s.deforming.skins[entry.skinPlus1 - 1];
         skin.dirty = skin.givenDue = false;
         if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = {};
@@ -122,21 +122,21 @@ bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
 }  // namespace
 
 void VkBackend::State::changed(uint32_t slot) noexcept {
-    objects[slot].recordDirty = recordsDirty = true;
-    awake.insert(slot);
+    scene.objects[slot].recordDirty = scene.recordsDirty = true;
+    scene.awake.insert(slot);
 }
 
 void VkBackend::State::settle() noexcept {
-    for (const uint32_t slot : awake)
-        if (rests(*this, objects[slot])) awake.erase(slot);
+    for (const uint32_t slot : scene.awake)
+        if (rests(*this, scene.objects[slot])) scene.awake.erase(slot);
 }
 
 void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    MeshEntry& mesh = s.meshes[init.mesh];
+    MeshEntry& mesh = s.scene.meshes[init.mesh];
     RangeOf nodes = mesh.nodes, coats = mesh.coats, skin = mesh.skin, sources = mesh.skinSources;
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     ObjectEntry fresh;
     fresh.live = true;
     fresh.mesh = init.mesh;
@@ -151,13 +151,14 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     }
     s.context.pipelines.need(passes);
     try {
-        core::growTo(s.quarantine, s.quarantine.size() + s.liveObjects + 1);
-        core::growTo(s.drawItems, (s.liveObjects + 1) * kMaterialsPerObject);
-        core::growTo(s.surfaceSteps, (s.liveObjects + 1) * kMaterialsPerObject * kMostSurfaceSteps);
-        core::growTo(s.published, s.liveObjects + 1);
-        core::growTo(s.givenObjects, std::max<size_t>(slot + 1, s.objects.size()));
-        (void)slotOf(s.objects, slot);
-        s.awake.atLeast(slot + 1);
+        core::growTo(s.scene.quarantine, s.scene.quarantine.size() + s.scene.liveObjects + 1);
+        core::growTo(s.surfaces.drawItems, (s.scene.liveObjects + 1) * kMaterialsPerObject);
+        core::growTo(s.surfaces.surfaceSteps,
+                     (s.scene.liveObjects + 1) * kMaterialsPerObject * kMostSurfaceSteps);
+        core::growTo(s.simulation.published, s.scene.liveObjects + 1);
+        core::growTo(s.results.givenObjects, std::max<size_t>(slot + 1, s.scene.objects.size()));
+        (void)slotOf(s.scene.objects, slot);
+        s.scene.awake.atLeast(slot + 1);
         s.buffers.atLeast(kPoolObjects, slot + 1, last);
         s.freeQuarantine();
         fresh.tiles = {s.buffers.allocate(kPoolObjectTiles, mesh.tiles, last), mesh.tiles};
@@ -166,7 +167,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             fresh.refine.on = true;
             fresh.refine.key = refineKey(init.arpModel != nullptr, init.refineDepth);
             fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
-            fresh.refine.epochTick = s.shownTick;
+            fresh.refine.epochTick = s.simulation.shownTick;
             const RefineMesh& refined = mesh.refine[fresh.refine.key];
             if (init.arpModel)
                 s.takeArp(fresh.refine, init, refined, last);
@@ -213,10 +214,11 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             }
             if (!(init.deform->flags & (kDeformShell | kDeformSprings))) {  // the host moves it
                 uint32_t free = 0;
-                while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
-                if (free == s.skins.size()) s.skins.emplace_back();
+                while (free < s.deforming.skins.size() && !s.deforming.skins[free].shown.empty())
+                    ++free;
+                if (free == s.deforming.skins.size()) s.deforming.skins.emplace_back();
                 fresh.skinPlus1 = free + 1;
-                stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+                stageSkin(s, *mesh.domain, order, s.deforming.skins[free], fresh.shown.first);
             }
         }
     } catch (...) {
@@ -288,21 +290,21 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         std::copy_n(init.shape, 3, fresh.shape);
         fresh.deformReset = false;  // at rest already
     }
-    s.objects[slot] = fresh;
+    s.scene.objects[slot] = fresh;
     s.changed(slot);
-    s.seenFrame = std::max(s.seenFrame, last);
+    s.simulation.seenFrame = std::max(s.simulation.seenFrame, last);
     (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
-    ++s.liveObjects;
+    ++s.scene.liveObjects;
 }
 
 void VkBackend::destroyObject(uint32_t slot) noexcept {
     State& s = *state_;
-    ObjectEntry& entry = s.objects[slot];
+    ObjectEntry& entry = s.scene.objects[slot];
     if (!entry.live) return;
     const bool met = !entry.resetDue;  // by a recorded frame, so lists may name its tiles
     if (met)
-        s.quarantine.push_back(
-            {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
+        s.scene.quarantine.push_back({entry.tiles, s.simulation.frontWalks, s.simulation.burnWalks,
+                                      s.simulation.predictWalks, s.simulation.hotWalks});
     else
         s.buffers.release(kPoolObjectTiles, entry.tiles.first, entry.tiles.units);
     (entry.refine.arpPlus1 ? s.arp.users : s.refine.users) -= entry.refine.on ? 1 : 0;
@@ -311,14 +313,15 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
     releaseRanges(s, entry);
     entry = {};
     s.changed(slot);  // a record without kObjectLive: list entries fall out
-    --s.liveObjects;
-    s.surfacesDirty = true;
-    std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
+    --s.scene.liveObjects;
+    s.surfaces.surfacesDirty = true;
+    std::erase_if(s.surfaces.drawItems,
+                  [slot](const DrawItem& item) { return item.object == slot; });
 }
 
 void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint, uint32_t flags) {
     State& s = *state_;
-    ObjectEntry& entry = s.objects[slot];
+    ObjectEntry& entry = s.scene.objects[slot];
     entry.record.worldRow0 = rows[0];
     entry.record.worldRow1 = rows[1];
     entry.record.worldRow2 = rows[2];
@@ -335,19 +338,19 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
 
 void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
     State& s = *state_;
-    s.objects[slot].record.zoneWind = wind;
+    s.scene.objects[slot].record.zoneWind = wind;
     s.changed(slot);
 }
 
 void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {
-    state_->rooms[slot] = room;
-    state_->roomsDirty = true;
+    state_->scene.rooms[slot] = room;
+    state_->scene.roomsDirty = true;
 }
 
 void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
                             std::span<const float> normals) noexcept {
     State& s = *state_;
-    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].skinPlus1 - 1];
     for (size_t i = 0; i < skin.shown.size(); ++i) {
         ShownVertex& v = skin.shown[i];
         const size_t from = size_t(skin.sources[i]) * 3;
@@ -365,7 +368,7 @@ void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
 void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices,
                                 float metersPerUnit) {
     State& s = *state_;
-    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].skinPlus1 - 1];
     const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
     const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
     if (skin.words.units < words) {

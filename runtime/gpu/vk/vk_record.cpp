@@ -56,12 +56,12 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
 // Meshes, images, painted maps: what was created since the last frame.
 void recordUploads(VkBackend::State& s) {
     const Table& vk = s.device.table;
-    for (PendingUpload& upload : s.uploads) {
+    for (PendingUpload& upload : s.scene.uploads) {
         if (upload.image) recordImageUpload(vk, s.open.commands, upload);
         recordRegions(vk, s, upload);
         s.retired.push(s.open.ringFrame, upload.staging);
     }
-    s.uploads.clear();
+    s.scene.uploads.clear();
 }
 
 bool looksBurnt(const ObjectEntry& object) noexcept {
@@ -79,7 +79,7 @@ void chooseSurface(const VkBackend::State& s, const ObjectEntry& object, DrawIte
     item.family = familyOf(object.materials[item.material].look);
     item.burns = looksBurnt(object);
     item.selfIntersects = zPassed(object);
-    item.coldReach = coldReach(s.meshes[object.mesh].texelEdge);
+    item.coldReach = coldReach(s.scene.meshes[object.mesh].texelEdge);
     const bool tells =
         (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
     item.coldApart = item.burns && tells && !object.charred && !item.selfIntersects;
@@ -88,7 +88,7 @@ void chooseSurface(const VkBackend::State& s, const ObjectEntry& object, DrawIte
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-    const MeshEntry& mesh = s.meshes[object.mesh];
+    const MeshEntry& mesh = s.scene.meshes[object.mesh];
     SurfaceDraw draw =
         surfaceDraw(object.record, object.materials[material], object.heat[material],
                     mesh.edge * scale, object.refine.slots.first, object.doused, object.warmed);
@@ -98,17 +98,17 @@ SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_
 // They are listed object by object.
 std::span<DrawItem> drawItemsOf(VkBackend::State& s, uint32_t object) noexcept {
     const auto first =
-        std::lower_bound(s.drawItems.begin(), s.drawItems.end(), object,
+        std::lower_bound(s.surfaces.drawItems.begin(), s.surfaces.drawItems.end(), object,
                          [](const DrawItem& item, uint32_t slot) { return item.object < slot; });
     auto end = first;
-    while (end != s.drawItems.end() && end->object == object) ++end;
+    while (end != s.surfaces.drawItems.end() && end->object == object) ++end;
     return {first, end};
 }
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         if (object.resetDue ||
             (object.recordDirty && !object.live))  // until it is placed others do not see it
             recorder.fillZero(FW_BIND_REMOTE_OBJECTS, i * sizeof(RemoteObject),
@@ -136,10 +136,10 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         }
         object.recordDirty = object.materialsDirty = object.deformDirty = false;
     }
-    s.drawItems.clear();
-    s.surfacesDirty = true;
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        ObjectEntry& object = s.objects[i];
+    s.surfaces.drawItems.clear();
+    s.surfaces.surfacesDirty = true;
+    for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
+        ObjectEntry& object = s.scene.objects[i];
         if (object.resetDue) {
             recordReset(recorder, i, object.record.tileCount);
             recorder.fillZero(FW_BIND_SOURCES, object.sources.first * sizeof(FireSource),
@@ -147,7 +147,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         }
         object.resetDue = false;
         if (!object.live || (object.record.flags & kObjectHidden)) continue;
-        const MeshEntry& mesh = s.meshes[object.mesh];
+        const MeshEntry& mesh = s.scene.meshes[object.mesh];
         uint32_t first = 0;
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
             const uint32_t end = mesh.materialEnd[m];
@@ -168,17 +168,17 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                 item.inner = object.refine.inner;
                 item.draw = drawOf(s, object, m);
                 showRefined(object.refine, item);
-                s.drawItems.push_back(item);
+                s.surfaces.drawItems.push_back(item);
             }
             first = end;
         }
     }
-    s.recordsDirty = false;
+    s.scene.recordsDirty = false;
 }
 
 void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         if (!object.forget) continue;
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              uint64_t(object.record.width) * object.record.height * 4);
@@ -190,7 +190,7 @@ void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
 void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> updates,
                      FrameRecorder& recorder, UploadWriter& writer) {
     for (const MaterialUpdate& update : updates) {
-        ObjectEntry& object = s.objects[update.object];
+        ObjectEntry& object = s.scene.objects[update.object];
         std::copy(std::begin(update.materials), std::end(update.materials),
                   std::begin(object.materials));
         object.record.window = update.window;
@@ -214,8 +214,8 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
                   UploadWriter& writer) {
     for (const RemoteUpdate::Placed& placed : update.objects) {
         RemoteObject record = placed.record;
-        record.sourceBase = s.objects[placed.object].sources.first;
-        record.sourceCount = s.objects[placed.object].sources.units;
+        record.sourceBase = s.scene.objects[placed.object].sources.first;
+        record.sourceCount = s.scene.objects[placed.object].sources.units;
         const Staged staged = writer.write(std::span<const RemoteObject>(&record, 1));
         recorder.copyIn(staged.at, FW_BIND_REMOTE_OBJECTS, uint64_t(placed.object) * sizeof record,
                         sizeof record);
@@ -230,23 +230,23 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
     for (const RemoteUpdate::Range& range : update.linkRanges)
         copy(update.links.subspan(range.first, range.count), FW_BIND_CONTACTS, range.first);
     copy(update.blockers, FW_BIND_BLOCKERS, 0);
-    s.links = uint32_t(update.links.size());
-    s.blockers = uint32_t(update.blockers.size());
+    s.simulation.links = uint32_t(update.links.size());
+    s.simulation.blockers = uint32_t(update.blockers.size());
 }
 
 void recordShield(VkBackend::State& s, const ShieldUpdate& update, FrameRecorder& recorder,
                   UploadWriter& writer) {
-    s.shield = update;
-    s.shield.words = {};
+    s.simulation.shield = update;
+    s.simulation.shield.words = {};
     if (update.words.empty()) return;
     const Staged staged = writer.write(update.words);
     recorder.copyIn(staged.at, FW_BIND_SHIELD, 0, update.words.size_bytes());
 }
 
 void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    const Staged staged = writer.write(std::span<const Room>(s.rooms));
-    recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.rooms);
-    s.roomsDirty = false;
+    const Staged staged = writer.write(std::span<const Room>(s.scene.rooms));
+    recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.scene.rooms);
+    s.scene.roomsDirty = false;
 }
 
 // The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
@@ -254,20 +254,20 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
                        bool dense, bool findsAnew, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](uint32_t object) {
-        const uint32_t groups = wakeGroupsOf(s.objects[object]);
+        const uint32_t groups = wakeGroupsOf(s.scene.objects[object]);
         for (uint32_t g = 0; g < groups; ++g) {
             const WakeGroup group{object, g * 64};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
         }
     };
-    for (uint32_t i = 0; dense && i < s.objects.size(); ++i) {
-        if (s.objects[i].live) append(i);
+    for (uint32_t i = 0; dense && i < s.scene.objects.size(); ++i) {
+        if (s.scene.objects[i].live) append(i);
     }
     if (!dense) {
         for (const MaterialUpdate& update : updates) append(update.object);
     }
-    for (const uint32_t i : s.awake) {
-        if (findsAnew && s.objects[i].forget) append(i);
+    for (const uint32_t i : s.scene.awake) {
+        if (findsAnew && s.scene.objects[i].forget) append(i);
     }
     writer.end();
     return staged;
@@ -275,7 +275,7 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
 
 // An object that an event reaches is drawn as one that may burn from now on.
 void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
-    ObjectEntry& object = s.objects[event.object];
+    ObjectEntry& object = s.scene.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
@@ -288,7 +288,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     if (object.touched && !douses) return;
     object.touched = true;
     object.doused = object.doused || douses;
-    s.surfacesDirty = true;
+    s.surfaces.surfacesDirty = true;
     for (DrawItem& item : drawItemsOf(s, event.object)) {
         chooseSurface(s, object, item);
         item.draw = drawOf(s, object, item.material);
@@ -302,8 +302,8 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     constexpr uint32_t kMostTiles = 16384;
     uint32_t begin = kNoneTexel, end = 0;
     float latest = 0;
-    for (const uint32_t i : s.awake) {
-        const ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
         if (!object.live || !object.touched) continue;
         begin = std::min(begin, object.record.worldTileBase);
         end = std::max(end, object.record.worldTileBase + object.record.tileCount);
@@ -312,15 +312,15 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     }
     if (burning) {
         // After the last flame: until all is gone, and as long as it takes to notice.
-        s.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
+        s.simulation.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
         if (latest == 0) return;
     }
     if (end <= begin) return;
     const uint32_t parts = (end - begin + kMostTiles - 1) / kMostTiles;
-    const bool goesOn = s.supportFirst > begin && s.supportFirst < end;
-    const uint32_t first = goesOn ? s.supportFirst : begin;
+    const bool goesOn = s.simulation.supportFirst > begin && s.simulation.supportFirst < end;
+    const uint32_t first = goesOn ? s.simulation.supportFirst : begin;
     const uint32_t count = std::min(end - first, kMostTiles);
-    s.supportFirst = first + count;
+    s.simulation.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
     recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
@@ -332,26 +332,26 @@ void recordChanges(VkBackend::State& s, const FramePlan& plan, const FrameNeeds&
     const Table& vk = s.device.table;
     if (s.buffers.recordMoves(vk, s.open.commands, s.open.ringFrame))
         s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
-    if (!s.initialized) {
+    if (!s.scene.initialized) {
         for (const uint32_t resource :
              {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
               FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
               FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
-        s.initialized = true;
+        s.scene.initialized = true;
     }
     recordUploads(s);
-    if (s.recordsDirty) recordObjects(s, recorder, writer);
-    if (s.roomsDirty) recordRooms(s, recorder, writer);
+    if (s.scene.recordsDirty) recordObjects(s, recorder, writer);
+    if (s.scene.roomsDirty) recordRooms(s, recorder, writer);
     recordRestores(s, recorder);
     recordMovedTiles(s, recorder);
     recordForgetting(s, recorder);
-    s.drawVertices = s.buffers.buffer(kResourceVertices).handle;
-    s.drawIndices = s.buffers.buffer(kResourceIndices).handle;
-    s.drawShown = s.buffers.buffer(FW_BIND_SHOWN).handle;
+    s.surfaces.drawVertices = s.buffers.buffer(kResourceVertices).handle;
+    s.surfaces.drawIndices = s.buffers.buffer(kResourceIndices).handle;
+    s.surfaces.drawShown = s.buffers.buffer(FW_BIND_SHOWN).handle;
     recordFieldSteps(s, plan, recorder, writer);
     if (plan.volumes) recordVolumes(s, *plan.volumes, recorder, writer);
-    s.emittersMove = plan.emitters != nullptr;
+    s.particles.emittersMove = plan.emitters != nullptr;
     if (plan.emitters) recordEmitters(s, *plan.emitters, recorder, writer);
     if (needs.skins) recordSkins(s, recorder, writer);
 }
@@ -364,23 +364,23 @@ StepRecord stepOf(VkBackend::State& s, const FramePlan& plan, const StepPlan& pl
     step.now = planned.now;
     step.stepShift = planned.substepShift;
     step.switches = plan.switches;
-    step.objectSlots = uint32_t(s.objects.size());
+    step.objectSlots = uint32_t(s.scene.objects.size());
     step.iterate = iterate;
     step.reduce = planned.reduce && needs.burning;
     step.heat = planned.heat && needs.heating;
     step.rooms = planned.rooms;
-    s.airs = s.airs || planned.rooms;
+    s.scene.airs = s.scene.airs || planned.rooms;
     step.exchange = step.reduce && planned.exchange;
     step.governed = planned.governed;
     step.capped = planned.capped;
     step.plays = planned.plays;
     step.rules = planned.rules;
     if (planned.remote) recordRemote(s, *planned.remote, recorder, writer);
-    step.links = s.links;
-    step.parts = s.partMeshes != 0;
+    step.links = s.simulation.links;
+    step.parts = s.scene.partMeshes != 0;
     if (planned.shield) recordShield(s, *planned.shield, recorder, writer);
-    step.rules.blockers = s.blockers;
-    placeShield(s.shield, step.rules);
+    step.rules.blockers = s.simulation.blockers;
+    placeShield(s.simulation.shield, step.rules);
     recordMaterials(s, planned.materials, recorder, writer);
     step.wakeGroups =
         writeWakeGroups(s, planned.materials, needs.dense, needs.findsAnew && first, writer);
@@ -389,38 +389,39 @@ StepRecord stepOf(VkBackend::State& s, const FramePlan& plan, const StepPlan& pl
     for (const TexelEvent& event : planned.events) {
         noteEvent(s, event, planned.now);
         if (addressesAll(event))
-            step.allTiles = std::max(step.allTiles, s.objects[event.object].record.tileCount);
+            step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
     }
     if (!needs.publishedRuns) return step;
-    for (PublishedStep& one : s.published) {
-        one.parity = s.objects[one.object].publishedParity;
-        s.objects[one.object].publishedParity ^= 1;
+    for (PublishedStep& one : s.simulation.published) {
+        one.parity = s.scene.objects[one.object].publishedParity;
+        s.scene.objects[one.object].publishedParity ^= 1;
     }
-    step.published = s.published;
+    step.published = s.simulation.published;
     return step;
 }
 
 void recordSteps(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
                  FrameRecorder& recorder, UploadWriter& writer) {
     ReadbackLayout& layout = s.open.slot->layout;
-    if (needs.iterations) recordCounters(recorder, s.lists, uint32_t(needs.iterations));
-    layout.firstRow = s.lists.row;
-    bool iterates = !s.frontEmpty || needs.dense || needs.never;
+    if (needs.iterations) recordCounters(recorder, s.simulation.lists, uint32_t(needs.iterations));
+    layout.firstRow = s.simulation.lists.row;
+    bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
     for (const StepPlan& planned : plan.steps) {
-        iterates |= bringsNews(planned) || (planned.exchange && !s.burnEmpty);
+        iterates |= bringsNews(planned) || (planned.exchange && !s.simulation.burnEmpty);
         const bool first = &planned == plan.steps.data();
         const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder, writer);
-        recordSimulation(recorder, s.lists, step);
-        s.frontWalks += step.iterate ? 1 : 0;
-        s.burnWalks += step.reduce ? 1 : 0;
-        s.hotWalks += step.heat ? 1 : 0;
+        recordSimulation(recorder, s.simulation.lists, step);
+        s.simulation.frontWalks += step.iterate ? 1 : 0;
+        s.simulation.burnWalks += step.reduce ? 1 : 0;
+        s.simulation.hotWalks += step.heat ? 1 : 0;
     }
-    layout.rows = s.lists.row;
-    layout.burnParity = s.lists.burnParity;
-    layout.hotParity = s.lists.hotParity;
+    layout.rows = s.simulation.lists.row;
+    layout.burnParity = s.simulation.lists.burnParity;
+    layout.hotParity = s.simulation.lists.hotParity;
     if (!needs.stimulus) return;
-    s.lastStimulus = s.open.ringFrame;
-    s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;
+    s.simulation.lastStimulus = s.open.ringFrame;
+    s.simulation.frontEmpty = s.simulation.burnEmpty = s.simulation.predictEmpty =
+        s.simulation.hotEmpty = false;
 }
 
 DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadWriter& writer) {
@@ -428,8 +429,8 @@ DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadW
     deform.nodeGroups = needs.nodeGroups;
     deform.sheetGroups = needs.sheetGroups;
     deform.springGroups = needs.springGroups;
-    deform.steps = s.softSteps;
-    deform.way = s.softWay;
+    deform.steps = s.deforming.softSteps;
+    deform.way = s.deforming.softWay;
     deform.begins = needs.sheetsBegin;
     deform.vertexGroups = needs.vertexGroups;
     deform.innerGroups = needs.innerGroups;
@@ -437,8 +438,10 @@ DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadW
     DeformPush& push = deform.push;
     push.now = s.open.endTick;
     push.step = float(kSoftTicks) / float(kTicksPerSecond);
-    push.wind = {s.wind[0], s.wind[1], s.wind[2], float(s.softStep % (4096 * 128)) * push.step};
-    push.up = {s.limits.up[0], s.limits.up[1], s.limits.up[2], s.tickFraction * float(kStepTicks)};
+    push.wind = {s.simulation.wind[0], s.simulation.wind[1], s.simulation.wind[2],
+                 float(s.deforming.softStep % (4096 * 128)) * push.step};
+    push.up = {s.limits.up[0], s.limits.up[1], s.limits.up[2],
+               s.simulation.tickFraction * float(kStepTicks)};
     return deform;
 }
 
@@ -460,16 +463,16 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
 TileShare VkBackend::State::sootShare(bool looked) noexcept {
     constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
     const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
-    if (!looked && open.endTick - sootTick < kUnseenTicks) return {};
+    if (!looked && open.endTick - simulation.sootTick < kUnseenTicks) return {};
     const uint32_t tiles = buffers.capacity(kPoolObjectTiles);
     const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
     TileShare share;
-    share.first = sootFirst < tiles ? sootFirst : 0;
+    share.first = simulation.sootFirst < tiles ? simulation.sootFirst : 0;
     share.count = std::min(tiles - share.first, kMostTiles);
-    share.ticks = std::min(open.endTick - sootTick, kTicksPerSecond);
-    sootTick = open.endTick;
+    share.ticks = std::min(open.endTick - simulation.sootTick, kTicksPerSecond);
+    simulation.sootTick = open.endTick;
     if (share.count == 0 || share.ticks == 0) return {};
-    sootFirst = share.first + share.count;
+    simulation.sootFirst = share.first + share.count;
     if (parts > 1) share.ticks = std::min(share.ticks * parts, mostTicksOfAPart);
     return share;
 }
@@ -506,17 +509,18 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     input.viewport[1] = viewport.y;
     input.viewport[2] = viewport.width;
     input.viewport[3] = viewport.height;
-    input.now = shownTick;
-    input.tickFraction = tickFraction;
+    input.now = simulation.shownTick;
+    input.tickFraction = simulation.tickFraction;
     for (int i = 0; i < 3; ++i) {
-        input.wind[i] = wind[i];
+        input.wind[i] = simulation.wind[i];
         input.up[i] = limits.up[i];
     }
     input.paceFactor = limits.paceFactor;
-    input.lightCount = uint32_t(std::ceil(lightCount));
-    input.lastLight = lightCount > 0 ? lightCount - float(input.lightCount - 1) : 1;
+    input.lightCount = uint32_t(std::ceil(particles.lightCount));
+    input.lastLight =
+        particles.lightCount > 0 ? particles.lightCount - float(input.lightCount - 1) : 1;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
-    input.quadShare = quadShare;
+    input.quadShare = particles.quadShare;
     input.seed = limits.seed;
     ViewParams params{};
     if (limits.looks.viewParams) limits.looks.viewParams(input, params);
@@ -533,9 +537,9 @@ void VkBackend::State::followDetail(const Detail& planned) noexcept {
         now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);
     };
     detail = planned;
-    toward(volumeStepsNow, detail.volumeSteps, kStepsTurn);
-    toward(quadShare, detail.quads, kQuadsTurn);
-    toward(lightCount, float(lightsOf(detail, limits.maxLights)), kLightsTurn);
+    toward(flames.volumeStepsNow, detail.volumeSteps, kStepsTurn);
+    toward(particles.quadShare, detail.quads, kQuadsTurn);
+    toward(particles.lightCount, float(lightsOf(detail, limits.maxLights)), kLightsTurn);
 }
 
 void VkBackend::State::run(const FramePlan& plan) {
@@ -544,20 +548,20 @@ void VkBackend::State::run(const FramePlan& plan) {
     // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
     const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
     const auto softNow = uint64_t(ticks / kSoftTicks);
-    softSteps =
-        uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
-    softStep = softNow;
+    deforming.softSteps = uint32_t(std::min<uint64_t>(
+        softNow > deforming.softStep ? softNow - deforming.softStep : 0, kMostSoftSteps));
+    deforming.softStep = softNow;
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
     open.readback = needs.readback;
-    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
-    tickFraction = plan.tickFraction;
+    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(simulation.wind));
+    simulation.tickFraction = plan.tickFraction;
     followDetail(plan.detail);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     if (!needs.work) {
         open.ran = true;
-        shownTick = plan.endTick;
+        simulation.shownTick = plan.endTick;
         if (plan.frameIndex == 0) return;
         PendingReadback same;
         same.ringFrame = open.ringFrame;
@@ -578,13 +582,13 @@ void VkBackend::State::run(const FramePlan& plan) {
     UploadWriter writer(slot);
     recordChanges(*this, plan, needs, recorder, writer);
     recordSteps(*this, plan, needs, recorder, writer);
-    shownTick = plan.endTick;
+    simulation.shownTick = plan.endTick;
     if (needs.predicting && predictsNow(*this, needs, plan.endTick))
         recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
-    slot.layout.predictParity = lists.predictParity;
+    slot.layout.predictParity = simulation.lists.predictParity;
     if (needs.vertexGroups) recordDeformation(recorder, deformationOf(*this, needs, writer));
-    softWay = (softWay + softSteps) % kArmWays;
+    deforming.softWay = (deforming.softWay + deforming.softSteps) % kArmWays;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }
@@ -592,7 +596,7 @@ void VkBackend::State::run(const FramePlan& plan) {
 void VkBackend::State::closeFrame() {
     const std::span<OutsideView* const> from = seenFrom();
     for (const OutsideView* const of : from) look(of->view, of->height, open.ringFrame);
-    if (!from.empty() && burnEmpty && !showsEmitters()) quadsShown = 0;
+    if (!from.empty() && simulation.burnEmpty && !showsEmitters()) particles.quadsShown = 0;
     if (!open.recording) {
         open = {};
         return;
@@ -603,8 +607,8 @@ void VkBackend::State::closeFrame() {
         refineObjects(slot);
         refineAsPublished(slot);
     }
-    for (DrawItem& item : drawItems)
-        if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
+    for (DrawItem& item : surfaces.drawItems)
+        if (scene.awake.contains(item.object)) showRefined(scene.objects[item.object].refine, item);
     recordReadback(slot);
     if (open.planFrame) {
         PendingReadback one;

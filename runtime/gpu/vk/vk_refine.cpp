@@ -99,7 +99,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     std::pmr::vector<RefineSlot> slots(model.slots, s.memory);
     if (!s.refine.noise.empty())
         mesh::refineRoughen(domain, model, materials, s.refine.noise, kNoiseSide, slots);
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     const auto units = [](size_t count) { return std::max(1u, uint32_t(count)); };
     const size_t words = model.tileStart.size() + model.tileItems.size();
     const struct {
@@ -138,7 +138,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
         s.dropUploads(uploadsBefore);
         throw;
     }
-    s.meshes[slot].refine[refineKey(published, depth)] = fresh;
+    s.scene.meshes[slot].refine[refineKey(published, depth)] = fresh;
 }
 
 void RefineMesh::release(WorldBuffers& buffers) noexcept {
@@ -184,12 +184,12 @@ void RefineUse::release(WorldBuffers& buffers) noexcept {
 }
 
 void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
-    awake.insert(object);
-    RefineUse& use = objects[object].refine;
+    scene.awake.insert(object);
+    RefineUse& use = scene.objects[object].refine;
     if (!use.on) return;
     uint32_t opens = 0;  // what burns may open later than it goes out
-    if ((objects[object].record.flags & kObjectNoHoles) == 0)
-        for (const BurnMaterial& m : objects[object].materials)
+    if ((scene.objects[object].record.flags & kObjectNoHoles) == 0)
+        for (const BurnMaterial& m : scene.objects[object].materials)
             opens = std::max(opens, m.holeTicks);
     const uint64_t quiet = uint64_t(tick) + kQuietTicks + opens;
     use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
@@ -222,10 +222,10 @@ void VkBackend::State::listRefined(bool all) {
     refine.push = {};
     uint64_t emitJobs = 0, placeJobs = 0;
     const auto each = [&](auto&& use) {
-        for (const uint32_t i : awake) {
-            const ObjectEntry& object = objects[i];
+        for (const uint32_t i : scene.awake) {
+            const ObjectEntry& object = scene.objects[i];
             if (all ? refines(object) : object.refine.due)
-                use(i, meshes[object.mesh].refine[object.refine.key]);
+                use(i, scene.meshes[object.mesh].refine[object.refine.key]);
         }
     };
     const auto list = [&](uint32_t object, uint32_t count) {
@@ -256,9 +256,9 @@ void VkBackend::State::listRefined(bool all) {
     }
     // The budget is shared with those whose turn it is not.
     uint64_t full = 0;
-    for (const uint32_t i : awake) {
-        if (!refines(objects[i])) continue;
-        full += meshes[objects[i].mesh].refine[objects[i].refine.key].fullCount;
+    for (const uint32_t i : scene.awake) {
+        if (!refines(scene.objects[i])) continue;
+        full += scene.meshes[scene.objects[i].mesh].refine[scene.objects[i].refine.key].fullCount;
         push.objectEnd = i + 1;
     }
     const auto most = uint32_t(detail.triangles * float(limits.maxRefinedTriangles));
@@ -276,11 +276,12 @@ bool VkBackend::State::chooseDue(double now) noexcept {
     const auto due = [&](const ObjectEntry& object) {
         return refines(object) && isDue(object, refineRecord(object, refine.full), now);
     };
-    for (const uint32_t i : awake) any = any || due(objects[i]);
+    for (const uint32_t i : scene.awake) any = any || due(scene.objects[i]);
     if (!any) return false;
     // Full ones are compared with what has no turns.
-    for (const uint32_t i : awake)
-        objects[i].refine.due = refines(objects[i]) && (refine.full || due(objects[i]));
+    for (const uint32_t i : scene.awake)
+        scene.objects[i].refine.due =
+            refines(scene.objects[i]) && (refine.full || due(scene.objects[i]));
     return true;
 }
 
@@ -289,7 +290,7 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
     RefinePush& push = refine.push;
     if (push.objects == 0) return;
     lookFromViews();
-    const double now = double(shownTick) + double(tickFraction);
+    const double now = double(simulation.shownTick) + double(simulation.tickFraction);
     const bool turn = chooseDue(now);
     if (!turn && !refine.full) return;
     FrameRecorder recorder(recordTarget(slot, open.commands));
@@ -303,13 +304,13 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
         at += (refine.lists.size() * 4 + 15) / 16 * 16;
     }
     push = refine.last;
-    push.nowTick = shownTick;
+    push.nowTick = simulation.shownTick;
     const uint64_t recordsAt = at;
     uint32_t ordinal = 0;
     bool cuts = false, fresh = false;
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
-        ObjectEntry& object = objects[i];
+        ObjectEntry& object = scene.objects[i];
         if (object.refine.due) {
             record = refineRecord(object, refine.full);
             record.flags |= kRefineIsActive | kRefineIsCounted;
@@ -320,7 +321,8 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
         if (!object.refine.due && object.refine.started && refines(object)) {
             record.flags = kRefineIsCounted;
             record.triangles = object.refine.triangles.first;
-            record.triangleCount = meshes[object.mesh].refine[object.refine.key].triangleCount;
+            record.triangleCount =
+                scene.meshes[object.mesh].refine[object.refine.key].triangleCount;
         }
         if (object.refine.due && turn) {
             object.refine.turnTick = now;
@@ -352,7 +354,7 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    recordRefinement(recorder, lists, {push, turn, cuts, fresh});
+    recordRefinement(recorder, simulation.lists, {push, turn, cuts, fresh});
 }
 
 void VkBackend::State::lookFromViews() noexcept {
@@ -388,7 +390,8 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
                                     const RefineObject& record) const noexcept {
     if ((object.record.flags & kObjectNoHoles) != 0 && !object.refine.border) return 0;
     if (record.eye.w == 0) return kCutNear;
-    const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
+    const float pixels =
+        scene.meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
     return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record.eye), 1e-6f);
 }
 
@@ -402,7 +405,7 @@ bool VkBackend::State::tellsByTexels(const ObjectEntry& object) const noexcept {
 
 // m, object space, from the eye to the mesh's bounds.
 float VkBackend::State::eyeDistance(const ObjectEntry& object, const vec4& eye) const noexcept {
-    const MeshEntry& entry = meshes[object.mesh];
+    const MeshEntry& entry = scene.meshes[object.mesh];
     float square = 0;
     for (int k = 0; k < 3; ++k) {
         const float out = std::max(
@@ -457,7 +460,7 @@ bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& reco
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
-    const MeshEntry& entry = meshes[object.mesh];
+    const MeshEntry& entry = scene.meshes[object.mesh];
     const RefineMesh& mesh = entry.refine[object.refine.key];
     const RefineUse& use = object.refine;
     RefineObject r{};
@@ -478,8 +481,9 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.stateBase = object.record.stateBase;
     r.epochTick = use.epochTick;
     r.pixelsPerEdge = use.pixelsPerEdge;
-    r.now =
-        float((double(shownTick) - double(use.epochTick) + double(tickFraction)) / kTicksPerSecond);
+    r.now = float(
+        (double(simulation.shownTick) - double(use.epochTick) + double(simulation.tickFraction)) /
+        kTicksPerSecond);
     r.eye = eyeFor(object);
     if (full) r.eye.w = 0;
     r.inner = use.inner;

@@ -94,20 +94,20 @@ void VkBackend::State::look(const FwView& view, float height, uint64_t frame) no
         if (!object.live || object.seenFrame == frame) return;
         // A host moves the vertices of what is skinned where it likes.
         if (object.skinPlus1 == 0 &&
-            !shows(params, sphereOf(object, *meshes[object.mesh].domain, params.eye)))
+            !shows(params, sphereOf(object, *scene.meshes[object.mesh].domain, params.eye)))
             return;
         object.seenFrame = frame;
-        if ((object.record.flags & kObjectHidden) == 0) seenFrame = frame;
+        if ((object.record.flags & kObjectHidden) == 0) simulation.seenFrame = frame;
     };
-    for (const uint32_t i : awake)
-        if (objects[i].touched) lookAt(objects[i]);
-    for (size_t i = frame % kIdleTurns; i < objects.size(); i += kIdleTurns)
-        if (!objects[i].touched) lookAt(objects[i]);
+    for (const uint32_t i : scene.awake)
+        if (scene.objects[i].touched) lookAt(scene.objects[i]);
+    for (size_t i = frame % kIdleTurns; i < scene.objects.size(); i += kIdleTurns)
+        if (!scene.objects[i].touched) lookAt(scene.objects[i]);
 }
 
 void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         const bool unseen = (object.record.flags & kObjectUnseen) != 0;
         const bool wanted = seenLately(object, s.open.ringFrame);
         object.turns = object.live && object.touched && unseen == wanted;
@@ -121,11 +121,12 @@ bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t en
     const double shortOf = 1.0 - double(s.detail.triangles);
     if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
     double pause = kLongestPause * shortOf;
-    for (const uint32_t i : s.awake)
-        if (const ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake)
+        if (const ObjectEntry& object = s.scene.objects[i];
             object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
             pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
-    return double(endTick - s.predictTick) >= pause;  // of a save that was loaded: long ago
+    return double(endTick - s.simulation.predictTick) >=
+           pause;  // of a save that was loaded: long ago
 }
 
 void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
@@ -136,19 +137,20 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                         uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
                         sizeof flags);
     };
-    s.predictTick = plan.endTick;
+    s.simulation.predictTick = plan.endTick;
     const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
     uint32_t rings = 0;
-    bool seen = lately(s.seenFrame, s.open.ringFrame);  // what others lit is known only later
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    bool seen =
+        lately(s.simulation.seenFrame, s.open.ringFrame);  // what others lit is known only later
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         uint32_t& flags = object.record.flags;
         if (object.turns) {
             flags ^= kObjectUnseen;
             const bool comes = (flags & kObjectUnseen) == 0;
             tell(i, comes ? flags | kObjectShownAgain : flags);
             if (comes) {
-                recordPredictAnew(recorder, s.lists, i, object.record.tileCount);
+                recordPredictAnew(recorder, s.simulation.lists, i, object.record.tileCount);
                 rings = std::max(rings, std::min(ringsOf(object), most));
             }
         }
@@ -159,16 +161,16 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
     }
     // A ring a round: long frames need more to stay ahead of a fast front.
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
-    recordPrediction(recorder, s.lists, plan.endTick, seen);
+    recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
     if (rings > 0) {
         rounds += rings;
-        for (const uint32_t i : s.awake)
-            if (s.objects[i].turns && (s.objects[i].record.flags & kObjectUnseen) == 0)
-                tell(i, s.objects[i].record.flags);
+        for (const uint32_t i : s.scene.awake)
+            if (s.scene.objects[i].turns && (s.scene.objects[i].record.flags & kObjectUnseen) == 0)
+                tell(i, s.scene.objects[i].record.flags);
     }
     for (uint32_t i = 1; seen && i < rounds; ++i)
-        recordPrediction(recorder, s.lists, plan.endTick, seen);
-    s.predictWalks += seen ? rounds : 1;
+        recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
+    s.simulation.predictWalks += seen ? rounds : 1;
 }
 
 }  // namespace fw::gpu::vk

@@ -20,10 +20,10 @@ static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
 
 void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) {
     State& s = *state_;
-    if (!s.profiles.live) return;
+    if (!s.scene.profiles.live) return;
     PendingUpload& upload = s.stage(kProfileBytes, "fire profile");
     std::memcpy(upload.staging.mapped, texels.data(), kProfileBytes);
-    upload.image = s.profiles.image.handle;
+    upload.image = s.scene.profiles.image.handle;
     upload.width = kProfileWidth;
     upload.height = kProfileHeight;
     upload.mips = upload.layers = 1;
@@ -32,28 +32,28 @@ void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) 
 
 void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
                    UploadWriter& writer) {
-    s.volumes.clear();  // room was made for all of them
+    s.flames.volumes.clear();  // room was made for all of them
     const std::span<const VolumeFlame> flames(update.flames, update.count);
     for (const VolumeFlame& flame : flames) {
         const FlameRecord& record = flame.record;
-        VkBackend::State::VolumeBox box{record.low,
-                                        record.high,
-                                        {},
-                                        {},
-                                        volumeIntervals(flame.nodes, kFlameNodes),
-                                        vec3(flame.nodes[0].centre),
-                                        record.key,
-                                        record.tier,
-                                        record.smoke > 0.0f,
-                                        {},
-                                        {},
-                                        {},
-                                        {},
-                                        volumeBasePlane(record, flame.nodes, kFlameNodes)};
+        VolumeBox box{record.low,
+                      record.high,
+                      {},
+                      {},
+                      volumeIntervals(flame.nodes, kFlameNodes),
+                      vec3(flame.nodes[0].centre),
+                      record.key,
+                      record.tier,
+                      record.smoke > 0.0f,
+                      {},
+                      {},
+                      {},
+                      {},
+                      volumeBasePlane(record, flame.nodes, kFlameNodes)};
         box.kind = bookKind(record, flame.nodes, kFlameNodes, box.tip);
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
         volumeHazeBounds(record, flame.nodes, kFlameNodes, box.hazeLow, box.hazeHigh);
-        s.volumes.push_back(box);
+        s.flames.volumes.push_back(box);
     }
     if (flames.empty()) return;
     const Staged staged = writer.write(flames);
@@ -62,28 +62,30 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
 
 uint32_t VkBackend::State::orderVolumes(
     uint32_t slabs, std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept {
-    if (!profiles.live) return 0;
+    if (!scene.profiles.live) return 0;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < volumes.size(); ++i) {
+    for (uint32_t i = 0; i < flames.volumes.size(); ++i) {
         VolumeItem& item = out[count];
         item.flame = i;
-        if (!volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw, &item.whole))
+        if (!volumeDraw(seen, flames.volumes[i].low, flames.volumes[i].high, slabs, item.draw,
+                        &item.whole))
             continue;
-        item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
-        item.base = volumes[i].base;
-        item.tip = volumes[i].tip;
-        item.smokes = volumes[i].smokes;
-        item.hero = volumes[i].tier == FW_FIRE_TIER_MARCH_HIGH;
+        item.middle = 0.5f * (vec3(flames.volumes[i].flameLow) + vec3(flames.volumes[i].flameHigh));
+        item.base = flames.volumes[i].base;
+        item.tip = flames.volumes[i].tip;
+        item.smokes = flames.volumes[i].smokes;
+        item.hero = flames.volumes[i].tier == FW_FIRE_TIER_MARCH_HIGH;
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
-        volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
-        if (slabs > 1) volumeBase(seen, volumes[i].basePlane, item.draw);
+        volumeSlabs(seen, flames.volumes[i].flameLow, flames.volumes[i].flameHigh, item.draw);
+        if (slabs > 1) volumeBase(seen, flames.volumes[i].basePlane, item.draw);
         VolumeDraw burning;
-        item.burns = volumes[i].smokes && volumeDraw(seen, volumes[i].flameLow,
-                                                     volumes[i].flameHigh, slabs, burning)
-                         ? burning.rect
-                         : vec4(0.0f);
-        item.draw.intervals = volumes[i].intervals;
+        item.burns =
+            flames.volumes[i].smokes && volumeDraw(seen, flames.volumes[i].flameLow,
+                                                   flames.volumes[i].flameHigh, slabs, burning)
+                ? burning.rect
+                : vec4(0.0f);
+        item.draw.intervals = flames.volumes[i].intervals;
         ++count;
     }
     chooseVolumes({out.data(), count});
@@ -127,10 +129,10 @@ uint32_t VkBackend::State::rayWords(const March& march) const noexcept {
     return uint32_t(double(detail.memory) * volumeRayWords(march.screen));
 }
 
-void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last) {
-    if (!profiles.live) return;
+void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flameCount, uint64_t last) {
+    if (!scene.profiles.live) return;
     March& march = of.march;
-    while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
+    while (march.slots < flameCount) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
         buffers.fit(poolOf(kPoolVolumeRays, of.number),
                     march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
@@ -166,10 +168,10 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 uint32_t VkBackend::State::orderHazes(
     const March* march, float strength,
     std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept {
-    if (!profiles.live) return 0;
+    if (!scene.profiles.live) return 0;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < volumes.size(); ++i) {
-        const VolumeBox& box = volumes[i];
+    for (uint32_t i = 0; i < flames.volumes.size(); ++i) {
+        const VolumeBox& box = flames.volumes[i];
         const float share = march ? march->haze[i] : hazeAlone(box.tier);
         HazedVolume& one = out[count];
         if (!layVolumeHaze(seen, box.hazeLow, box.hazeHigh, share * strength, one.draw)) continue;
@@ -222,7 +224,7 @@ void VkBackend::State::shareBooks(March& march, std::span<const VolumeItem> item
     std::array<uint32_t, kMaxVolumeFlames> had;
     bool wanted = false;
     for (size_t i = 0; i < items.size(); ++i) {
-        const VolumeBox& box = volumes[items[i].flame];
+        const VolumeBox& box = flames.volumes[items[i].flame];
         const uint32_t at = lifeOf(box.key, march.lives);
         const TierLife* life = at < kMaxVolumeFlames ? &march.lives[at] : nullptr;
         had[i] = life && march.readers[at].key == box.key ? march.readers[at].book : kNoBook;
@@ -302,7 +304,7 @@ MarchRecord VkBackend::State::layMarch(OutsideView& of,
     std::array<uint32_t, kMaxVolumeFlames> places{}, numbers;
     shareBooks(march, items, bookRoom, {numbers.data(), items.size()});
     for (size_t i = 0; i < items.size(); ++i) {
-        const VolumeBox& box = volumes[items[i].flame];
+        const VolumeBox& box = flames.volumes[items[i].flame];
         const vec4& r = items[i].draw.rect;
         const VolumeBook* book = numbers[i] == kNoBook ? nullptr : &march.books[numbers[i]];
         // Its newest page is this frame's.
@@ -353,12 +355,13 @@ MarchRecord VkBackend::State::layMarch(OutsideView& of,
         while (marched[i].flame != one.flame) ++i;
         const TierLife& life = march.lives[lives[i]];
         setFade(life, life.marchedNow(), one.composite.from, one.composite.to);
-        if (one.window) one.march.flame = 2 * uint32_t(volumes.size()) + one.flame;
+        if (one.window) one.march.flame = 2 * uint32_t(flames.volumes.size()) + one.flame;
     }
 
     // What is marched with all its samples has haze; it goes with them, little by little.
     // Of a flame beside the view its column may be in it.
-    for (size_t i = 0; i < volumes.size(); ++i) march.haze[i] = hazeAlone(volumes[i].tier);
+    for (size_t i = 0; i < flames.volumes.size(); ++i)
+        march.haze[i] = hazeAlone(flames.volumes[i].tier);
     for (size_t i = 0; i < items.size(); ++i)
         if (places[i] != kMaxVolumeFlames)
             march.haze[items[i].flame] = hazeOf(march.lives[places[i]]);
@@ -368,13 +371,13 @@ MarchRecord VkBackend::State::layMarch(OutsideView& of,
         VolumeBook& book = march.books[b];
         if (!book.used) continue;
         for (size_t i = 0; i < items.size(); ++i) {
-            if (volumes[items[i].flame].key != book.key || numbers[i] != b) continue;
+            if (flames.volumes[items[i].flame].key != book.key || numbers[i] != b) continue;
             const auto at = uint32_t(book.written % kBookPages);
             MarchedVolume& one = march.items[laid.count + cards++];
             layPage(seen, items[i], march.screen, march.bookSlot + b * kBookPages + at,
                     book.pages[at], one);
             book.pages[at].run = book.run;
-            one.march.flame = 3 * uint32_t(volumes.size()) + one.flame;
+            one.march.flame = 3 * uint32_t(flames.volumes.size()) + one.flame;
             ++book.written;
             break;
         }
@@ -409,7 +412,7 @@ MarchRecord VkBackend::State::layMarch(OutsideView& of,
         layCard(seen, items[i], march.screen, 2 * places[i] + pair.newest, shape, one);
         shape.key = march.lives[places[i]].key;
         shape.frame = march.passed;
-        one.march.flame = uint32_t(volumes.size()) + one.flame;
+        one.march.flame = uint32_t(flames.volumes.size()) + one.flame;
         ++cards;
     }
     // In the order in which they lie behind each other, whatever they are shown as.
@@ -450,12 +453,12 @@ uint32_t VkBackend::State::leastRays(OutsideView& of, const FwView& view,
     return kUnknownRays;
 }
 
-uint32_t VkBackend::quadsShown() const noexcept { return state_->quadsShown; }
+uint32_t VkBackend::quadsShown() const noexcept { return state_->particles.quadsShown; }
 
 uint64_t VkBackend::detailBytes() const noexcept {
     const State& s = *state_;
     uint64_t all = 0;
-    for (const core::Owned<OutsideView>& of : s.outsideViews) {
+    for (const core::Owned<OutsideView>& of : s.flames.outsideViews) {
         if (!of) continue;
         // Cards and books lie before the rays; those are by flames.
         const uint64_t cards =

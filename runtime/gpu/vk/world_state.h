@@ -260,6 +260,161 @@ struct OwnDevice {  // command pool and offscreen images of the own-device mode
     uint32_t width = 0, height = 0;
 };
 
+// What the host has made: meshes, objects, images and rooms, and what of them waits for a frame.
+struct SceneTables {
+    explicit SceneTables(std::pmr::memory_resource* pmr)
+        : meshes(pmr),
+          objects(pmr),
+          awake(pmr),
+          images(pmr),
+          uploads(pmr),
+          restores(pmr),
+          restoredObjects(pmr),
+          quarantine(pmr) {}
+    std::pmr::vector<MeshEntry> meshes;
+    std::pmr::vector<ObjectEntry> objects;
+    // Objects that frames look at. The others sleep: a change or an event inserts an object here,
+    // and settle lets it go.
+    core::SlotSet awake;
+    std::pmr::vector<ImageEntry> images;
+    ImageEntry white, lookTextures, profiles;
+    ImageEntry books;  // the flipbooks; not live: there are none
+    std::pmr::vector<PendingUpload> uploads;
+    // For the next frame: the content of restored objects, which replaces that of new ones.
+    std::pmr::vector<PendingUpload> restores;
+    std::pmr::vector<uint32_t> restoredObjects;
+    bool restoreDue = false;
+    std::pmr::vector<Quarantined> quarantine;
+    uint32_t liveObjects = 0;
+    uint32_t partMeshes = 0;    // of parts that touch
+    bool initialized = false;   // the buffers that must start as zero do
+    bool recordsDirty = false;  // some object has dirty records or a reset due
+    std::array<Room, kMaxRooms> rooms{};
+    bool roomsDirty = false;
+    bool airs = false;  // some step had rooms
+};
+
+// Lists on the device, as the frames recorded so far leave them, and what steps carry over.
+struct SimulationState {
+    explicit SimulationState(std::pmr::memory_resource* pmr) : published(pmr) {}
+    FrameLists lists;
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
+    uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
+    uint64_t seenFrame = 0;     // ring frame whose view last showed some object
+    // Known from a readback. While a tile is hot, its front may move again.
+    bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
+    uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
+    uint32_t supportFirst = 0;             // tile that the next `support` begins at
+    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
+    uint32_t predictTick = 0;              // of the last round of predictions
+    uint32_t shownTick = 0;                // tick of the state that draws show
+    uint32_t links = 0, blockers = 0;      // of the last exchange update
+    ShieldUpdate shield;                   // the last one's place, without its words
+    float wind[3] = {};
+    float tickFraction = 0;
+    std::pmr::vector<PublishedStep> published;  // scratch of run
+    bool tilesMoved = false;  // BurnTiles stand where they were before all places moved
+};
+
+struct DeformRenderer {
+    explicit DeformRenderer(std::pmr::memory_resource* pmr) : skins(pmr) {}
+    std::pmr::vector<Skin> skins;
+    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
+    uint32_t softSteps = 0;  // that they take in the frame
+    uint32_t softWay = 0;    // which bending constraints the next one takes
+};
+
+struct VolumeBox {  // as in FlameRecord
+    vec4 low{}, high{};
+    vec4 flameLow{}, flameHigh{};  // without its smoke
+    uint32_t intervals = 1;        // see VolumeDraw
+    vec3 base{};                   // where it stands
+    uint32_t key = 0, tier = 0;
+    bool smokes = false;
+    vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
+    BookKind kind;
+    vec3 tip{};        // as VolumeItem's
+    vec4 basePlane{};  // as volumeBasePlane has it
+};
+
+struct FlameRenderer {
+    explicit FlameRenderer(std::pmr::memory_resource* pmr) : volumes(pmr) {}
+    std::pmr::vector<VolumeBox> volumes;             // volumetric flames that draws show
+    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
+    // Of RecordOutside, by number; null: not there. The first is always there.
+    std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
+};
+
+struct ParticleRenderer {
+    explicit ParticleRenderer(float lights) : lightCount(lights) {}
+    float lightCount;              // on its way to detail's; its fraction is the last one's share
+    float quadShare = 1;           // on its way to detail's
+    uint32_t quadsShown = 0;       // by the last view whose readback came
+    vec3 particlesMove{0.0f};      // m, with the next dispatch that moves particles
+    uint32_t emitterGroups = 0;    // of the dispatch that moves particles; 0: there are none
+    bool particlesByBook = false;  // flipbooks show all fire and smoke of them
+    uint32_t sparkSources = 0;     // that throw sparks
+    float lightShare = 0.0f;       // of particles' quads: those that emit alone, [0, 1]
+    bool emittersMove = false;     // in the open frame
+    uint32_t flameBooks = 0;       // as setFlameBooks has them
+};
+
+struct FieldRenderer {
+    explicit FieldRenderer(std::pmr::memory_resource* pmr) : fields(pmr), fieldDraws(pmr) {}
+    std::pmr::vector<FieldEntry> fields;
+    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their buffer has them
+    bool fieldsDirty = false;                // one of them has something for the next frame
+};
+
+struct SurfaceRenderer {
+    explicit SurfaceRenderer(std::pmr::memory_resource* pmr) : drawItems(pmr), surfaceSteps(pmr) {}
+    std::pmr::vector<DrawItem> drawItems;        // objects that draws show
+    std::pmr::vector<SurfaceStep> surfaceSteps;  // their draws, in order
+    bool surfacesDirty = false;                  // `drawItems` changed since
+    // As last recorded.
+    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
+             drawShown = VK_NULL_HANDLE;
+    // Of the call that is recorded.
+    uint32_t drawnView = 0;  // OutsideView::number
+    float transparency = 0;
+    VkRect2D scissor{};  // px of the host's target; no extent: none
+    std::array<KeptFramebuffer, 16> framebuffers{};
+    static constexpr size_t kHalfSizes = 4;  // of targets that a world draws into round-robin
+    std::array<HalfImages, kHalfSizes> halves{};
+};
+
+// Readbacks that are due, oldest first, and the last one as the world gets it.
+struct ReadbackResults {
+    explicit ReadbackResults(std::pmr::memory_resource* pmr)
+        : givenObjects(pmr),
+          givenAnswers(pmr),
+          givenTexels(pmr),
+          givenHeat(pmr),
+          givenMaps(pmr),
+          givenLights(pmr),
+          givenFields(pmr),
+          times(pmr),
+          imageLayout(pmr),
+          givenImages(pmr) {}
+    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
+    uint32_t pendingFirst = 0, pendingCount = 0;
+    Readback given;
+    std::pmr::vector<ObjectCounters> givenObjects;
+    std::pmr::vector<ProbeAnswer> givenAnswers;
+    std::pmr::vector<uint32_t> givenTexels;
+    std::pmr::vector<uvec2> givenHeat;
+    std::pmr::vector<BurnMap> givenMaps;
+    std::pmr::vector<BurnLight> givenLights;
+    std::pmr::vector<FieldCounters> givenFields;
+    std::array<RoomAir, kMaxRooms> givenRooms{};
+    bool givesRooms = false;
+    std::pmr::vector<PassTime> times;
+    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
+    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
+    uint64_t imagesFrame = 0;               // ring frame, of that
+    std::pmr::vector<ObjectImage> givenImages;
+};
+
 // An entry of a table by slot, which grows as needed.
 template <class T>
 T& slotOf(std::pmr::vector<T>& table, uint32_t slot) {
@@ -289,56 +444,18 @@ struct VkBackend::State {
     Buffer views;             // view ring: frame in flight, then view
     uint32_t viewStride = 0;  // bytes
 
-    std::pmr::vector<MeshEntry> meshes;
-    std::pmr::vector<ObjectEntry> objects;
-    // Of these, what frames look at. The others rest: whoever changes an object, or finds that
-    // something reached it, inserts it here, and settle lets it go.
-    core::SlotSet awake;
-    std::pmr::vector<ImageEntry> images;
-    ImageEntry white, lookTextures, profiles;
-    ImageEntry books;  // the flipbooks; not live: there are none
-    std::pmr::vector<PendingUpload> uploads;
-    // Of restore, for the next frame: what goes over objects that were made anew.
-    std::pmr::vector<PendingUpload> restores;
-    std::pmr::vector<uint32_t> restoredObjects;
-    bool restoreDue = false;
-    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
-    uint64_t imagesFrame = 0;               // ring frame, of that
-    std::pmr::vector<ObjectImage> givenImages;
-    std::pmr::vector<Quarantined> quarantine;
-    std::pmr::vector<Skin> skins;
-    std::pmr::vector<core::Owned<ArpUse>> arps;
-    uint32_t liveObjects = 0;
-    bool initialized = false;  // the buffers that must start as zero do
-    // As last recorded.
-    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
-             drawShown = VK_NULL_HANDLE;
-    bool recordsDirty = false;  // some object has dirty records or a reset due
-
-    // Lists on the device, as the frames recorded so far leave them.
-    FrameLists lists;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
-    uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
-    uint64_t seenFrame = 0;     // ring frame whose view last showed some object
-    // Known from a readback. While a tile is hot, its front may move again.
-    bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
-    uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
-    uint32_t supportFirst = 0;             // tile that the next look at what holds what begins at
-    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
-    uint32_t predictTick = 0;              // of the last round of predictions
-    uint32_t shownTick = 0;                // tick of the state that draws show
-    uint32_t links = 0, blockers = 0;      // of the last remote update
-    uint32_t partMeshes = 0;               // of parts that touch
-    ShieldUpdate shield;                   // the last one's place, without its words
-    float wind[3] = {};
-    float tickFraction = 0;
-    Detail detail;                               // as of the frame's plan
-    float quadShare = 1;                         // on its way to detail's
-    float lightCount = float(limits.maxLights);  // the same; its fraction is the last one's share
-    uint32_t crossing = 0;                       // of kSwitchCrossing and kSwitchNoZPass
-    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
-    uint32_t softSteps = 0;  // that they take in the frame
-    uint32_t softWay = 0;    // which arms the next one minds
+    SceneTables scene;
+    SimulationState simulation;
+    DeformRenderer deforming;
+    FlameRenderer flames;
+    ParticleRenderer particles;
+    FieldRenderer particleFields;
+    SurfaceRenderer surfaces;
+    ReadbackResults results;
+    Detail detail;          // as of the frame's plan
+    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
+    ViewParams seen{};      // of the last pushView
+    OwnDevice own;
 
     // The frame that is open.
     struct Open {
@@ -352,42 +469,6 @@ struct VkBackend::State {
         std::array<OutsideView*, kMaxViews> views{};  // that it is recorded for
         uint32_t viewCount = 0;
     } open;
-    std::pmr::vector<PublishedStep> published;   // scratch of run
-    std::pmr::vector<DrawItem> drawItems;        // objects that draws show
-    std::pmr::vector<SurfaceStep> surfaceSteps;  // their draws, in order
-    bool surfacesDirty = false;                  // `drawItems` changed since
-    struct VolumeBox {                           // as in FlameRecord
-        vec4 low{}, high{};
-        vec4 flameLow{}, flameHigh{};  // without its smoke
-        uint32_t intervals = 1;        // see VolumeDraw
-        vec3 base{};                   // where it stands
-        uint32_t key = 0, tier = 0;
-        bool smokes = false;
-        vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
-        BookKind kind;
-        vec3 tip{};        // as VolumeItem's
-        vec4 basePlane{};  // as volumeBasePlane has it
-    };
-    std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
-    uint32_t quadsShown = 0;              // by the last view whose readback came
-    vec3 particlesMove{0.0f};             // m, with the next dispatch that moves particles
-    bool tilesMoved = false;              // BurnTiles stand where they were before all places moved
-    uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
-    bool particlesByBook = false;         // books show all fire and smoke of them
-    uint32_t sparkSources = 0;            // that throw sparks
-    float lightShare = 0.0f;              // of particles' quads: those that emit alone, [0, 1]
-    bool emittersMove = false;            // in the open frame
-    uint32_t flameBooks = 0;              // as setFlameBooks has them
-    std::pmr::vector<FieldEntry> fields;
-    std::array<Room, kMaxRooms> rooms{};
-    bool roomsDirty = false;
-    bool airs = false;                       // some step had rooms
-    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their buffer has them
-    bool fieldsDirty = false;                // one of them has something for the next frame
-    ViewParams seen{};                       // of the last pushView
-    // Of RecordOutside, by number; null: not there. The first is always there.
-    std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
-    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
         std::pmr::vector<uint32_t> lists;  // of the frame's work buffer, as it begins
@@ -402,31 +483,13 @@ struct VkBackend::State {
         float bias = -1;    // levels that the budget takes; below 0: not known yet
         bool full = false;  // everything at its deepest, and placed in every frame
     } refine;
-    struct Arp {             // of the frame, refined by the published scheme
+    struct Arp {  // refined by the published scheme
+        explicit Arp(std::pmr::memory_resource* memory) : arps(memory) {}
+        std::pmr::vector<core::Owned<ArpUse>> arps;
         uint32_t users = 0;  // objects
         uint32_t placeGroups = 0, nameGroups = 0;
         double lastTick = 0;  // of the last frame with any
     } arp;
-
-    // Readbacks, oldest first.
-    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
-    uint32_t pendingFirst = 0, pendingCount = 0;
-    Readback given;
-    std::pmr::vector<ObjectCounters> givenObjects;
-    std::pmr::vector<ProbeAnswer> givenAnswers;
-    std::pmr::vector<uint32_t> givenTexels;
-    std::pmr::vector<uvec2> givenHeat;
-    std::pmr::vector<BurnMap> givenMaps;
-    std::pmr::vector<BurnLight> givenLights;
-    std::pmr::vector<FieldCounters> givenFields;
-    std::array<RoomAir, kMaxRooms> givenRooms{};
-    bool givesRooms = false;
-    std::pmr::vector<PassTime> times;
-    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
-    std::array<KeptFramebuffer, 16> framebuffers{};
-    static constexpr size_t kHalfSizes = 4;  // of targets that a world draws into by turns
-    std::array<HalfImages, kHalfSizes> halves{};
-    OwnDevice own;
 
     // vk_backend.cpp
     void failIfLost() const;
@@ -458,7 +521,7 @@ struct VkBackend::State {
     void openViews(std::span<const FwView> from);
     [[nodiscard]] OutsideView& takeView(std::span<OutsideView* const> taken);
     // Buffers of the open frame's views; `marches`: they march so many flames.
-    void makeViewRoom(uint32_t flames, bool marches, uint64_t last);
+    void makeViewRoom(uint32_t flameCount, bool marches, uint64_t last);
     [[nodiscard]] std::span<OutsideView* const> seenFrom() const noexcept {
         return {open.views.data(), open.viewCount};
     }
@@ -499,7 +562,7 @@ struct VkBackend::State {
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
     [[nodiscard]] uint32_t volumeSteps() const noexcept {
-        return std::min(limits.volumeSteps, volumeStepsNow);
+        return std::min(limits.volumeSteps, flames.volumeStepsNow);
     }
     // How a target of `size` px shows what is marched for it.
     [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
@@ -507,7 +570,7 @@ struct VkBackend::State {
     static void noteScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
                            uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
-    void makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last);
+    void makeMarchRoom(OutsideView& of, uint32_t flameCount, uint64_t last);
     [[nodiscard]] uint32_t rayWords(const March& march) const noexcept;  // at the frame's detail
     // For the view that was last pushed, which is `of`'s.
     [[nodiscard]] MarchRecord marchVolumes(OutsideView& of) noexcept;
@@ -534,10 +597,11 @@ struct VkBackend::State {
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
     [[nodiscard]] bool showsEmitters() const noexcept {
-        return emitterGroups > 0 || sparkSources > 0;
+        return particles.emitterGroups > 0 || particles.sparkSources > 0;
     }
     [[nodiscard]] bool showsAnything() const noexcept {
-        return (drawVertices || showsEmitters()) && lookTextures.live && limits.looks.viewParams;
+        return (surfaces.drawVertices || showsEmitters()) && scene.lookTextures.live &&
+               limits.looks.viewParams;
     }
     // Books show all quads but sparks.
     [[nodiscard]] bool pagesAlone() const noexcept;
@@ -549,9 +613,6 @@ struct VkBackend::State {
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
                      const FwView& view, const VkViewport& viewport, const HostImages& host,
                      DrawPart part = DrawPart::all);
-    uint32_t drawnView = 0;  // of the call that is recorded: OutsideView::number
-    float transparency = 0;  // of the call that is recorded
-    VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
     HostImages hostImagesFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
                              VkImageView depth, VkImageLayout depthLayout);
