@@ -297,20 +297,20 @@ void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
             r.dispatch(pass, push, groups - done);
         }
     };
-    const uint32_t sheets = deform.nodeGroups, springs = sheets + deform.sheetGroups;
-    dispatch(pass::recede, 0, deform.nodeGroups, deform.steps << 1);
+    const uint32_t sheets = deform.count.nodes, springs = sheets + deform.count.sheets;
+    dispatch(pass::recede, 0, deform.count.nodes, deform.steps << 1);
     // A sheet that did not move in the frame before knows of no link yet.
     if (deform.begins && !(deform.steps > 0 && tiesAt(deform.way)))
-        dispatch(pass::ties, sheets, deform.sheetGroups, 0);
+        dispatch(pass::ties, sheets, deform.count.sheets, 0);
     for (uint32_t i = 0; i < deform.steps; ++i) {
         const uint32_t way = (deform.way + i) % kArmWays;
-        if (tiesAt(way)) dispatch(pass::ties, sheets, deform.sheetGroups, i & 1);
-        dispatch(pass::soft, sheets, deform.sheetGroups, (i & 1) | way << 1);
-        dispatch(pass::springs, springs, deform.springGroups, i & 1);
+        if (tiesAt(way)) dispatch(pass::ties, sheets, deform.count.sheets, i & 1);
+        dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | way << 1);
+        dispatch(pass::springs, springs, deform.count.springs, i & 1);
     }
-    const uint32_t vertices = springs + deform.springGroups;
-    dispatch(pass::drape, vertices, deform.vertexGroups, 0);
-    dispatch(pass::inner, vertices + deform.vertexGroups, deform.innerGroups, 0);
+    const uint32_t vertices = springs + deform.count.springs;
+    dispatch(pass::drape, vertices, deform.count.vertices, 0);
+    dispatch(pass::inner, vertices + deform.count.vertices, deform.count.inner, 0);
 }
 
 void recordProbes(FrameRecorder& r, const Staged& probes) {

@@ -20,16 +20,23 @@ struct Staged {  // in the frame's upload buffer
     uint32_t count = 0;
 };
 
+struct DeformGroups {  // of kDeformGroup nodes or vertices
+    uint32_t nodes = 0, sheets = 0, springs = 0, vertices = 0;
+    uint32_t inner = 0;  // of vertices with an inner skin
+    [[nodiscard]] uint32_t all() const noexcept {
+        return nodes + sheets + springs + vertices + inner;
+    }
+};
+
 // Groups of 64 of the objects that deform in this frame, in this order: nodes of all, of sheets and
 // of springs; drawn vertices of all.
 struct DeformRecord {
     DeformPush push{};
     Staged groups;
-    uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;
-    uint32_t innerGroups = 0;  // of vertices with an inner skin
-    uint32_t steps = 0;        // of sheets and springs
-    uint32_t way = 0;          // of the first: which arms it minds
-    bool begins = false;       // some sheet did not move in the frame before
+    DeformGroups count;
+    uint32_t steps = 0;   // of sheets and springs
+    uint32_t way = 0;     // of the first: which arms it minds
+    bool begins = false;  // some sheet did not move in the frame before
 };
 
 struct PublishedStep {  // one object in as-published mode

@@ -83,7 +83,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
         if (object.materialsDirty)
             needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
-        if (object.deformDirty) needs.uploadBytes += uploaded(sizeof object.deform);
+        if (object.deforms.recordDirty) needs.uploadBytes += uploaded(sizeof object.deform);
         addDeformNeeds(s, i, plan.endTick, needs);
         if (object.live && (object.record.flags & kObjectPublished) != 0)
             s.simulation.published.push_back({i, publishedGroups(object.record), 0});
@@ -129,10 +129,10 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
             s.noteFire(event.object, plan.endTick);
             if (event.kind != kEventWet && event.kind != kEventExtinguish) continue;
             ObjectEntry& object = s.scene.objects[event.object];
-            object.lastDouse = s.open.ringFrame;
-            object.douseEnds = step.now;  // water takes some heat steps
+            object.burn.lastDouse = s.open.ringFrame;
+            object.burn.douseEnds = step.now;  // water takes some heat steps
             if (object.record.flags & kObjectHeat)
-                object.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
+                object.burn.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
         }
         needs.stimulus |= bringsNews(step);
         iterates |= bringsNews(step);
@@ -144,11 +144,11 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     uint64_t forgetGroups = 0;
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
-        object.forget = object.live && object.lastDouse != 0 &&
-                        object.lastDouse < s.open.ringFrame &&
-                        (anyStep || s.simulation.frontEmpty) &&
-                        (plan.endTick > object.douseEnds || s.simulation.frontEmpty);
-        if (!object.forget) continue;
+        object.burn.forget = object.live && object.burn.lastDouse != 0 &&
+                             object.burn.lastDouse < s.open.ringFrame &&
+                             (anyStep || s.simulation.frontEmpty) &&
+                             (plan.endTick > object.burn.douseEnds || s.simulation.frontEmpty);
+        if (!object.burn.forget) continue;
         forgets = true;
         forgetGroups += wakeGroupsOf(object);
     }
@@ -157,7 +157,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         needs.wakeGroups += uint32_t(forgetGroups);
         needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
     }
-    needs.uploadBytes += uploaded(uint64_t(needs.deformGroups()) * 8);
+    needs.uploadBytes += uploaded(uint64_t(needs.deform.all()) * 8);
     needs.uploadBytes += uploaded(plan.probes.size_bytes());
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
@@ -197,7 +197,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     addFieldNeeds(s, plan, needs);
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
-    needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
+    needs.work = needs.readback || needs.falling || needs.deform.vertices > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
                  (s.showsEmitters() && !s.open.unseen) ||
                  (!s.flames.volumes.empty() && !s.open.unseen) || needs.placing ||
@@ -211,7 +211,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.buffers.atLeast(kPoolEvents, needs.events, last);
     s.buffers.atLeast(kPoolWakeGroups, needs.wakeGroups, last);
     s.buffers.atLeast(kPoolProbes, uint32_t(plan.probes.size()), last);
-    s.buffers.atLeast(kPoolDeformGroups, needs.deformGroups(), last);
+    s.buffers.atLeast(kPoolDeformGroups, needs.deform.all(), last);
     s.buffers.atLeast(kPoolNeighbours, needs.neighbours, last);
     s.buffers.atLeast(kPoolContacts, needs.links, last);
     s.buffers.atLeast(kPoolShield, needs.shieldWords, last);

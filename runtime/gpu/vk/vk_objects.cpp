@@ -95,13 +95,13 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
         s.buffers.release(kPoolHeat, entry.heatTiles.first, entry.heatTiles.units);
     if (entry.sources.units)
         s.buffers.release(kPoolSources, entry.sources.first, entry.sources.units);
-    if (entry.deformer.units)
-        s.buffers.release(kPoolDeformers, entry.deformer.first, entry.deformer.units);
+    if (entry.deforms.range.units)
+        s.buffers.release(kPoolDeformers, entry.deforms.range.first, entry.deforms.range.units);
     if (entry.soft.units) s.buffers.release(kPoolSoft, entry.soft.first, entry.soft.units);
     if (entry.shown.units) s.buffers.release(kPoolShown, entry.shown.first, entry.shown.units);
-    if (entry.skinPlus1) {
-        s.deforming.skins[entry.skinPlus1 - 1].shown.clear();
-        Skin& skin = s.deforming.skins[entry.skinPlus1 - 1];
+    if (entry.deforms.skinPlus1) {
+        s.deforming.skins[entry.deforms.skinPlus1 - 1].shown.clear();
+        Skin& skin = s.deforming.skins[entry.deforms.skinPlus1 - 1];
         skin.dirty = skin.givenDue = false;
         if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = {};
@@ -112,9 +112,9 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
 bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
     if (object.recordDirty || object.materialsDirty || object.resetDue) return false;
     if (!object.live) return true;
-    const bool reached = object.touched || object.warmed || object.charred;
-    const bool moves = object.deformDirty || object.deformReset || object.deformsNow ||
-                       object.soft.units != 0 || object.skinPlus1 != 0;
+    const bool reached = object.burn.touched || object.burn.warmed || object.burn.charred;
+    const bool moves = object.deforms.recordDirty || object.deforms.reset || object.deforms.now ||
+                       object.soft.units != 0 || object.deforms.skinPlus1 != 0;
     const bool refined = object.refine.arpPlus1 != 0 || object.refine.due || s.refines(object);
     return !reached && !moves && !refined && (object.record.flags & kObjectPublished) == 0;
 }
@@ -191,7 +191,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             fresh.heatTiles = {s.buffers.allocate(kPoolHeat, mesh.tiles, last), mesh.tiles};
         if (init.deform) {
             const mesh::DeformModel& model = *init.deformModel;
-            fresh.deformer = {s.buffers.allocate(kPoolDeformers, 1, last), 1};
+            fresh.deforms.range = {s.buffers.allocate(kPoolDeformers, 1, last), 1};
             const auto count = uint32_t(model.nodes.size());
             if (init.deform->flags & (kDeformShell | kDeformSprings))
                 fresh.soft = {s.buffers.allocate(kPoolSoft, count, last), count};
@@ -217,7 +217,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                 while (free < s.deforming.skins.size() && !s.deforming.skins[free].shown.empty())
                     ++free;
                 if (free == s.deforming.skins.size()) s.deforming.skins.emplace_back();
-                fresh.skinPlus1 = free + 1;
+                fresh.deforms.skinPlus1 = free + 1;
                 stageSkin(s, *mesh.domain, order, s.deforming.skins[free], fresh.shown.first);
             }
         }
@@ -276,9 +276,9 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deform.scale = length(vec3(r.worldRow0));
         for (const DeformMaterial& m : fresh.deform.materials)
             for (const uint32_t ticks : {m.charTicks, m.holeTicks})
-                if (ticks != kNoneTexel) fresh.deformTicks = std::max(fresh.deformTicks, ticks);
-        fresh.deformTicks += kTicksPerSecond;  // readbacks come late
-        fresh.deformDirty = fresh.deformReset = true;
+                if (ticks != kNoneTexel) fresh.deforms.ticks = std::max(fresh.deforms.ticks, ticks);
+        fresh.deforms.ticks += kTicksPerSecond;  // readbacks come late
+        fresh.deforms.recordDirty = fresh.deforms.reset = true;
     }
     if (init.record.flags & kObjectSkinned) {
         mesh.skin = skin;
@@ -286,9 +286,9 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         r.skinBase = skin.first * kTileTexels;
         r.shownBase = fresh.shown.first;
     }
-    if (fresh.skinPlus1) {
+    if (fresh.deforms.skinPlus1) {
         std::copy_n(init.shape, 3, fresh.shape);
-        fresh.deformReset = false;  // at rest already
+        fresh.deforms.reset = false;  // at rest already
     }
     s.scene.objects[slot] = fresh;
     s.changed(slot);
@@ -328,8 +328,8 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     entry.record.tint = tint;
     if (entry.shown.units) {
         entry.deform.scale = length(vec3(rows[0]));
-        entry.deformDirty = true;
-        entry.softUntil = 0;  // it swings anew
+        entry.deforms.recordDirty = true;
+        entry.deforms.softUntil = 0;  // it swings anew
     }
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
@@ -350,7 +350,7 @@ void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {
 void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
                             std::span<const float> normals) noexcept {
     State& s = *state_;
-    Skin& skin = s.deforming.skins[s.scene.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].deforms.skinPlus1 - 1];
     for (size_t i = 0; i < skin.shown.size(); ++i) {
         ShownVertex& v = skin.shown[i];
         const size_t from = size_t(skin.sources[i]) * 3;
@@ -368,7 +368,7 @@ void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
 void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices,
                                 float metersPerUnit) {
     State& s = *state_;
-    Skin& skin = s.deforming.skins[s.scene.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].deforms.skinPlus1 - 1];
     const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
     const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
     if (skin.words.units < words) {

@@ -34,11 +34,11 @@ void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_
     const bool warm = known && told.until != 0 && (object.record.flags & kObjectHeat) != 0;
     const uint32_t all = object.record.width * object.record.height;
     const bool charred = object.live && told.ignited > all / 4;
-    scene.recordsDirty |=
-        (lit && !object.touched) || (warm && !object.warmed) || charred != object.charred;
-    object.touched |= lit;
-    object.warmed |= warm;
-    object.charred = charred;
+    scene.recordsDirty |= (lit && !object.burn.touched) || (warm && !object.burn.warmed) ||
+                          charred != object.burn.charred;
+    object.burn.touched |= lit;
+    object.burn.warmed |= warm;
+    object.burn.charred = charred;
 }
 
 // Applies the counters that a view wrote.

@@ -65,7 +65,8 @@ void recordUploads(VkBackend::State& s) {
 }
 
 bool looksBurnt(const ObjectEntry& object) noexcept {
-    return (object.touched || object.warmed) && (object.record.flags & kObjectNoDamage) == 0;
+    return (object.burn.touched || object.burn.warmed) &&
+           (object.record.flags & kObjectNoDamage) == 0;
 }
 
 // Before anything reached it nothing of it can have crossed.
@@ -82,16 +83,16 @@ void chooseSurface(const VkBackend::State& s, const ObjectEntry& object, DrawIte
     item.coldReach = coldReach(s.scene.meshes[object.mesh].texelEdge);
     const bool tells =
         (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
-    item.coldApart = item.burns && tells && !object.charred && !item.selfIntersects;
+    item.coldApart = item.burns && tells && !object.burn.charred && !item.selfIntersects;
 }
 
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
     const MeshEntry& mesh = s.scene.meshes[object.mesh];
-    SurfaceDraw draw =
-        surfaceDraw(object.record, object.materials[material], object.heat[material],
-                    mesh.edge * scale, object.refine.slots.first, object.doused, object.warmed);
+    SurfaceDraw draw = surfaceDraw(object.record, object.materials[material], object.heat[material],
+                                   mesh.edge * scale, object.refine.slots.first, object.burn.doused,
+                                   object.burn.warmed);
     return draw;
 }
 
@@ -128,13 +129,13 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                                 sizeof object.heat);
             }
         }
-        if (object.deformDirty) {
+        if (object.deforms.recordDirty) {
             const Staged staged = writer.write(std::span<const DeformObject>(&object.deform, 1));
             recorder.copyIn(staged.at, FW_BIND_DEFORM_OBJECTS,
-                            uint64_t(object.deformer.first) * sizeof(DeformObject),
+                            uint64_t(object.deforms.range.first) * sizeof(DeformObject),
                             sizeof(DeformObject));
         }
-        object.recordDirty = object.materialsDirty = object.deformDirty = false;
+        object.recordDirty = object.materialsDirty = object.deforms.recordDirty = false;
     }
     s.surfaces.drawItems.clear();
     s.surfaces.surfacesDirty = true;
@@ -179,10 +180,10 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
 void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
-        if (!object.forget) continue;
+        if (!object.burn.forget) continue;
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              uint64_t(object.record.width) * object.record.height * 4);
-        object.lastDouse = 0;
+        object.burn.lastDouse = 0;
     }
 }
 
@@ -267,7 +268,7 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
         for (const MaterialUpdate& update : updates) append(update.object);
     }
     for (const uint32_t i : s.scene.awake) {
-        if (findsAnew && s.scene.objects[i].forget) append(i);
+        if (findsAnew && s.scene.objects[i].burn.forget) append(i);
     }
     writer.end();
     return staged;
@@ -277,17 +278,17 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
 void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.scene.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
-    object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
+    object.burn.lastEvent = std::max<uint64_t>(object.burn.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
     const bool douses = (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
                          kind == kEventCarry) &&
-                        !object.doused;
+                        !object.burn.doused;
     const bool lights = kind == kEventIgnite || kind == kEventCarry;
-    object.catches |= lights && !object.lit;
-    object.lit |= lights;
-    if (object.touched && !douses) return;
-    object.touched = true;
-    object.doused = object.doused || douses;
+    object.burn.catches |= lights && !object.burn.lit;
+    object.burn.lit |= lights;
+    if (object.burn.touched && !douses) return;
+    object.burn.touched = true;
+    object.burn.doused = object.burn.doused || douses;
     s.surfaces.surfacesDirty = true;
     for (DrawItem& item : drawItemsOf(s, event.object)) {
         chooseSurface(s, object, item);
@@ -304,7 +305,7 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     float latest = 0;
     for (const uint32_t i : s.scene.awake) {
         const ObjectEntry& object = s.scene.objects[i];
-        if (!object.live || !object.touched) continue;
+        if (!object.live || !object.burn.touched) continue;
         begin = std::min(begin, object.record.worldTileBase);
         end = std::max(end, object.record.worldTileBase + object.record.tileCount);
         for (const BurnMaterial& material : object.materials)
@@ -426,14 +427,10 @@ void recordSteps(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& n
 
 DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadWriter& writer) {
     DeformRecord deform;
-    deform.nodeGroups = needs.nodeGroups;
-    deform.sheetGroups = needs.sheetGroups;
-    deform.springGroups = needs.springGroups;
+    deform.count = needs.deform;
     deform.steps = s.deforming.softSteps;
     deform.way = s.deforming.softWay;
     deform.begins = needs.sheetsBegin;
-    deform.vertexGroups = needs.vertexGroups;
-    deform.innerGroups = needs.innerGroups;
     deform.groups = writeDeformGroups(s, writer);
     DeformPush& push = deform.push;
     push.now = s.open.endTick;
@@ -587,7 +584,7 @@ void VkBackend::State::run(const FramePlan& plan) {
         recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = simulation.lists.predictParity;
-    if (needs.vertexGroups) recordDeformation(recorder, deformationOf(*this, needs, writer));
+    if (needs.deform.vertices) recordDeformation(recorder, deformationOf(*this, needs, writer));
     deforming.softWay = (deforming.softWay + deforming.softSteps) % kArmWays;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));

@@ -71,15 +71,16 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
         if (!object.live) continue;
         s.changed(i);
         object.resetDue = true;
-        object.touched = object.doused = object.warmed = object.charred = object.lit = false;
+        object.burn.touched = object.burn.doused = object.burn.warmed = object.burn.charred =
+            object.burn.lit = false;
         object.publishedTouched = false;
         object.publishedParity = 0;
-        object.lastDouse = 0;
-        object.lastEvent = 0;
-        object.softUntil = 0;
+        object.burn.lastDouse = 0;
+        object.burn.lastEvent = 0;
+        object.deforms.softUntil = 0;
         object.refine.quietTick = 0;
         object.refine.epochTick = std::min(object.refine.epochTick, tick);
-        if (object.shown.units != 0 && object.skinPlus1 == 0) object.deformReset = true;
+        if (object.shown.units != 0 && object.deforms.skinPlus1 == 0) object.deforms.reset = true;
     }
     for (const RestoredObject& one : restored) {
         if (one.rests) continue;
@@ -88,10 +89,11 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
         object.record.window = one.window;
         object.record.substepShift = one.substepShift;
         object.materialsDirty = true;
-        object.touched = true;
-        object.doused = showsWater(one.image);
-        object.warmed = one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
-        object.lastEvent = tick;
+        object.burn.touched = true;
+        object.burn.doused = showsWater(one.image);
+        object.burn.warmed =
+            one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
+        object.burn.lastEvent = tick;
         s.scene.restoredObjects.push_back(one.image.object);
         if (one.image.counters.ignited != 0) s.noteFire(one.image.object, tick);
     }
@@ -115,7 +117,7 @@ void VkBackend::moveWorld(const double (&by)[3]) noexcept {
         ObjectEntry& object = s.scene.objects[i];
         if (!object.live || (object.deform.flags & kDeformShell) == 0) continue;
         object.deform.ground += glm::dot(metres, up);
-        object.deformDirty = true;
+        object.deforms.recordDirty = true;
         s.changed(i);
     }
 }

@@ -93,16 +93,16 @@ void VkBackend::State::look(const FwView& view, float height, uint64_t frame) no
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;
         // A host moves the vertices of what is skinned where it likes.
-        if (object.skinPlus1 == 0 &&
+        if (object.deforms.skinPlus1 == 0 &&
             !shows(params, sphereOf(object, *scene.meshes[object.mesh].domain, params.eye)))
             return;
         object.seenFrame = frame;
         if ((object.record.flags & kObjectHidden) == 0) simulation.seenFrame = frame;
     };
     for (const uint32_t i : scene.awake)
-        if (scene.objects[i].touched) lookAt(scene.objects[i]);
+        if (scene.objects[i].burn.touched) lookAt(scene.objects[i]);
     for (size_t i = frame % kIdleTurns; i < scene.objects.size(); i += kIdleTurns)
-        if (!scene.objects[i].touched) lookAt(scene.objects[i]);
+        if (!scene.objects[i].burn.touched) lookAt(scene.objects[i]);
 }
 
 void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
@@ -110,7 +110,7 @@ void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
         ObjectEntry& object = s.scene.objects[i];
         const bool unseen = (object.record.flags & kObjectUnseen) != 0;
         const bool wanted = seenLately(object, s.open.ringFrame);
-        object.turns = object.live && object.touched && unseen == wanted;
+        object.turns = object.live && object.burn.touched && unseen == wanted;
         if (!object.turns) continue;
         needs.uploadBytes += 2 * uploaded(sizeof object.record.flags);
         needs.appears |= wanted;
@@ -123,7 +123,7 @@ bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t en
     double pause = kLongestPause * shortOf;
     for (const uint32_t i : s.scene.awake)
         if (const ObjectEntry& object = s.scene.objects[i];
-            object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
+            object.live && object.burn.touched && (object.record.flags & kObjectUnseen) == 0)
             pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
     return double(endTick - s.simulation.predictTick) >=
            pause;  // of a save that was loaded: long ago
@@ -154,10 +154,10 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                 rings = std::max(rings, std::min(ringsOf(object), most));
             }
         }
-        if (object.catches && (flags & kObjectUnseen) == 0)
+        if (object.burn.catches && (flags & kObjectUnseen) == 0)
             rings = std::max(rings, std::min(ringsOf(object), kRingsOfFrame));
-        object.catches = false;
-        seen |= object.live && object.touched && (flags & kObjectUnseen) == 0;
+        object.burn.catches = false;
+        seen |= object.live && object.burn.touched && (flags & kObjectUnseen) == 0;
     }
     // A ring a round: long frames need more to stay ahead of a fast front.
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);

@@ -99,43 +99,51 @@ struct MeshEntry {
     RangeOf skin, skinSources;  // once one is skinned
 };
 
-struct ObjectEntry {
-    bool live = false;
-    bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
-    bool resetDue = false;
-    bool drawable = false;   // a recorded frame holds it
-    bool inner = false;      // what faces away is drawn on the mesh's inner skin
+// How far an object's fire has come, as far as draws and predictions ask.
+struct BurnLifecycle {
     bool touched = false;    // some event reached it: it may burn, or be wet
     bool doused = false;     // one of them was not fire
     bool lit = false;        // one of them was
     bool catches = false;    // scratch of run: the first that was
     bool warmed = false;     // others' fires sent heat to it
     bool charred = false;    // most of it burns or has burnt: its cold rest is not worth a draw
+    bool forget = false;     // scratch of run
+    uint32_t douseEnds = 0;  // tick by which the last dousing has had its effect
+    uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
+    uint64_t lastEvent = 0;  // tick
+};
+
+struct DeformUse {  // an object's deformation
+    RangeOf range;  // of DeformObjects
+    bool recordDirty = false, reset = false;
+    bool now = false;         // scratch of run: it deforms in this frame
+    bool woke = false;        // scratch of run: it did not move in the frame before
+    bool softOdd = false;     // its places are the second ones
+    uint32_t recedeTurn = 0;  // which groups of a sheet learn next what has burnt
+    uint32_t ticks = 0;       // that something moves after the last texel caught
+    uint64_t softUntil = 0;   // tick until which it is not yet at rest
+    uint32_t skinPlus1 = 0;   // of a skinned object: its Skin
+};
+
+struct ObjectEntry {
+    bool live = false;
+    bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
+    bool resetDue = false;
+    bool drawable = false;  // a recorded frame holds it
+    bool inner = false;     // what faces away is drawn on the mesh's inner skin
+    BurnLifecycle burn;
     uint64_t seenFrame = 0;  // ring frame whose view last showed it; kObjectUnseen: long ago
     bool turns = false;      // scratch of run: it comes into view, or leaves it
-    uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
-    uint32_t douseEnds = 0;  // tick by which that has had its effect
-    bool forget = false;     // scratch of run
     uint32_t mesh = 0;
     BurnObject record{};
     RangeOf tiles, slowness, published, heatTiles, sources;
     RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
-    // Deformation: none if `shown` is empty.
-    RangeOf deformer, shown, soft;  // soft: sheets and springs
-    bool deformDirty = false, deformReset = false;
-    bool deformsNow = false;     // scratch of run
-    uint32_t recedeTurn = 0;     // which groups of a sheet learn next what has burnt
-    uint32_t deformTicks = 0;    // that something moves after the last texel caught
-    uint64_t lastEvent = 0;      // tick
-    bool softOdd = false;        // its places are the second ones
-    bool deformWoke = false;     // scratch of run: it did not move in the frame before
-    uint64_t softUntil = 0;      // tick until which it is not yet at rest
-    uint32_t skinPlus1 = 0;      // of a skinned object: its Skin
+    DeformUse deforms;           // none if `shown` is empty
+    RangeOf shown, soft;         // its shown vertices; of sheets and springs
     float shape[3] = {1, 1, 1};  // what its mesh was stretched by
-    // What frames do not read of an object that rests stands behind all that they do: loops over
-    // objects cost what they fetch.
+    // Cold data: not read for sleeping objects, so it is stored last.
     DeformObject deform{};
     BurnMaterial materials[kMaterialsPerObject]{};
     uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
