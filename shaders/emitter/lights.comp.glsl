@@ -15,6 +15,7 @@ layout(local_size_x = 128) in;
 layout(std430, set = 0, binding = FW_BIND_LIGHTS) writeonly buffer LightsBuffer {
     BurnLight lights[];
 };
+#define FW_CELLS FW_READ_WRITE
 #include "emitter/cells.glsl"
 
 const uint kMost = 1024u;      // competing cells

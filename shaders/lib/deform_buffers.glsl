@@ -8,13 +8,13 @@
 #include "shared/deform.h"
 
 #ifdef FW_TEXELS
-#define FW_QUADS(number, block, name) \
+#define FW_QUADS(number, access, block, name) \
     layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + number) readonly uniform uimageBuffer name
 #define FW_QUAD(name, at) imageLoad(name, int(at))
 // Orders a read and a write of the same quad, which are two resources.
 void readBeforeWritten() { memoryBarrier(); }
 #else
-#define FW_QUADS(number, block, name) FW_BUFFER(number, FW_READ_WRITE, block, uvec4, name)
+#define FW_QUADS(number, access, block, name) FW_BUFFER(number, access, block, uvec4, name)
 #define FW_QUAD(name, at) name[at]
 #define shownOut shownQuads
 #define softOut softQuads
@@ -24,18 +24,18 @@ void readBeforeWritten() {}
 FW_BUFFER(FW_BIND_DEFORM_OBJECTS, readonly, DeformObjectsBuffer, uvec4, deformObjects);
 FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGroups);
 #ifdef FW_USE_DEFORM_NODES
-FW_QUADS(FW_BIND_DEFORM_NODES, DeformParticlesBuffer, nodeQuads);
+FW_QUADS(FW_BIND_DEFORM_NODES, readonly, DeformParticlesBuffer, nodeQuads);
 uvec4 deformNode(uint quad) { return FW_QUAD(nodeQuads, quad); }
 // Loops over links test at their end. All particles of a run have the same number of passes, so no lane leaves early.
 uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
 uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // 0 or 1 additional passes
 #endif
 #ifdef FW_USE_DEFORM_COATS
-FW_QUADS(FW_BIND_DEFORM_COATS, DeformEmbeddingsBuffer, coatQuads);
+FW_QUADS(FW_BIND_DEFORM_COATS, readonly, DeformEmbeddingsBuffer, coatQuads);
 uvec4 deformCoat(uint quad) { return FW_QUAD(coatQuads, quad); }
 #endif
 #ifdef FW_USE_SHOWN
-FW_QUADS(FW_BIND_SHOWN, ShownBuffer, shownQuads);
+FW_QUADS(FW_BIND_SHOWN, FW_READ_WRITE, ShownBuffer, shownQuads);
 #ifdef FW_TEXELS
 FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownOutBuffer, uvec4, shownOut);
 #endif
@@ -48,7 +48,7 @@ FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownWordsBuffer, uint, shownWords);
 #ifdef FW_USE_SOFT
 // Per particle: two positions, each with the path length to a pin and a bend share (packShare); the link cache; facts
 // for neighbours (packFacts) and two bend shares for constraint ends; nearest pin point with its radius.
-FW_QUADS(FW_BIND_SOFT, SoftBuffer, softQuads);
+FW_QUADS(FW_BIND_SOFT, FW_READ_WRITE, SoftBuffer, softQuads);
 #ifdef FW_TEXELS
 FW_BUFFER(FW_BIND_SOFT, writeonly, SoftOutBuffer, uvec4, softOut);
 #endif

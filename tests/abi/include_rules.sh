@@ -17,7 +17,8 @@ runtime/field|field/|core/|shared/|flamewright/flamewright.h
 runtime/components|components/|core/|fire/|mesh/|volume/|field/|book/|shared/|flamewright/flamewright.h
 runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|book/|save/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
 runtime/net|net/|world/|components/|core/|shared/|flamewright/flamewright.h
-runtime/gpu|gpu/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
+runtime/lod|lod/|core/|volume/|shared/|flamewright/flamewright.h
+runtime/gpu|gpu/|lod/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
 plugin/src|flamewright/|world/|net/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
@@ -66,7 +67,7 @@ check_tree() {
         done
     done <<<"$rules"
 
-    local rooms=("$tree"/runtime/{core,fire,mesh,volume,field,components,world,net} "$tree/runtime/gpu/cpu"
+    local rooms=("$tree"/runtime/{core,fire,mesh,volume,field,lod,components,world,net} "$tree/runtime/gpu/cpu"
         "$tree/runtime/gpu/backend.h" "$tree/plugin/include/flamewright/flamewright.h"
         "$tree/plugin/include/flamewright/flamewright_debug.h")
     for room in "${rooms[@]}"; do

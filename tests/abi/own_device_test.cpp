@@ -250,7 +250,7 @@ TEST(AbiOwnDevice, RefusesHostDeviceCallsAndInvalidPictures) {
     const uint32_t count = std::min(fwDebug_GetPassTimes(world, times, 64), 64u);
     bool sorted = false;
     for (uint32_t i = 0; i < count; ++i)
-        sorted |= std::string(times[i].name) == "flame sort" && times[i].milliseconds > 0;
+        sorted |= std::string(times[i].name) == "flame_sort" && times[i].milliseconds > 0;
     EXPECT_EQ(capable.gpuTimers != 0, sorted);
     // After a loss nothing runs, and everything is still freed.
     fwContext_NotifyDeviceLost(context);

@@ -144,7 +144,7 @@ void drawFires(benchmark::State& state, const Case& what) {
         return;
     }
     double cpu = 0, least = 1e9;
-    constexpr const char* kPasses[] = {"volume probe", "volume march", "volume composite"};
+    constexpr const char* kPasses[] = {"volume_probe", "volume_march", "volume_composite"};
     double passes[3] = {1e9, 1e9, 1e9};
     const auto both = [&] {
         const Fires::Cost without = fires.take(true), with = fires.take(false);

@@ -96,7 +96,7 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["cpu_ms"] = mean(bench.cpu) * 1e3;
     state.counters["most_ms"] = *std::max_element(bench.seconds.begin(), bench.seconds.end()) * 1e3;
     state.counters["burning"] = double(bench.burning());
-    for (const char* pass : {"heat", "exchange", "exchange shield", "reduce"})
+    for (const char* pass : {"heat", "exchange", "exchange_shield", "reduce"})
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
     // ms per step for appearance only.
     double looks = 0;

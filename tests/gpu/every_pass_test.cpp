@@ -8,7 +8,7 @@
 #include "components/remote.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/pass.h"
 #include "shared/front.h"
 #include "shared/spark.h"
 #include "support/burn_scene.h"
@@ -514,8 +514,8 @@ class EveryPass : public GpuTest {
             if (second != published) return;
             EXPECT_TRUE(passes_.contains(name)) << name << " is not run by this test's scenes";
         };
-        for (const gpu::ComputePass* pass : gpu::computePasses()) expectOne(pass->name);
-        for (const gpu::DrawPass* pass : gpu::drawPasses()) expectOne(pass->name);
+        for (const gpu::ComputePass& pass : gpu::computePasses()) expectOne(pass.name);
+        for (const gpu::DrawPass& pass : gpu::drawPasses()) expectOne(pass.name);
     }
 
     void TearDown() override {

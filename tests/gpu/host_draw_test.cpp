@@ -295,7 +295,7 @@ TEST_F(HostDraw, MaterialFamiliesCreateTheirPipelinesOnFirstUse) {
         return takeCounts().pipelines;
     };
     const uint64_t some = madeBy([&] { (void)targetFor(late); });
-    EXPECT_EQ(madeBy([&] { (void)targetFor(all); }) - some, gpu::kSurfaceVariants - 5)
+    EXPECT_EQ(madeBy([&] { (void)targetFor(all); }) - some, gpu::kSurfacePassCount - 5)
         << "wood: fresh, cold and burning, from both sides";
     const auto place = [&](uint32_t slot, FwMaterialPreset look, float x) {
         gpu::ObjectInit init = scene_.init(0);

@@ -4,7 +4,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_backend.h"
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/shader_interface.h"
 #include "support/burn_scene.h"
 
 #include <gmock/gmock.h>
@@ -365,27 +365,28 @@ TEST_F(VkContract, ALostDeviceStaysLost) {
 
 // Devices need 20 storage buffers per stage (gpu/vk/device.cpp): no pass may bind more.
 TEST(VkContractFloor, NoPassBindsMoreStorageBuffersThanRequired) {
-    const auto bound = [](std::span<const gpu::Use> uses) {
-        std::set<uint32_t> all;
-        for (const gpu::Use& use : uses)
-            if (use.access == gpu::Access::read || use.access == gpu::Access::write ||
-                use.access == gpu::Access::readTexels || use.access == gpu::Access::drawRead)
-                all.insert(use.resource);
-        return all.size();
+    const auto countOf = [](const gpu::ShaderInterface& shaders, bool texels) {
+        return std::count_if(
+            shaders.uses().begin(), shaders.uses().end(), [&](const gpu::Use& use) {
+                return texels ? use.access == gpu::Access::readTexels
+                              : use.access == gpu::Access::read || use.access == gpu::Access::write;
+            });
     };
-    size_t most = 0;
-    for (const gpu::ComputePass* pass : gpu::computePasses()) {
-        EXPECT_LE(bound(pass->uses), 20u) << pass->name;
-        const auto texels = std::count_if(
-            pass->uses.begin(), pass->uses.end(),
-            [](const gpu::Use& use) { return use.access == gpu::Access::readTexels; });
-        EXPECT_LE(texels, 4) << pass->name << ": maxPerStageDescriptorStorageImages";
-        EXPECT_EQ(texels != 0, pass->texelShader != nullptr) << pass->name;
-        most = std::max(most, bound(pass->uses));
+    std::ptrdiff_t most = 0;
+    for (const bool texels : {false, true}) {
+        for (const gpu::ComputePass& pass : gpu::computePasses()) {
+            const auto shaders = gpu::interfaceOf(pass, texels, std::pmr::new_delete_resource());
+            EXPECT_LE(countOf(shaders, false), 20) << pass.name;
+            EXPECT_LE(countOf(shaders, true), texels ? 4 : 0)
+                << pass.name << ": maxPerStageDescriptorStorageImages";
+            most = std::max(most, countOf(shaders, false));
+        }
+        for (const gpu::DrawPass& pass : gpu::drawPasses())
+            EXPECT_LE(
+                countOf(gpu::interfaceOf(pass, texels, std::pmr::new_delete_resource()), false), 20)
+                << pass.name;
     }
-    for (const gpu::DrawPass* pass : gpu::drawPasses())
-        EXPECT_LE(bound(pass->uses), 20u) << pass->name;
-    EXPECT_EQ(most, 20u) << "the device requirement can be lowered";
+    EXPECT_EQ(most, 20) << "the device requirement can be lowered";
 }
 
 TEST_F(VkContract, RefusesInvalidHosts) {

@@ -5,7 +5,7 @@
 #include "components/particle_field.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
-#include "gpu/passes/volume_books.h"
+#include "lod/impostor_atlas.h"
 #include "reference/flame_march.h"
 #include "shared/spark.h"
 #include "support/burn_scene.h"
@@ -300,7 +300,7 @@ class Volume : public GpuTest {
         testLooks().viewParams(input, view);
         gpu::VolumeDraw draw{};
         std::vector<vec4> picture(kSide * kSide, vec4(0.0f));
-        if (!gpu::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
+        if (!lod::volumeDraw(view, flame.record.low, flame.record.high, 1, draw)) return picture;
         volume::Profile profile;
         volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
         if (own_) profile = *own_;
@@ -310,7 +310,7 @@ class Volume : public GpuTest {
             const float perDepth = glm::length(along);
             volume::MarchRules rules;
             if (far > 0) rules.farthest = far * perDepth;
-            rules.intervals = gpu::volumeIntervals(flame.nodes, gpu::kFlameNodes);
+            rules.intervals = lod::volumeIntervals(flame.nodes, gpu::kFlameNodes);
             fill(rules, perDepth, along / perDepth);
             const gpu::FlameRay ray = volume::marchRay(flame.record, flame.nodes, profile,
                                                        vec3(view.eye), along / perDepth, rules);
@@ -318,7 +318,7 @@ class Volume : public GpuTest {
                         1.0f - glm::dot(ray.through, vec3(0.2126f, 0.7152f, 0.0722f)));
         };
         if (!cells) {
-            if (!steps) gpu::volumeRays({{kSide, kSide}, 1}, draw);
+            if (!steps) lod::volumeRays({{kSide, kSide}, 1}, draw);
             const uint32_t side = draw.perPixel;
             for (uint32_t k = 0; k < side * side * picture.size(); ++k) {
                 const uint32_t i = k / (side * side);
@@ -346,14 +346,14 @@ class Volume : public GpuTest {
             return picture;
         }
         vec4 low, high;
-        gpu::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
-        gpu::volumeSlabs(view, low, high, draw);
+        lod::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
+        lod::volumeSlabs(view, low, high, draw);
         draw.rect = {-1, -1, 1, 1};
-        const gpu::VolumeItem item{0, draw};
-        const gpu::VolumeScreen screen{{kSide, kSide}, 1};
-        gpu::MarchedVolume marched;
-        const uint32_t words = gpu::volumeRayWords(screen);
-        EXPECT_GT(gpu::layVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}).count, 0u);
+        const lod::VolumeItem item{0, draw};
+        const lod::VolumeScreen screen{{kSide, kSide}, 1};
+        lod::MarchedVolume marched;
+        const uint32_t words = lod::volumeRayWords(screen);
+        EXPECT_GT(lod::layVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}).count, 0u);
         const gpu::VolumeMarch& m = marched.march;
         const float cell = 0.5f * float(kSide) * marched.composite.place.z;  // px
         const auto side = int(marched.composite.tilesX * gpu::kVolumeTile);
@@ -407,10 +407,10 @@ class Volume : public GpuTest {
         gpu::ViewParams view{};
         testLooks().viewParams(input, view);
         vec4 low, high;
-        gpu::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
+        lod::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
         low.w = flame.record.low.w;
         gpu::VolumeDraw draw{};
-        EXPECT_TRUE(gpu::volumeDraw(view, low, high, 1, draw));
+        EXPECT_TRUE(lod::volumeDraw(view, low, high, 1, draw));
         volume::Profile profile;
         volume::paintLook(volume::presetDef(volume::FlamePreset(preset)).look, profile);
         const vec3 white =
@@ -444,10 +444,10 @@ class Volume : public GpuTest {
         testLooks().viewParams(input, view);
         gpu::VolumeDraw draw{};
         vec4 low, high;
-        gpu::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
+        lod::volumeBounds(flame.record, flame.nodes, gpu::kFlameNodes, low, high);
         EXPECT_TRUE(
-            gpu::volumeDraw(view, flame.record.low, flame.record.high, gpu::kVolumeSlabs, draw));
-        gpu::volumeSlabs(view, low, high, draw);
+            lod::volumeDraw(view, flame.record.low, flame.record.high, gpu::kVolumeSlabs, draw));
+        lod::volumeSlabs(view, low, high, draw);
         return draw.front + draw.deep * std::floor((far - draw.front) / draw.deep + 0.5f);
     }
 
@@ -1181,7 +1181,7 @@ TEST_F(Volume, BillboardsShowTheSameFlame) {
             flame.record.tier = page ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
             std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
             // Until the impostor was updated once.
-            for (uint32_t k = 0; page && k < gpu::kBookTurn; ++k)
+            for (uint32_t k = 0; page && k < lod::kBookTurn; ++k)
                 card = drawOnce({&flame, 1}, FW_DEPTH_TEST, 0);
             const vec4 a = meanOf(card), b = meanOf(marched);
             worst[page] =
@@ -1698,14 +1698,14 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
     if (!device_) return;
     makeRig();
     // A key with almost no delay, so that frames can be compared.
-    const auto shelf = std::make_unique<gpu::VolumeBookShelf>();
+    const auto shelf = std::make_unique<lod::VolumeBookShelf>();
     (*shelf)[0].used = true;
-    (*shelf)[0].written = gpu::kBookPages;
+    (*shelf)[0].written = lod::kBookPages;
     const auto isLate = [&](uint32_t key) {
-        gpu::BookReader reader;
+        lod::BookReader reader;
         reader.key = key;
         reader.read(0, *shelf);
-        return reader.mirrored || reader.at + 3 < gpu::kBookPages;
+        return reader.mirrored || reader.at + 3 < lod::kBookPages;
     };
     uint32_t reads = 2001;
     while (isLate(reads)) ++reads;
@@ -1987,10 +1987,10 @@ TEST_F(Volume, FramesNeedNoTemporalMixing) {
 
 // For any number and nearness of flames, pixels grow until all fit.
 TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
-    const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
-    const uint32_t words = gpu::volumeRayWords(screen);
-    std::vector<gpu::VolumeItem> items(gpu::kMaxVolumeFlames);
-    std::vector<gpu::MarchedVolume> out(items.size());
+    const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
+    const uint32_t words = lod::volumeRayWords(screen);
+    std::vector<lod::VolumeItem> items(gpu::kMaxVolumeFlames);
+    std::vector<lod::MarchedVolume> out(items.size());
     for (uint32_t i = 0; i < items.size(); ++i) {
         items[i].flame = i;
         items[i].draw.slabs = gpu::kVolumeSlabs;
@@ -2002,7 +2002,7 @@ TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
     }
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     for (const size_t count : {size_t(1), size_t(7), items.size()}) {
-        const gpu::LaidVolumes laid = gpu::layVolumes({items.data(), count}, screen, 1, words, out);
+        const lod::LaidVolumes laid = lod::layVolumes({items.data(), count}, screen, 1, words, out);
         ASSERT_EQ(laid.count, count);
         EXPECT_EQ(laid.end, out[0].march.samples);
         std::printf("           %zu over all: cells of %.0f px\n", count, double(cell(0)));
@@ -2025,17 +2025,17 @@ TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
             EXPECT_EQ(cell(0), 2.0f);
         }
     }
-    EXPECT_EQ(gpu::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it must not fit";
+    EXPECT_EQ(lod::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it must not fit";
 
     // A small flame keeps fine pixels however many large ones crowd the memory.
-    gpu::VolumeItem& small = items.back();
+    lod::VolumeItem& small = items.back();
     small.draw.rect = {-0.01f, -0.02f, 0.01f, 0.02f};
     small.draw.wide = 0.05f;
     small.draw.rayX = {4, 0, 0, 0};
-    ASSERT_GT(gpu::layVolumes(std::span(&small, 1), screen, 1, words, out).end, 0u);
+    ASSERT_GT(lod::layVolumes(std::span(&small, 1), screen, 1, words, out).end, 0u);
     const float alone = cell(0);
     EXPECT_LT(alone, 1.0f);
-    ASSERT_GT(gpu::layVolumes(items, screen, 1, words, out).end, 0u);
+    ASSERT_GT(lod::layVolumes(items, screen, 1, words, out).end, 0u);
     EXPECT_GT(cell(0), 4.0f) << "memory must be short";
     EXPECT_EQ(cell(items.size() - 1), alone);
 }
@@ -2043,10 +2043,10 @@ TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
 // When memory is short, smoke yields: fire keeps its resolution in its own window, which begins
 // where the smoke's ends.
 TEST(VolumeMarch, SmokeYieldsMemoryToFire) {
-    const gpu::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
-    const uint32_t words = gpu::volumeRayWords(screen);
-    std::array<gpu::VolumeItem, 24> items;
-    for (gpu::VolumeItem& item : items) {
+    const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
+    const uint32_t words = lod::volumeRayWords(screen);
+    std::array<lod::VolumeItem, 24> items;
+    for (lod::VolumeItem& item : items) {
         item.flame = uint32_t(&item - items.data());
         item.smokes = true;
         item.draw.slabs = gpu::kVolumeSlabs;
@@ -2057,12 +2057,12 @@ TEST(VolumeMarch, SmokeYieldsMemoryToFire) {
         item.draw.mostSteps = 32;
         item.draw.wide = 1;
     }
-    std::array<gpu::MarchedVolume, 2 * items.size()> out;
+    std::array<lod::MarchedVolume, 2 * items.size()> out;
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
-    ASSERT_EQ(gpu::layVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
+    ASSERT_EQ(lod::layVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
     EXPECT_EQ(cell(0), 2.0f) << "there is memory for one";
     EXPECT_EQ(out[0].composite.window, vec4(0.0f));
-    ASSERT_EQ(gpu::layVolumes(items, screen, 1, words, out).count, out.size());
+    ASSERT_EQ(lod::layVolumes(items, screen, 1, words, out).count, out.size());
     for (size_t i = 0; i < out.size(); i += 2) {
         const gpu::VolumeComposite &whole = out[i].composite, &fire = out[i + 1].composite;
         EXPECT_FALSE(out[i].window);
@@ -2116,7 +2116,7 @@ TEST(VolumeDraw, IsDrawnOnlyWhereItIsInFrontOfTheCamera) {
     const vec4 low(1, -0.5f, -10, 0.5f), high(2, 0.3f, 3, 1);
     gpu::VolumeDraw draw{};
     vec4 whole(1.0f);
-    ASSERT_TRUE(gpu::volumeDraw(view, low, high, 1, draw, &whole));
+    ASSERT_TRUE(lod::volumeDraw(view, low, high, 1, draw, &whole));
     EXPECT_EQ(whole, vec4(0.0f)) << "it surrounds the camera";
     vec4 seen(1, 1, -1, -1);
     std::mt19937 random(3);
@@ -2134,7 +2134,7 @@ TEST(VolumeDraw, IsDrawnOnlyWhereItIsInFrontOfTheCamera) {
     EXPECT_NEAR(draw.rect.x, seen.x, 0.03f) << "not all of the screen";
     EXPECT_GT(draw.rect.x, 0.2f);
     const vec4 behind(2, 1, 4, 0);
-    EXPECT_FALSE(gpu::volumeDraw(view, vec4(1, 0, 1, 1), behind, 1, draw));
+    EXPECT_FALSE(lod::volumeDraw(view, vec4(1, 0, 1, 1), behind, 1, draw));
 }
 
 TEST_F(Volume, SteadyFramesAllocateNothing) {

@@ -1,9 +1,9 @@
 // Flames of volumetric fires: capacity, division, failed frames, and the tier that a view gives
 // each of them.
 #include "components/fire_flames.h"
-#include "gpu/passes/draw.h"
-#include "gpu/passes/volume_books.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/impostor_atlas.h"
+#include "lod/tiers.h"
+#include "lod/volumes.h"
 
 #include <gtest/gtest.h>
 
@@ -90,8 +90,8 @@ TEST(FireFlames, DivisionKeepsThePowerContinuous) {
 // A view marches at most 32 flames and shows small ones as billboards. A flame keeps its tier while
 // its size wavers about a limit and changes by steps.
 TEST(VolumeTiers, AFlameKeepsItsTier) {
-    gpu::TierLives lives{};
-    std::vector<gpu::TierItem> items(256);
+    lod::TierLives lives{};
+    std::vector<lod::TierItem> items(256);
     std::vector<uint32_t> places(items.size());
     for (uint32_t i = 0; i < items.size(); ++i)
         items[i] = {i + 1, FW_FIRE_TIER_AUTO, 40.0f, 1.0f + 0.001f * float(i)};
@@ -100,7 +100,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
         for (const uint32_t place : places) sum += lives[place].tier == tier;
         return sum;
     };
-    const auto frame = [&] { gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places); };
+    const auto frame = [&] { lod::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places); };
     frame();
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_HIGH));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
@@ -117,7 +117,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     for (int k = 0; k < 40; ++k) frame();
     uint32_t turns = 0, tier = lives[places[0]].tier;
     for (int k = 0; k < 200; ++k) {
-        items[0].wide = k % 2 ? gpu::kCardInside + 0.1f : gpu::kCardOutside - 0.1f;
+        items[0].wide = k % 2 ? lod::kCardInside + 0.1f : lod::kCardOutside - 0.1f;
         frame();
         turns += lives[places[0]].tier != tier;
         tier = lives[places[0]].tier;
@@ -128,28 +128,28 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[0]].tier);
     items[0].wide = 5;
     float part = 0;
-    for (uint32_t k = 0; k < gpu::kTierFrames; ++k) {
+    for (uint32_t k = 0; k < lod::kTierFrames; ++k) {
         frame();
-        const gpu::TierLife& life = lives[places[0]];
+        const lod::TierLife& life = lives[places[0]];
         EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, life.tier);
-        EXPECT_EQ(k + 1 < gpu::kTierFrames, life.marched()) << k;
-        EXPECT_NEAR(part, life.part(), 1.01f / float(gpu::kTierFrames));
+        EXPECT_EQ(k + 1 < lod::kTierFrames, life.marched()) << k;
+        EXPECT_NEAR(part, life.part(), 1.01f / float(lod::kTierFrames));
         part = life.part();
     }
     // A requested tier is used; without room for its billboard the flame is marched.
     items[0].asked = FW_FIRE_TIER_MARCH_LOW;
     for (int k = 0; k < 40; ++k) frame();
-    EXPECT_EQ(gpu::kLowSteps, lives[places[0]].steps);
+    EXPECT_EQ(lod::kLowSteps, lives[places[0]].steps);
     items[0].asked = FW_FIRE_TIER_IMPOSTOR;
-    for (int k = 0; k < 40; ++k) gpu::chooseTiers(items, 0, {}, lives, places);
+    for (int k = 0; k < 40; ++k) lod::chooseTiers(items, 0, {}, lives, places);
     EXPECT_TRUE(lives[places[0]].marched());
 }
 
 // Similar flames that are too many to march, or small ones, share an impostor atlas. A flame alone
 // or without an atlas is unchanged.
 TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
-    gpu::TierLives lives{};
-    std::vector<gpu::TierItem> items(64);
+    lod::TierLives lives{};
+    std::vector<lod::TierItem> items(64);
     std::vector<uint32_t> places(items.size());
     for (uint32_t i = 0; i < items.size(); ++i)
         items[i] = {i + 1, FW_FIRE_TIER_AUTO, 60.0f, 2.0f - 0.01f * float(i), i % 2 == 0, true};
@@ -160,7 +160,7 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
     };
     const auto frames = [&](int many) {
         for (int k = 0; k < many; ++k)
-            gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places);
+            lod::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places);
     };
     frames(1);
     EXPECT_EQ(16u, count(FW_FIRE_TIER_FLIPBOOK));
@@ -168,7 +168,7 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
     // The device's budget limits them too.
     for (int k = 0; k < 40; ++k)
-        gpu::chooseTiers(items, gpu::kMaxVolumeFlames, {4, 8}, lives, places);
+        lod::chooseTiers(items, gpu::kMaxVolumeFlames, {4, 8}, lives, places);
     EXPECT_EQ(28u, count(FW_FIRE_TIER_FLIPBOOK));
 
     // By size: an impostor below 24 px, kept up to 31; a billboard below 10, kept up to 13.
@@ -178,18 +178,18 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
         frames(40);
         return lives[places[0]].tier;
     };
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookInside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookInside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kBookInside - 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[1]].tier) << "it has no impostor";
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kBookOutside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardInside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(gpu::kCardOutside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kBookOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kCardInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kCardOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kCardOutside + 1));
     items[0].shared = false;  // it keeps its impostor and takes no other
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(gpu::kCardOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kBookOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(gpu::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kCardOutside + 1));
     // A flame that requests an impostor gets it, or a billboard.
     items[0].asked = FW_FIRE_TIER_FLIPBOOK;
     EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(100));
@@ -201,10 +201,10 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
 // another flame's frames.
 TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     constexpr uint32_t kFlames = 12;
-    auto books = std::make_unique<gpu::VolumeBookShelf>();
-    std::vector<gpu::BookItem> items(kFlames);
-    std::vector<uint32_t> had(kFlames, gpu::kNoBook), out(kFlames);
-    std::vector<gpu::BookReader> readers(kFlames);
+    auto books = std::make_unique<lod::VolumeBookShelf>();
+    std::vector<lod::BookItem> items(kFlames);
+    std::vector<uint32_t> had(kFlames, lod::kNoBook), out(kFlames);
+    std::vector<lod::BookReader> readers(kFlames);
     for (uint32_t i = 0; i < kFlames; ++i) {
         items[i].kind = {i < 9 ? 7u : 8u, 0.5f + 0.01f * float(i), 2, 0.1f, true};
         items[i].key = 100 + i;
@@ -214,11 +214,11 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     items[8].kind.wide = 1;  // too wide
     items[11].kind.plain = false;
     const auto frame = [&] {
-        gpu::chooseBooks(items, had, 2, *books, out);
-        for (gpu::VolumeBook& book : *books)
-            if (book.used) book.pages[book.written++ % gpu::kBookPages].run = book.run;
+        lod::chooseBooks(items, had, 2, *books, out);
+        for (lod::VolumeBook& book : *books)
+            if (book.used) book.pages[book.written++ % lod::kBookPages].run = book.run;
         for (uint32_t i = 0; i < items.size(); ++i) {
-            if (out[i] == gpu::kNoBook) continue;
+            if (out[i] == lod::kNoBook) continue;
             readers[i].read(out[i], *books);
             had[i] = out[i];
         }
@@ -227,27 +227,27 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     frame();
     EXPECT_EQ(103u, (*books)[0].key) << "the largest flame";
     EXPECT_EQ(8u, (*books)[0].shares);
-    EXPECT_EQ(gpu::kNoBook, out[11]);
+    EXPECT_EQ(lod::kNoBook, out[11]);
     // With two impostors the second goes to the first flame without one.
     EXPECT_EQ(108u, (*books)[1].key);
-    EXPECT_EQ(gpu::kNoBook, out[9]) << "there are only two";
+    EXPECT_EQ(lod::kNoBook, out[9]) << "there are only two";
     for (int k = 0; k < 40; ++k) frame();
     std::set<uint64_t> late;
     for (uint32_t i = 0; i < 8; ++i) late.insert((*books)[0].written - 1 - readers[i].at);
     EXPECT_GE(late.size(), 6u);
     EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own frames as they are written";
-    EXPECT_LE(*late.rbegin() + gpu::kBookTurn, gpu::kBookPages);
+    EXPECT_LE(*late.rbegin() + lod::kBookTurn, lod::kBookPages);
 
     // Another flame's frames: each reader switches to them in turn.
     items[3].wants = false;
     items[4].covers = 1.5f;
     uint32_t turns = 0;
-    for (uint32_t k = 0; k < gpu::kBookPages; ++k) {
-        const std::vector<gpu::BookReader> last = readers;
+    for (uint32_t k = 0; k < lod::kBookPages; ++k) {
+        const std::vector<lod::BookReader> last = readers;
         frame();
         EXPECT_NE(103u, (*books)[0].key);
         for (uint32_t i = 0; i < 8; ++i) {
-            const gpu::BookReader& r = readers[i];
+            const lod::BookReader& r = readers[i];
             if (i == 3) continue;
             if (r.turned == 1) {
                 ++turns;
@@ -255,7 +255,7 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
             } else {
                 EXPECT_EQ(last[i].at + 1, r.at) << i;
             }
-            EXPECT_LT((*books)[0].written - r.at, gpu::kBookPages);
+            EXPECT_LT((*books)[0].written - r.at, lod::kBookPages);
         }
     }
     EXPECT_EQ(7u, turns) << "each once";
@@ -268,17 +268,17 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
 }
 
 TEST(FireFlames, ViewsGiveSamplesToTheLargestFlames) {
-    std::vector<gpu::VolumeItem> items(40);
+    std::vector<lod::VolumeItem> items(40);
     for (uint32_t i = 0; i < items.size(); ++i) {
         items[i].flame = i;
         const float side = 0.01f * float((i * 17) % 40 + 1);
         items[i].draw.rect = {0, 0, side, side};
         items[i].draw.mostSteps = 32;
     }
-    gpu::chooseVolumes(items);
+    lod::chooseVolumes(items);
     uint32_t all = 0;
     float least = 9, most = 0;
-    for (const gpu::VolumeItem& item : items) {
+    for (const lod::VolumeItem& item : items) {
         const bool full = item.draw.mostSteps == 32;
         all += full;
         if (full)
@@ -289,9 +289,9 @@ TEST(FireFlames, ViewsGiveSamplesToTheLargestFlames) {
     EXPECT_EQ(32u, all);
     EXPECT_LT(most, least);
     items.resize(32);
-    for (gpu::VolumeItem& item : items) item.draw.mostSteps = 32;
-    gpu::chooseVolumes(items);
-    for (const gpu::VolumeItem& item : items) EXPECT_EQ(32u, item.draw.mostSteps);
+    for (lod::VolumeItem& item : items) item.draw.mostSteps = 32;
+    lod::chooseVolumes(items);
+    for (const lod::VolumeItem& item : items) EXPECT_EQ(32u, item.draw.mostSteps);
 }
 
 }  // namespace

@@ -2,6 +2,8 @@
 #pragma once
 #include "flamewright/flamewright.h"
 #include "gpu/passes/pass.h"
+#include "lod/volumes.h"
+#include "shared/field_draw.h"
 #include "shared/half.h"
 #include "shared/heat.h"
 #include "shared/look.h"
@@ -9,12 +11,13 @@
 
 #include <array>
 #include <cstddef>
+#include <memory_resource>
 #include <span>
+#include <vector>
 
 namespace fw::gpu {
 
-struct FlameNode;  // shared/volume.h
-struct FlameRecord;
+using namespace lod;
 
 struct ViewInput {
     const FwView* view = nullptr;
@@ -41,7 +44,7 @@ struct LookSources {
 };
 
 // One material of one object as `surface` draws it. Ranges are in the shared vertex and index
-// planes.
+// buffers.
 struct DrawItem {
     uint32_t object = 0;  // slot
     uint32_t material = 0;
@@ -49,226 +52,85 @@ struct DrawItem {
     int32_t vertexOffset = 0;
     uint32_t shown = kNoneTexel;  // first of its own shown vertices; kNoneTexel: the mesh's
     uint32_t inside =
-        kNoneTexel;              // first of its mesh's vertices on the inner skin; kNoneTexel: none
-    bool insideShown = false;    // of its own shown vertices there
-    uint32_t image = 0;          // base-colour image slot + 1, 0: none
-    uint32_t variant = 0;        // of the surface pass, from surfaceVariant
-    uint32_t coldVariant = ~0u;  // of its triangles where nothing shows; ~0: drawn as the others
-    float coldReach = 0;         // texels, of that variant
-    bool refined = false;        // its triangles are in the refinement's planes
-    bool cut = false;            // and some of them are cut
-    bool told = false;           // by what stands along open edges: its holes are its texels'
-    uint32_t inner = 0;          // from a vertex's place to that on the inner skin; 0: has none
-    bool consumed = false;       // those burnt through are left out, whole: nothing is cut
-    bool zPass = false;          // drawn after the others, as z_pass.cpp says
+        kNoneTexel;            // first of its mesh's vertices on the inner skin; kNoneTexel: none
+    bool insideShown = false;  // of its own shown vertices there
+    uint32_t image = 0;        // base-colour image slot + 1, 0: none
+    MaterialFamily family = MaterialFamily::wood;
+    bool burns = false;      // fire may show on it
+    bool coldApart = false;  // its triangles where nothing shows are drawn as SurfaceState::cold
+    float coldReach = 0;     // texels, of those
+    bool refined = false;    // its triangles are in the refinement's buffers
+    bool cut = false;        // and some of them are cut
+    bool told = false;       // by what stands along open edges: its holes are its texels'
+    uint32_t inner = 0;      // from a vertex's place to that on the inner skin; 0: has none
+    bool consumed = false;   // those burnt through are left out, whole: nothing is cut
+    bool selfIntersects = false;  // drawn after the others, behind its own nearest depth
     SurfaceDraw draw{};
 };
 
-// Records a draw pass: pipeline and sets 0 and 2 are bound for it as its DrawPass says.
-class DrawRecorder {
- public:
-    // One indexed draw with its set 1; `push` has DrawPass::pushBytes.
-    virtual void drawItem(const DrawItem& item, const void* push) = 0;
-    // The same, on its inner skin.
-    virtual void drawInside(const DrawItem& item, const void* push) = 0;
-    // What is left of its triangles along holes.
-    virtual void drawCut(const DrawItem& item, const void* push) = 0;
-    // A VkDrawIndirectCommand at `offset` bytes of the resource.
-    virtual void drawIndirect(uint32_t resource, uint64_t offset) = 0;
-    // Of volumetric flame `flame`, of vertices that the shader makes.
-    virtual void drawVolume(uint32_t flame, const void* push, uint32_t vertices,
-                            uint32_t instances) = 0;
-    // The same, of vertices that the shader makes.
-    virtual void drawListed(uint32_t resource, uint64_t offset, const void* push) = 0;
-    // So many vertices, which the shader makes.
-    virtual void drawVertices(const void* push, uint32_t vertices) = 0;
-
- protected:
-    ~DrawRecorder() = default;
+// The order of a view's draws. Self-intersecting surfaces come after the other surfaces: where a
+// back face is nearest they show what was drawn before. Haze bends solid surfaces alone. Fields,
+// flames and volumes are soft: in a target of half resolution they are drawn there, and come over
+// the picture with HalfResolutionComposite, with sparks after them.
+enum class DrawPhase : uint8_t {
+    OpaqueFresh,
+    OpaqueBurning,
+    OpaqueSelfIntersecting,
+    Distortion,
+    Fields,
+    Flames,
+    Volumes,
+    HalfResolutionComposite,
+    Sparks,
+    Transparency,
+    Count,
 };
 
-constexpr uint32_t kSurfaceVariants = 35;
-extern const DrawPass kSurfacePasses[kSurfaceVariants];
-// The variant for a material of an object with an image there or not; `touched`: some event
-// reached the object.
-uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched);
-// A bit for each pass that may draw such a material, whatever becomes of it.
-uint64_t surfacePasses(const BurnMaterial& material, bool image);
+struct SurfaceStep {  // a draw of an item
+    DrawPhase phase{};
+    uint32_t pass = 0;  // of drawPasses()
+    uint32_t item = 0;
+};
+// All draws of `items`, by phase, pass and item. `out` has room for kMostSurfaceSteps of each.
+constexpr uint32_t kMostSurfaceSteps = 3;
+void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep>& out) noexcept;
+[[nodiscard]] MaterialFamily familyOf(uint32_t look) noexcept;  // FwMaterialPreset
+// Every pass that may draw such a material, whatever becomes of it.
+[[nodiscard]] DrawPassSet surfacePasses(const BurnMaterial& material, bool image);
 // `edge`: m, mean edge of the object's triangles.
 // `places`: of the object's vertices among the refined ones.
 // `doused`: something wetted it or put it out, some day. `warmed`: others' fires sent heat to it.
 SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
                         const HeatMaterial& heat, float edge, uint32_t places, bool doused,
                         bool warmed);
-// Of `items` those after the Z-pass, or the others.
-bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass);
-// `turned`: to this view counter-clockwise triangles turn their backs.
-void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
-                   bool zPass, bool turned);
-extern const DrawPass kZPass;
-bool zPassDraws(std::span<const DrawItem> items);
-void recordZPass(DrawRecorder& recorder, std::span<const DrawItem> items);
-// One of them: without flipbooks; with some; with nothing but them and sparks.
-constexpr uint32_t kBookVariants = 2;
-extern const DrawPass kFlamesPass, kBookFlamesPasses[kBookVariants];
-void recordFlames(DrawRecorder& recorder);
-
-// In a target of half resolution: sparks, which are drawn at the picture's. Without flipbooks,
-// with.
-extern const DrawPass kHalfSparksPasses[2];
-void recordHalfSparks(DrawRecorder& recorder);
-
-// In this order: depth as the quads are tested against it; all that is soft; which of its tiles
-// show anything; these, over the picture.
-extern const DrawPass kHalfDepthPass, kHalfTilesPass, kHalfCompositePass;
 // For a viewport that begins at `left`, `top` of the host's image.
 HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height);
 
-// Lays the host's copy of the picture before our draws over their result.
-extern const DrawPass kTransparencyPass;
-
-struct VolumeItem {  // a volumetric flame that a view may show
-    uint32_t flame = 0;
-    VolumeDraw draw{};
-    vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
-    vec3 middle{}, base{};    // m, world: of its bounds; where it stands
-    vec3 tip{};               // m, from there to where its mean height ends
-    float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
-    bool smokes = false;
-    bool hero = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
-    vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
+struct FieldItem {      // a particle field that a view may show
+    uint32_t draw = 0;  // its record
+    draw::Number pass{};
+    uint32_t vertices = 0;
+    float depth = 0;  // m
 };
-extern const DrawPass kVolumePass;
-// Where the view shows it, in so many slabs; false: nowhere.
-bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
-                VolumeDraw& out, vec4* whole = nullptr);
-// The plane through its base: dot(xyz, x) + w is m on the flame's side. Lower where it leans below
-// its base: nothing that it shows is beyond.
-vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count);
-// VolumeDraw::base of such a plane, of a draw that volumeDraw made: that has none.
-void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept;
-// VolumeDraw::clip: what tells how far something is from its depth.
-vec4 volumeClip(const ViewParams& view) noexcept;
-// How many samples each of them is worth where all are marched as they are drawn.
-void chooseVolumes(std::span<VolumeItem> items);
-// VolumeDraw::intervals for a curve.
-uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
-// Of the flame without its smoke.
-void volumeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
-                  vec4& high);
-// Slabs are for the flame: smoke before and behind it is in the outermost. Bounds of the flame
-// alone.
-void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out);
-// Farthest first.
-void recordVolume(DrawRecorder& recorder, std::span<const VolumeItem> items);
-
-struct MarchedVolume {  // one whose rays are marched before the drawing, and how it is shown
-    uint32_t flame = 0;
-    bool smokes = false;  // marched by kVolumeSmokePass
-    bool window = false;  // finer cells where it burns, of the one before it
-    VolumeMarch march{};
-    VolumeComposite composite{};
-};
-// Of VolumeWork per flame: it, its card, where it burns, its book's page.
-constexpr uint32_t kVolumeWorks = 4;
-extern const DrawPass kVolumeCompositePass;
-struct VolumeScreen {     // what the marched view is shown on
-    vec2 size{};          // px
-    uint32_t slabs = 1;   // of a flame
-    uint32_t cell = 2;    // px, at least
-    uint32_t steps = 64;  // of a ray, at most
-    uint32_t encoding = 0;
-    bool operator==(const VolumeScreen&) const = default;
-};
-// Words of FW_BIND_VOLUME_RAYS that a screen is worth: flames over all of it and half as much
-// again.
-uint32_t volumeRayWords(const VolumeScreen& screen);
-// px, across a flame.
-float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
-// Rays and samples of a flame that is marched as it is drawn: as many as if it were before.
-void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
-// Cells of all `items`, as fine as `words` allow, where those of most tiles get larger ones, in
-// their order, behind the `first` words, which are others'; `perPixel`: m per pixel at a depth
-// of 1. Where room is short smoke, thin and wide, makes way for fire: a flame that smokes gets
-// large cells, and behind it in `out` fine ones where it burns. So `out` needs room for twice as
-// many.
-struct LaidVolumes {
-    uint32_t end = 0;    // of the words that are known of tiles; 0: they do not fit
-    uint32_t count = 0;  // of `out`
-};
-LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
-                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
-                       uint32_t first = 0);
-// Farthest first.
-void recordVolumeComposite(DrawRecorder& recorder, std::span<const MarchedVolume> volumes);
-
-extern const DrawPass kVolumeCardPass;
-struct VolumeCardShape {  // what is in a card's words
-    bool there = false;
-    uint32_t key = 0;    // whose
-    uint64_t frame = 0;  // that marched it
-    vec3 middle{};       // m, from where the flame stands
-    vec3 direction{};    // unit, from the eye
-    vec2 low{};          // m across the view, from the middle: of its first cell
-    float cell = 0;      // m
-    uint32_t tilesX = 0, tilesY = 0, encoding = 0;
-};
-// What a flame's card shows goes over, pixel by pixel, from one march of it to the next.
-struct VolumeCardPair {
-    std::array<VolumeCardShape, 2> shapes;
-    uint32_t newest = 0;  // of them
-    uint32_t over = 1;    // frames from when it was marched until it shows alone
-};
-bool cardFits(const VolumeItem& item) noexcept;
-// How the card in `slot`, a half of a pair, is marched, from where it is seen now.
-void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept;
-// False: it is behind the eye.
-bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept;
-// Farthest first.
-void recordVolumeCards(DrawRecorder& recorder, std::span<const VolumeCard> cards);
-
-extern const DrawPass kVolumeSlicesPass;
-struct SlicedVolume {  // one that is drawn as slices of its lattice
-    uint32_t flame = 0;
-    VolumeSlices draw{};
-};
-bool slicesShow(uint32_t encoding) noexcept;  // whether slices add up there, see FwOutputEncoding
-SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept;
-// Farthest first.
-void recordVolumeSlices(DrawRecorder& recorder, std::span<const SlicedVolume> volumes);
-
-extern const DrawPass kVolumeHazePass;
-struct HazedVolume {  // one whose heat bends what is seen behind it
-    uint32_t flame = 0;
-    float away = 0;  // m along the view
-    VolumeHaze draw{};
-};
-// Of the column of hot gas in and above a flame.
-void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
-                      vec4& high);
-// False: the view shows none of it.
-bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, float strength,
-                   VolumeHaze& out) noexcept;
-// Farthest first.
-void recordVolumeHazes(DrawRecorder& recorder, std::span<const HazedVolume> volumes);
+// False: the view does not show it.
+bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out);
+void sortFields(std::span<FieldItem> items) noexcept;  // farthest first
 
 // Volumetric flames of all kinds as a view draws them, farthest first: runs of neighbours that one
 // pass draws, each run behind the last one of its pass.
 struct VolumeRun {
-    const DrawPass* pass = nullptr;
+    draw::Number pass{};
     uint32_t first = 0, count = 0;
 };
 struct VolumeOrder {
     std::array<VolumeRun, 3 * kMaxVolumeFlames> runs;  // a flame that turns may be in three
     uint32_t count = 0;
     // The next flame is `index` of its pass.
-    void add(const DrawPass& pass, uint32_t index) noexcept {
-        if (count > 0 && runs[count - 1].pass == &pass)
+    void add(draw::Number pass, uint32_t index) noexcept {
+        if (count > 0 && runs[count - 1].pass == pass)
             ++runs[count - 1].count;
         else
-            runs[count++] = {&pass, index, 1};
+            runs[count++] = {pass, index, 1};
     }
 };
 

@@ -1,42 +1,17 @@
-// Particle fields of one view: a draw each, farthest first. What emits alone, what absorbs and what
-// refracts are variants, so that none pays for another.
+// Particle fields of one view: a draw each, farthest first.
 #include "shared/field_draw.h"
 #include "gpu/passes/blend_order.h"
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/draw.h"
 
 namespace fw::gpu {
-namespace {
-
-constexpr Use kFieldDrawUses[] = {
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_FIELD_SHOWN, Access::drawRead},
-    {FW_BIND_FIELD_DRAWS, Access::drawRead},
-};
-
-constexpr DrawPass variant(uint32_t number) {
-    return {.name = "field draw",
-            .vertexShader = "field_draw.vert",
-            .fragmentShader = "field_draw.frag",
-            .uses = kFieldDrawUses,
-            .vertexInput = VertexInput::none,
-            .blend = Blend::premultiplied,
-            .writeDepth = false,
-            .pushBytes = 0,
-            .variant = number,
-            .softShader = "field_draw_soft.frag",
-            .softShaderMultisampled = "field_draw_soft_ms.frag",
-            .atHalf = AtHalf::soft};
-}
-
-}  // namespace
-
-const DrawPass kFieldDrawPasses[kFieldVariants] = {variant(0), variant(1), variant(2)};
 
 bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out) {
     const vec3 middle = vec3(field.place) + 0.5f * field.size.y * vec3(field.up) - vec3(view.eye);
     const float radius = 0.75f * glm::length(vec3(field.size));
     out.depth = glm::dot(middle, vec3(view.forward));
-    out.variant = field.up.w <= 0.0f ? 0 : field.up.w <= 1.0f ? 1 : 2;
+    out.pass = field.up.w <= 0.0f   ? draw::field_emitting
+               : field.up.w <= 1.0f ? draw::field_absorbing
+                                    : draw::field_refracting;
     out.vertices = field.shape == kFieldCard ? 6 : 6 * kFieldAround * kFieldUp;
     if (view.forward.w > 0.5f && out.depth < -radius) return false;
     // Left or right of the view, above or below it, as a whole.

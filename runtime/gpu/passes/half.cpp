@@ -5,37 +5,9 @@
 namespace fw::gpu {
 namespace {
 
-constexpr DrawPass halfPass(const char* name, const char* shader, const char* multisampled) {
-    return {.name = name,
-            .vertexShader = "half_all.vert",
-            .fragmentShader = nullptr,
-            .uses = {},
-            .vertexInput = VertexInput::none,
-            .blend = Blend::opaque,
-            .writeDepth = false,
-            .pushBytes = sizeof(HalfPush),
-            .softShader = shader,
-            .softShaderMultisampled = multisampled,
-            .atHalf = AtHalf::depth};
-}
-
 constexpr uint32_t parts(uint32_t all, uint32_t each) { return (all + each - 1) / each; }
 
 }  // namespace
-
-const DrawPass kHalfDepthPass = halfPass("half depth", "half_depth.frag", "half_depth_ms.frag");
-const DrawPass kHalfTilesPass = halfPass("half tiles", "half_tiles.frag", "half_tiles.frag");
-const DrawPass kHalfCompositePass{.name = "half composite",
-                                  .vertexShader = "half_composite.vert",
-                                  .fragmentShader = nullptr,
-                                  .uses = {},
-                                  .vertexInput = VertexInput::none,
-                                  .blend = Blend::premultiplied,
-                                  .writeDepth = false,
-                                  .pushBytes = sizeof(HalfPush),
-                                  .softShader = "half_composite.frag",
-                                  .softShaderMultisampled = "half_composite_ms.frag",
-                                  .atHalf = AtHalf::over};
 
 HalfPush halfPush(const ViewParams& view, int left, int top, uint32_t width, uint32_t height) {
     HalfPush push{};

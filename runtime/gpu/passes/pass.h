@@ -1,9 +1,18 @@
-// What a pass is: a name, a shader, what it uses. The backend derives set layouts, barriers, timers
-// and labels from it. Pass files hold one `const ComputePass` or `const DrawPass` each.
+// Types of passes and of the buffers that they use. A pass is a row of a table: passes.inl
+// (compute) or draw_passes.cpp (draws). Layouts, barriers, timers and labels follow from the row
+// and from what its shaders declare.
 #pragma once
+#include "shared/arp.h"
 #include "shared/burn.h"
+#include "shared/deform.h"
+#include "shared/exchange.h"
+#include "shared/field.h"
+#include "shared/look.h"
+#include "shared/particle.h"
+#include "shared/refine.h"
+#include "shared/spark.h"
+#include "shared/volume_draw.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -11,8 +20,7 @@
 
 namespace fw::gpu {
 
-// Resources are numbered by their binding (FW_BIND_*), so one list says both. Beyond them, what no
-// shader binds:
+// A resource's number is its binding (FW_BIND_*). Behind those come resources that no shader binds.
 constexpr uint32_t kMaxViews = 4;  // that a frame is recorded for
 // Each view has its own of these.
 constexpr std::array<uint32_t, 4> kResourcesOfViews{FW_BIND_FLAMES, FW_BIND_DRAW_ARGS,
@@ -32,56 +40,52 @@ constexpr uint32_t resourceOf(uint32_t resource, uint32_t view) noexcept {
     return resource;
 }
 
+// Where a shader reads `resource` as a texel buffer: a pass may write the same buffer by words.
+constexpr uint32_t texelBinding(uint32_t resource) noexcept { return FW_BIND_COUNT + resource; }
+
 enum class Access : uint8_t {
-    read,         // storage buffer, compute
-    write,        // storage buffer, compute; also read-modify-write and atomics
-    readTexels,   // as read, at texelBinding by texels of four words where the device has so many
-                  // of them: a software device reads those faster. At most 4, before any `write`
-    indirect,     // arguments of a dispatch or draw
-    drawRead,     // storage buffer, vertex and fragment shaders
-    drawTexels,   // as drawRead, but as readTexels; after the drawRead of who reads both ways
-    drawUniform,  // uniform buffer, vertex and fragment shaders; at most 16 KiB
-    drawEach,     // the same, of which a draw sees one record: FW_BIND_VOLUMES only
-    each,         // the same for a dispatch, uniform buffer, compute
-    vertexInput,  // vertex or index data
-    uniformView,  // the view's uniform block, dynamic offset: FW_BIND_VIEW only
+    read,        // storage buffer
+    write,       // storage buffer; also read-modify-write and atomics
+    readTexels,  // storage texel buffer at texelBinding: software devices read four words faster
+                 // so. Devices allow 4 a stage
+    uniform,     // uniform buffer, at most 16 KiB
+    indirect,    // arguments of a dispatch
     copyRead,
     copyWrite,
 };
-
-constexpr bool byTexels(Access access) noexcept {
-    return access == Access::readTexels || access == Access::drawTexels;
-}
 
 struct Use {
     uint32_t resource;
     Access access;
 };
-// What a piece of shader text needs (light_uses.h, shield_uses.h), and a pass' own beside it.
-template <std::size_t a, std::size_t b>
-constexpr std::array<Use, a + b> joined(const Use (&some)[a], const Use (&others)[b]) {
-    std::array<Use, a + b> uses{};
-    std::copy_n(others, b, std::copy_n(some, a, uses.begin()));
-    return uses;
-}
 
-// Whether it does something else for each view.
-constexpr bool ofViews(std::span<const Use> uses) noexcept {
-    return std::any_of(uses.begin(), uses.end(),
-                       [](const Use& use) { return resourceOf(use.resource, 1) != use.resource; });
+// Uniform buffers of which a dispatch or draw sees one record, by a dynamic offset.
+constexpr bool isDynamic(uint32_t resource) noexcept {
+    return resource == FW_BIND_VIEW || resource == FW_BIND_VOLUMES;
 }
 
 struct ComputePass {
-    const char* name;    // label, timer
-    const char* shader;  // in the embedded table: "arrival.comp"
-    std::span<const Use> uses;
-    uint32_t pushBytes;                 // <= 128
-    const char* texelShader = nullptr;  // where `uses` has texels: instead, if the device has them
-    bool profiles = false;              // set 1, binding 0: the fire profiles (sampler2DArray)
+    const char* name;    // of the shader too, with ".comp" behind it
+    uint32_t pushBytes;  // <= 128
 };
+struct NoPush {};
+// A pass of passes.inl, with the type of its push constants.
+template <class Push>
+struct ComputePassOf {
+    uint32_t number;  // in computePasses()
+};
+[[nodiscard]] std::span<const ComputePass> computePasses() noexcept;
 
-// So that a pass may read by texels what it writes by words.
-constexpr uint32_t texelBinding(uint32_t resource) noexcept { return FW_BIND_COUNT + resource; }
+namespace pass {
+enum Number : uint32_t {
+#define FW_COMPUTE_PASS(name, Push) number_##name,
+#include "gpu/passes/passes.inl"
+#undef FW_COMPUTE_PASS
+};
+#define FW_COMPUTE_PASS(name, Push) inline constexpr ComputePassOf<Push> name{number_##name};
+#include "gpu/passes/passes.inl"
+#undef FW_COMPUTE_PASS
+}  // namespace pass
 
 enum class VertexInput : uint8_t {
     none,  // the vertex shader makes its own from gl_VertexIndex and storage buffers
@@ -90,7 +94,7 @@ enum class VertexInput : uint8_t {
            // mesh's: 0 position vec3, 1 normal uint, 7 lead float
 };
 enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockwise on the screen
-// constant: a mix by the blend constant, of all that is there, whatever its depth.
+// constant: a mix of all that is there with the blend constant, whatever its depth.
 enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone, constant };
 
 // What becomes of a pass in a target with FW_TARGET_HALF_EFFECTS.
@@ -102,23 +106,38 @@ enum class AtHalf : uint8_t {
     over,    // only there: over the picture
 };
 
+// Which targets have a pass' pipeline.
+enum class DrawnIn : uint8_t {
+    surfaces,      // targets without FW_TARGET_NO_SURFACES
+    flames,        // targets without FW_TARGET_NO_FLAMES
+    haze,          // of those with flames: FW_TARGET_HAZE
+    transparency,  // FW_TARGET_TRANSPARENCY
+};
+
+// What a pass has in set 1 or 2, binding 0.
+enum class Textures : uint8_t {
+    none,
+    ofItem,     // sampler2D: an object's base colour, white if it has none
+    flipbooks,  // sampler2D
+    hostColor,  // sampler2D: the host's copy of what its target holds
+    looks,      // sampler2DArray: the look textures
+    profiles,   // sampler2DArray: the fire profiles
+    halfColor,  // sampler2D
+    halfDepth,  // sampler2D: depth and tiles of half resolution
+};
+
 // Specialization constants of draw shaders: 0 encoding (FwOutputEncoding), 1 reversed depth (0, 1),
 // 2 DrawPass::variant, 3 which part of the quads (kPart...), 4 the target's samples.
-// Sets: 0 as `uses` says; 1 binding 0 the object's base colour (sampler2D, white if none), of `book
-// flames` the flipbooks, of `volume haze` and `transparency` the colour that the host lends
-// (sampler2D); 2 binding 0 the look textures, of `volume` the fire profiles (sampler2DArray), of
-// `half composite` depth and tiles of half resolution, whose colour is its set 1 and that of `half
-// tiles`; 3, with softShader alone, binding 0 the depth that the host lends (sampler2D or
-// sampler2DMS).
+// Sets: 0 buffers; 1 and 2 textures; 3, with softShader alone, binding 0 the host's depth
+// (sampler2D or sampler2DMS).
 struct DrawPass {
     const char* name;
     const char* vertexShader;
     const char* fragmentShader;  // null: with Blend::depthAlone, or where softShader alone draws
-    std::span<const Use> uses;   // drawRead, uniformView, indirect; set 0
-    VertexInput vertexInput;
-    Blend blend;
-    bool writeDepth;     // only where the target allows it
-    uint32_t pushBytes;  // vertex and fragment, <= 128
+    VertexInput vertexInput = VertexInput::none;
+    Blend blend = Blend::premultiplied;
+    bool writeDepth = false;  // only where the target allows it
+    uint32_t pushBytes = 0;   // vertex and fragment, <= 128
     uint32_t variant = 0;
     Cull cull = Cull::none;
     bool strict = false;  // nothing where something stands as near
@@ -126,12 +145,65 @@ struct DrawPass {
     // Instead of fragmentShader where the target samples depth; null: not drawn there.
     const char* softShader = nullptr;
     const char* softShaderMultisampled = nullptr;
-    // The three where `uses` has texels: instead, if the device has them.
+    // The three where the device has texel buffers, instead; null: the same.
     const char* const* texelShaders = nullptr;
     AtHalf atHalf = AtHalf::same;
+    DrawnIn drawnIn = DrawnIn::flames;
+    Textures textures1 = Textures::none, textures2 = Textures::looks;
     // Instead of vertexShader and fragmentShader in a target of several samples; null: the same.
     const char* multisampledVertex = nullptr;
     const char* multisampledFragment = nullptr;
+    [[nodiscard]] constexpr bool drawsSurfaces() const noexcept {
+        return vertexInput == VertexInput::mesh && fragmentShader;
+    }
 };
+
+// What of a material decides its pipeline, beside its image; stone is drawn as wood.
+enum class MaterialFamily : uint8_t { wood, paint, sheet, plant, hide };
+// Fresh: no fire reached the object. Of others, cold triangles are far from all traces of fire.
+enum class SurfaceState : uint8_t { fresh, cold, burning };
+struct SurfaceKey {
+    MaterialFamily family = MaterialFamily::wood;
+    bool hasImage = false;
+    SurfaceState state = SurfaceState::fresh;
+    Cull cull = Cull::back;
+    constexpr bool operator==(const SurfaceKey&) const = default;
+};
+
+// Draw passes by their number in drawPasses(). Surfaces, by key, lie behind them: surfacePass.
+namespace draw {
+enum Number : uint32_t {
+    self_intersection_depth,
+    flames,
+    flipbook_flames,       // where flipbooks show some of the quads
+    flipbook_flames_only,  // where they show all but sparks
+    volume,
+    volume_card,
+    volume_composite,
+    volume_slices,
+    volume_haze,
+    field_emitting,
+    field_absorbing,
+    field_refracting,
+    half_depth,
+    half_tiles,
+    half_composite,
+    half_sparks,
+    half_flipbook_sparks,
+    transparency,
+    count,
+};
+}  // namespace draw
+constexpr uint32_t kSurfacePassCount = 35;
+constexpr uint32_t kDrawPassCount = draw::count + kSurfacePassCount;
+[[nodiscard]] std::span<const DrawPass> drawPasses() noexcept;
+
+// The pass that draws surfaces of this key. Some keys share one: an image is all that a fresh
+// surface shows, whatever its family.
+[[nodiscard]] uint32_t surfacePass(const SurfaceKey& key) noexcept;
+
+// A bit for each draw pass, by its number.
+using DrawPassSet = uint64_t;
+static_assert(kDrawPassCount <= 64);
 
 }  // namespace fw::gpu

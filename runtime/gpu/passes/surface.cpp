@@ -1,140 +1,58 @@
-// Burnable meshes as they look now, one draw per object and material. Variants differ in what they
+// Burnable meshes as they look now, one draw per object and material. Pipelines differ in what they
 // can draw, not in how it looks: see kSurface... in shared/look.h.
-#include "gpu/passes/frame_graph.h"
+#include "gpu/passes/draw.h"
+
+#include <algorithm>
+#include <tuple>
 
 namespace fw::gpu {
 namespace {
 
-constexpr Use kSurfaceUses[] = {
-    {FW_BIND_PREDICT, Access::drawRead},
-    {FW_BIND_GRADIENT, Access::drawRead},
-    {FW_BIND_LIGHTS, Access::drawUniform},
-    {FW_BIND_LOOKS, Access::drawUniform},
-    {FW_BIND_VIEW, Access::uniformView},
-    {FW_BIND_REFINE_VERTICES, Access::drawRead},
-    {FW_BIND_REFINE_INDICES, Access::vertexInput},
-    {FW_BIND_REFINE_DRAWS, Access::indirect},
-    {FW_BIND_HEAT, Access::drawRead},
-    {FW_BIND_REFINE_CUTS, Access::vertexInput},
-    {FW_BIND_REFINE_CUT_DRAWS, Access::indirect},
-    {FW_BIND_TILE_STATE, Access::drawRead},
-};
-
-constexpr DrawPass variant(uint32_t features, Cull cull) {
-    const bool burns = (features & kSurfaceBurns) != 0;
-    DrawPass pass{"surface",         "surface.vert", "surface.frag", kSurfaceUses,
-                  VertexInput::mesh, Blend::opaque,  true,           sizeof(SurfaceDraw),
-                  features,          cull,           burns};
-    pass.multisampledVertex = "surface_ms.vert";
-    pass.multisampledFragment = burns ? "surface_ms_holes.frag" : "surface_ms.frag";
-    return pass;
-}
-// All is drawn in two goes, so that the depth test drops the inside, which only holes show. Where
-// the host's faces turn the other way the goes swap, and the picture is the same. Of what burns,
-// the triangles without a trace of it come before, by cheaper variants; what burns is strict, and
-// so not drawn over those.
-constexpr uint32_t kFresh = 5, kBurning = 10;
-constexpr uint32_t kFirstCold = 2 * kFresh, kFirstBurning = 3 * kFresh;
-static_assert(kFirstBurning + 2 * kBurning == kSurfaceVariants);
-// Flags of draws stand where an object has the room that it is in, for which no draw asks; an
-// object's other flags stay below.
+// Draw flags reuse the bits that hold an object's room, which no draw reads; an object's other
+// flags stay below.
 constexpr uint32_t kObjectsOwn = (1u << kObjectRoomShift) - 1;
 static_assert(((kDrawVertexLight | kDrawPlaced | kDrawHeat | kDrawWet | kDrawThick | kDrawCut |
                 kDrawTold | kDrawInner) &
                kObjectsOwn) == 0);
 static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectShownAgain) <= kObjectsOwn);
 
-constexpr uint32_t kPaint = kSurfaceWood | kSurfacePaint;
-constexpr uint32_t kHide = kSurfaceSheet | kSurfaceHide;
-
 // m. Triangles with shorter edges are lit by flames at their corners.
 constexpr float kSmallEdge = 0.03f;
 
-// What a preset's look needs of a variant; stone needs nothing.
-uint32_t familyOf(uint32_t look) {
+}  // namespace
+
+MaterialFamily familyOf(uint32_t look) noexcept {
     switch (look) {
-        case FW_MATERIAL_PINE:
-        case FW_MATERIAL_PLYWOOD:
-            return kSurfaceWood;
         case FW_MATERIAL_PAINTED_WOOD:
-            return kPaint;
+            return MaterialFamily::paint;
         case FW_MATERIAL_NEWSPAPER:
         case FW_MATERIAL_PAPER:
         case FW_MATERIAL_COTTON:
-            return kSurfaceSheet;
-        case FW_MATERIAL_POLYESTER:
-            return kSurfaceSheet | kSurfaceHide;
+            return MaterialFamily::sheet;
         case FW_MATERIAL_DRY_LEAF:
         case FW_MATERIAL_GREEN_LEAF:
         case FW_MATERIAL_THATCH:
         case FW_MATERIAL_DRY_GRASS:
-            return kSurfacePlant;
+            return MaterialFamily::plant;
+        case FW_MATERIAL_POLYESTER:
         case FW_MATERIAL_LEATHER:
         case FW_MATERIAL_PLASTIC:
-            return kSurfaceHide;
+            return MaterialFamily::hide;
         default:
-            return 0;
+            return MaterialFamily::wood;
     }
 }
 
-}  // namespace
-
-// Cheapest first: an object is drawn by the first that has all it needs.
-const DrawPass kSurfacePasses[kSurfaceVariants] = {
-    variant(kSurfaceWood, Cull::back),
-    variant(kSurfacePlant, Cull::back),
-    variant(kPaint, Cull::back),
-    variant(kHide, Cull::back),
-    variant(kSurfaceImage, Cull::back),
-    variant(kSurfaceWood, Cull::front),
-    variant(kSurfacePlant, Cull::front),
-    variant(kPaint, Cull::front),
-    variant(kHide, Cull::front),
-    variant(kSurfaceImage, Cull::front),
-    variant(kSurfaceWood | kSurfaceCold, Cull::back),
-    variant(kSurfacePlant | kSurfaceCold, Cull::back),
-    variant(kPaint | kSurfaceCold, Cull::back),
-    variant(kHide | kSurfaceCold, Cull::back),
-    variant(kSurfaceImage | kSurfaceCold, Cull::back),
-    variant(kSurfaceWood | kSurfaceBurns, Cull::back),
-    variant(kPaint | kSurfaceBurns, Cull::back),
-    variant(kSurfaceSheet | kSurfaceBurns, Cull::back),
-    variant(kSurfacePlant | kSurfaceBurns, Cull::back),
-    variant(kHide | kSurfaceBurns, Cull::back),
-    variant(kSurfaceWood | kSurfaceImage | kSurfaceBurns, Cull::back),
-    variant(kPaint | kSurfaceImage | kSurfaceBurns, Cull::back),
-    variant(kSurfaceSheet | kSurfaceImage | kSurfaceBurns, Cull::back),
-    variant(kSurfacePlant | kSurfaceImage | kSurfaceBurns, Cull::back),
-    variant(kHide | kSurfaceImage | kSurfaceBurns, Cull::back),
-    variant(kSurfaceWood | kSurfaceBurns, Cull::front),
-    variant(kPaint | kSurfaceBurns, Cull::front),
-    variant(kSurfaceSheet | kSurfaceBurns, Cull::front),
-    variant(kSurfacePlant | kSurfaceBurns, Cull::front),
-    variant(kHide | kSurfaceBurns, Cull::front),
-    variant(kSurfaceWood | kSurfaceImage | kSurfaceBurns, Cull::front),
-    variant(kPaint | kSurfaceImage | kSurfaceBurns, Cull::front),
-    variant(kSurfaceSheet | kSurfaceImage | kSurfaceBurns, Cull::front),
-    variant(kSurfacePlant | kSurfaceImage | kSurfaceBurns, Cull::front),
-    variant(kHide | kSurfaceImage | kSurfaceBurns, Cull::front),
-};
-
-uint32_t surfaceVariant(const BurnMaterial& material, bool image, bool touched) {
-    // Without fire an image is all that a material shows.
-    uint32_t needs = touched ? kSurfaceBurns : 0;
-    if (touched || !image) needs |= familyOf(material.look);
-    if (image) needs |= kSurfaceImage;
-    uint32_t i = touched ? kFirstBurning : 0;
-    while ((needs & ~kSurfacePasses[i].variant) != 0) ++i;
-    return i;
-}
-
-uint64_t surfacePasses(const BurnMaterial& material, bool image) {
-    const uint32_t fresh = surfaceVariant(material, image, false);
-    const uint32_t burning = surfaceVariant(material, image, true);
-    uint64_t passes = 0;
-    for (const uint32_t pass :
-         {fresh, fresh + kFresh, fresh + kFirstCold, burning, burning + kBurning})
-        passes |= uint64_t(1) << pass;
+DrawPassSet surfacePasses(const BurnMaterial& material, bool image) {
+    DrawPassSet passes = 0;
+    const auto add = [&](SurfaceState state, Cull cull) {
+        passes |= DrawPassSet(1) << surfacePass({familyOf(material.look), image, state, cull});
+    };
+    for (const Cull cull : {Cull::back, Cull::front}) {
+        add(SurfaceState::fresh, cull);
+        add(SurfaceState::burning, cull);
+    }
+    add(SurfaceState::cold, Cull::back);
     return passes;
 }
 
@@ -169,46 +87,28 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     return draw;
 }
 
-// Whether pass `variant` draws an item. After the Z-pass only what faces the eye is drawn.
-static bool drawnBy(uint32_t variant, const DrawItem& item, bool zPass) {
-    if (item.zPass != zPass) return false;
-    if (variant < kFirstCold) return item.variant == variant % kFresh;
-    if (variant >= kFirstBurning)
-        return item.variant == variant || (item.variant + kBurning == variant && !zPass);
-    return item.variant >= kFirstBurning && item.coldVariant == variant - kFirstCold;
-}
-
-bool surfaceDraws(uint32_t variant, std::span<const DrawItem> items, bool zPass) {
-    for (const DrawItem& item : items) {
-        if (drawnBy(variant, item, zPass)) return true;
-    }
-    return false;
-}
-
-void recordSurface(DrawRecorder& recorder, uint32_t variant, std::span<const DrawItem> items,
-                   bool zPass, bool turned) {
-    const bool burning = variant >= kFirstBurning, cold = !burning && variant >= kFirstCold;
-    const bool behind = burning ? variant >= kFirstBurning + kBurning : variant >= kFresh && !cold;
-    for (const DrawItem& item : items) {
-        if (!drawnBy(variant, item, zPass)) continue;
-        SurfaceDraw draw = item.draw;
-        if (!burning) draw.nearness = item.coldReach;
-        if (burning && ((item.cut && !item.told) || (item.refined && item.consumed)))
-            draw.flags |= kDrawCut;
-        if (item.refined) {
-            draw.flags |= kDrawPlaced;
-            // What turns its back is seen from inside.
-            draw.inner = item.inner;
-            if (behind != turned && item.inner != 0) draw.flags |= kDrawInner;
+void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep>& out) noexcept {
+    out.clear();
+    for (uint32_t i = 0; i < items.size(); ++i) {
+        const DrawItem& item = items[i];
+        const auto add = [&](DrawPhase phase, SurfaceState state, Cull cull) {
+            out.push_back({phase, surfacePass({item.family, item.image != 0, state, cull}), i});
+        };
+        if (!item.burns) {
+            add(DrawPhase::OpaqueFresh, SurfaceState::fresh, Cull::back);
+            add(DrawPhase::OpaqueFresh, SurfaceState::fresh, Cull::front);
+        } else if (item.selfIntersects) {
+            out.push_back({DrawPhase::OpaqueSelfIntersecting, draw::self_intersection_depth, i});
+            add(DrawPhase::OpaqueSelfIntersecting, SurfaceState::burning, Cull::back);
+        } else {
+            if (item.coldApart) add(DrawPhase::OpaqueBurning, SurfaceState::cold, Cull::back);
+            add(DrawPhase::OpaqueBurning, SurfaceState::burning, Cull::back);
+            add(DrawPhase::OpaqueBurning, SurfaceState::burning, Cull::front);
         }
-        if (burning && !item.refined && behind != turned && item.inside != kNoneTexel)
-            recorder.drawInside(item, &draw);
-        else
-            recorder.drawItem(item, &draw);
-        if (!item.cut || cold) continue;
-        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut | (item.told ? kDrawTold : 0);
-        recorder.drawCut(item, &draw);
     }
+    std::sort(out.begin(), out.end(), [](const SurfaceStep& a, const SurfaceStep& b) {
+        return std::tie(a.phase, a.pass, a.item) < std::tie(b.phase, b.pass, b.item);
+    });
 }
 
 }  // namespace fw::gpu

@@ -9,8 +9,9 @@ struct Scope {
     bool write;
 };
 
-Scope scopeOf(Access access) noexcept {
-    switch (access) {
+Scope scopeOf(const Use& use) noexcept {
+    if (use.resource == FW_BIND_VIEW) return {0, 0, false};  // the CPU wrote it before the submit
+    switch (use.access) {
         case Access::read:
         case Access::readTexels:
             return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_SHADER_READ_BIT, false};
@@ -20,21 +21,8 @@ Scope scopeOf(Access access) noexcept {
         case Access::indirect:
             return {VK_PIPELINE_STAGE_DRAW_INDIRECT_BIT, VK_ACCESS_INDIRECT_COMMAND_READ_BIT,
                     false};
-        case Access::drawRead:
-        case Access::drawTexels:
-            return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-                    VK_ACCESS_SHADER_READ_BIT, false};
-        case Access::drawUniform:
-        case Access::drawEach:
-            return {VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT,
-                    VK_ACCESS_UNIFORM_READ_BIT, false};
-        case Access::each:
+        case Access::uniform:
             return {VK_PIPELINE_STAGE_COMPUTE_SHADER_BIT, VK_ACCESS_UNIFORM_READ_BIT, false};
-        case Access::vertexInput:
-            return {VK_PIPELINE_STAGE_VERTEX_INPUT_BIT,
-                    VK_ACCESS_VERTEX_ATTRIBUTE_READ_BIT | VK_ACCESS_INDEX_READ_BIT, false};
-        case Access::uniformView:
-            return {0, 0, false};  // written by the CPU before the submit
         case Access::copyRead:
             return {VK_PIPELINE_STAGE_TRANSFER_BIT, VK_ACCESS_TRANSFER_READ_BIT, false};
         case Access::copyWrite:
@@ -74,7 +62,7 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
     VkPipelineStageFlags srcStages = 0, dstStages = 0;
     VkAccessFlags srcAccess = 0, dstAccess = 0;
     for (const Use& one : uses) {
-        const Scope scope = scopeOf(one.access);
+        const Scope scope = scopeOf(one);
         const State& state = states_[resourceOf(one.resource, view)];
         const bool seen = (state.visibleStages & scope.stages) == scope.stages &&
                           (state.visibleAccess & scope.access) == scope.access;
@@ -88,7 +76,7 @@ void BarrierTracker::use(const Table& table, VkCommandBuffer commands, std::span
     }
     if (srcStages) record(table, commands, srcStages, srcAccess, dstStages, dstAccess);
     for (const Use& one : uses) {
-        const Scope scope = scopeOf(one.access);
+        const Scope scope = scopeOf(one);
         State& state = states_[resourceOf(one.resource, view)];
         if (scope.write) {
             state = {scope.stages, scope.access & kOurWrites, 0, 0, 0};

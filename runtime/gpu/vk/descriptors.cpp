@@ -1,6 +1,5 @@
 #include "gpu/vk/descriptors.h"
 
-#include "gpu/passes/frame_graph.h"
 #include "shared/volume_draw.h"
 
 #include <array>
@@ -43,35 +42,26 @@ void PassSets::drop(uint32_t view, uint64_t lastFrame) {
     of.draw.clear();
 }
 
-void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes,
+void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const WorldBuffers& buffers,
                      VkBuffer views, VkDeviceSize viewBytes, uint32_t of) const {
-    std::array<VkDescriptorBufferInfo, 2 * FW_BIND_COUNT> infos{};
-    std::array<VkWriteDescriptorSet, 2 * FW_BIND_COUNT> writes{};
+    std::array<VkDescriptorBufferInfo, ShaderInterface::kMost> infos{};
+    std::array<VkWriteDescriptorSet, ShaderInterface::kMost> writes{};
     uint32_t count = 0;
-    std::array<bool, 2 * FW_BIND_COUNT> seen{};
     for (const Use& use : uses) {
-        const bool texels = device_.texels && byTexels(use.access);
-        const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
-        if (use.resource >= FW_BIND_COUNT || seen[number]) continue;
-        if (use.access == Access::indirect || use.access == Access::copyRead ||
-            use.access == Access::copyWrite || use.access == Access::vertexInput)
-            continue;
-        seen[number] = true;
-        const bool view = use.resource == FW_BIND_VIEW;
-        const bool each = use.access == Access::drawEach || use.access == Access::each;
-        const Buffer& buffer = planes.buffer(resourceOf(use.resource, of));
-        infos[count] = view ? VkDescriptorBufferInfo{views, 0, viewBytes}
-                            : VkDescriptorBufferInfo{buffer.handle, 0,
-                                                     each ? kVolumeFlameBytes : VK_WHOLE_SIZE};
+        const DescriptorSlot slot = descriptorSlot(use);
+        const bool texels = slot.type == VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER;
+        const Buffer& buffer = buffers.buffer(resourceOf(use.resource, of));
+        infos[count] = use.resource == FW_BIND_VIEW
+                           ? VkDescriptorBufferInfo{views, 0, viewBytes}
+                           : VkDescriptorBufferInfo{
+                                 buffer.handle, 0,
+                                 isDynamic(use.resource) ? kVolumeFlameBytes : VK_WHOLE_SIZE};
         VkWriteDescriptorSet& one = writes[count];
         one.sType = VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET;
         one.dstSet = set;
-        one.dstBinding = number;
+        one.dstBinding = slot.binding;
         one.descriptorCount = 1;
-        one.descriptorType = view || each ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
-                             : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                             : texels ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
-                                      : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
+        one.descriptorType = slot.type;
         if (texels)
             one.pTexelBufferView = &buffer.texels;
         else
@@ -81,10 +71,10 @@ void PassSets::write(VkDescriptorSet set, std::span<const Use> uses, const Plane
     device_.table.UpdateDescriptorSets(device_.handle, count, writes.data(), 0, nullptr);
 }
 
-void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes,
+void PassSets::update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize viewBytes,
                       uint64_t lastFrame, uint32_t view) {
     OfView& of = views_[view];
-    if (of.generation == planes.generation()) return;
+    if (of.generation == buffers.generation()) return;
     const size_t computeCount = computePasses().size(), drawCount = drawPasses().size();
     of.compute.resize(computeCount);
     of.draw.resize(drawCount);
@@ -94,29 +84,22 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     std::array<VkDescriptorSet*, 128> places{};
     std::array<std::span<const Use>, 128> uses{};
     uint32_t sets = 0;
-    const auto add = [&](VkDescriptorSet& place, std::span<const Use> used,
-                         VkDescriptorSetLayout layout) {
-        if (view > 0 && !ofViews(used)) return;
+    const auto add = [&](VkDescriptorSet& place, const PassObjects& pass) {
+        if (view > 0 && !pass.declared.isPerView()) return;
         places[sets] = &place;
-        uses[sets] = used;
-        layouts[sets++] = layout;
+        uses[sets] = pass.declared.uses();
+        layouts[sets++] = pass.setLayout;
     };
-    for (size_t i = 0; i < computeCount; ++i)
-        add(of.compute[i], computePasses()[i]->uses, pipelines_.compute(i).setLayout);
-    for (size_t i = 0; i < drawCount; ++i)
-        add(of.draw[i], drawPasses()[i]->uses, pipelines_.draw(i).setLayout);
-    uint32_t storage = 0, uniform = 0, dynamic = 0, texels = 0;
+    for (size_t i = 0; i < computeCount; ++i) add(of.compute[i], pipelines_.compute(i));
+    for (size_t i = 0; i < drawCount; ++i) add(of.draw[i], pipelines_.draw(i));
+    std::array<VkDescriptorPoolSize, 4> sizes{{{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, 1},
+                                               {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, 1},
+                                               {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, 1},
+                                               {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, 1}}};
     for (uint32_t i = 0; i < sets; ++i)
         for (const Use& use : uses[i])
-            ++(use.resource == FW_BIND_VIEW || use.resource == FW_BIND_VOLUMES ? dynamic
-               : use.access == Access::drawUniform                             ? uniform
-               : device_.texels && byTexels(use.access)                        ? texels
-                                                                               : storage);
-    const std::array<VkDescriptorPoolSize, 4> sizes{
-        {{VK_DESCRIPTOR_TYPE_STORAGE_BUFFER, storage + 1},
-         {VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER, texels + 1},
-         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER, uniform + 1},
-         {VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC, dynamic + 1}}};
+            for (VkDescriptorPoolSize& size : sizes)
+                size.descriptorCount += size.type == descriptorSlot(use).type ? 1 : 0;
     auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
     info.maxSets = sets;
     info.poolSizeCount = uint32_t(sizes.size());
@@ -140,9 +123,9 @@ void PassSets::update(const Planes& planes, VkBuffer views, VkDeviceSize viewByt
     of.pool = pool;
     for (uint32_t i = 0; i < sets; ++i) {
         *places[i] = made[i];
-        write(made[i], uses[i], planes, views, viewBytes, view);
+        write(made[i], uses[i], buffers, views, viewBytes, view);
     }
-    of.generation = planes.generation();
+    of.generation = buffers.generation();
 }
 
 ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView view,

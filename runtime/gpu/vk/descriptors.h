@@ -2,7 +2,7 @@
 // another one; and one per image. Never touched while recording a steady frame.
 #pragma once
 #include "gpu/vk/pipelines.h"
-#include "gpu/vk/planes.h"
+#include "gpu/vk/world_buffers.h"
 
 namespace fw::gpu::vk {
 
@@ -14,10 +14,10 @@ class PassSets {
     PassSets(const PassSets&) = delete;
     PassSets& operator=(const PassSets&) = delete;
 
-    // Makes new sets for view `view` if the planes changed since; the old ones go when frame
+    // Makes new sets for view `view` if the buffers changed since; the old ones go when frame
     // `lastFrame` is done. Of views beyond the first only passes of views have their own.
-    void update(const Planes& planes, VkBuffer views, VkDeviceSize viewBytes, uint64_t lastFrame,
-                uint32_t view = 0);
+    void update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize viewBytes,
+                uint64_t lastFrame, uint32_t view = 0);
     // The sets of a view beyond the first go when frame `lastFrame` is done. May throw, and then
     // did nothing.
     void drop(uint32_t view, uint64_t lastFrame);
@@ -30,11 +30,11 @@ class PassSets {
     struct OfView {
         explicit OfView(std::pmr::memory_resource* memory) : compute(memory), draw(memory) {}
         VkDescriptorPool pool = VK_NULL_HANDLE;
-        uint64_t generation = 0;                          // of the planes; 0: there are no sets
+        uint64_t generation = 0;                          // of the buffers; 0: there are no sets
         std::pmr::vector<VkDescriptorSet> compute, draw;  // null: the first view's
     };
-    void write(VkDescriptorSet set, std::span<const Use> uses, const Planes& planes, VkBuffer views,
-               VkDeviceSize viewBytes, uint32_t view) const;
+    void write(VkDescriptorSet set, std::span<const Use> uses, const WorldBuffers& buffers,
+               VkBuffer views, VkDeviceSize viewBytes, uint32_t view) const;
 
     Device& device_;
     const Pipelines& pipelines_;

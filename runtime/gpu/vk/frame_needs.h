@@ -65,18 +65,14 @@ struct FrameNeeds {
     bool stimulus = false;                // an event or a latch
     bool findsAnew = false;               // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
-    bool appears = false;  // an object comes into view
-    bool falling = false;  // burnt pieces may lose their hold
-    uint32_t nodeGroups = 0, sheetGroups = 0, springGroups = 0, vertexGroups = 0;  // what deforms
-    uint32_t innerGroups = 0;             // and shows an inner skin
+    bool appears = false;                 // an object comes into view
+    bool falling = false;                 // burnt pieces may lose their hold
+    DeformGroups deform;                  // what deforms
     bool sheetsBegin = false;             // some sheet did not move in the frame before
     uint32_t fieldRuns = 0;               // steps and new masks
     bool fieldsShow = false;              // or showed until now
     bool skins = false;                   // a host moved vertices
     bool readback = false, work = false;  // no work: nothing is recorded
-    [[nodiscard]] uint32_t deformGroups() const noexcept {
-        return nodeGroups + sheetGroups + springGroups + vertexGroups + innerGroups;
-    }
 };
 
 // vk_needs.cpp

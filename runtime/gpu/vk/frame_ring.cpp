@@ -91,7 +91,7 @@ FrameInFlight& FrameRing::slotFor(uint64_t frameIndex) {
     best->frameIndex = frameIndex;
     best->uploadUsed = 0;
     best->views = 0;
-    best->lentSetCount = 0;
+    best->hostSetCount = 0;
     best->readbackPending = false;
     return *best;
 }

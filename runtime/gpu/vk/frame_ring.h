@@ -44,13 +44,13 @@ struct FrameInFlight {
     FrameTimers timers;
     std::array<VkFramebuffer, 8> framebuffers{};  // of its composites
     uint32_t framebufferCount = 0;
-    // Sets for the depth and the colour that hosts lend: made together when the first is needed,
+    // Sets for the depth and the colour that hosts give: made together when the first is needed,
     // rewritten for each use in a frame.
-    static constexpr uint32_t kLentDraws = 16;
-    static constexpr uint32_t kLentSets = 2 * kLentDraws;
-    VkDescriptorPool lentPool = VK_NULL_HANDLE;
-    std::array<VkDescriptorSet, kLentSets> lentSets{};
-    uint32_t lentSetCount = 0;  // used
+    static constexpr uint32_t kHostDraws = 16;
+    static constexpr uint32_t kHostSets = 2 * kHostDraws;
+    VkDescriptorPool hostPool = VK_NULL_HANDLE;
+    std::array<VkDescriptorSet, kHostSets> hostSets{};
+    uint32_t hostSetCount = 0;  // used
 };
 
 class FrameRing {

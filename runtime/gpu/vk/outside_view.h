@@ -3,8 +3,8 @@
 // see resourceOf; all share the simulation, lights and meshes.
 #pragma once
 #include "gpu/passes/draw.h"
-#include "gpu/passes/volume_books.h"
-#include "gpu/passes/volume_tiers.h"
+#include "lod/impostor_atlas.h"
+#include "lod/tiers.h"
 
 #include <array>
 
@@ -16,9 +16,9 @@ namespace fw::gpu::vk {
 struct March {
     VolumeScreen screen;   // no size: none was seen
     uint64_t frame = 0;    // that saw it: of several screens in a frame the largest counts
-    VolumeScreen made;     // of what is in the plane
+    VolumeScreen made;     // of what is in the buffer
     VolumeScreen unknown;  // that was last drawn before anything was marched for it
-    FwView view{};         // and its view; in the plane nothing: count is 0
+    FwView view{};         // and its view; in the buffer nothing: count is 0
     bool there = false;
     uint32_t count = 0;
     // Cards that are marched behind them.
@@ -38,7 +38,7 @@ struct March {
     uint32_t bookSlot = 0;                     // of cards: the first of theirs
     uint32_t bookEncoding = 0;                 // of their pages
     uint32_t slots = 0;                        // pairs that there is room for, before all else
-    uint32_t capacity = 0;                     // of the plane when they were made
+    uint32_t capacity = 0;                     // of the buffer when they were made
     uint64_t passed = 0;                       // frames
     std::array<float, kMaxVolumeFlames> haze;  // by flame, [0, 1]: how much of it shows
 };

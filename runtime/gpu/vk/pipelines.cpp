@@ -1,10 +1,8 @@
 #include "gpu/vk/pipelines.h"
 
 #include "core/error.h"
-#include "gpu/passes/frame_graph.h"
 #include "gpu/vk/vk_backend.h"
 #include "mesh/burn_domain.h"
-#include "shaders_embedded.h"
 #include "shared/deform.h"
 #include "shared/look.h"
 
@@ -208,8 +206,28 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
     return key;
 }
 
-// What waits for objects that are drawn by it.
-constexpr PassSet kWaiting = (PassSet(1) << kSurfaceVariants) - 1;
+// Passes of which FW_TARGET_AS_NEEDED targets have a pipeline once an object needs it.
+DrawPassSet waitingPasses() noexcept {
+    DrawPassSet passes = 0;
+    for (size_t i = 0; i < drawPasses().size(); ++i)
+        if (drawPasses()[i].drawsSurfaces()) passes |= DrawPassSet(1) << i;
+    return passes;
+}
+
+bool isDrawn(const DrawPass& pass, const TargetKey& key) noexcept {
+    const bool atFull = pass.atHalf == AtHalf::same || pass.atHalf == AtHalf::soft;
+    switch (pass.drawnIn) {
+        case DrawnIn::surfaces:
+            return key.surfaces;
+        case DrawnIn::flames:
+            return key.flames && (atFull || key.half);
+        case DrawnIn::haze:
+            return key.flames && key.haze;
+        case DrawnIn::transparency:
+            return key.transparency;
+    }
+    return false;
+}
 
 }  // namespace
 
@@ -292,36 +310,13 @@ void Pipelines::makeLayouts() {
                                                &imageLayout_),
                   "vkCreateDescriptorSetLayout");
 
-    const auto make = [&](PassObjects& objects, std::span<const Use> uses, uint32_t pushBytes,
-                          bool draws, uint32_t setCount) {
-        std::array<VkDescriptorSetLayoutBinding, 2 * FW_BIND_COUNT> bindings{};
+    const auto make = [&](PassObjects& objects, uint32_t pushBytes, VkShaderStageFlags stages,
+                          uint32_t setCount) {
+        std::array<VkDescriptorSetLayoutBinding, ShaderInterface::kMost> bindings{};
         uint32_t count = 0;
-        std::array<bool, 2 * FW_BIND_COUNT> seen{};
-        const VkShaderStageFlags stages =
-            draws ? VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT
-                  : VK_SHADER_STAGE_COMPUTE_BIT;
-        for (const Use& use : uses) {
-            const bool bound = use.access == Access::read || use.access == Access::write ||
-                               use.access == Access::readTexels || use.access == Access::drawRead ||
-                               use.access == Access::drawTexels ||
-                               use.access == Access::drawUniform ||
-                               use.access == Access::drawEach || use.access == Access::each ||
-                               use.access == Access::uniformView;
-            const bool texels = device_.texels && byTexels(use.access);
-            const uint32_t number = texels ? texelBinding(use.resource) : use.resource;
-            if (!bound || seen[number]) continue;
-            seen[number] = true;
-            VkDescriptorSetLayoutBinding& binding = bindings[count++];
-            binding.binding = number;
-            binding.descriptorType =
-                use.access == Access::uniformView || use.access == Access::drawEach ||
-                        use.access == Access::each
-                    ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
-                : use.access == Access::drawUniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
-                : texels                            ? VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER
-                                                    : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER;
-            binding.descriptorCount = 1;
-            binding.stageFlags = stages;
+        for (const Use& use : objects.declared.uses()) {
+            const DescriptorSlot slot = descriptorSlot(use);
+            bindings[count++] = {slot.binding, slot.type, 1, stages, nullptr};
         }
         auto set = typed<VkDescriptorSetLayoutCreateInfo>(
             VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
@@ -344,21 +339,24 @@ void Pipelines::makeLayouts() {
                       "vkCreatePipelineLayout");
     };
     compute_.resize(computePasses().size());
-    for (size_t i = 0; i < compute_.size(); ++i)
-        make(compute_[i], computePasses()[i]->uses, computePasses()[i]->pushBytes, false,
-             computePasses()[i]->profiles ? 2 : 1);
+    for (size_t i = 0; i < compute_.size(); ++i) {
+        const ComputePass& pass = computePasses()[i];
+        compute_[i].declared = interfaceOf(pass, device_.texels, memory_);
+        make(compute_[i], pass.pushBytes, VK_SHADER_STAGE_COMPUTE_BIT, compute_[i].declared.sets());
+    }
     draw_.resize(drawPasses().size());
-    for (size_t i = 0; i < draw_.size(); ++i)
-        make(draw_[i], drawPasses()[i]->uses, drawPasses()[i]->pushBytes, true,
-             drawPasses()[i]->softShader ? 4 : 3);
+    for (size_t i = 0; i < draw_.size(); ++i) {
+        const DrawPass& pass = drawPasses()[i];
+        draw_[i].declared = interfaceOf(pass, device_.texels, memory_);
+        make(draw_[i], pass.pushBytes, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
+             pass.softShader ? 4 : 3);
+    }
 }
 
-VkShaderModule Pipelines::module(const char* shader) const {
-    const ShaderCode* code = findShader(shader);
-    if (!code) core::fail(FW_ERROR_INTERNAL, "Shader \"%s\" is not embedded.", shader);
+VkShaderModule Pipelines::module(std::span<const uint32_t> code) const {
     auto info = typed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
-    info.codeSize = code->words.size_bytes();
-    info.pCode = code->words.data();
+    info.codeSize = code.size_bytes();
+    info.pCode = code.data();
     VkShaderModule module = VK_NULL_HANDLE;
     device_.check(device_.table.CreateShaderModule(device_.handle, &info,
                                                    device_.allocationCallbacks, &module),
@@ -384,7 +382,7 @@ class Pipelines::Modules {
         for (const Made& made : made_)
             if (made.shader == shader) return made.module;
         made_.push_back({shader, VK_NULL_HANDLE});
-        return made_.back().module = pipelines_.module(shader);
+        return made_.back().module = pipelines_.module(shaderCode(shader));
     }
 
  private:
@@ -403,13 +401,12 @@ void Pipelines::prepare() {
     for (size_t i = 0; i < compute_.size(); ++i) {
         PassObjects& objects = compute_[i];
         if (objects.pipeline) continue;
-        const ComputePass& pass = *computePasses()[i];
+        const ComputePass& pass = computePasses()[i];
         auto info =
             typed<VkComputePipelineCreateInfo>(VK_STRUCTURE_TYPE_COMPUTE_PIPELINE_CREATE_INFO);
         info.stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
         info.stage.stage = VK_SHADER_STAGE_COMPUTE_BIT;
-        info.stage.module =
-            module(device_.texels && pass.texelShader ? pass.texelShader : pass.shader);
+        info.stage.module = module(codeOf(pass, device_.texels));
         info.stage.pName = "main";
         info.layout = objects.layout;
         const VkResult result =
@@ -515,7 +512,7 @@ VkRenderPass Pipelines::makeHalfPass(VkFormat format, bool clears) const {
 
 VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass,
                                Modules& modules) const {
-    const DrawPass& pass = *drawPasses()[number];
+    const DrawPass& pass = drawPasses()[number];
     const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
     const struct {
         uint32_t encoding, reversed, variant, part, samples;
@@ -654,20 +651,13 @@ VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass
 }
 
 // Those of `passes` that the target shows and has not got.
-void Pipelines::makePipelines(Target& target, PassSet passes) {
+void Pipelines::makePipelines(Target& target, DrawPassSet passes) {
     const TargetKey& key = target.key;
     const VkRenderPass renderPass = key.composite ? target.ownPass : target.hostPass;
-    PassSet due = 0;
+    DrawPassSet due = 0;
     for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
         if (!(passes >> pass & 1) || target.pipelines[pass].load()) continue;
-        const AtHalf atHalf = drawPasses()[pass]->atHalf;
-        const bool surface = drawPasses()[pass]->vertexInput == VertexInput::mesh;
-        const bool haze = drawPasses()[pass] == &kVolumeHazePass;
-        const bool always = atHalf == AtHalf::same || atHalf == AtHalf::soft;
-        const bool drawn = drawPasses()[pass] == &kTransparencyPass ? key.transparency
-                           : surface                                ? key.surfaces
-                                     : key.flames && (!haze || key.haze) && (always || key.half);
-        if (drawn) due |= PassSet(1) << pass;
+        if (isDrawn(drawPasses()[pass], key)) due |= DrawPassSet(1) << pass;
     }
     const auto count = uint32_t(std::popcount(due));
     const uint32_t before = target.made;
@@ -683,11 +673,12 @@ void Pipelines::makePipelines(Target& target, PassSet passes) {
     }
 }
 
-void Pipelines::makeDue(Target& target, PassSet due, VkRenderPass renderPass, Modules& modules) {
+void Pipelines::makeDue(Target& target, DrawPassSet due, VkRenderPass renderPass,
+                        Modules& modules) {
     const TargetKey& key = target.key;
     for (size_t pass = 0; pass < drawPasses().size(); ++pass) {
         if (!(due >> pass & 1)) continue;
-        const AtHalf atHalf = drawPasses()[pass]->atHalf;
+        const AtHalf atHalf = drawPasses()[pass].atHalf;
         TargetKey drawnOn = key;
         VkRenderPass in = renderPass;
         if (key.half && (atHalf == AtHalf::soft || atHalf == AtHalf::depth)) {
@@ -710,7 +701,7 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
     try {
         if (key.composite) target->ownPass = makePass(key);
         // Others may register meanwhile; what is needed meanwhile is little.
-        makePipelines(*target, key.asNeeded ? ~kWaiting | needed_ : ~PassSet(0));
+        makePipelines(*target, key.asNeeded ? ~waitingPasses() | needed_ : ~DrawPassSet(0));
         const std::lock_guard making(makes_);
         makePipelines(*target, needed_);
         const std::lock_guard lock(mutex_);
@@ -721,7 +712,7 @@ FwTargetId Pipelines::registerTarget(const FwVulkanTargetDef& def) {
     }
 }
 
-void Pipelines::need(PassSet passes) {
+void Pipelines::need(DrawPassSet passes) {
     if ((passes & ~needed_) == 0) return;
     // Nobody makes or destroys a target now, and who looks one up does not wait for this.
     const std::lock_guard making(makes_);

@@ -4,7 +4,7 @@
 #pragma once
 #include "core/handle_pool.h"
 #include "core/owned.h"
-#include "gpu/passes/pass.h"
+#include "gpu/passes/shader_interface.h"
 #include "gpu/vk/device.h"
 
 #include <array>
@@ -15,10 +15,23 @@
 namespace fw::gpu::vk {
 
 struct PassObjects {
+    ShaderInterface declared;
     VkDescriptorSetLayout setLayout = VK_NULL_HANDLE;
     VkPipelineLayout layout = VK_NULL_HANDLE;
     VkPipeline pipeline = VK_NULL_HANDLE;  // compute
 };
+
+struct DescriptorSlot {
+    uint32_t binding = 0;
+    VkDescriptorType type{};
+};
+[[nodiscard]] constexpr DescriptorSlot descriptorSlot(const Use& use) noexcept {
+    if (use.access == Access::readTexels)
+        return {texelBinding(use.resource), VK_DESCRIPTOR_TYPE_STORAGE_TEXEL_BUFFER};
+    return {use.resource, isDynamic(use.resource) ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER_DYNAMIC
+                          : use.access == Access::uniform ? VK_DESCRIPTOR_TYPE_UNIFORM_BUFFER
+                                                          : VK_DESCRIPTOR_TYPE_STORAGE_BUFFER};
+}
 
 // What of a target decides its pipelines.
 struct TargetKey {
@@ -49,9 +62,6 @@ struct Target {
     Target(size_t passes, std::pmr::memory_resource* memory) : pipelines(passes, memory) {}
 };
 
-// Draw passes, a bit for each by its number.
-using PassSet = uint64_t;
-
 class Pipelines {
  public:
     Pipelines(Device& device, std::pmr::memory_resource* memory);
@@ -65,8 +75,8 @@ class Pipelines {
     FwTargetId registerTarget(const FwVulkanTargetDef& def);  // [any]
     void unregisterTarget(FwTargetId id);                     // [any]
     // From here on all targets have the pipelines of these passes, or it throws. Of the passes that
-    // wait for it: with FW_TARGET_AS_NEEDED those of kWaiting.
-    void need(PassSet passes);  // [any]
+    // wait for it: with FW_TARGET_AS_NEEDED those that draw surfaces.
+    void need(DrawPassSet passes);  // [any]
     // As fwTarget_IsReady. Throws FW_ERROR_STALE_ID.
     bool targetReady(FwTargetId id, FwPipelineProgress& progress);  // [any]
     // Throws FW_ERROR_STALE_ID. The pointer is good until the target is unregistered.
@@ -94,13 +104,13 @@ class Pipelines {
  private:
     void makeLayouts();
     class Modules;  // of the pipelines that are made together
-    VkShaderModule module(const char* shader) const;
+    VkShaderModule module(std::span<const uint32_t> code) const;
     VkRenderPass makePass(const TargetKey& key) const;
     VkRenderPass makeHalfPass(VkFormat format, bool clears) const;
     VkPipeline makeDraw(size_t pass, const TargetKey& key, VkRenderPass renderPass,
                         Modules& modules) const;
-    void makePipelines(Target& target, PassSet passes);
-    void makeDue(Target& target, PassSet due, VkRenderPass renderPass, Modules& modules);
+    void makePipelines(Target& target, DrawPassSet passes);
+    void makeDue(Target& target, DrawPassSet due, VkRenderPass renderPass, Modules& modules);
     void destroyTarget(Target& target) noexcept;
     void destroy() noexcept;
 
@@ -115,7 +125,7 @@ class Pipelines {
     std::atomic<uint32_t> computeMade_{0};
     std::atomic<uint32_t> drawMade_{0}, drawTotal_{0};  // of all targets, those being made included
     std::mutex makes_;  // taken before mutex_, by who makes targets or what they need
-    std::atomic<PassSet> needed_{0};
+    std::atomic<DrawPassSet> needed_{0};
     std::mutex mutex_;  // of what follows; held for no longer than a record call may wait
     core::HandlePool<FwTargetId, core::Owned<Target>> targets_;
     std::atomic<bool> ready_{false};

@@ -1,7 +1,6 @@
 #include "gpu/vk/recorder.h"
 
-#include "gpu/passes/frame_graph.h"
-
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -12,48 +11,63 @@ void FrameRecorder::barrier(std::span<const Use> uses) {
 }
 
 VkBuffer FrameRecorder::buffer(uint32_t resource) const {
-    return t_.planes->buffer(resourceOf(resource, t_.view)).handle;
+    return t_.buffers->buffer(resourceOf(resource, t_.view)).handle;
 }
 
-void FrameRecorder::bind(const ComputePass& pass, const void* push) {
+const PassObjects& FrameRecorder::begin(uint32_t pass, uint32_t arguments) {
+    const PassObjects& objects = t_.pipelines->compute(pass);
+    const std::span<const Use> bound = objects.declared.uses();
+    std::array<Use, ShaderInterface::kMost + 1> uses;
+    size_t count = size_t(std::copy(bound.begin(), bound.end(), uses.begin()) - uses.begin());
+    if (arguments != kNoResource) uses[count++] = {arguments, Access::indirect};
+    barrier({uses.data(), count});
+    t_.slot->timers.begin(*t_.device, t_.commands, computePasses()[pass].name);
+    t_.device->table.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
+    return objects;
+}
+
+void FrameRecorder::bind(uint32_t pass, const void* push, uint32_t arguments) {
     const Table& vk = t_.device->table;
-    const size_t number = passNumber(pass);
-    const PassObjects& objects = t_.pipelines->compute(number);
-    barrier(pass.uses);
-    t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
-    bool view = false;
-    for (const Use& use : pass.uses) view |= use.access == Access::uniformView;
-    const VkDescriptorSet set = t_.sets->compute(number, t_.view);
-    vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
+    const PassObjects& objects = begin(pass, arguments);
+    const VkDescriptorSet set = t_.sets->compute(pass, t_.view);
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
-                             &set, view ? 1 : 0, &t_.viewOffset);
-    if (pass.pushBytes)
-        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0,
-                            pass.pushBytes, push);
+                             &set, objects.declared.usesView() ? 1 : 0, &t_.viewOffset);
+    if (const uint32_t bytes = computePasses()[pass].pushBytes)
+        vk.CmdPushConstants(t_.commands, objects.layout, VK_SHADER_STAGE_COMPUTE_BIT, 0, bytes,
+                            push);
 }
 
-void FrameRecorder::dispatch(const ComputePass& pass, const void* push, uint32_t groups,
-                             uint32_t rows) {
-    bind(pass, push);
-    t_.device->table.CmdDispatch(t_.commands, groups, rows, 1);
-    t_.slot->timers.end(*t_.device, t_.commands);
+void FrameRecorder::end() { t_.slot->timers.end(*t_.device, t_.commands); }
+
+void FrameRecorder::dispatchGroups(uint32_t pass, const void* push, uint32_t groups,
+                                   uint32_t rows) {
+    bind(pass, push, kNoResource);
+    t_.device->table.CmdDispatch(t_.commands, std::min(groups, kMaxGroups), rows, 1);
+    end();
 }
 
-void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const MarchedVolume> volumes,
-                                    VolumesOf which) {
+void FrameRecorder::dispatchAt(uint32_t pass, const void* push, uint32_t resource, uint64_t at) {
+    bind(pass, push, resource);
+    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(resource), at);
+    end();
+}
+
+void FrameRecorder::dispatchVolumes(ComputePassOf<VolumeMarch> pass,
+                                    std::span<const MarchedVolume> volumes, VolumesOf which) {
     const Table& vk = t_.device->table;
-    const size_t number = passNumber(pass);
-    const PassObjects& objects = t_.pipelines->compute(number);
-    barrier(pass.uses);
-    t_.slot->timers.begin(*t_.device, t_.commands, pass.name);
+    const bool listed = which != VolumesOf::all;
+    const auto taken = [&](const MarchedVolume& one) {
+        return !listed || one.smokes == (which == VolumesOf::smoke);
+    };
+    if (std::none_of(volumes.begin(), volumes.end(), taken)) return;
+    const PassObjects& objects =
+        begin(pass.number, listed ? uint32_t(FW_BIND_VOLUME_WORK) : kNoResource);
     const VkBuffer work = buffer(FW_BIND_VOLUME_WORK);
-    vk.CmdBindPipeline(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.pipeline);
     vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 1, 1,
                              &t_.profiles, 0, nullptr);
-    const VkDescriptorSet set = t_.sets->compute(number, t_.view);
-    const bool listed = which != VolumesOf::all;
+    const VkDescriptorSet set = t_.sets->compute(pass.number, t_.view);
     for (const MarchedVolume& one : volumes) {
-        if (listed && one.smokes != (which == VolumesOf::smoke)) continue;
+        if (!taken(one)) continue;
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{t_.viewOffset, one.flame * kVolumeFlameBytes};
         vk.CmdBindDescriptorSets(t_.commands, VK_PIPELINE_BIND_POINT_COMPUTE, objects.layout, 0, 1,
@@ -70,36 +84,7 @@ void FrameRecorder::dispatchVolumes(const ComputePass& pass, std::span<const Mar
                                volumeProbeBlocks(one.composite.tilesY, one.march.apart),
                            1, 1);
     }
-    t_.slot->timers.end(*t_.device, t_.commands);
-}
-
-void FrameRecorder::dispatchAt(const ComputePass& pass, const void* push, uint64_t at) {
-    bind(pass, push);
-    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(FW_BIND_COUNTERS), at);
-    t_.slot->timers.end(*t_.device, t_.commands);
-}
-
-void FrameRecorder::dispatchIndirect(const ComputePass& pass, const void* push, uint32_t resource,
-                                     uint64_t at) {
-    bind(pass, push);
-    t_.device->table.CmdDispatchIndirect(t_.commands, buffer(resource), at);
-    t_.slot->timers.end(*t_.device, t_.commands);
-}
-
-void FrameRecorder::dispatchWork(const ComputePass& pass, const void* push, uint32_t row) {
-    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, workX));
-}
-
-void FrameRecorder::dispatchRim(const ComputePass& pass, const void* push, uint32_t row) {
-    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, rimX));
-}
-
-void FrameRecorder::dispatchRun(const ComputePass& pass, const void* push, uint32_t row) {
-    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, runX));
-}
-
-void FrameRecorder::dispatchList(const ComputePass& pass, const void* push, uint32_t row) {
-    dispatchAt(pass, push, row * sizeof(IterationCounters) + offsetof(IterationCounters, listX));
+    end();
 }
 
 void FrameRecorder::copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes) {

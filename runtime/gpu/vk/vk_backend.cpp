@@ -22,39 +22,23 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       log(logTo),
       retired(device, deviceMemory, pmr),
       ring(device),
-      planes(device, deviceMemory, retired,
-             {std::max(worldLimits.maxLights, kSurfaceLights),
-              std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
-             pmr),
+      buffers(device, deviceMemory, retired,
+              {std::max(worldLimits.maxLights, kSurfaceLights),
+               std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
+              pmr),
       sets(device, contextState.pipelines, retired, pmr),
-      meshes(pmr),
-      objects(pmr),
-      awake(pmr),
-      images(pmr),
-      uploads(pmr),
-      restores(pmr),
-      restoredObjects(pmr),
-      imageLayout(pmr),
-      givenImages(pmr),
-      quarantine(pmr),
-      skins(pmr),
-      arps(pmr),
-      published(pmr),
-      drawItems(pmr),
-      volumes(pmr),
-      fields(pmr),
-      fieldDraws(pmr),
+      scene(pmr),
+      simulation(pmr),
+      deforming(pmr),
+      flames(pmr),
+      particles(float(worldLimits.maxLights)),
+      particleFields(pmr),
+      surfaces(pmr),
+      results(pmr),
       refine(pmr),
-      givenObjects(pmr),
-      givenAnswers(pmr),
-      givenTexels(pmr),
-      givenHeat(pmr),
-      givenMaps(pmr),
-      givenLights(pmr),
-      givenFields(pmr),
-      times(pmr) {
-    times.reserve(computePasses().size() + drawPasses().size());
-    outsideViews[0] = core::Owned<OutsideView>::make(memory, 0u);
+      arp(pmr) {
+    results.times.reserve(computePasses().size() + drawPasses().size());
+    flames.outsideViews[0] = core::Owned<OutsideView>::make(memory, 0u);
     const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
     viewStride = uint32_t((sizeof(ViewParams) + alignment - 1) / alignment * alignment);
     views = deviceMemory.createBuffer(
@@ -63,17 +47,17 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
     try {
         std::byte whitePixel[4];
         std::fill(std::begin(whitePixel), std::end(whitePixel), std::byte(255));
-        addImage(white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
+        addImage(scene.white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
         if (!limits.looks.textures.empty())
-            addImage(lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
+            addImage(scene.lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
                      limits.looks.textures, "look textures");
         if (!limits.looks.profiles.empty()) {
             // The host's come behind the presets; none of them is there yet.
             std::pmr::vector<std::byte> layers(limits.looks.profiles.begin(),
                                                limits.looks.profiles.end(), memory);
             layers.resize(size_t(kFirePresets + kMaxFireProfiles) * kProfileBytes);
-            addImage(profiles, kProfileWidth, kProfileHeight, kFirePresets + kMaxFireProfiles, 1,
-                     VK_FORMAT_R16G16_SFLOAT, layers, "fire profiles");
+            addImage(scene.profiles, kProfileWidth, kProfileHeight, kFirePresets + kMaxFireProfiles,
+                     1, VK_FORMAT_R16G16_SFLOAT, layers, "fire profiles");
         }
         uploadRefineTable();
         if (!limits.looks.table.empty()) {
@@ -83,11 +67,11 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
             upload.regions[upload.regionCount++] = {
                 FW_BIND_LOOKS, 0, 0,
                 std::min<uint64_t>(limits.looks.table.size_bytes(),
-                                   planes.buffer(FW_BIND_LOOKS).size)};
+                                   buffers.buffer(FW_BIND_LOOKS).size)};
         }
     } catch (...) {
-        for (PendingUpload& upload : uploads) deviceMemory.destroy(upload.staging);
-        for (ImageEntry* entry : {&white, &lookTextures, &profiles}) {
+        for (PendingUpload& upload : scene.uploads) deviceMemory.destroy(upload.staging);
+        for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles}) {
             deviceMemory.destroy(entry->image);
             device.table.DestroyDescriptorPool(device.handle, entry->set.pool,
                                                device.allocationCallbacks);
@@ -103,26 +87,26 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
 VkBackend::State::~State() {
     const Table& vk = device.table;
     const VkAllocationCallbacks* callbacks = device.allocationCallbacks;
-    for (auto* waiting : {&uploads, &restores})
+    for (auto* waiting : {&scene.uploads, &scene.restores})
         for (PendingUpload& upload : *waiting) deviceMemory.destroy(upload.staging);
     const auto drop = [&](ImageEntry& entry) {
         deviceMemory.destroy(entry.image);
         vk.DestroyDescriptorPool(device.handle, entry.set.pool, callbacks);
     };
-    for (ImageEntry& entry : images) drop(entry);
-    drop(white);
-    drop(lookTextures);
-    drop(profiles);
-    drop(books);
+    for (ImageEntry& entry : scene.images) drop(entry);
+    drop(scene.white);
+    drop(scene.lookTextures);
+    drop(scene.profiles);
+    drop(scene.books);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
-        vk.DestroyDescriptorPool(device.handle, slot.lentPool, callbacks);
+        vk.DestroyDescriptorPool(device.handle, slot.hostPool, callbacks);
     }
     destroyFramebuffers();
-    for (HalfImages& half : halves) {
+    for (HalfImages& half : surfaces.halves) {
         deviceMemory.destroy(half.color);
         deviceMemory.destroy(half.depth);
         vk.DestroyDescriptorPool(device.handle, half.colorSet.pool, callbacks);
@@ -143,35 +127,36 @@ void VkBackend::State::failIfLost() const {
 }
 
 PendingUpload& VkBackend::State::stage(uint64_t bytes, const char* name) {
-    core::growTo(uploads, uploads.size() + 1);
+    core::growTo(scene.uploads, scene.uploads.size() + 1);
     retired.promise(1);
     PendingUpload upload;
     upload.staging = deviceMemory.createBuffer(bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
                                                MemoryKind::upload, kComponentStaging, name);
-    uploads.push_back(upload);
-    return uploads.back();
+    scene.uploads.push_back(upload);
+    return scene.uploads.back();
 }
 
 void VkBackend::State::dropUploads(size_t kept) noexcept {
-    while (uploads.size() > kept) {
-        deviceMemory.destroy(uploads.back().staging);
-        uploads.pop_back();
+    while (scene.uploads.size() > kept) {
+        deviceMemory.destroy(scene.uploads.back().staging);
+        scene.uploads.pop_back();
     }
 }
 
 void VkBackend::State::freeQuarantine() noexcept {
     size_t kept = 0;
-    for (const Quarantined& one : quarantine) {
-        const bool passed = (frontWalks > one.frontWalks || frontEmpty) &&
-                            (burnWalks > one.burnWalks || burnEmpty) &&
-                            (predictWalks > one.predictWalks || predictEmpty) &&
-                            (hotWalks > one.hotWalks || hotEmpty);
+    for (const Quarantined& one : scene.quarantine) {
+        const bool passed =
+            (simulation.frontWalks > one.frontWalks || simulation.frontEmpty) &&
+            (simulation.burnWalks > one.burnWalks || simulation.burnEmpty) &&
+            (simulation.predictWalks > one.predictWalks || simulation.predictEmpty) &&
+            (simulation.hotWalks > one.hotWalks || simulation.hotEmpty);
         if (passed)
-            planes.release(kSpaceObjectTiles, one.tiles.first, one.tiles.units);
+            buffers.release(kPoolObjectTiles, one.tiles.first, one.tiles.units);
         else
-            quarantine[kept++] = one;
+            scene.quarantine[kept++] = one;
     }
-    quarantine.resize(kept);
+    scene.quarantine.resize(kept);
 }
 
 // --- VkBackend ---
@@ -221,8 +206,8 @@ void VkBackend::endOwn() {
 void VkBackend::renderOffscreen(const FwOffscreenDef& def) { state_->renderOffscreen(def); }
 
 const Readback* VkBackend::nextReadback() { return state_->nextReadback(); }
-std::span<const PassTime> VkBackend::passTimes() { return state_->times; }
+std::span<const PassTime> VkBackend::passTimes() { return state_->results.times; }
 
-void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->planes.rows(out); }
+void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->buffers.rows(out); }
 
 }  // namespace fw::gpu::vk

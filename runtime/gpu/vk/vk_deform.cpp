@@ -12,9 +12,9 @@ namespace {
 // its own, every other one; every fourth one where frames are short: fire takes seconds.
 bool recedes(const VkBackend::State& s, const ObjectEntry& object, uint32_t group) noexcept {
     constexpr uint32_t kLongFrame = 4;  // steps
-    const uint32_t turns = s.softSteps < kLongFrame ? 4 : 2;
-    return (object.deform.flags & kDeformShell) == 0 || object.deformReset || object.deformWoke ||
-           (group - object.recedeTurn) % turns == 0;
+    const uint32_t turns = s.deforming.softSteps < kLongFrame ? 4 : 2;
+    return (object.deform.flags & kDeformShell) == 0 || object.deforms.reset ||
+           object.deforms.woke || (group - object.deforms.recedeTurn) % turns == 0;
 }
 
 constexpr uint64_t kSettleTicks = 12 * kTicksPerSecond;  // that a sheet may swing
@@ -24,23 +24,23 @@ uint32_t deformGroups(uint32_t items) noexcept { return (items + kDeformGroup - 
 // Does it still move, as far as is known? What burns does, until the last texel that caught has
 // burnt out.
 bool deforms(const VkBackend::State& s, uint32_t slot, uint64_t now) noexcept {
-    const ObjectEntry& object = s.objects[slot];
-    if (!object.live || object.shown.units == 0 || object.skinPlus1) return false;
-    if (object.deformReset) return true;
+    const ObjectEntry& object = s.scene.objects[slot];
+    if (!object.live || object.shown.units == 0 || object.deforms.skinPlus1) return false;
+    if (object.deforms.reset) return true;
     if (object.deform.flags & kDeformShell) {
-        const bool wind =
-            s.wind[0] != 0 || s.wind[1] != 0 || s.wind[2] != 0 || object.record.zoneWind != 0;
+        const bool wind = s.simulation.wind[0] != 0 || s.simulation.wind[1] != 0 ||
+                          s.simulation.wind[2] != 0 || object.record.zoneWind != 0;
         const bool hidden = (object.record.flags & kObjectHidden) != 0;
-        if (!hidden && (wind || now <= object.softUntil)) return true;
+        if (!hidden && (wind || now <= object.deforms.softUntil)) return true;
     }
-    if (!object.touched) return false;
-    uint64_t last = object.lastEvent;
-    if (slot < s.givenObjects.size())
-        last = std::max<uint64_t>(last, s.givenObjects[slot].lastIgnition);
-    return now <= last + object.deformTicks;
+    if (!object.burn.touched) return false;
+    uint64_t last = object.burn.lastEvent;
+    if (slot < s.results.givenObjects.size())
+        last = std::max<uint64_t>(last, s.results.givenObjects[slot].lastIgnition);
+    return now <= last + object.deforms.ticks;
 }
 
-// A host's vertex buffer into our plane, and from there to what is drawn.
+// A host's vertex buffer into our buffer, and from there to what is drawn.
 void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry& object,
                  const Skin& skin) {
     const Table& vk = s.device.table;
@@ -63,7 +63,7 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
     const Use uses[] = {{FW_BIND_SKIN_GIVEN, Access::copyWrite}};
     s.barriers.use(vk, s.open.commands, uses);
     const VkBufferCopy copy{from.offset, uint64_t(skin.words.first) * 4, std::min(used, bytes)};
-    vk.CmdCopyBuffer(s.open.commands, from.buffer, s.planes.buffer(FW_BIND_SKIN_GIVEN).handle, 1,
+    vk.CmdCopyBuffer(s.open.commands, from.buffer, s.buffers.buffer(FW_BIND_SKIN_GIVEN).handle, 1,
                      &copy);
     barrier.srcAccessMask = VK_ACCESS_TRANSFER_READ_BIT;
     barrier.dstAccessMask = from.accessAfter;
@@ -74,7 +74,7 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
                           &barrier, 0, nullptr);
     SkinPush push{};
     push.count = object.deform.vertexCount;
-    push.sourceBase = s.meshes[object.mesh].skinSources.first;
+    push.sourceBase = s.scene.meshes[object.mesh].skinSources.first;
     push.shownBase = object.shown.first;
     push.given = skin.words.first;
     push.stride = from.stride / 4;
@@ -88,38 +88,40 @@ void recordGiven(VkBackend::State& s, FrameRecorder& recorder, const ObjectEntry
 }  // namespace
 
 void addDeformNeeds(VkBackend::State& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs) {
-    ObjectEntry& object = s.objects[slot];
-    if (object.soft.units && object.softUntil == 0) object.softUntil = endTick + kSettleTicks;
-    object.deformWoke = !object.deformsNow;
-    object.deformsNow = deforms(s, slot, endTick);
-    if (object.deformsNow) {
+    ObjectEntry& object = s.scene.objects[slot];
+    if (object.soft.units && object.deforms.softUntil == 0)
+        object.deforms.softUntil = endTick + kSettleTicks;
+    object.deforms.woke = !object.deforms.now;
+    object.deforms.now = deforms(s, slot, endTick);
+    if (object.deforms.now) {
         const uint32_t groups = deformGroups(object.deform.nodeCount);
         for (uint32_t group = 0; group < groups; ++group)
-            needs.nodeGroups += recedes(s, object, group) ? 1 : 0;
+            needs.deform.nodes += recedes(s, object, group) ? 1 : 0;
         if (object.deform.flags & kDeformShell) {
-            needs.sheetGroups += groups;
-            needs.sheetsBegin |= object.deformReset || object.deformWoke;
+            needs.deform.sheets += groups;
+            needs.sheetsBegin |= object.deforms.reset || object.deforms.woke;
         }
-        if (object.deform.flags & kDeformSprings) needs.springGroups += groups;
-        needs.vertexGroups += deformGroups(object.deform.vertexCount);
-        if (object.inner) needs.innerGroups += deformGroups(object.deform.vertexCount);
+        if (object.deform.flags & kDeformSprings) needs.deform.springs += groups;
+        needs.deform.vertices += deformGroups(object.deform.vertexCount);
+        if (object.inner) needs.deform.inner += deformGroups(object.deform.vertexCount);
     }
-    const Skin* moved = object.skinPlus1 ? &s.skins[object.skinPlus1 - 1] : nullptr;
+    const Skin* moved =
+        object.deforms.skinPlus1 ? &s.deforming.skins[object.deforms.skinPlus1 - 1] : nullptr;
     if (moved && (moved->dirty || moved->givenDue)) {
         const Skin& skin = *moved;
         needs.skins = true;
         if (skin.dirty) needs.uploadBytes += uploaded(skin.shown.size() * sizeof(ShownVertex));
         // Normals that the host does not give follow the triangles.
-        object.deformsNow = !skin.normals;
-        if (object.deformsNow) needs.vertexGroups += deformGroups(object.deform.vertexCount);
+        object.deforms.now = !skin.normals;
+        if (object.deforms.now) needs.deform.vertices += deformGroups(object.deform.vertexCount);
     }
 }
 
 void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (const uint32_t i : s.awake) {
-        const ObjectEntry& object = s.objects[i];
-        if (!object.live || !object.skinPlus1) continue;
-        Skin& skin = s.skins[object.skinPlus1 - 1];
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
+        if (!object.live || !object.deforms.skinPlus1) continue;
+        Skin& skin = s.deforming.skins[object.deforms.skinPlus1 - 1];
         if (skin.givenDue) recordGiven(s, recorder, object, skin);
         skin.givenDue = false;
         if (!skin.dirty) continue;
@@ -134,31 +136,32 @@ void recordSkins(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
 Staged writeDeformGroups(VkBackend::State& s, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](const ObjectEntry& object, uint32_t items, bool recede = false) {
-        const uint32_t marks = (object.deformReset ? kDeformReset : 0) |
-                               (object.softOdd ? kDeformOdd : 0) |
-                               (object.deformWoke ? kDeformWoke : 0) |
+        const uint32_t marks = (object.deforms.reset ? kDeformReset : 0) |
+                               (object.deforms.softOdd ? kDeformOdd : 0) |
+                               (object.deforms.woke ? kDeformWoke : 0) |
                                ((s.crossing & kSwitchCrossing) ? kDeformCrosses : 0);
         for (uint32_t first = 0; first < items; first += kDeformGroup) {
             if (recede && !recedes(s, object, first / kDeformGroup)) continue;
-            const WakeGroup group{object.deformer.first, first | marks};
+            const WakeGroup group{object.deforms.range.first, first | marks};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
         }
     };
     for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
-        for (const uint32_t i : s.awake)
-            if (const ObjectEntry& object = s.objects[i];
-                object.deformsNow && !object.skinPlus1 &&
+        for (const uint32_t i : s.scene.awake)
+            if (const ObjectEntry& object = s.scene.objects[i];
+                object.deforms.now && !object.deforms.skinPlus1 &&
                 (tier == ~0u || (object.deform.flags & tier)))
                 append(object, object.deform.nodeCount, tier == ~0u);
-    for (const uint32_t i : s.awake)
-        if (s.objects[i].deformsNow) append(s.objects[i], s.objects[i].deform.vertexCount);
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
-        if (!object.deformsNow) continue;
+    for (const uint32_t i : s.scene.awake)
+        if (s.scene.objects[i].deforms.now)
+            append(s.scene.objects[i], s.scene.objects[i].deform.vertexCount);
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        if (!object.deforms.now) continue;
         if (object.inner) append(object, object.deform.vertexCount);
-        object.deformReset = false;
-        ++object.recedeTurn;
-        if (object.soft.units) object.softOdd ^= (s.softSteps & 1) != 0;
+        object.deforms.reset = false;
+        ++object.deforms.recedeTurn;
+        if (object.soft.units) object.deforms.softOdd ^= (s.deforming.softSteps & 1) != 0;
     }
     writer.end();
     return staged;

@@ -2,6 +2,8 @@
 // read was made ready by the outside part.
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
+#include "shared/volume_haze.h"
+#include "shared/volume_slices.h"
 
 #include <algorithm>
 #include <array>
@@ -12,20 +14,64 @@ namespace fw::gpu::vk {
 namespace {
 
 // One pass bound, then its draws.
-class PassRecorder : public DrawRecorder {
+class PassRecorder {
  public:
-    PassRecorder(VkBackend::State& state, VkCommandBuffer commands, size_t pass,
+    PassRecorder(VkBackend::State& state, VkCommandBuffer commands, uint32_t pass,
                  uint32_t viewOffset)
         : s_(state),
           commands_(commands),
           number_(pass),
           viewOffset_(viewOffset),
-          pass_(*drawPasses()[pass]),
-          layout_(state.context.pipelines.draw(pass).layout) {}
+          pass_(drawPasses()[pass]),
+          objects_(state.context.pipelines.draw(pass)),
+          layout_(objects_.layout) {}
 
-    void drawItem(const DrawItem& item, const void* push) override { drawFrom(item, push, false); }
-    void drawInside(const DrawItem& item, const void* push) override { drawFrom(item, push, true); }
-    void drawFrom(const DrawItem& item, const void* push, bool inside) {
+    // The pipeline and what all its draws share. A flame at a time has set 0 bound with it.
+    void bind(VkPipeline pipeline, const HostImages& host) {
+        const Table& vk = s_.device.table;
+        vk.CmdBindPipeline(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, pipeline);
+        const std::span<const Use> uses = objects_.declared.uses();
+        const bool eachFlame = std::any_of(uses.begin(), uses.end(), [](const Use& use) {
+            return use.resource == FW_BIND_VOLUMES;
+        });
+        if (!eachFlame && !uses.empty()) {
+            const VkDescriptorSet set = s_.sets.draw(number_, s_.surfaces.drawnView);
+            vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1,
+                                     &set, objects_.declared.usesView() ? 1 : 0, &viewOffset_);
+        }
+        bindTextures(1, pass_.textures1, host);
+        bindTextures(2, pass_.textures2, host);
+        if (pass_.softShader && host.depth) bindSet(3, host.depth);
+        if (pass_.vertexInput == VertexInput::mesh) {
+            const VkDeviceSize zeros[2] = {};
+            const VkBuffer vertices[2] = {s_.surfaces.drawVertices, s_.surfaces.drawVertices};
+            vk.CmdBindVertexBuffers(commands_, 0, 2, vertices, zeros);
+            vk.CmdBindIndexBuffer(commands_, s_.surfaces.drawIndices, 0, VK_INDEX_TYPE_UINT32);
+        }
+    }
+
+    void drawSurface(const DrawItem& item, bool turned) {
+        const bool burning = (pass_.variant & kSurfaceBurns) != 0;
+        const bool cold = (pass_.variant & kSurfaceCold) != 0;
+        const bool behind = pass_.cull == Cull::front;
+        SurfaceDraw draw = item.draw;
+        if (!burning) draw.nearness = item.coldReach;
+        if (burning && ((item.cut && !item.told) || (item.refined && item.consumed)))
+            draw.flags |= kDrawCut;
+        if (item.refined) {
+            draw.flags |= kDrawPlaced;
+            // A triangle that turns its back is seen from inside.
+            draw.inner = item.inner;
+            if (behind != turned && item.inner != 0) draw.flags |= kDrawInner;
+        }
+        drawItem(item, &draw,
+                 burning && !item.refined && behind != turned && item.inside != kNoneTexel);
+        if (!item.cut || cold) return;
+        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut | (item.told ? kDrawTold : 0);
+        drawCut(item, &draw);
+    }
+    // `inside`: on its inner skin.
+    void drawItem(const DrawItem& item, const void* push, bool inside) {
         const Table& vk = s_.device.table;
         bindFor(item, push);
         const uint64_t shown = !inside            ? item.shown
@@ -33,17 +79,17 @@ class PassRecorder : public DrawRecorder {
                                                   : kInside | item.inside;
         if (shown != shown_) bindVertices(item, shown);
         if (item.refined != refined_) {
-            vk.CmdBindIndexBuffer(
-                commands_,
-                item.refined ? s_.planes.buffer(FW_BIND_REFINE_INDICES).handle : s_.drawIndices, 0,
-                VK_INDEX_TYPE_UINT32);
+            vk.CmdBindIndexBuffer(commands_,
+                                  item.refined ? s_.buffers.buffer(FW_BIND_REFINE_INDICES).handle
+                                               : s_.surfaces.drawIndices,
+                                  0, VK_INDEX_TYPE_UINT32);
             refined_ = item.refined;
         }
         const bool own = shown != kNoneTexel;
         // One draw per call: several would need a feature.
         if (item.refined)
             vk.CmdDrawIndexedIndirect(
-                commands_, s_.planes.buffer(FW_BIND_REFINE_DRAWS).handle,
+                commands_, s_.buffers.buffer(FW_BIND_REFINE_DRAWS).handle,
                 (uint64_t(item.object) * kMaterialsPerObject + item.material) *
                     sizeof(VkDrawIndexedIndirectCommand),
                 1, 0);
@@ -51,10 +97,11 @@ class PassRecorder : public DrawRecorder {
             vk.CmdDrawIndexed(commands_, item.indexCount, 1, item.firstIndex,
                               own ? 0 : item.vertexOffset, 0);
     }
-    void drawCut(const DrawItem& item, const void* push) override {
+    // The rest of its triangles along holes.
+    void drawCut(const DrawItem& item, const void* push) {
         bindFor(item, push);
         if (shown_ != kCuts) {
-            const VkBuffer cuts = s_.planes.buffer(FW_BIND_REFINE_CUTS).handle;
+            const VkBuffer cuts = s_.buffers.buffer(FW_BIND_REFINE_CUTS).handle;
             const VkBuffer buffers[2] = {cuts, cuts};
             const VkDeviceSize zeros[2] = {};
             s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, zeros);
@@ -66,70 +113,92 @@ class PassRecorder : public DrawRecorder {
     }
     void bindFor(const DrawItem& item, const void* push) {
         const Table& vk = s_.device.table;
-        VkDescriptorSet set = s_.white.set.set;
-        if (item.image && item.image - 1 < s_.images.size() && s_.images[item.image - 1].live)
-            set = s_.images[item.image - 1].set.set;
+        VkDescriptorSet set = s_.scene.white.set.set;
+        if (item.image && item.image - 1 < s_.scene.images.size() &&
+            s_.scene.images[item.image - 1].live)
+            set = s_.scene.images[item.image - 1].set.set;
         if (set != bound_) {
             vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 1, 1,
                                      &set, 0, nullptr);
             bound_ = set;
         }
-        if (pass_.pushBytes)
-            vk.CmdPushConstants(commands_, layout_,
-                                VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                                pass_.pushBytes, push);
+        pushConstants(push);
     }
     // Of ordinary items all is bound from the first vertex on, of one with shown vertices of its
     // own, or on its inner skin, both its ranges.
     void bindVertices(const DrawItem& item, uint64_t shown) {
         static_assert(sizeof(mesh::RenderVertex) == sizeof(ShownVertex));
         const bool own = shown != kNoneTexel, inside = own && (shown & kInside) != 0;
-        const VkBuffer buffers[2] = {s_.drawVertices,
-                                     own && !inside ? s_.drawShown : s_.drawVertices};
+        const VkBuffer buffers[2] = {s_.surfaces.drawVertices, own && !inside
+                                                                   ? s_.surfaces.drawShown
+                                                                   : s_.surfaces.drawVertices};
         const VkDeviceSize offsets[2] = {
             own ? VkDeviceSize(item.vertexOffset) * sizeof(mesh::RenderVertex) : 0,
             own ? VkDeviceSize(shown & ~kInside) * sizeof(ShownVertex) : 0};
         s_.device.table.CmdBindVertexBuffers(commands_, 0, 2, buffers, offsets);
         shown_ = shown;
     }
-    void drawIndirect(uint32_t resource, uint64_t offset) override {
-        const Buffer& buffer = s_.planes.buffer(resourceOf(resource, s_.drawnView));
+    // A VkDrawIndirectCommand at `offset` bytes of the resource.
+    void drawIndirect(uint32_t resource, uint64_t offset) {
+        const Buffer& buffer = s_.buffers.buffer(resourceOf(resource, s_.surfaces.drawnView));
         s_.device.table.CmdDrawIndirect(commands_, buffer.handle, offset, 1, 0);
     }
-    void drawVolume(uint32_t flame, const void* push, uint32_t vertices,
-                    uint32_t instances) override {
-        const Table& vk = s_.device.table;
+    // A volumetric flame, of vertices that the shader makes.
+    void drawVolume(uint32_t flame, const void* push, uint32_t vertices, uint32_t instances) {
         // In the order of their bindings: the view, the flame.
         const std::array<uint32_t, 2> offsets{viewOffset_, flame * kVolumeFlameBytes};
-        const VkDescriptorSet set = s_.sets.draw(number_, s_.drawnView);
-        vk.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_, 0, 1, &set,
-                                 uint32_t(offsets.size()), offsets.data());
-        vk.CmdPushConstants(commands_, layout_,
-                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                            pass_.pushBytes, push);
-        vk.CmdDraw(commands_, vertices, instances, 0, 0);
+        const VkDescriptorSet set = s_.sets.draw(number_, s_.surfaces.drawnView);
+        s_.device.table.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_,
+                                              0, 1, &set, uint32_t(offsets.size()), offsets.data());
+        drawVertices(push, vertices, instances);
     }
-    void drawListed(uint32_t resource, uint64_t offset, const void* push) override {
-        const Table& vk = s_.device.table;
-        vk.CmdPushConstants(commands_, layout_,
-                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                            pass_.pushBytes, push);
+    void drawListed(uint32_t resource, uint64_t offset, const void* push) {
+        pushConstants(push);
         drawIndirect(resource, offset);
     }
-    void drawVertices(const void* push, uint32_t vertices) override {
-        const Table& vk = s_.device.table;
-        vk.CmdPushConstants(commands_, layout_,
-                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
-                            pass_.pushBytes, push);
-        vk.CmdDraw(commands_, vertices, 1, 0, 0);
+    void drawVertices(const void* push, uint32_t vertices, uint32_t instances = 1,
+                      uint32_t firstInstance = 0) {
+        pushConstants(push);
+        s_.device.table.CmdDraw(commands_, vertices, instances, 0, firstInstance);
     }
 
  private:
+    void bindSet(uint32_t place, VkDescriptorSet set) {
+        s_.device.table.CmdBindDescriptorSets(commands_, VK_PIPELINE_BIND_POINT_GRAPHICS, layout_,
+                                              place, 1, &set, 0, nullptr);
+    }
+    void bindTextures(uint32_t place, Textures textures, const HostImages& host) {
+        switch (textures) {
+            case Textures::none:
+            case Textures::ofItem:
+                return;  // bound with each item
+            case Textures::flipbooks:
+                return bindSet(place, s_.scene.books.set.set);
+            case Textures::hostColor:
+                return bindSet(place, host.color);
+            case Textures::looks:
+                return bindSet(place, s_.scene.lookTextures.set.set);
+            case Textures::profiles:
+                return bindSet(place, s_.scene.profiles.set.set);
+            case Textures::halfColor:
+                return bindSet(place, host.half->colorSet.set);
+            case Textures::halfDepth:
+                return bindSet(place, host.half->depthSet.set);
+        }
+    }
+    void pushConstants(const void* push) {
+        if (pass_.pushBytes)
+            s_.device.table.CmdPushConstants(
+                commands_, layout_, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                pass_.pushBytes, push);
+    }
+
     VkBackend::State& s_;
     VkCommandBuffer commands_;
-    size_t number_;
+    uint32_t number_;
     uint32_t viewOffset_;
     const DrawPass& pass_;
+    const PassObjects& objects_;
     VkPipelineLayout layout_;
     VkDescriptorSet bound_ = VK_NULL_HANDLE;
     bool refined_ = false;                           // whose indices are bound
@@ -158,7 +227,7 @@ bool isMixed(const FwVulkanFrame& frame) noexcept {
 }
 
 // Haze is drawn where a frame lends its colour, so none is no fault.
-void checkLentColor(const Target& target, const FwVulkanFrame& frame) {
+void checkHostColor(const Target& target, const FwVulkanFrame& frame) {
     if (isMixed(frame) && !target.key.transparency)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanFrame::transparency is %g and the target was registered without "
@@ -199,26 +268,268 @@ void VkBackend::State::setViewport(VkCommandBuffer commands,
     // Whole pixels: half of an odd number of them ends in one.
     shown.extent = {uint32_t(std::ceil(std::max(viewport.x + viewport.width - left, 0.0f))),
                     uint32_t(std::ceil(std::max(viewport.y + viewport.height - top, 0.0f)))};
-    if (scissor.extent.width != 0) {
+    if (surfaces.scissor.extent.width != 0) {
         const auto meet = [](int32_t& offset, uint32_t& extent, int32_t by, uint32_t byExtent) {
             const int64_t end = std::min(int64_t(offset) + extent, int64_t(by) + byExtent);
             offset = std::max(offset, by);
             extent = uint32_t(std::max<int64_t>(end - offset, 0));
         };
-        meet(shown.offset.x, shown.extent.width, scissor.offset.x, scissor.extent.width);
-        meet(shown.offset.y, shown.extent.height, scissor.offset.y, scissor.extent.height);
+        meet(shown.offset.x, shown.extent.width, surfaces.scissor.offset.x,
+             surfaces.scissor.extent.width);
+        meet(shown.offset.y, shown.extent.height, surfaces.scissor.offset.y,
+             surfaces.scissor.extent.height);
     }
     device.table.CmdSetScissor(commands, 0, 1, &shown);
 }
 
+namespace {
+
+constexpr bool isSoft(DrawPhase phase) noexcept {
+    return phase == DrawPhase::Fields || phase == DrawPhase::Flames || phase == DrawPhase::Volumes;
+}
+
+// The draws of one view in one target, phase by phase.
+class ViewDraws {
+ public:
+    ViewDraws(VkBackend::State& state, FrameInFlight& slot, VkCommandBuffer commands,
+              const Target& target, const VkViewport& viewport, const HostImages& host,
+              DrawPart part, uint32_t viewOffset)
+        : s_(state),
+          slot_(slot),
+          commands_(commands),
+          target_(target),
+          viewport_(viewport),
+          host_(host),
+          part_(part),
+          viewOffset_(viewOffset) {}
+
+    // What the view shows of fields, and of volumetric flames as they were marched for it or, where
+    // nothing was, marched as they are drawn.
+    void prepare(OutsideView& of, const FwView& view);
+    void record() {
+        for (uint32_t i = 0; i < uint32_t(DrawPhase::Count); ++i)
+            if (const auto phase = DrawPhase(i); isIncluded(phase) && hasWork(phase)) record(phase);
+    }
+
+ private:
+    [[nodiscard]] bool isIncluded(DrawPhase phase) const noexcept {
+        return part_ == DrawPart::all || isSoft(phase) == (part_ == DrawPart::half);
+    }
+    [[nodiscard]] bool hasWork(DrawPhase phase) const noexcept;
+    void record(DrawPhase phase);
+    [[nodiscard]] std::span<const SurfaceStep> surfacesOf(DrawPhase phase) const noexcept;
+    void recordSurfaces(DrawPhase phase);
+    void recordVolumes(const VolumeRun& run);
+    // Binds `pass`, has `draws` record with it, and times that. Nothing if the target lacks it.
+    template <class Draws>
+    void recordPass(uint32_t pass, const Draws& draws) {
+        if (!target_.pipelines[pass]) return;
+        slot_.timers.begin(s_.device, commands_, drawPasses()[pass].name);
+        PassRecorder recorder(s_, commands_, pass, viewOffset_);
+        recorder.bind(target_.pipelines[pass], host_);
+        draws(recorder);
+        slot_.timers.end(s_.device, commands_);
+    }
+
+    VkBackend::State& s_;
+    FrameInFlight& slot_;
+    VkCommandBuffer commands_;
+    const Target& target_;
+    const VkViewport& viewport_;
+    const HostImages& host_;
+    DrawPart part_;
+    uint32_t viewOffset_;
+    bool turned_ = false;  // counter-clockwise triangles turn their backs to the view
+    uint32_t fieldCount_ = 0, hazeCount_ = 0;
+    std::array<FieldItem, kMaxFields> fields_;
+    std::array<HazedVolume, kMaxVolumeFlames> hazes_;
+    // Volumetric flames by pass, and the order of all of them.
+    std::array<VolumeItem, kMaxVolumeFlames> items_;
+    std::array<SlicedVolume, kMaxVolumeFlames> ownSlices_;
+    const SlicedVolume* slices_ = nullptr;
+    const March* march_ = nullptr;
+    VolumeOrder ownOrder_;
+    const VolumeOrder* order_ = nullptr;
+};
+
+void ViewDraws::prepare(OutsideView& of, const FwView& view) {
+    turned_ = s_.turnsFaces(view, viewport_);
+    fieldCount_ = s_.orderFields(fields_);
+    if (!target_.key.flames || s_.flames.volumes.empty()) return;
+    const float share = part_ == DrawPart::over ? 0.5f : 1.0f;
+    const VolumeScreen screen =
+        s_.screenOf(target_.key, {share * viewport_.width, share * std::fabs(viewport_.height)});
+    s_.noteScreen(of, view, screen, slot_.frameIndex);
+    if (s_.marchedFor(of, view, screen)) {
+        march_ = &of.march;
+        slices_ = march_->sliced.data();
+        order_ = &march_->order;
+    } else {
+        const uint32_t slabs = target_.key.attachesDepth() ? kVolumeSlabs : 1;
+        const uint32_t count = s_.orderVolumes(slabs, items_);
+        const uint32_t least = s_.leastRays(of, view, screen);
+        uint32_t whole = 0, cut = 0;
+        for (uint32_t i = 0; i < count; ++i) {
+            if (s_.flames.volumes[items_[i].flame].tier == FW_FIRE_TIER_SLICES &&
+                slicesShow(screen.encoding)) {
+                ownSlices_[cut] = layVolumeSlices(items_[i]);
+                ownOrder_.add(draw::volume_slices, cut++);
+            } else {
+                items_[whole] = items_[i];
+                VolumeDraw& draw = items_[whole].draw;
+                volumeRays(screen, draw);
+                draw.perPixel = std::max(draw.perPixel, least);
+                ownOrder_.add(draw::volume, whole++);
+            }
+        }
+        slices_ = ownSlices_.data();
+        order_ = &ownOrder_;
+    }
+    if (target_.key.haze && host_.color) hazeCount_ = s_.orderHazes(march_, view.haze, hazes_);
+}
+
+bool ViewDraws::hasWork(DrawPhase phase) const noexcept {
+    const bool quads = !s_.simulation.burnEmpty || s_.showsEmitters();
+    switch (phase) {
+        case DrawPhase::OpaqueFresh:
+        case DrawPhase::OpaqueBurning:
+        case DrawPhase::OpaqueSelfIntersecting:
+            return !surfacesOf(phase).empty();
+        case DrawPhase::Distortion:
+            return hazeCount_ > 0;
+        case DrawPhase::Fields:
+            return fieldCount_ > 0;
+        case DrawPhase::Flames:
+            return quads;
+        case DrawPhase::Volumes:
+            return order_ && order_->count > 0;
+        case DrawPhase::HalfResolutionComposite:
+            return host_.half != nullptr;
+        case DrawPhase::Sparks:
+            return quads && part_ == DrawPart::over;
+        case DrawPhase::Transparency:
+            return s_.surfaces.transparency > 0.0f;
+        case DrawPhase::Count:
+            break;
+    }
+    return false;
+}
+
+void ViewDraws::record(DrawPhase phase) {
+    switch (phase) {
+        case DrawPhase::OpaqueFresh:
+        case DrawPhase::OpaqueBurning:
+        case DrawPhase::OpaqueSelfIntersecting:
+            return recordSurfaces(phase);
+        case DrawPhase::Distortion:
+            return recordPass(draw::volume_haze, [&](PassRecorder& recorder) {
+                for (const HazedVolume& one : std::span(hazes_).first(hazeCount_))
+                    recorder.drawVolume(one.flame, &one.draw, 6 * kHazeColumns * kHazeRows, 1);
+            });
+        case DrawPhase::Fields:
+            for (uint32_t i = 0, end = 0; i < fieldCount_; i = end) {
+                while (end < fieldCount_ && fields_[end].pass == fields_[i].pass) ++end;
+                recordPass(fields_[i].pass, [&](PassRecorder& recorder) {
+                    for (const FieldItem& item : std::span(fields_).subspan(i, end - i))
+                        recorder.drawVertices(nullptr, item.vertices, 1, item.draw);
+                });
+            }
+            return;
+        case DrawPhase::Flames:
+            return recordPass(
+                !s_.scene.books.live ? draw::flames
+                : s_.pagesAlone()    ? draw::flipbook_flames_only
+                                     : draw::flipbook_flames,
+                [&](PassRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); });
+        case DrawPhase::Volumes:
+            for (const VolumeRun& run : std::span(order_->runs).first(order_->count))
+                recordVolumes(run);
+            return;
+        case DrawPhase::HalfResolutionComposite:
+            return recordPass(draw::half_composite, [&](PassRecorder& recorder) {
+                const HalfPush push = s_.halfPushFor(viewport_);
+                recorder.drawVertices(&push, 6 * push.tilesX * push.tilesY);
+            });
+        case DrawPhase::Sparks:
+            return recordPass(s_.scene.books.live ? draw::half_flipbook_sparks : draw::half_sparks,
+                              [&](PassRecorder& recorder) {
+                                  recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameLightDraw * 4);
+                              });
+        case DrawPhase::Transparency:
+            return recordPass(draw::transparency, [&](PassRecorder& recorder) {
+                const float share = s_.surfaces.transparency;
+                const std::array<float, 4> constants{share, share, share, share};
+                s_.device.table.CmdSetBlendConstants(commands_, constants.data());
+                recorder.drawVertices(nullptr, 6);
+            });
+        case DrawPhase::Count:
+            return;
+    }
+}
+
+std::span<const SurfaceStep> ViewDraws::surfacesOf(DrawPhase phase) const noexcept {
+    const auto range = std::equal_range(
+        s_.surfaces.surfaceSteps.begin(), s_.surfaces.surfaceSteps.end(), SurfaceStep{phase},
+        [](const SurfaceStep& a, const SurfaceStep& b) { return a.phase < b.phase; });
+    return {range.first, range.second};
+}
+
+void ViewDraws::recordSurfaces(DrawPhase phase) {
+    const std::span<const SurfaceStep> steps = surfacesOf(phase);
+    for (size_t first = 0, end = 0; first < steps.size(); first = end) {
+        const uint32_t pass = steps[first].pass;
+        while (end < steps.size() && steps[end].pass == pass) ++end;
+        const bool depthAlone = pass == draw::self_intersection_depth;
+        if (depthAlone && (s_.crossing & kSwitchNoZPass)) continue;
+        recordPass(pass, [&](PassRecorder& recorder) {
+            for (const SurfaceStep& step : steps.subspan(first, end - first)) {
+                const DrawItem& item = s_.surfaces.drawItems[step.item];
+                if (depthAlone)
+                    recorder.drawItem(item, &item.draw, false);
+                else
+                    recorder.drawSurface(item, turned_);
+            }
+        });
+    }
+}
+
+// Neighbours that one pass draws, farthest first.
+void ViewDraws::recordVolumes(const VolumeRun& run) {
+    recordPass(run.pass, [&](PassRecorder& recorder) {
+        for (uint32_t i = run.first; i < run.first + run.count; ++i) {
+            switch (run.pass) {
+                case draw::volume_card:
+                    recorder.drawVertices(&march_->cards[i], kVolumeSplit);
+                    break;
+                case draw::volume_composite: {
+                    const MarchedVolume& one = march_->items[i];
+                    recorder.drawListed(
+                        FW_BIND_VOLUME_WORK,
+                        one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, vertices),
+                        &one.composite);
+                    break;
+                }
+                case draw::volume_slices:
+                    recorder.drawVolume(slices_[i].flame, &slices_[i].draw,
+                                        kFlamePieces * kSliceVertices, slices_[i].draw.slices);
+                    break;
+                default:
+                    recorder.drawVolume(items_[i].flame, &items_[i].draw, kVolumeSplit,
+                                        items_[i].draw.slabs);
+            }
+        }
+    });
+}
+
+}  // namespace
+
 void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands,
                                    const Target& target, const FwView& view,
-                                   const VkViewport& viewport, const Lent& lent, DrawPart part,
-                                   const HalfImages* half) {
-    if (!showsAnything() || transparency >= 1.0f) return;
-    const Table& vk = device.table;
+                                   const VkViewport& viewport, const HostImages& host,
+                                   DrawPart part) {
+    if (!showsAnything() || surfaces.transparency >= 1.0f) return;
     OutsideView& of = viewFor(view);
-    drawnView = of.number;
+    surfaces.drawnView = of.number;
     const uint32_t viewOffset = pushView(slot, view, viewport);
     if (part != DrawPart::half) {
         const float height = std::fabs(viewport.height);
@@ -226,155 +537,11 @@ void VkBackend::State::recordDraws(FrameInFlight& slot, VkCommandBuffer commands
         look(view, height, slot.frameIndex);
     }
     setViewport(commands, viewport);
-    std::array<VolumeItem, kMaxVolumeFlames> items;
-    std::array<SlicedVolume, kMaxVolumeFlames> sliced;
-    VolumeOrder order;
-    std::array<HazedVolume, kMaxVolumeFlames> hazes;
-    std::array<FieldItem, kMaxFields> fieldItems;
-    DrawList list{drawItems,
-                  !burnEmpty || showsEmitters(),
-                  books.live,
-                  pagesAlone(),
-                  {},
-                  {},
-                  {fieldItems.data(), orderFields(fieldItems)},
-                  turnsFaces(view, viewport)};
-    list.half = half != nullptr;
-    list.transparent = transparency > 0.0f && part != DrawPart::half;
-    if (target.key.flames && !volumes.empty()) {
-        const float share = part == DrawPart::over ? 0.5f : 1.0f;
-        const VolumeScreen screen =
-            screenOf(target.key, {share * viewport.width, share * std::fabs(viewport.height)});
-        noteScreen(of, view, screen, slot.frameIndex);
-        const bool made = marchedFor(of, view, screen);
-        const March& march = of.march;
-        if (made) {
-            list.marched = {march.items.data(), march.count};
-            list.cards = {march.cards.data(), march.cardCount};
-            list.sliced = {march.sliced.data(), march.slicedCount};
-            list.volumeRuns = {march.order.runs.data(), march.order.count};
-        } else {
-            const uint32_t slabs = target.key.attachesDepth() ? kVolumeSlabs : 1;
-            const uint32_t count = orderVolumes(slabs, items), least = leastRays(of, view, screen);
-            uint32_t whole = 0, cut = 0;
-            for (uint32_t i = 0; i < count; ++i) {
-                if (volumes[items[i].flame].tier == FW_FIRE_TIER_SLICES &&
-                    slicesShow(screen.encoding)) {
-                    sliced[cut] = layVolumeSlices(items[i]);
-                    order.add(kVolumeSlicesPass, cut++);
-                } else {
-                    items[whole] = items[i];
-                    VolumeDraw& draw = items[whole].draw;
-                    volumeRays(screen, draw);
-                    draw.perPixel = std::max(draw.perPixel, least);
-                    order.add(kVolumePass, whole++);
-                }
-            }
-            list.volumes = {items.data(), whole};
-            list.sliced = {sliced.data(), cut};
-            list.volumeRuns = {order.runs.data(), order.count};
-        }
-        if (target.key.haze && lent.color)
-            list.hazes = {hazes.data(), orderHazes(made ? &march : nullptr, view.haze, hazes)};
-    }
-    for (const DrawStep& step : drawSteps()) {
-        const uint32_t i = step.pass;
-        const DrawPass& pass = *drawPasses()[i];
-        const bool surface = pass.vertexInput == VertexInput::mesh;
-        if (!target.pipelines[i] || !drawStepDraws(step, list)) continue;
-        if (part != DrawPart::all && (pass.atHalf == AtHalf::soft) != (part == DrawPart::half))
-            continue;
-        if ((crossing & kSwitchNoZPass) && &pass == &kZPass) continue;
-        if (&pass == &kVolumePass) {
-            for (const VolumeRun& run : list.volumeRuns)
-                recordVolumeDraws(slot, commands, target, list, run, viewOffset, lent);
-            continue;
-        }
-        if (&pass == &kVolumeHazePass) {
-            const VolumeRun run{&pass, 0, uint32_t(list.hazes.size())};
-            recordVolumeDraws(slot, commands, target, list, run, viewOffset, lent);
-            continue;
-        }
-        slot.timers.begin(device, commands, pass.name);
-        if (&pass == &kTransparencyPass) {
-            recordTransparency(commands, target, lent);
-            slot.timers.end(device, commands);
-            continue;
-        }
-        if (&pass == &kHalfCompositePass) {
-            recordHalfComposite(commands, target, *half, viewport, lent);
-            slot.timers.end(device, commands);
-            continue;
-        }
-        if (&pass == &kFieldDrawPasses[0]) {
-            recordFieldDraws(commands, target, i, list.fields, viewOffset, lent.depth);
-            slot.timers.end(device, commands);
-            continue;
-        }
-        const VkPipelineLayout layout = context.pipelines.draw(i).layout;
-        vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[i]);
-        bool usesView = false;
-        for (const Use& use : pass.uses) usesView |= use.access == Access::uniformView;
-        const VkDescriptorSet set = sets.draw(i, drawnView);
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1, &set,
-                                 usesView ? 1 : 0, &viewOffset);
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 2, 1,
-                                 &lookTextures.set.set, 0, nullptr);
-        if (&pass == &kBookFlamesPasses[0] || &pass == &kBookFlamesPasses[1] ||
-            &pass == &kHalfSparksPasses[1])
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 1,
-                                     &books.set.set, 0, nullptr);
-        if (lent.depth)
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
-                                     &lent.depth, 0, nullptr);
-        if (surface) {
-            const VkDeviceSize zeros[2] = {};
-            const VkBuffer vertices[2] = {drawVertices, drawVertices};
-            vk.CmdBindVertexBuffers(commands, 0, 2, vertices, zeros);
-            vk.CmdBindIndexBuffer(commands, drawIndices, 0, VK_INDEX_TYPE_UINT32);
-        }
-        PassRecorder recorder(*this, commands, i, viewOffset);
-        recordDrawStep(step, recorder, list);
-        slot.timers.end(device, commands);
-    }
-}
-
-void VkBackend::State::recordTransparency(VkCommandBuffer commands, const Target& target,
-                                          const Lent& lent) const noexcept {
-    const Table& vk = device.table;
-    const size_t number = passNumber(kTransparencyPass);
-    const std::array<float, 4> share{transparency, transparency, transparency, transparency};
-    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
-    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS,
-                             context.pipelines.draw(number).layout, 1, 1, &lent.color, 0, nullptr);
-    vk.CmdSetBlendConstants(commands, share.data());
-    vk.CmdDraw(commands, 6, 1, 0, 0);
-}
-
-void VkBackend::State::recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands,
-                                         const Target& target, const DrawList& list,
-                                         const VolumeRun& run, uint32_t viewOffset,
-                                         const Lent& lent) {
-    const Table& vk = device.table;
-    const size_t number = passNumber(*run.pass);
-    if (!target.pipelines[number]) return;
-    slot.timers.begin(device, commands, run.pass->name);
-    const VkPipelineLayout layout = context.pipelines.draw(number).layout;
-    const auto bind = [&](uint32_t place, const VkDescriptorSet& set) {
-        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, place, 1, &set,
-                                 0, nullptr);
-    };
-    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
-    // Who sees one flame at a time binds its set 0 for each.
-    const bool haze = run.pass == &kVolumeHazePass;
-    const bool each = haze || run.pass == &kVolumePass || run.pass == &kVolumeSlicesPass;
-    if (!each) bind(0, sets.draw(number, drawnView));
-    if (haze) bind(1, lent.color);
-    bind(2, each ? profiles.set.set : lookTextures.set.set);
-    if (lent.depth) bind(3, lent.depth);
-    PassRecorder recorder(*this, commands, number, viewOffset);
-    recordVolumeRun(run, recorder, list);
-    slot.timers.end(device, commands);
+    if (surfaces.surfacesDirty) orderSurfaces(surfaces.drawItems, surfaces.surfaceSteps);
+    surfaces.surfacesDirty = false;
+    ViewDraws draws(*this, slot, commands, target, viewport, host, part, viewOffset);
+    draws.prepare(of, view);
+    draws.record();
 }
 
 // Whether triangles that are counter-clockwise from outside count as backs in a view: hosts' views
@@ -391,11 +558,11 @@ bool VkBackend::State::turnsFaces(const FwView& view, const VkViewport& viewport
 }
 
 // Hosts' views come and go: a set is written for each use, never kept with a view.
-VkDescriptorSet VkBackend::State::lentSetFor(FrameInFlight& slot, VkImageView view,
+VkDescriptorSet VkBackend::State::hostSetFor(FrameInFlight& slot, VkImageView view,
                                              VkImageLayout layout) {
     const Table& vk = device.table;
-    constexpr uint32_t kSets = FrameInFlight::kLentSets;
-    if (!slot.lentPool) {
+    constexpr uint32_t kSets = FrameInFlight::kHostSets;
+    if (!slot.hostPool) {
         const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, kSets};
         auto info =
             typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
@@ -414,19 +581,19 @@ VkDescriptorSet VkBackend::State::lentSetFor(FrameInFlight& slot, VkImageView vi
         allocate.descriptorSetCount = kSets;
         allocate.pSetLayouts = layouts.data();
         const VkResult result =
-            vk.AllocateDescriptorSets(device.handle, &allocate, slot.lentSets.data());
+            vk.AllocateDescriptorSets(device.handle, &allocate, slot.hostSets.data());
         if (result != VK_SUCCESS) {
             vk.DestroyDescriptorPool(device.handle, pool, device.allocationCallbacks);
             device.check(result, "vkAllocateDescriptorSets");
         }
-        slot.lentPool = pool;
+        slot.hostPool = pool;
     }
-    if (slot.lentSetCount == kSets)
+    if (slot.hostSetCount == kSets)
         core::fail(
             FW_ERROR_INVALID_ARGUMENT,
             "A frame is drawn more than %u times against a sampled depth; that is the limit.",
-            FrameInFlight::kLentDraws);
-    const VkDescriptorSet set = slot.lentSets[slot.lentSetCount++];
+            FrameInFlight::kHostDraws);
+    const VkDescriptorSet set = slot.hostSets[slot.hostSetCount++];
     const VkDescriptorImageInfo image{context.pipelines.depthSampler(), view, layout};
     auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
     write.dstSet = set;
@@ -438,14 +605,14 @@ VkDescriptorSet VkBackend::State::lentSetFor(FrameInFlight& slot, VkImageView vi
 }
 
 // What the target's passes read of what the host lends; throws where that cannot be.
-VkBackend::State::Lent VkBackend::State::lentFor(FrameInFlight& slot, const Target& target,
-                                                 const FwVulkanFrame& frame, VkImageView depth,
-                                                 VkImageLayout depthLayout) {
-    Lent lent;
-    if (target.key.samplesDepth()) lent.depth = lentSetFor(slot, depth, depthLayout);
+HostImages VkBackend::State::hostImagesFor(FrameInFlight& slot, const Target& target,
+                                           const FwVulkanFrame& frame, VkImageView depth,
+                                           VkImageLayout depthLayout) {
+    HostImages host;
+    if (target.key.samplesDepth()) host.depth = hostSetFor(slot, depth, depthLayout);
     if ((target.key.haze || isMixed(frame)) && frame.sampledColor)
-        lent.color = lentSetFor(slot, frame.sampledColor, frame.sampledColorLayout);
-    return lent;
+        host.color = hostSetFor(slot, frame.sampledColor, frame.sampledColorLayout);
+    return host;
 }
 
 bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, const FwView& view,
@@ -476,7 +643,7 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
                        "and 1.",
                        double(viewport.minDepth), double(viewport.maxDepth));
     }
-    checkLentColor(target, frame);
+    checkHostColor(target, frame);
     const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
     if (viewport.width > float(limits.maxViewportDimensions[0]) ||
         viewport.height > float(limits.maxViewportDimensions[1]))
@@ -486,10 +653,11 @@ bool VkBackend::recordInside(const FwVulkanFrame& frame, FwTargetId targetId, co
                    limits.maxViewportDimensions[1]);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    s.scissor = frame.scissor;
-    s.transparency = frame.transparency;
-    s.recordDraws(slot, frame.commandBuffer, target, view, viewport,
-                  s.lentFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
+    s.surfaces.scissor = frame.scissor;
+    s.surfaces.transparency = frame.transparency;
+    s.recordDraws(
+        slot, frame.commandBuffer, target, view, viewport,
+        s.hostImagesFor(slot, target, frame, frame.sampledDepth, frame.sampledDepthLayout));
     return true;
 }
 
@@ -534,7 +702,7 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     };
     checkImage(images.color, "color");
     if (hasDepth) checkImage(images.depth, "depth");
-    checkLentColor(target, frame);
+    checkHostColor(target, frame);
     if (images.width == 0 || images.height == 0) return true;
     const VkPhysicalDeviceLimits& limits = s.device.properties.limits;
     if (images.width > limits.maxFramebufferWidth || images.height > limits.maxFramebufferHeight)
@@ -544,11 +712,11 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
             images.width, images.height, limits.maxFramebufferWidth, limits.maxFramebufferHeight);
     s.ring.pace(frame, false);
     FrameInFlight& slot = s.ring.slotFor(frame.frameIndex);
-    const State::Lent lent = s.lentFor(slot, target, frame, images.depth.view,
-                                       VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
+    HostImages host = s.hostImagesFor(slot, target, frame, images.depth.view,
+                                      VK_IMAGE_LAYOUT_DEPTH_STENCIL_READ_ONLY_OPTIMAL);
     const VkFramebuffer framebuffer = s.framebufferFor(slot, target, targetId, images);
-    s.scissor = frame.scissor;
-    s.transparency = frame.transparency;
+    s.surfaces.scissor = frame.scissor;
+    s.surfaces.transparency = frame.transparency;
 
     const Table& vk = s.device.table;
     const VkCommandBuffer commands = frame.commandBuffer;
@@ -585,15 +753,14 @@ bool VkBackend::recordComposite(const FwVulkanFrame& frame, FwTargetId targetId,
     if (!after) after = VK_PIPELINE_STAGE_BOTTOM_OF_PIPE_BIT;
     vk.CmdPipelineBarrier(commands, before, ours, 0, 0, nullptr, 0, nullptr, count, in.data());
     const VkViewport viewport{0, 0, float(images.width), float(images.height), 0, 1};
-    const HalfImages* half =
-        target.key.half ? s.recordHalf(slot, commands, target, view, viewport, lent) : nullptr;
+    if (target.key.half) host.half = s.recordHalf(slot, commands, target, view, viewport, host);
     auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
     begin.renderPass = target.ownPass;
     begin.framebuffer = framebuffer;
     begin.renderArea.extent = {images.width, images.height};
     vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
-    s.recordDraws(slot, commands, target, view, viewport, lent,
-                  target.key.half ? DrawPart::over : DrawPart::all, half);
+    s.recordDraws(slot, commands, target, view, viewport, host,
+                  target.key.half ? DrawPart::over : DrawPart::all);
     vk.CmdEndRenderPass(commands);
     vk.CmdPipelineBarrier(commands, ours, after, 0, 0, nullptr, 0, nullptr, count, out.data());
     return true;
@@ -608,7 +775,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
     const bool keep = (composite.flags & FW_COMPOSITE_KEEP) != 0;
     KeptFramebuffer* room = nullptr;
     if (!keep) dropFramebuffers(targetId);
-    for (KeptFramebuffer& one : framebuffers) {
+    for (KeptFramebuffer& one : surfaces.framebuffers) {
         if (!keep || one.dropped || one.target.index1 != targetId.index1 ||
             one.target.generation != targetId.generation || one.color != attachments[0] ||
             one.depth != attachments[1] || one.width != composite.width ||
@@ -619,7 +786,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
     }
     if (keep) {
         dropFramebuffers({});
-        for (KeptFramebuffer& one : framebuffers)
+        for (KeptFramebuffer& one : surfaces.framebuffers)
             if (!room && !one.handle) room = &one;
     }
     // More than are kept come and go with their frame.
@@ -646,7 +813,7 @@ VkFramebuffer VkBackend::State::framebufferFor(FrameInFlight& slot, const Target
 }
 
 void VkBackend::State::dropFramebuffers(FwTargetId forget) noexcept {
-    for (KeptFramebuffer& one : framebuffers) {
+    for (KeptFramebuffer& one : surfaces.framebuffers) {
         if (!one.handle) continue;
         const bool forgotten =
             one.target.index1 == forget.index1 && one.target.generation == forget.generation;
@@ -658,9 +825,9 @@ void VkBackend::State::dropFramebuffers(FwTargetId forget) noexcept {
 }
 
 void VkBackend::State::destroyFramebuffers() noexcept {
-    for (KeptFramebuffer& one : framebuffers)
+    for (KeptFramebuffer& one : surfaces.framebuffers)
         device.table.DestroyFramebuffer(device.handle, one.handle, device.allocationCallbacks);
-    framebuffers = {};
+    surfaces.framebuffers = {};
 }
 
 }  // namespace fw::gpu::vk

@@ -15,29 +15,29 @@ uint32_t VkBackend::State::tileQuads() const noexcept {
 
 // Some particles show twice while fire turns to smoke; who finds no quad is not seen.
 void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t last) {
-    lightShare = 0.0f;
+    particles.lightShare = 0.0f;
     if (update.count == 0 && update.sparkCount == 0) return;
-    planes.atLeast(kSpaceParticles, update.particleEnd, last);
-    planes.atLeast(kSpaceEmitters, update.count, last);
-    planes.atLeast(kSpaceEmitterGroups, uint32_t(update.groups.size()), last);
-    planes.atLeast(kSpaceSparks, update.sparkCount, last);
+    buffers.atLeast(kPoolParticles, update.particleEnd, last);
+    buffers.atLeast(kPoolEmitters, update.count, last);
+    buffers.atLeast(kPoolEmitterGroups, uint32_t(update.groups.size()), last);
+    buffers.atLeast(kPoolSparks, update.sparkCount, last);
     const uint32_t tiles = tileQuads();
     const uint32_t hiding = update.particles + update.particles / 4 + 16;
     const uint32_t lights = update.sparkQuads + update.lightParticles;
     const uint32_t wished = hiding + lights;
-    lightShare = float(lights) / float(wished);
+    particles.lightShare = float(lights) / float(wished);
     // Who finds no quad is not seen, so that under a limit there is room for those that show:
     // a twelfth of them does in part (shareShows).
     const float share = detail.memory < 1 ? std::min(detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
     const auto shown = uint32_t(float(wished) * share);
-    planes.fit(kSpaceFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
-               last);
+    buffers.fit(kPoolFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
+                last);
 }
 
 void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecorder& recorder,
                     UploadWriter& writer) {
-    s.emitterGroups = uint32_t(update.groups.size());
-    s.sparkSources = update.sparkCount;
+    s.particles.emitterGroups = uint32_t(update.groups.size());
+    s.particles.sparkSources = update.sparkCount;
     if (update.sparkCount > 0) {
         const std::span<const SparkSource> sparks(update.sparks, update.sparkCount);
         const Staged at = writer.write(sparks);
@@ -45,7 +45,7 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
     }
     if (update.count == 0) return;
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
-    s.particlesByBook =
+    s.particles.particlesByBook =
         std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
             return emitter.books != 0 && (emitter.otherBooks != 0 || emitter.life.w == 0);
         });
@@ -56,17 +56,18 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
 }
 
 bool VkBackend::State::pagesAlone() const noexcept {
-    const bool tiles = burnEmpty || ((flameBooks & 0xFFu) != 0 && flameBooks >> 8 != 0);
-    return books.live && tiles && (emitterGroups == 0 || particlesByBook);
+    const bool tiles = simulation.burnEmpty ||
+                       ((particles.flameBooks & 0xFFu) != 0 && particles.flameBooks >> 8 != 0);
+    return scene.books.live && tiles && (particles.emitterGroups == 0 || particles.particlesByBook);
 }
 
 SortPush VkBackend::State::quadRoom() const noexcept {
     SortPush room{};
     room.tiles = tileQuads();
-    const uint32_t all = std::min(planes.capacity(kSpaceFlames) - quadUnits(0), kMostQuads);
+    const uint32_t all = std::min(buffers.capacity(kPoolFlames) - quadUnits(0), kMostQuads);
     // What emits alone has places of its own; who has more than wished for, or less, both have.
     const uint32_t behind = all - std::min(all, room.tiles);
-    room.lights = std::min(uint32_t(std::ceil(float(behind) * lightShare)), behind);
+    room.lights = std::min(uint32_t(std::ceil(float(behind) * particles.lightShare)), behind);
     room.particles = behind - room.lights;
     room.few = fewQuads(device.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU);
     return room;

@@ -1,4 +1,4 @@
-// Particle fields on the device: their places in the planes, and what a frame has to do for them.
+// Particle fields on the device: their places in the buffers, and what a frame has to do for them.
 #include "gpu/passes/field_units.h"
 #include "gpu/vk/frame_needs.h"
 
@@ -26,65 +26,66 @@ void VkBackend::createField(uint32_t slot, const FieldRules& rules,
                             std::span<const uint8_t> masks) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    (void)slotOf(s.fields, slot);
-    s.planes.atLeast(kSpaceFields, uint32_t(s.fields.size()), last);
+    (void)slotOf(s.particleFields.fields, slot);
+    s.buffers.atLeast(kPoolFields, uint32_t(s.particleFields.fields.size()), last);
     FieldEntry field;
     field.cells.units = cellUnits(rules);
-    field.cells.first = s.planes.allocate(kSpaceFieldCells, field.cells.units, last);
+    field.cells.first = s.buffers.allocate(kPoolFieldCells, field.cells.units, last);
     try {
         stageMasks(s, field.cells, masks);
     } catch (...) {
-        s.planes.release(kSpaceFieldCells, field.cells.first, field.cells.units);
+        s.buffers.release(kPoolFieldCells, field.cells.first, field.cells.units);
         throw;
     }
     field.live = field.recordDirty = field.masksDue = field.fresh = true;
     field.rules = rules;
-    s.fields[slot] = field;
-    s.fieldsDirty = true;
+    s.particleFields.fields[slot] = field;
+    s.particleFields.fieldsDirty = true;
 }
 
 void VkBackend::destroyField(uint32_t slot) noexcept {
     State& s = *state_;
-    if (slot >= s.fields.size() || !s.fields[slot].live) return;
-    FieldEntry& field = s.fields[slot];
-    s.planes.release(kSpaceFieldCells, field.cells.first, field.cells.units);
+    if (slot >= s.particleFields.fields.size() || !s.particleFields.fields[slot].live) return;
+    FieldEntry& field = s.particleFields.fields[slot];
+    s.buffers.release(kPoolFieldCells, field.cells.first, field.cells.units);
     field = {};
 }
 
 void VkBackend::setFieldRules(uint32_t slot, const FieldRules& rules) noexcept {
-    FieldEntry& field = state_->fields[slot];
+    FieldEntry& field = state_->particleFields.fields[slot];
     if (std::memcmp(&field.rules, &rules, sizeof rules) == 0) return;
     field.rules = rules;
     field.recordDirty = true;
-    state_->fieldsDirty = true;
+    state_->particleFields.fieldsDirty = true;
 }
 
 void VkBackend::setFieldMasks(uint32_t slot, std::span<const uint8_t> masks) {
-    FieldEntry& field = state_->fields[slot];
+    FieldEntry& field = state_->particleFields.fields[slot];
     stageMasks(*state_, field.cells, masks);
     field.masksDue = true;
-    state_->fieldsDirty = true;
+    state_->particleFields.fieldsDirty = true;
 }
 
 uint64_t VkBackend::fieldBytes(uint32_t slot) const noexcept {
     constexpr uint64_t kOfACell = 2 * 4 + 1 + 4;  // twice, its mask, what it shows
-    return uint64_t(state_->fields[slot].cells.units) * kFieldUnit * kOfACell + sizeof(FieldDraw) +
-           sizeof(FieldRecord) + sizeof(FieldCounters);
+    return uint64_t(state_->particleFields.fields[slot].cells.units) * kFieldUnit * kOfACell +
+           sizeof(FieldDraw) + sizeof(FieldRecord) + sizeof(FieldCounters);
 }
 
 void addFieldNeeds(const VkBackend::State& s, const FramePlan& plan, FrameNeeds& needs) {
     // Less than half of a group is idle, but of the last one of a round.
     if (plan.fields)
         for (const FieldRun& run : plan.fields->runs)
-            needs.fieldRuns += 2 * fieldUnitsOf(s.fields[run.field].rules.width);
+            needs.fieldRuns += 2 * fieldUnitsOf(s.particleFields.fields[run.field].rules.width);
     if (plan.fields) needs.fieldRuns += kFieldUnits * uint32_t(plan.fields->rounds.size());
-    for (const FieldEntry& field : s.fields) {
+    for (const FieldEntry& field : s.particleFields.fields) {
         if (field.recordDirty) needs.uploadBytes += uploaded(sizeof(FieldRecord));
         if (field.masksDue) ++needs.fieldRuns;
     }
     needs.readback |= needs.fieldRuns > 0;
     // An own device's picture is a frame without a plan.
-    needs.fieldsShow = !s.fieldDraws.empty() || (plan.fields && !plan.fields->drawn.empty());
+    needs.fieldsShow =
+        !s.particleFields.fieldDraws.empty() || (plan.fields && !plan.fields->drawn.empty());
     if (plan.fields) needs.uploadBytes += uploaded(plan.fields->drawn.size() * sizeof(FieldDraw));
     needs.uploadBytes += uploaded(uint64_t(needs.fieldRuns) * sizeof(FieldRun));
 }
@@ -93,8 +94,8 @@ void recordFieldSteps(VkBackend::State& s, const FramePlan& plan, FrameRecorder&
                       UploadWriter& writer) {
     FieldsRecord record;
     Staged runs = writer.begin();
-    for (uint32_t i = 0; s.fieldsDirty && i < s.fields.size(); ++i) {
-        FieldEntry& field = s.fields[i];
+    for (uint32_t i = 0; s.particleFields.fieldsDirty && i < s.particleFields.fields.size(); ++i) {
+        FieldEntry& field = s.particleFields.fields[i];
         if (!field.masksDue) continue;
         const FieldRun run{i, field.steps | (field.fresh ? kFieldFresh : 0u)};
         writer.append(runs, std::span<const FieldRun>(&run, 1));
@@ -107,18 +108,18 @@ void recordFieldSteps(VkBackend::State& s, const FramePlan& plan, FrameRecorder&
         for (const uint32_t end : plan.fields->rounds) {
             record.groups[record.rounds++] = fieldUnits(
                 all.subspan(first, end - first),
-                [&](uint32_t field) { return s.fields[field].rules.width; },
+                [&](uint32_t field) { return s.particleFields.fields[field].rules.width; },
                 [&](const FieldRun& unit) {
                     writer.append(runs, std::span<const FieldRun>(&unit, 1));
                 });
             first = end;
         }
-        for (const FieldRun& run : all) s.fields[run.field].steps = run.step + 1;
+        for (const FieldRun& run : all) s.particleFields.fields[run.field].steps = run.step + 1;
     }
     writer.end();
     record.runs = runs;
-    for (uint32_t i = 0; s.fieldsDirty && i < s.fields.size(); ++i) {
-        FieldEntry& field = s.fields[i];
+    for (uint32_t i = 0; s.particleFields.fieldsDirty && i < s.particleFields.fields.size(); ++i) {
+        FieldEntry& field = s.particleFields.fields[i];
         if (!field.recordDirty) continue;
         FieldRecord device{};
         device.rules = field.rules;
@@ -129,59 +130,35 @@ void recordFieldSteps(VkBackend::State& s, const FramePlan& plan, FrameRecorder&
         recorder.copyIn(staged.at, FW_BIND_FIELDS, uint64_t(i) * sizeof device, sizeof device);
         field.recordDirty = false;
     }
-    s.fieldsDirty = false;
+    s.particleFields.fieldsDirty = false;
     recordFields(recorder, record);
-    if (plan.frameIndex == 0) return;  // a picture of what is there
-    s.fieldDraws.clear();              // there is room for them
+    if (plan.frameIndex == 0) return;     // a picture of what is there
+    s.particleFields.fieldDraws.clear();  // there is room for them
     for (size_t i = 0; plan.fields && i < plan.fields->drawn.size(); ++i) {
-        const FieldEntry& field = s.fields[plan.fields->drawn[i]];
+        const FieldEntry& field = s.particleFields.fields[plan.fields->drawn[i]];
         FieldDraw draw = plan.fields->draws[i];
         const uint32_t cells = 2 * field.cells.first * kFieldUnit;
         const uint32_t room = field.cells.units * kFieldUnit, odd = field.steps & 1;
         draw.cells = cells + odd * room;
         draw.before = cells + (odd ^ 1) * room;
         draw.shown = field.cells.first * kFieldUnit;
-        s.fieldDraws.push_back(draw);
+        s.particleFields.fieldDraws.push_back(draw);
     }
-    if (s.fieldDraws.empty()) return;
-    const Staged staged = writer.write(std::span<const FieldDraw>(s.fieldDraws));
-    recorder.copyIn(staged.at, FW_BIND_FIELD_DRAWS, 0, s.fieldDraws.size() * sizeof(FieldDraw));
+    if (s.particleFields.fieldDraws.empty()) return;
+    const Staged staged = writer.write(std::span<const FieldDraw>(s.particleFields.fieldDraws));
+    recorder.copyIn(staged.at, FW_BIND_FIELD_DRAWS, 0,
+                    s.particleFields.fieldDraws.size() * sizeof(FieldDraw));
 }
 
 uint32_t VkBackend::State::orderFields(std::array<FieldItem, kMaxFields>& out) const noexcept {
-    if (!profiles.live) return 0;
+    if (!scene.profiles.live) return 0;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < fieldDraws.size(); ++i) {
+    for (uint32_t i = 0; i < particleFields.fieldDraws.size(); ++i) {
         out[count].draw = i;
-        if (fieldDrawn(seen, fieldDraws[i], out[count])) ++count;
+        if (fieldDrawn(seen, particleFields.fieldDraws[i], out[count])) ++count;
     }
     sortFields({out.data(), count});
     return count;
-}
-
-void VkBackend::State::recordFieldDraws(VkCommandBuffer commands, const Target& target,
-                                        uint32_t firstPass, std::span<const FieldItem> items,
-                                        uint32_t viewOffset, VkDescriptorSet depth) noexcept {
-    const Table& vk = device.table;
-    uint32_t bound = kFieldVariants;
-    for (const FieldItem& item : items) {
-        if (item.variant != bound) {
-            bound = item.variant;
-            const uint32_t pass = firstPass + bound;
-            const VkPipelineLayout layout = context.pipelines.draw(pass).layout;
-            vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[pass]);
-            const VkDescriptorSet planesSet = sets.draw(pass, 0);
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 0, 1,
-                                     &planesSet, 1, &viewOffset);
-            const VkDescriptorSet textures[2] = {profiles.set.set, lookTextures.set.set};
-            vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1, 2,
-                                     textures, 0, nullptr);
-            if (depth)
-                vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 3, 1,
-                                         &depth, 0, nullptr);
-        }
-        vk.CmdDraw(commands, item.vertices, 1, 0, item.draw);
-    }
 }
 
 }  // namespace fw::gpu::vk

@@ -27,11 +27,6 @@ VkFramebuffer makeFramebuffer(Device& device, VkRenderPass pass, VkImageView vie
     return framebuffer;
 }
 
-HalfPush pushFor(const ViewParams& seen, const VkViewport& viewport) {
-    return halfPush(seen, int(viewport.x), int(viewport.y), uint32_t(viewport.width),
-                    uint32_t(viewport.height));
-}
-
 }  // namespace
 
 void VkBackend::State::dropHalf(HalfImages& half) noexcept {
@@ -85,15 +80,15 @@ void VkBackend::State::makeHalf(HalfImages& half, VkFormat format, uint32_t widt
 HalfImages& VkBackend::State::halfFor(VkFormat format, uint32_t width, uint32_t height,
                                       uint64_t frame) {
     HalfImages* found = nullptr;
-    for (HalfImages& one : halves)
+    for (HalfImages& one : surfaces.halves)
         if (one.format == format && one.width == width && one.height == height) found = &one;
     if (!found) {
         // Sizes that the host has left behind go, and where all are in use that of longest ago.
-        for (HalfImages& one : halves)
+        for (HalfImages& one : surfaces.halves)
             if (one.width && one.lastFrame + kHalfKept < frame) dropHalf(one);
-        found = &*std::min_element(halves.begin(), halves.end(), [](const auto& a, const auto& b) {
-            return a.lastFrame < b.lastFrame;
-        });
+        found = &*std::min_element(
+            surfaces.halves.begin(), surfaces.halves.end(),
+            [](const auto& a, const auto& b) { return a.lastFrame < b.lastFrame; });
         if (found->width) dropHalf(*found);
         makeHalf(*found, format, width, height);
     }
@@ -103,11 +98,13 @@ HalfImages& VkBackend::State::halfFor(VkFormat format, uint32_t width, uint32_t 
 
 HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer commands,
                                          const Target& target, const FwView& view,
-                                         const VkViewport& viewport, const Lent& lent) {
-    const bool shows = !burnEmpty || showsEmitters() || !fieldDraws.empty() || !volumes.empty();
+                                         const VkViewport& viewport, const HostImages& host) {
+    const bool shows = !simulation.burnEmpty || showsEmitters() ||
+                       !particleFields.fieldDraws.empty() || !flames.volumes.empty();
     if (!showsAnything() || !shows) return nullptr;
-    const HalfPush push = pushFor(seen, viewport);
-    const VkRect2D clip = std::exchange(scissor, {});  // of the picture that this goes over
+    const HalfPush push = halfPushFor(viewport);
+    const VkRect2D clip =
+        std::exchange(surfaces.scissor, {});  // of the picture that this goes over
     HalfImages& half = halfFor(target.key.halfColor, push.texelsX, push.texelsY, slot.frameIndex);
     const Table& vk = device.table;
     if (half.fresh) {
@@ -132,12 +129,11 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
         vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
     };
     // All of a part of the image, with one set.
-    const auto fill = [&](const DrawPass& pass, uint32_t place, VkDescriptorSet set,
+    const auto fill = [&](draw::Number number, uint32_t place, VkDescriptorSet set,
                           const VkViewport& part) {
-        const size_t number = passNumber(pass);
         const VkPipelineLayout layout = context.pipelines.draw(number).layout;
         into(context.pipelines.halfDepthPass(), half.depthBuffer, half.height + half.tilesY);
-        slot.timers.begin(device, commands, pass.name);
+        slot.timers.begin(device, commands, drawPasses()[number].name);
         setViewport(commands, part);
         vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
         vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, place, 1, &set,
@@ -149,7 +145,7 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
         slot.timers.end(device, commands);
         vk.CmdEndRenderPass(commands);
     };
-    fill(kHalfDepthPass, 3, lent.depth, {0, 0, float(half.width), float(half.height), 0, 1});
+    fill(draw::half_depth, 3, host.depth, {0, 0, float(half.width), float(half.height), 0, 1});
 
     into(context.pipelines.halfPass(half.format), half.colorBuffer, half.height);
     const VkViewport halved{0, 0, 0.5f * viewport.width, 0.5f * viewport.height, 0, 1};
@@ -157,26 +153,15 @@ HalfImages* VkBackend::State::recordHalf(FrameInFlight& slot, VkCommandBuffer co
                 DrawPart::half);
     vk.CmdEndRenderPass(commands);
 
-    fill(kHalfTilesPass, 1, half.colorSet.set,
+    fill(draw::half_tiles, 1, half.colorSet.set,
          {0, float(half.height), float(push.tilesX), float(push.tilesY), 0, 1});
-    scissor = clip;
+    surfaces.scissor = clip;
     return &half;
 }
 
-void VkBackend::State::recordHalfComposite(VkCommandBuffer commands, const Target& target,
-                                           const HalfImages& half, const VkViewport& viewport,
-                                           const Lent& lent) noexcept {
-    const Table& vk = device.table;
-    const size_t number = passNumber(kHalfCompositePass);
-    const VkPipelineLayout layout = context.pipelines.draw(number).layout;
-    const HalfPush push = pushFor(seen, viewport);
-    const std::array<VkDescriptorSet, 3> bound{half.colorSet.set, half.depthSet.set, lent.depth};
-    vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
-    vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, 1,
-                             uint32_t(bound.size()), bound.data(), 0, nullptr);
-    vk.CmdPushConstants(commands, layout, VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT,
-                        0, sizeof push, &push);
-    vk.CmdDraw(commands, 6 * push.tilesX * push.tilesY, 1, 0, 0);
+HalfPush VkBackend::State::halfPushFor(const VkViewport& viewport) const noexcept {
+    return halfPush(seen, int(viewport.x), int(viewport.y), uint32_t(viewport.width),
+                    uint32_t(viewport.height));
 }
 
 }  // namespace fw::gpu::vk

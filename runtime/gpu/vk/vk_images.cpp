@@ -138,7 +138,7 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The image is %u x %u pixels; the device's maxImageDimension2D is %u.", width,
                    height, most);
-    ImageEntry& entry = slotOf(s.images, slot);
+    ImageEntry& entry = slotOf(s.scene.images, slot);
     const uint32_t mips = mipsOf(width, height);
     size_t bytes = 0;
     for (uint32_t mip = 0; mip < mips; ++mip)
@@ -177,10 +177,10 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
 
 // Once the frames so far are done with it.
 void VkBackend::State::dropImage(ImageEntry& entry) noexcept {
-    for (size_t i = 0; i < uploads.size(); ++i) {
-        if (uploads[i].image != entry.image.handle) continue;
-        deviceMemory.destroy(uploads[i].staging);
-        uploads.erase(uploads.begin() + std::ptrdiff_t(i));
+    for (size_t i = 0; i < scene.uploads.size(); ++i) {
+        if (scene.uploads[i].image != entry.image.handle) continue;
+        deviceMemory.destroy(scene.uploads[i].staging);
+        scene.uploads.erase(scene.uploads.begin() + std::ptrdiff_t(i));
         break;
     }
     retired.push(ring.newest(), entry.image);
@@ -191,9 +191,9 @@ void VkBackend::State::dropImage(ImageEntry& entry) noexcept {
 void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
                          std::span<const uint32_t> words) {
     State& s = *state_;
-    if (!s.lookTextures.live) return;  // nothing is ever drawn
+    if (!s.scene.lookTextures.live) return;  // nothing is ever drawn
     ImageEntry fresh;
-    const size_t kept = s.uploads.size();
+    const size_t kept = s.scene.uploads.size();
     if (width > 0) {
         PendingUpload& upload = s.stage(words.size_bytes(), "flipbooks");
         std::memcpy(upload.staging.mapped, words.data(), words.size_bytes());
@@ -205,25 +205,25 @@ void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::b
             throw;
         }
     }
-    if (s.books.live) s.dropImage(s.books);
-    s.books = fresh;
+    if (s.scene.books.live) s.dropImage(s.scene.books);
+    s.scene.books = fresh;
 }
 
-void VkBackend::setFlameBooks(uint32_t books) noexcept { state_->flameBooks = books; }
+void VkBackend::setFlameBooks(uint32_t books) noexcept { state_->particles.flameBooks = books; }
 
 void VkBackend::destroyImage(uint32_t slot) {
     State& s = *state_;
-    ImageEntry& entry = s.images[slot];
+    ImageEntry& entry = s.scene.images[slot];
     if (!entry.live) return;
     const auto shows = [&](uint32_t image) { return image == slot + 1; };
-    PassSet passes = 0;
-    for (const ObjectEntry& object : s.objects)
+    DrawPassSet passes = 0;
+    for (const ObjectEntry& object : s.scene.objects)
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m)
             if (shows(object.images[m])) passes |= surfacePasses(object.materials[m], false);
     s.context.pipelines.need(passes);
     s.dropImage(entry);
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        ObjectEntry& object = s.objects[i];
+    for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
+        ObjectEntry& object = s.scene.objects[i];
         if (std::none_of(std::begin(object.images), std::end(object.images), shows)) continue;
         std::replace_if(std::begin(object.images), std::end(object.images), shows, 0u);
         s.changed(i);

@@ -40,7 +40,7 @@ void measureDrawn(const mesh::BurnDomain& domain, MeshEntry& entry) {
 void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    MeshEntry& entry = slotOf(s.meshes, slot);
+    MeshEntry& entry = slotOf(s.scene.meshes, slot);
     MeshEntry fresh;
     fresh.live = true;
     fresh.width = domain.width;
@@ -55,22 +55,22 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     std::pmr::vector<RemoteTile> remoteTiles(s.memory);
     fresh.sourceCells = mesh::remoteTiles(domain, remoteTiles);
     const DrawnOrder order(domain, s.memory);
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     const struct {
         RangeOf* range;
-        Space space;
+        BufferPool pool;
         uint32_t units;
     } wanted[] = {
-        {&fresh.meshTiles, kSpaceMeshTiles, fresh.tiles},
-        {&fresh.slowness, kSpaceSlowness, fresh.tiles},
-        {&fresh.links, kSpaceLinks, std::max(1u, uint32_t(domain.links.size() / 8))},
-        {&fresh.readers, kSpaceReaders, std::max(1u, uint32_t(domain.readers.size()))},
-        {&fresh.vertexRange, kSpaceVertices, std::max(1u, fresh.vertices)},
-        {&fresh.indexRange, kSpaceIndices, std::max(1u, fresh.indices)},
+        {&fresh.meshTiles, kPoolMeshTiles, fresh.tiles},
+        {&fresh.slowness, kPoolSlowness, fresh.tiles},
+        {&fresh.links, kPoolLinks, std::max(1u, uint32_t(domain.links.size() / 8))},
+        {&fresh.readers, kPoolReaders, std::max(1u, uint32_t(domain.readers.size()))},
+        {&fresh.vertexRange, kPoolVertices, std::max(1u, fresh.vertices)},
+        {&fresh.indexRange, kPoolIndices, std::max(1u, fresh.indices)},
     };
     try {
         for (const auto& one : wanted) {
-            one.range->first = s.planes.allocate(one.space, one.units, last);
+            one.range->first = s.buffers.allocate(one.pool, one.units, last);
             one.range->units = one.units;
         }
         const struct {
@@ -115,13 +115,13 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         }
     } catch (...) {
         for (const auto& one : wanted) {
-            if (one.range->units) s.planes.release(one.space, one.range->first, one.range->units);
+            if (one.range->units) s.buffers.release(one.pool, one.range->first, one.range->units);
         }
         s.dropUploads(uploadsBefore);
         throw;
     }
     entry = fresh;
-    if (entry.parts) ++s.partMeshes;
+    if (entry.parts) ++s.scene.partMeshes;
 }
 
 void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
@@ -134,7 +134,7 @@ void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
     }
     const DrawnOrder order(domain, s.memory);
     RangeOf range{0, uint32_t(vertices.size())};
-    range.first = s.planes.allocate(kSpaceVertices, range.units, s.ring.newest());
+    range.first = s.buffers.allocate(kPoolVertices, range.units, s.ring.newest());
     try {
         const uint64_t bytes = vertices.size() * sizeof(mesh::RenderVertex);
         PendingUpload& upload = s.stage(bytes, "inner skin staging");
@@ -142,33 +142,33 @@ void VkBackend::createInnerSkin(uint32_t slot, const mesh::BurnDomain& domain,
         upload.regions[upload.regionCount++] = {
             kResourceVertices, 0, uint64_t(range.first) * sizeof(mesh::RenderVertex), bytes};
     } catch (...) {
-        s.planes.release(kSpaceVertices, range.first, range.units);
+        s.buffers.release(kPoolVertices, range.first, range.units);
         throw;
     }
-    s.meshes[slot].innerVertices = range;
+    s.scene.meshes[slot].innerVertices = range;
 }
 
 void VkBackend::destroyMesh(uint32_t slot) noexcept {
     State& s = *state_;
-    MeshEntry& entry = s.meshes[slot];
+    MeshEntry& entry = s.scene.meshes[slot];
     if (!entry.live) return;
-    if (entry.parts) --s.partMeshes;
+    if (entry.parts) --s.scene.partMeshes;
     // Ranges are reused at once: all our work is in one queue's order, behind barriers.
-    s.planes.release(kSpaceMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
-    s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
-    s.planes.release(kSpaceLinks, entry.links.first, entry.links.units);
-    s.planes.release(kSpaceReaders, entry.readers.first, entry.readers.units);
-    s.planes.release(kSpaceVertices, entry.vertexRange.first, entry.vertexRange.units);
-    s.planes.release(kSpaceIndices, entry.indexRange.first, entry.indexRange.units);
+    s.buffers.release(kPoolMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
+    s.buffers.release(kPoolSlowness, entry.slowness.first, entry.slowness.units);
+    s.buffers.release(kPoolLinks, entry.links.first, entry.links.units);
+    s.buffers.release(kPoolReaders, entry.readers.first, entry.readers.units);
+    s.buffers.release(kPoolVertices, entry.vertexRange.first, entry.vertexRange.units);
+    s.buffers.release(kPoolIndices, entry.indexRange.first, entry.indexRange.units);
     if (entry.innerVertices.units)
-        s.planes.release(kSpaceVertices, entry.innerVertices.first, entry.innerVertices.units);
+        s.buffers.release(kPoolVertices, entry.innerVertices.first, entry.innerVertices.units);
     for (RefineMesh& one : entry.refine)
-        if (one.live) one.release(s.planes);
-    if (entry.nodes.units) s.planes.release(kSpaceNodes, entry.nodes.first, entry.nodes.units);
-    if (entry.coats.units) s.planes.release(kSpaceCoats, entry.coats.first, entry.coats.units);
-    if (entry.skin.units) s.planes.release(kSpaceSkin, entry.skin.first, entry.skin.units);
+        if (one.live) one.release(s.buffers);
+    if (entry.nodes.units) s.buffers.release(kPoolNodes, entry.nodes.first, entry.nodes.units);
+    if (entry.coats.units) s.buffers.release(kPoolCoats, entry.coats.first, entry.coats.units);
+    if (entry.skin.units) s.buffers.release(kPoolSkin, entry.skin.first, entry.skin.units);
     if (entry.skinSources.units)
-        s.planes.release(kSpaceSkinSources, entry.skinSources.first, entry.skinSources.units);
+        s.buffers.release(kPoolSkinSources, entry.skinSources.first, entry.skinSources.units);
     entry = {};
 }
 

@@ -3,6 +3,7 @@
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/vk/frame_needs.h"
+#include "shared/published.h"
 #include "shared/spark.h"
 
 #include <algorithm>
@@ -10,7 +11,11 @@
 namespace fw::gpu::vk {
 namespace {
 
-constexpr uint32_t kMaxGroups = 65535;  // of a dispatch at the floor
+uint32_t publishedGroups(const BurnObject& object) {
+    const uint32_t blocks = object.width / kPublishedBlockX *
+                            ((object.height + kPublishedBlockY - 1) / kPublishedBlockY);
+    return groupsOf(blocks);
+}
 
 // A host-visible buffer of at least `bytes`; never shrinks. Throws and then left the old one.
 void ensure(VkBackend::State& s, Buffer& buffer, uint64_t bytes, VkBufferUsageFlags usage,
@@ -28,7 +33,7 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
     ReadbackLayout layout;
     layout.frameIndex = plan.frameIndex;
     layout.endTick = plan.endTick;
-    layout.objects = uint32_t(s.objects.size());
+    layout.objects = uint32_t(s.scene.objects.size());
     layout.answers = uint32_t(plan.probes.size());
     layout.lights = s.limits.maxLights;
     bytes = 0;
@@ -37,23 +42,24 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
         bytes = alignUp(bytes + size, 16);
         return at;
     };
-    const uint64_t lastRow = needs.iterations ? kRowIteration + needs.iterations : s.lists.row;
+    const uint64_t lastRow =
+        needs.iterations ? kRowIteration + needs.iterations : s.simulation.lists.row;
     layout.countersAt = place((lastRow + 1) * sizeof(IterationCounters));
     layout.objectsAt = place(layout.objects * sizeof(ObjectCounters));
     layout.answersAt = place(uint64_t(layout.answers) * sizeof(ProbeAnswer));
     layout.lightsAt = place(uint64_t(layout.lights) * sizeof(BurnLight));
     layout.flamesAt = place(16);
     layout.biasAt = place(4);
-    layout.fields = uint32_t(s.fields.size());
+    layout.fields = uint32_t(s.particleFields.fields.size());
     layout.fieldsAt = place(layout.fields * sizeof(FieldCounters));
-    layout.rooms = s.airs || needs.airs;
+    layout.rooms = s.scene.airs || needs.airs;
     if (layout.rooms) layout.roomsAt = place(kMaxRooms * sizeof(RoomAir));
     for (const uint32_t object : plan.burnMaps) {
         ReadbackLayout::MapAt& map = layout.maps[layout.mapCount++];
         map.object = object;
-        map.texels = s.objects[object].record.width * s.objects[object].record.height;
+        map.texels = s.scene.objects[object].record.width * s.scene.objects[object].record.height;
         map.at = place(uint64_t(map.texels) * 4);
-        map.heat = (s.objects[object].record.flags & kObjectHeat) != 0;
+        map.heat = (s.scene.objects[object].record.flags & kObjectHeat) != 0;
         if (map.heat) map.heatAt = place(uint64_t(map.texels) * sizeof(uvec2));
     }
     layImages(s, plan.images, layout, place);
@@ -64,37 +70,37 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
 
 FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     FrameNeeds needs;
-    needs.stimulus = s.restoreDue;
+    needs.stimulus = s.scene.restoreDue;
     needs.dense = (plan.switches & kSwitchDense) != 0;
     needs.never = (plan.switches & FW_DEBUG_NEVER_IDLE) != 0;
     uint64_t denseGroups = 0;
     if (needs.dense)
-        for (const ObjectEntry& object : s.objects)
+        for (const ObjectEntry& object : s.scene.objects)
             denseGroups += object.live ? wakeGroupsOf(object) : 0;
-    s.published.clear();
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    s.simulation.published.clear();
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
         if (object.materialsDirty)
             needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
-        if (object.deformDirty) needs.uploadBytes += uploaded(sizeof object.deform);
+        if (object.deforms.recordDirty) needs.uploadBytes += uploaded(sizeof object.deform);
         addDeformNeeds(s, i, plan.endTick, needs);
         if (object.live && (object.record.flags & kObjectPublished) != 0)
-            s.published.push_back({i, publishedGroups(object.record), 0});
+            s.simulation.published.push_back({i, publishedGroups(object.record), 0});
     }
-    if (s.roomsDirty) needs.uploadBytes += uploaded(sizeof s.rooms);
+    if (s.scene.roomsDirty) needs.uploadBytes += uploaded(sizeof s.scene.rooms);
     const bool anyStep = !plan.steps.empty();
     // What burns may light something anew, where no front is left.
-    bool iterates = !s.frontEmpty || needs.dense || needs.never;
+    bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
     for (const StepPlan& step : plan.steps) {
-        iterates |= step.exchange && !s.burnEmpty;
+        iterates |= step.exchange && !s.simulation.burnEmpty;
         if (step.events.size() > size_t(kMaxGroups) * 64)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "One step has %zu texel events; the limit is %u.",
                        step.events.size(), kMaxGroups * 64);
         uint64_t wake = needs.dense ? denseGroups : 0;
         for (const MaterialUpdate& update : step.materials) {
             needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
-            if (!needs.dense) wake += wakeGroupsOf(s.objects[update.object]);
+            if (!needs.dense) wake += wakeGroupsOf(s.scene.objects[update.object]);
         }
         if (step.remote) {
             const RemoteUpdate& update = *step.remote;
@@ -122,11 +128,11 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         for (const TexelEvent& event : step.events) {
             s.noteFire(event.object, plan.endTick);
             if (event.kind != kEventWet && event.kind != kEventExtinguish) continue;
-            ObjectEntry& object = s.objects[event.object];
-            object.lastDouse = s.open.ringFrame;
-            object.douseEnds = step.now;  // water takes some heat steps
+            ObjectEntry& object = s.scene.objects[event.object];
+            object.burn.lastDouse = s.open.ringFrame;
+            object.burn.douseEnds = step.now;  // water takes some heat steps
             if (object.record.flags & kObjectHeat)
-                object.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
+                object.burn.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
         }
         needs.stimulus |= bringsNews(step);
         iterates |= bringsNews(step);
@@ -136,42 +142,44 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     // that lost their fire would keep each other alive.
     bool forgets = false;
     uint64_t forgetGroups = 0;
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
-        object.forget = object.live && object.lastDouse != 0 &&
-                        object.lastDouse < s.open.ringFrame && (anyStep || s.frontEmpty) &&
-                        (plan.endTick > object.douseEnds || s.frontEmpty);
-        if (!object.forget) continue;
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        object.burn.forget = object.live && object.burn.lastDouse != 0 &&
+                             object.burn.lastDouse < s.open.ringFrame &&
+                             (anyStep || s.simulation.frontEmpty) &&
+                             (plan.endTick > object.burn.douseEnds || s.simulation.frontEmpty);
+        if (!object.burn.forget) continue;
         forgets = true;
         forgetGroups += wakeGroupsOf(object);
     }
-    needs.findsAnew = forgets && anyStep && !s.frontEmpty && !needs.dense;
+    needs.findsAnew = forgets && anyStep && !s.simulation.frontEmpty && !needs.dense;
     if (needs.findsAnew) {
         needs.wakeGroups += uint32_t(forgetGroups);
         needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
     }
-    needs.uploadBytes += uploaded(uint64_t(needs.deformGroups()) * 8);
+    needs.uploadBytes += uploaded(uint64_t(needs.deform.all()) * 8);
     needs.uploadBytes += uploaded(plan.probes.size_bytes());
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
                    plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
-    const auto mostIterations = uint64_t(s.planes.capacity(kSpaceIterations)) - kRowIteration - 1;
+    const auto mostIterations = uint64_t(s.buffers.capacity(kPoolIterations)) - kRowIteration - 1;
     if (needs.iterations > mostIterations)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
                    (unsigned long long)needs.iterations, (unsigned long long)mostIterations);
     needs.publishedRuns =
-        anyStep &&
-        std::any_of(s.published.begin(), s.published.end(), [&](const PublishedStep& one) {
-            return needs.stimulus || needs.exchanges || s.objects[one.object].publishedTouched;
-        });
-    needs.burning = !s.burnEmpty || needs.stimulus || needs.never;
-    needs.heating =
-        !s.hotEmpty || (needs.exchanges && needs.burning) || needs.stimulus || needs.never;
+        anyStep && std::any_of(s.simulation.published.begin(), s.simulation.published.end(),
+                               [&](const PublishedStep& one) {
+                                   return needs.stimulus || needs.exchanges ||
+                                          s.scene.objects[one.object].publishedTouched;
+                               });
+    needs.burning = !s.simulation.burnEmpty || needs.stimulus || needs.never;
+    needs.heating = !s.simulation.hotEmpty || (needs.exchanges && needs.burning) ||
+                    needs.stimulus || needs.never;
     addSeenNeeds(s, needs);
-    needs.predicting = !s.predictEmpty || (needs.exchanges && needs.burning) || needs.stimulus ||
-                       needs.never || needs.appears;
-    needs.falling =
-        anyStep && s.limits.looks.viewParams && (needs.burning || plan.endTick < s.supportUntil);
+    needs.predicting = !s.simulation.predictEmpty || (needs.exchanges && needs.burning) ||
+                       needs.stimulus || needs.never || needs.appears;
+    needs.falling = anyStep && s.limits.looks.viewParams &&
+                    (needs.burning || plan.endTick < s.simulation.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
                      needs.publishedRuns || needs.airs || !plan.probes.empty() ||
                      !plan.burnMaps.empty() || !plan.images.empty();
@@ -189,34 +197,35 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     addFieldNeeds(s, plan, needs);
     const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
     needs.uploadBytes += refineBytes;
-    needs.work = needs.readback || needs.falling || needs.vertexGroups > 0 || needs.skins ||
+    needs.work = needs.readback || needs.falling || needs.deform.vertices > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
-                 (s.showsEmitters() && !s.open.unseen) || (!s.volumes.empty() && !s.open.unseen) ||
-                 needs.placing || s.recordsDirty || s.roomsDirty || s.fieldsDirty ||
-                 needs.fieldsShow || !s.uploads.empty() || s.planes.movesPending();
+                 (s.showsEmitters() && !s.open.unseen) ||
+                 (!s.flames.volumes.empty() && !s.open.unseen) || needs.placing ||
+                 s.scene.recordsDirty || s.scene.roomsDirty || s.particleFields.fieldsDirty ||
+                 needs.fieldsShow || !s.scene.uploads.empty() || s.buffers.movesPending();
     return needs;
 }
 
 FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs) {
     const uint64_t last = s.ring.newest();
-    s.planes.atLeast(kSpaceEvents, needs.events, last);
-    s.planes.atLeast(kSpaceWakeGroups, needs.wakeGroups, last);
-    s.planes.atLeast(kSpaceProbes, uint32_t(plan.probes.size()), last);
-    s.planes.atLeast(kSpaceDeformGroups, needs.deformGroups(), last);
-    s.planes.atLeast(kSpaceNeighbours, needs.neighbours, last);
-    s.planes.atLeast(kSpaceContacts, needs.links, last);
-    s.planes.atLeast(kSpaceShield, needs.shieldWords, last);
-    s.planes.atLeast(kSpaceFieldRuns, needs.fieldRuns, last);
+    s.buffers.atLeast(kPoolEvents, needs.events, last);
+    s.buffers.atLeast(kPoolWakeGroups, needs.wakeGroups, last);
+    s.buffers.atLeast(kPoolProbes, uint32_t(plan.probes.size()), last);
+    s.buffers.atLeast(kPoolDeformGroups, needs.deform.all(), last);
+    s.buffers.atLeast(kPoolNeighbours, needs.neighbours, last);
+    s.buffers.atLeast(kPoolContacts, needs.links, last);
+    s.buffers.atLeast(kPoolShield, needs.shieldWords, last);
+    s.buffers.atLeast(kPoolFieldRuns, needs.fieldRuns, last);
     if (plan.fields) {
-        s.planes.atLeast(kSpaceFieldDraws, uint32_t(plan.fields->drawn.size()), last);
-        s.fieldDraws.reserve(plan.fields->drawn.size());
+        s.buffers.atLeast(kPoolFieldDraws, uint32_t(plan.fields->drawn.size()), last);
+        s.particleFields.fieldDraws.reserve(plan.fields->drawn.size());
     }
     if (plan.volumes) {
-        s.planes.atLeast(kSpaceVolumes, kVolumeWorks * plan.volumes->count, last);
-        s.volumes.reserve(plan.volumes->count);
+        s.buffers.atLeast(kPoolVolumes, kVolumeWorks * plan.volumes->count, last);
+        s.flames.volumes.reserve(plan.volumes->count);
     }
     if (plan.emitters) s.makeEmitterRoom(*plan.emitters, last);
-    const uint32_t volumes = plan.volumes ? plan.volumes->count : uint32_t(s.volumes.size());
+    const uint32_t volumes = plan.volumes ? plan.volumes->count : uint32_t(s.flames.volumes.size());
     const bool follows = !s.open.unseen || s.detail.memory < 1;  // a limit holds unseen, too
     s.makeViewRoom(volumes, follows, last);
     FrameInFlight& slot = s.ring.slotFor(s.open.ringFrame);
@@ -230,9 +239,9 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     if (reads)
         ensure(s, slot.readback, readbackBytes, VK_BUFFER_USAGE_TRANSFER_DST_BIT,
                MemoryKind::readback, kComponentReadback, "frame readback");
-    s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last);
+    s.sets.update(s.buffers, s.views.handle, sizeof(ViewParams), last);
     for (const OutsideView* of : s.seenFrom())
-        s.sets.update(s.planes, s.views.handle, sizeof(ViewParams), last, of->number);
+        s.sets.update(s.buffers, s.views.handle, sizeof(ViewParams), last, of->number);
     slot.layout = layout;
     return slot;
 }

@@ -88,22 +88,22 @@ void stageSkin(VkBackend::State& s, const mesh::BurnDomain& domain, const DrawnO
 // All of an object's but its tiles, which lists may still name.
 void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
     if (entry.slowness.units)
-        s.planes.release(kSpaceSlowness, entry.slowness.first, entry.slowness.units);
+        s.buffers.release(kPoolSlowness, entry.slowness.first, entry.slowness.units);
     if (entry.published.units)
-        s.planes.release(kSpacePublished, entry.published.first, entry.published.units);
+        s.buffers.release(kPoolPublished, entry.published.first, entry.published.units);
     if (entry.heatTiles.units)
-        s.planes.release(kSpaceHeat, entry.heatTiles.first, entry.heatTiles.units);
+        s.buffers.release(kPoolHeat, entry.heatTiles.first, entry.heatTiles.units);
     if (entry.sources.units)
-        s.planes.release(kSpaceSources, entry.sources.first, entry.sources.units);
-    if (entry.deformer.units)
-        s.planes.release(kSpaceDeformers, entry.deformer.first, entry.deformer.units);
-    if (entry.soft.units) s.planes.release(kSpaceSoft, entry.soft.first, entry.soft.units);
-    if (entry.shown.units) s.planes.release(kSpaceShown, entry.shown.first, entry.shown.units);
-    if (entry.skinPlus1) {
-        s.skins[entry.skinPlus1 - 1].shown.clear();
-        Skin& skin = s.skins[entry.skinPlus1 - 1];
+        s.buffers.release(kPoolSources, entry.sources.first, entry.sources.units);
+    if (entry.deforms.range.units)
+        s.buffers.release(kPoolDeformers, entry.deforms.range.first, entry.deforms.range.units);
+    if (entry.soft.units) s.buffers.release(kPoolSoft, entry.soft.first, entry.soft.units);
+    if (entry.shown.units) s.buffers.release(kPoolShown, entry.shown.first, entry.shown.units);
+    if (entry.deforms.skinPlus1) {
+        s.deforming.skins[entry.deforms.skinPlus1 - 1].shown.clear();
+        Skin& skin = s.deforming.skins[entry.deforms.skinPlus1 - 1];
         skin.dirty = skin.givenDue = false;
-        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = {};
     }
 }
@@ -112,9 +112,9 @@ void releaseRanges(VkBackend::State& s, const ObjectEntry& entry) noexcept {
 bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
     if (object.recordDirty || object.materialsDirty || object.resetDue) return false;
     if (!object.live) return true;
-    const bool reached = object.touched || object.warmed || object.charred;
-    const bool moves = object.deformDirty || object.deformReset || object.deformsNow ||
-                       object.soft.units != 0 || object.skinPlus1 != 0;
+    const bool reached = object.burn.touched || object.burn.warmed || object.burn.charred;
+    const bool moves = object.deforms.recordDirty || object.deforms.reset || object.deforms.now ||
+                       object.soft.units != 0 || object.deforms.skinPlus1 != 0;
     const bool refined = object.refine.arpPlus1 != 0 || object.refine.due || s.refines(object);
     return !reached && !moves && !refined && (object.record.flags & kObjectPublished) == 0;
 }
@@ -122,27 +122,27 @@ bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
 }  // namespace
 
 void VkBackend::State::changed(uint32_t slot) noexcept {
-    objects[slot].recordDirty = recordsDirty = true;
-    awake.insert(slot);
+    scene.objects[slot].recordDirty = scene.recordsDirty = true;
+    scene.awake.insert(slot);
 }
 
 void VkBackend::State::settle() noexcept {
-    for (const uint32_t slot : awake)
-        if (rests(*this, objects[slot])) awake.erase(slot);
+    for (const uint32_t slot : scene.awake)
+        if (rests(*this, scene.objects[slot])) scene.awake.erase(slot);
 }
 
 void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
-    MeshEntry& mesh = s.meshes[init.mesh];
+    MeshEntry& mesh = s.scene.meshes[init.mesh];
     RangeOf nodes = mesh.nodes, coats = mesh.coats, skin = mesh.skin, sources = mesh.skinSources;
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     ObjectEntry fresh;
     fresh.live = true;
     fresh.mesh = init.mesh;
     fresh.record = init.record;
     fresh.seenFrame = last;
-    PassSet passes = 0;
+    DrawPassSet passes = 0;
     for (uint32_t m = 0, first = 0; m < kMaterialsPerObject; first = mesh.materialEnd[m++]) {
         if (mesh.materialEnd[m] == first) continue;
         const BurnMaterial material =
@@ -151,30 +151,32 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     }
     s.context.pipelines.need(passes);
     try {
-        core::growTo(s.quarantine, s.quarantine.size() + s.liveObjects + 1);
-        core::growTo(s.drawItems, (s.liveObjects + 1) * kMaterialsPerObject);
-        core::growTo(s.published, s.liveObjects + 1);
-        core::growTo(s.givenObjects, std::max<size_t>(slot + 1, s.objects.size()));
-        (void)slotOf(s.objects, slot);
-        s.awake.atLeast(slot + 1);
-        s.planes.atLeast(kSpaceObjects, slot + 1, last);
+        core::growTo(s.scene.quarantine, s.scene.quarantine.size() + s.scene.liveObjects + 1);
+        core::growTo(s.surfaces.drawItems, (s.scene.liveObjects + 1) * kMaterialsPerObject);
+        core::growTo(s.surfaces.surfaceSteps,
+                     (s.scene.liveObjects + 1) * kMaterialsPerObject * kMostSurfaceSteps);
+        core::growTo(s.simulation.published, s.scene.liveObjects + 1);
+        core::growTo(s.results.givenObjects, std::max<size_t>(slot + 1, s.scene.objects.size()));
+        (void)slotOf(s.scene.objects, slot);
+        s.scene.awake.atLeast(slot + 1);
+        s.buffers.atLeast(kPoolObjects, slot + 1, last);
         s.freeQuarantine();
-        fresh.tiles = {s.planes.allocate(kSpaceObjectTiles, mesh.tiles, last), mesh.tiles};
+        fresh.tiles = {s.buffers.allocate(kPoolObjectTiles, mesh.tiles, last), mesh.tiles};
         fresh.inner = init.inner;
         if (init.refine) {
             fresh.refine.on = true;
             fresh.refine.key = refineKey(init.arpModel != nullptr, init.refineDepth);
             fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
-            fresh.refine.epochTick = s.shownTick;
+            fresh.refine.epochTick = s.simulation.shownTick;
             const RefineMesh& refined = mesh.refine[fresh.refine.key];
             if (init.arpModel)
                 s.takeArp(fresh.refine, init, refined, last);
             else
-                fresh.refine.allocate(s.planes, refined, (init.record.flags & kObjectTwoSided) == 0,
-                                      last);
+                fresh.refine.allocate(s.buffers, refined,
+                                      (init.record.flags & kObjectTwoSided) == 0, last);
         }
         if (!init.slowness.empty()) {
-            fresh.slowness = {s.planes.allocate(kSpaceSlowness, mesh.tiles, last), mesh.tiles};
+            fresh.slowness = {s.buffers.allocate(kPoolSlowness, mesh.tiles, last), mesh.tiles};
             PendingUpload& upload = s.stage(init.slowness.size_bytes(), "slowness staging");
             std::memcpy(upload.staging.mapped, init.slowness.data(), init.slowness.size_bytes());
             upload.regions[upload.regionCount++] = {
@@ -182,56 +184,57 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                 init.slowness.size_bytes()};
         }
         if (init.record.flags & kObjectPublished)
-            fresh.published = {s.planes.allocate(kSpacePublished, mesh.tiles, last), mesh.tiles};
-        fresh.sources = {s.planes.allocate(kSpaceSources, mesh.sourceCells, last),
+            fresh.published = {s.buffers.allocate(kPoolPublished, mesh.tiles, last), mesh.tiles};
+        fresh.sources = {s.buffers.allocate(kPoolSources, mesh.sourceCells, last),
                          mesh.sourceCells};
         if (!init.heat.empty())
-            fresh.heatTiles = {s.planes.allocate(kSpaceHeat, mesh.tiles, last), mesh.tiles};
+            fresh.heatTiles = {s.buffers.allocate(kPoolHeat, mesh.tiles, last), mesh.tiles};
         if (init.deform) {
             const mesh::DeformModel& model = *init.deformModel;
-            fresh.deformer = {s.planes.allocate(kSpaceDeformers, 1, last), 1};
+            fresh.deforms.range = {s.buffers.allocate(kPoolDeformers, 1, last), 1};
             const auto count = uint32_t(model.nodes.size());
             if (init.deform->flags & (kDeformShell | kDeformSprings))
-                fresh.soft = {s.planes.allocate(kSpaceSoft, count, last), count};
+                fresh.soft = {s.buffers.allocate(kPoolSoft, count, last), count};
             // And once more for the inner skin.
             const uint32_t shown = mesh.vertices * (init.inner ? 2 : 1);
-            fresh.shown = {s.planes.allocate(kSpaceShown, shown, last), shown};
+            fresh.shown = {s.buffers.allocate(kPoolShown, shown, last), shown};
             if (nodes.units == 0) {
-                nodes = {s.planes.allocate(kSpaceNodes, count, last), count};
-                coats = {s.planes.allocate(kSpaceCoats, mesh.vertices, last), mesh.vertices};
+                nodes = {s.buffers.allocate(kPoolNodes, count, last), count};
+                coats = {s.buffers.allocate(kPoolCoats, mesh.vertices, last), mesh.vertices};
                 stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
             }
         }
         if (init.record.flags & kObjectSkinned) {
             const DrawnOrder order(*mesh.domain, s.memory);
             if (skin.units == 0) {
-                skin = {s.planes.allocate(kSpaceSkin, mesh.tiles, last), mesh.tiles};
-                sources = {s.planes.allocate(kSpaceSkinSources, mesh.vertices, last),
+                skin = {s.buffers.allocate(kPoolSkin, mesh.tiles, last), mesh.tiles};
+                sources = {s.buffers.allocate(kPoolSkinSources, mesh.vertices, last),
                            mesh.vertices};
                 stageSkinTexels(s, *mesh.domain, order, skin.first, sources.first);
             }
             if (!(init.deform->flags & (kDeformShell | kDeformSprings))) {  // the host moves it
                 uint32_t free = 0;
-                while (free < s.skins.size() && !s.skins[free].shown.empty()) ++free;
-                if (free == s.skins.size()) s.skins.emplace_back();
-                fresh.skinPlus1 = free + 1;
-                stageSkin(s, *mesh.domain, order, s.skins[free], fresh.shown.first);
+                while (free < s.deforming.skins.size() && !s.deforming.skins[free].shown.empty())
+                    ++free;
+                if (free == s.deforming.skins.size()) s.deforming.skins.emplace_back();
+                fresh.deforms.skinPlus1 = free + 1;
+                stageSkin(s, *mesh.domain, order, s.deforming.skins[free], fresh.shown.first);
             }
         }
     } catch (...) {
         s.dropArp(fresh.refine);
-        fresh.refine.release(s.planes);
+        fresh.refine.release(s.buffers);
         if (mesh.nodes.units == 0) {
-            if (nodes.units) s.planes.release(kSpaceNodes, nodes.first, nodes.units);
-            if (coats.units) s.planes.release(kSpaceCoats, coats.first, coats.units);
+            if (nodes.units) s.buffers.release(kPoolNodes, nodes.first, nodes.units);
+            if (coats.units) s.buffers.release(kPoolCoats, coats.first, coats.units);
         }
         if (mesh.skin.units == 0) {
-            if (skin.units) s.planes.release(kSpaceSkin, skin.first, skin.units);
-            if (sources.units) s.planes.release(kSpaceSkinSources, sources.first, sources.units);
+            if (skin.units) s.buffers.release(kPoolSkin, skin.first, skin.units);
+            if (sources.units) s.buffers.release(kPoolSkinSources, sources.first, sources.units);
         }
         releaseRanges(s, fresh);
         if (fresh.tiles.units)
-            s.planes.release(kSpaceObjectTiles, fresh.tiles.first, fresh.tiles.units);
+            s.buffers.release(kPoolObjectTiles, fresh.tiles.first, fresh.tiles.units);
         s.dropUploads(uploadsBefore);
         throw;
     }
@@ -273,9 +276,9 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.deform.scale = length(vec3(r.worldRow0));
         for (const DeformMaterial& m : fresh.deform.materials)
             for (const uint32_t ticks : {m.charTicks, m.holeTicks})
-                if (ticks != kNoneTexel) fresh.deformTicks = std::max(fresh.deformTicks, ticks);
-        fresh.deformTicks += kTicksPerSecond;  // readbacks come late
-        fresh.deformDirty = fresh.deformReset = true;
+                if (ticks != kNoneTexel) fresh.deforms.ticks = std::max(fresh.deforms.ticks, ticks);
+        fresh.deforms.ticks += kTicksPerSecond;  // readbacks come late
+        fresh.deforms.recordDirty = fresh.deforms.reset = true;
     }
     if (init.record.flags & kObjectSkinned) {
         mesh.skin = skin;
@@ -283,48 +286,50 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         r.skinBase = skin.first * kTileTexels;
         r.shownBase = fresh.shown.first;
     }
-    if (fresh.skinPlus1) {
+    if (fresh.deforms.skinPlus1) {
         std::copy_n(init.shape, 3, fresh.shape);
-        fresh.deformReset = false;  // at rest already
+        fresh.deforms.reset = false;  // at rest already
     }
-    s.objects[slot] = fresh;
+    s.scene.objects[slot] = fresh;
     s.changed(slot);
-    s.seenFrame = std::max(s.seenFrame, last);
+    s.simulation.seenFrame = std::max(s.simulation.seenFrame, last);
     (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
-    ++s.liveObjects;
+    ++s.scene.liveObjects;
 }
 
 void VkBackend::destroyObject(uint32_t slot) noexcept {
     State& s = *state_;
-    ObjectEntry& entry = s.objects[slot];
+    ObjectEntry& entry = s.scene.objects[slot];
     if (!entry.live) return;
     const bool met = !entry.resetDue;  // by a recorded frame, so lists may name its tiles
     if (met)
-        s.quarantine.push_back(
-            {entry.tiles, s.frontWalks, s.burnWalks, s.predictWalks, s.hotWalks});
+        s.scene.quarantine.push_back({entry.tiles, s.simulation.frontWalks, s.simulation.burnWalks,
+                                      s.simulation.predictWalks, s.simulation.hotWalks});
     else
-        s.planes.release(kSpaceObjectTiles, entry.tiles.first, entry.tiles.units);
+        s.buffers.release(kPoolObjectTiles, entry.tiles.first, entry.tiles.units);
     (entry.refine.arpPlus1 ? s.arp.users : s.refine.users) -= entry.refine.on ? 1 : 0;
     s.dropArp(entry.refine);
-    entry.refine.release(s.planes);
+    entry.refine.release(s.buffers);
     releaseRanges(s, entry);
     entry = {};
     s.changed(slot);  // a record without kObjectLive: list entries fall out
-    --s.liveObjects;
-    std::erase_if(s.drawItems, [slot](const DrawItem& item) { return item.object == slot; });
+    --s.scene.liveObjects;
+    s.surfaces.surfacesDirty = true;
+    std::erase_if(s.surfaces.drawItems,
+                  [slot](const DrawItem& item) { return item.object == slot; });
 }
 
 void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint, uint32_t flags) {
     State& s = *state_;
-    ObjectEntry& entry = s.objects[slot];
+    ObjectEntry& entry = s.scene.objects[slot];
     entry.record.worldRow0 = rows[0];
     entry.record.worldRow1 = rows[1];
     entry.record.worldRow2 = rows[2];
     entry.record.tint = tint;
     if (entry.shown.units) {
         entry.deform.scale = length(vec3(rows[0]));
-        entry.deformDirty = true;
-        entry.softUntil = 0;  // it swings anew
+        entry.deforms.recordDirty = true;
+        entry.deforms.softUntil = 0;  // it swings anew
     }
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
@@ -333,19 +338,19 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
 
 void VkBackend::setObjectWind(uint32_t slot, uint32_t wind) {
     State& s = *state_;
-    s.objects[slot].record.zoneWind = wind;
+    s.scene.objects[slot].record.zoneWind = wind;
     s.changed(slot);
 }
 
 void VkBackend::setRoom(uint32_t slot, const Room& room) noexcept {
-    state_->rooms[slot] = room;
-    state_->roomsDirty = true;
+    state_->scene.rooms[slot] = room;
+    state_->scene.roomsDirty = true;
 }
 
 void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
                             std::span<const float> normals) noexcept {
     State& s = *state_;
-    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].deforms.skinPlus1 - 1];
     for (size_t i = 0; i < skin.shown.size(); ++i) {
         ShownVertex& v = skin.shown[i];
         const size_t from = size_t(skin.sources[i]) * 3;
@@ -363,13 +368,13 @@ void VkBackend::setVertices(uint32_t slot, std::span<const float> positions,
 void VkBackend::setVertexBuffer(uint32_t slot, const FwVulkanVertices& vertices,
                                 float metersPerUnit) {
     State& s = *state_;
-    Skin& skin = s.skins[s.objects[slot].skinPlus1 - 1];
+    Skin& skin = s.deforming.skins[s.scene.objects[slot].deforms.skinPlus1 - 1];
     const uint64_t last = vertices.normalOffset ? uint64_t(vertices.normalOffset) + 12 : 12;
     const uint64_t words = (uint64_t(vertices.vertexCount - 1) * vertices.stride + last) / 4;
     if (skin.words.units < words) {
-        const RangeOf fresh{s.planes.allocate(kSpaceSkinGiven, uint32_t(words), s.ring.newest()),
+        const RangeOf fresh{s.buffers.allocate(kPoolSkinGiven, uint32_t(words), s.ring.newest()),
                             uint32_t(words)};
-        if (skin.words.units) s.planes.release(kSpaceSkinGiven, skin.words.first, skin.words.units);
+        if (skin.words.units) s.buffers.release(kPoolSkinGiven, skin.words.first, skin.words.units);
         skin.words = fresh;
     }
     skin.given = vertices;

@@ -170,9 +170,9 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
         FramePlan plan;
         plan.frameIndex = 0;  // nobody waits for its readback
         plan.detail = detail;
-        plan.endTick = shownTick;
-        for (int i = 0; i < 3; ++i) plan.wind[i] = wind[i];
-        plan.tickFraction = tickFraction;
+        plan.endTick = simulation.shownTick;
+        for (int i = 0; i < 3; ++i) plan.wind[i] = simulation.wind[i];
+        plan.tickFraction = simulation.tickFraction;
         plan.switches = (refine.full ? kSwitchRefineFull : 0) | crossing;
         openViews({&def.view, 1});
         OutsideView& of = *open.views[0];
@@ -228,8 +228,8 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     submitOwn();
     FrameInFlight& done = ring.slotFor(ringFrame);
     if (recorded) takeShown(done.layout, done.readback.mapped);
-    done.timers.read(device, 0, times);
-    pictureTime = std::max(sumOf(times, 0), 0.0f);
+    done.timers.read(device, 0, results.times);
+    results.pictureTime = std::max(sumOf(results.times, 0), 0.0f);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);
 }
 

@@ -17,32 +17,33 @@ uint32_t mostGroups(const ObjectEntry& object) { return object.refine.arpList.un
 void VkBackend::State::takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
                                uint64_t last) {
     uint32_t free = 0;
-    while (free < arps.size() && arps[free]->model) ++free;
-    if (free == arps.size()) arps.push_back(core::Owned<ArpUse>::make(memory, memory));
-    ArpUse& taken = *arps[free];
+    while (free < arp.arps.size() && arp.arps[free]->model) ++free;
+    if (free == arp.arps.size()) arp.arps.push_back(core::Owned<ArpUse>::make(memory, memory));
+    ArpUse& taken = *arp.arps[free];
     taken.state.reset(*init.arpModel);
-    use.allocateArp(planes, mesh, last);
+    use.allocateArp(buffers, mesh, last);
     taken.model = init.arpModel;
     taken.settings = init.arp;
     use.arpPlus1 = free + 1;
 }
 
 void VkBackend::State::dropArp(RefineUse& use) noexcept {
-    if (use.arpPlus1) arps[use.arpPlus1 - 1]->model = nullptr;
+    if (use.arpPlus1) arp.arps[use.arpPlus1 - 1]->model = nullptr;
     use.arpPlus1 = 0;
 }
 
 void VkBackend::startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept {
     State& s = *state_;
-    const uint32_t plus1 = s.objects[slot].refine.arpPlus1;
+    const uint32_t plus1 = s.scene.objects[slot].refine.arpPlus1;
     if (plus1 == 0) return;
-    ArpUse& use = *s.arps[plus1 - 1];
+    ArpUse& use = *s.arp.arps[plus1 - 1];
     mesh::arpIgnite(*use.model, use.settings, {point[0], point[1], point[2]}, tick, use.state);
 }
 
 // Where no host lit it there is no boundary: such an object is drawn as its mesh.
 bool VkBackend::State::refinesAsPublished(const ObjectEntry& object) const noexcept {
-    return object.live && object.refine.arpPlus1 && arps[object.refine.arpPlus1 - 1]->state.lit &&
+    return object.live && object.refine.arpPlus1 &&
+           arp.arps[object.refine.arpPlus1 - 1]->state.lit &&
            double(object.refine.quietTick) > arp.lastTick;
 }
 
@@ -51,16 +52,16 @@ uint64_t VkBackend::State::planArp() {
     arp.placeGroups = arp.nameGroups = 0;
     if (arp.users == 0 || open.unseen) return 0;
     uint64_t bytes = 0;
-    for (const uint32_t i : awake) {
-        const ObjectEntry& object = objects[i];
+    for (const uint32_t i : scene.awake) {
+        const ObjectEntry& object = scene.objects[i];
         if (!refinesAsPublished(object)) continue;
-        arp.placeGroups += groupsOf(meshes[object.mesh].refine[object.refine.key].slotCount);
+        arp.placeGroups += groupsOf(scene.meshes[object.mesh].refine[object.refine.key].slotCount);
         arp.nameGroups += mostGroups(object);
         bytes += uploaded(sizeof(RefineObject)) + uploaded(mostGroups(object) * 256ull) +
                  uploaded(kMaterialsPerObject * sizeof(VkDrawIndexedIndirectCommand));
     }
     if (bytes == 0) return 0;
-    planes.atLeast(kSpaceArpGroups, arp.placeGroups + arp.nameGroups, ring.newest());
+    buffers.atLeast(kPoolArpGroups, arp.placeGroups + arp.nameGroups, ring.newest());
     return bytes + uploaded((arp.placeGroups + arp.nameGroups) * sizeof(WakeGroup));
 }
 
@@ -88,17 +89,17 @@ void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
 
 }  // namespace
 
-void VkBackend::State::recordArp(FrameInFlight& slot) {
+void VkBackend::State::refineAsPublished(FrameInFlight& slot) {
     if (arp.placeGroups == 0) return;
     lookFromViews();
     FrameRecorder recorder(recordTarget(slot, open.commands));
     UploadWriter writer(slot);
-    const double now = double(shownTick) + double(tickFraction) * kStepTicks;
-    for (const uint32_t i : awake) {
-        ObjectEntry& object = objects[i];
+    const double now = double(simulation.shownTick) + double(simulation.tickFraction) * kStepTicks;
+    for (const uint32_t i : scene.awake) {
+        ObjectEntry& object = scene.objects[i];
         if (!refinesAsPublished(object)) continue;
-        const RefineMesh& refined = meshes[object.mesh].refine[object.refine.key];
-        ArpUse& use = *arps[object.refine.arpPlus1 - 1];
+        const RefineMesh& refined = scene.meshes[object.mesh].refine[object.refine.key];
+        ArpUse& use = *arp.arps[object.refine.arpPlus1 - 1];
         RefineObject record = refineRecord(object, refine.full);
         record.items = object.refine.arpList.first;
         record.cornerCount = refined.slotCount;
@@ -115,12 +116,12 @@ void VkBackend::State::recordArp(FrameInFlight& slot) {
     Staged groups = writer.begin();
     uint32_t places = 0;
     for (const bool naming : {false, true})
-        for (const uint32_t i : awake) {
-            const ObjectEntry& object = objects[i];
+        for (const uint32_t i : scene.awake) {
+            const ObjectEntry& object = scene.objects[i];
             if (!refinesAsPublished(object)) continue;
-            const auto count = naming
-                                   ? uint32_t(arps[object.refine.arpPlus1 - 1]->state.list.size())
-                                   : meshes[object.mesh].refine[object.refine.key].slotCount;
+            const auto count =
+                naming ? uint32_t(arp.arps[object.refine.arpPlus1 - 1]->state.list.size())
+                       : scene.meshes[object.mesh].refine[object.refine.key].slotCount;
             for (uint32_t first = 0; first < count; first += 64) {
                 const WakeGroup group{i, first};
                 writer.append(groups, std::span<const WakeGroup>(&group, 1));
@@ -130,8 +131,8 @@ void VkBackend::State::recordArp(FrameInFlight& slot) {
     writer.end();
     recorder.copyIn(groups.at, FW_BIND_ARP_GROUPS, 0, groups.count * sizeof(WakeGroup));
     arp.lastTick = now;
-    recordRefinePublished(recorder, {0, shownTick, 0, kRefineRecede}, places,
-                          groups.count - places);
+    recordRefinementAsPublished(recorder, {0, simulation.shownTick, 0, kRefineRecede}, places,
+                                groups.count - places);
 }
 
 }  // namespace fw::gpu::vk

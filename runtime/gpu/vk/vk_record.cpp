@@ -56,16 +56,17 @@ void recordImageUpload(const Table& vk, VkCommandBuffer commands, const PendingU
 // Meshes, images, painted maps: what was created since the last frame.
 void recordUploads(VkBackend::State& s) {
     const Table& vk = s.device.table;
-    for (PendingUpload& upload : s.uploads) {
+    for (PendingUpload& upload : s.scene.uploads) {
         if (upload.image) recordImageUpload(vk, s.open.commands, upload);
         recordRegions(vk, s, upload);
         s.retired.push(s.open.ringFrame, upload.staging);
     }
-    s.uploads.clear();
+    s.scene.uploads.clear();
 }
 
 bool looksBurnt(const ObjectEntry& object) noexcept {
-    return (object.touched || object.warmed) && (object.record.flags & kObjectNoDamage) == 0;
+    return (object.burn.touched || object.burn.warmed) &&
+           (object.record.flags & kObjectNoDamage) == 0;
 }
 
 // Before anything reached it nothing of it can have crossed.
@@ -73,43 +74,42 @@ bool zPassed(const ObjectEntry& object) noexcept {
     return looksBurnt(object) && (object.record.flags & kObjectZPass) != 0;
 }
 
-// How `item`'s material is drawn, burnt and where no fire was.
-void chooseVariants(const VkBackend::State& s, const ObjectEntry& object, DrawItem& item) {
-    const BurnMaterial& material = object.materials[item.material];
-    const bool burnt = looksBurnt(object), image = item.image != 0;
-    item.variant = surfaceVariant(material, image, burnt);
-    item.coldReach = coldReach(s.meshes[object.mesh].texelEdge);
+// How `item`'s material is drawn: whether fire may show on it, and its triangles far from fire
+// apart.
+void chooseSurface(const VkBackend::State& s, const ObjectEntry& object, DrawItem& item) {
+    item.family = familyOf(object.materials[item.material].look);
+    item.burns = looksBurnt(object);
+    item.selfIntersects = zPassed(object);
+    item.coldReach = coldReach(s.scene.meshes[object.mesh].texelEdge);
     const bool tells =
         (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
-    item.coldVariant = burnt && tells && !object.charred && !zPassed(object)
-                           ? surfaceVariant(material, image, false)
-                           : ~0u;
+    item.coldApart = item.burns && tells && !object.burn.charred && !item.selfIntersects;
 }
 
 SurfaceDraw drawOf(const VkBackend::State& s, const ObjectEntry& object, uint32_t material) {
     const vec4 row = object.record.worldRow0;
     const float scale = std::sqrt(row.x * row.x + row.y * row.y + row.z * row.z);
-    const MeshEntry& mesh = s.meshes[object.mesh];
-    SurfaceDraw draw =
-        surfaceDraw(object.record, object.materials[material], object.heat[material],
-                    mesh.edge * scale, object.refine.slots.first, object.doused, object.warmed);
+    const MeshEntry& mesh = s.scene.meshes[object.mesh];
+    SurfaceDraw draw = surfaceDraw(object.record, object.materials[material], object.heat[material],
+                                   mesh.edge * scale, object.refine.slots.first, object.burn.doused,
+                                   object.burn.warmed);
     return draw;
 }
 
 // They are listed object by object.
 std::span<DrawItem> drawItemsOf(VkBackend::State& s, uint32_t object) noexcept {
     const auto first =
-        std::lower_bound(s.drawItems.begin(), s.drawItems.end(), object,
+        std::lower_bound(s.surfaces.drawItems.begin(), s.surfaces.drawItems.end(), object,
                          [](const DrawItem& item, uint32_t slot) { return item.object < slot; });
     auto end = first;
-    while (end != s.drawItems.end() && end->object == object) ++end;
+    while (end != s.surfaces.drawItems.end() && end->object == object) ++end;
     return {first, end};
 }
 
 // Records of objects that are new, moved or gone, and the list of what draws show.
 void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         if (object.resetDue ||
             (object.recordDirty && !object.live))  // until it is placed others do not see it
             recorder.fillZero(FW_BIND_REMOTE_OBJECTS, i * sizeof(RemoteObject),
@@ -129,17 +129,18 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                                 sizeof object.heat);
             }
         }
-        if (object.deformDirty) {
+        if (object.deforms.recordDirty) {
             const Staged staged = writer.write(std::span<const DeformObject>(&object.deform, 1));
             recorder.copyIn(staged.at, FW_BIND_DEFORM_OBJECTS,
-                            uint64_t(object.deformer.first) * sizeof(DeformObject),
+                            uint64_t(object.deforms.range.first) * sizeof(DeformObject),
                             sizeof(DeformObject));
         }
-        object.recordDirty = object.materialsDirty = object.deformDirty = false;
+        object.recordDirty = object.materialsDirty = object.deforms.recordDirty = false;
     }
-    s.drawItems.clear();
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        ObjectEntry& object = s.objects[i];
+    s.surfaces.drawItems.clear();
+    s.surfaces.surfacesDirty = true;
+    for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
+        ObjectEntry& object = s.scene.objects[i];
         if (object.resetDue) {
             recordReset(recorder, i, object.record.tileCount);
             recorder.fillZero(FW_BIND_SOURCES, object.sources.first * sizeof(FireSource),
@@ -147,7 +148,7 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         }
         object.resetDue = false;
         if (!object.live || (object.record.flags & kObjectHidden)) continue;
-        const MeshEntry& mesh = s.meshes[object.mesh];
+        const MeshEntry& mesh = s.scene.meshes[object.mesh];
         uint32_t first = 0;
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
             const uint32_t end = mesh.materialEnd[m];
@@ -164,26 +165,25 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
                     item.inside = item.insideShown ? object.shown.first + mesh.vertices
                                                    : mesh.innerVertices.first;
                 item.image = object.images[m];
-                chooseVariants(s, object, item);
+                chooseSurface(s, object, item);
                 item.inner = object.refine.inner;
-                item.zPass = zPassed(object);
                 item.draw = drawOf(s, object, m);
                 showRefined(object.refine, item);
-                s.drawItems.push_back(item);
+                s.surfaces.drawItems.push_back(item);
             }
             first = end;
         }
     }
-    s.recordsDirty = false;
+    s.scene.recordsDirty = false;
 }
 
 void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
-        if (!object.forget) continue;
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        if (!object.burn.forget) continue;
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              uint64_t(object.record.width) * object.record.height * 4);
-        object.lastDouse = 0;
+        object.burn.lastDouse = 0;
     }
 }
 
@@ -191,7 +191,7 @@ void recordForgetting(VkBackend::State& s, FrameRecorder& recorder) {
 void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> updates,
                      FrameRecorder& recorder, UploadWriter& writer) {
     for (const MaterialUpdate& update : updates) {
-        ObjectEntry& object = s.objects[update.object];
+        ObjectEntry& object = s.scene.objects[update.object];
         std::copy(std::begin(update.materials), std::end(update.materials),
                   std::begin(object.materials));
         object.record.window = update.window;
@@ -215,8 +215,8 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
                   UploadWriter& writer) {
     for (const RemoteUpdate::Placed& placed : update.objects) {
         RemoteObject record = placed.record;
-        record.sourceBase = s.objects[placed.object].sources.first;
-        record.sourceCount = s.objects[placed.object].sources.units;
+        record.sourceBase = s.scene.objects[placed.object].sources.first;
+        record.sourceCount = s.scene.objects[placed.object].sources.units;
         const Staged staged = writer.write(std::span<const RemoteObject>(&record, 1));
         recorder.copyIn(staged.at, FW_BIND_REMOTE_OBJECTS, uint64_t(placed.object) * sizeof record,
                         sizeof record);
@@ -231,23 +231,23 @@ void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder
     for (const RemoteUpdate::Range& range : update.linkRanges)
         copy(update.links.subspan(range.first, range.count), FW_BIND_CONTACTS, range.first);
     copy(update.blockers, FW_BIND_BLOCKERS, 0);
-    s.links = uint32_t(update.links.size());
-    s.blockers = uint32_t(update.blockers.size());
+    s.simulation.links = uint32_t(update.links.size());
+    s.simulation.blockers = uint32_t(update.blockers.size());
 }
 
 void recordShield(VkBackend::State& s, const ShieldUpdate& update, FrameRecorder& recorder,
                   UploadWriter& writer) {
-    s.shield = update;
-    s.shield.words = {};
+    s.simulation.shield = update;
+    s.simulation.shield.words = {};
     if (update.words.empty()) return;
     const Staged staged = writer.write(update.words);
     recorder.copyIn(staged.at, FW_BIND_SHIELD, 0, update.words.size_bytes());
 }
 
 void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
-    const Staged staged = writer.write(std::span<const Room>(s.rooms));
-    recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.rooms);
-    s.roomsDirty = false;
+    const Staged staged = writer.write(std::span<const Room>(s.scene.rooms));
+    recorder.copyIn(staged.at, FW_BIND_ROOMS, 0, sizeof s.scene.rooms);
+    s.scene.roomsDirty = false;
 }
 
 // The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
@@ -255,20 +255,20 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
                        bool dense, bool findsAnew, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](uint32_t object) {
-        const uint32_t groups = wakeGroupsOf(s.objects[object]);
+        const uint32_t groups = wakeGroupsOf(s.scene.objects[object]);
         for (uint32_t g = 0; g < groups; ++g) {
             const WakeGroup group{object, g * 64};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
         }
     };
-    for (uint32_t i = 0; dense && i < s.objects.size(); ++i) {
-        if (s.objects[i].live) append(i);
+    for (uint32_t i = 0; dense && i < s.scene.objects.size(); ++i) {
+        if (s.scene.objects[i].live) append(i);
     }
     if (!dense) {
         for (const MaterialUpdate& update : updates) append(update.object);
     }
-    for (const uint32_t i : s.awake) {
-        if (findsAnew && s.objects[i].forget) append(i);
+    for (const uint32_t i : s.scene.awake) {
+        if (findsAnew && s.scene.objects[i].burn.forget) append(i);
     }
     writer.end();
     return staged;
@@ -276,22 +276,22 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
 
 // An object that an event reaches is drawn as one that may burn from now on.
 void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
-    ObjectEntry& object = s.objects[event.object];
+    ObjectEntry& object = s.scene.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
-    object.lastEvent = std::max<uint64_t>(object.lastEvent, now + kStepTicks);
+    object.burn.lastEvent = std::max<uint64_t>(object.burn.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
     const bool douses = (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
                          kind == kEventCarry) &&
-                        !object.doused;
+                        !object.burn.doused;
     const bool lights = kind == kEventIgnite || kind == kEventCarry;
-    object.catches |= lights && !object.lit;
-    object.lit |= lights;
-    if (object.touched && !douses) return;
-    object.touched = true;
-    object.doused = object.doused || douses;
+    object.burn.catches |= lights && !object.burn.lit;
+    object.burn.lit |= lights;
+    if (object.burn.touched && !douses) return;
+    object.burn.touched = true;
+    object.burn.doused = object.burn.doused || douses;
+    s.surfaces.surfacesDirty = true;
     for (DrawItem& item : drawItemsOf(s, event.object)) {
-        chooseVariants(s, object, item);
-        item.zPass = zPassed(object);
+        chooseSurface(s, object, item);
         item.draw = drawOf(s, object, item.material);
     }
 }
@@ -303,9 +303,9 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     constexpr uint32_t kMostTiles = 16384;
     uint32_t begin = kNoneTexel, end = 0;
     float latest = 0;
-    for (const uint32_t i : s.awake) {
-        const ObjectEntry& object = s.objects[i];
-        if (!object.live || !object.touched) continue;
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
+        if (!object.live || !object.burn.touched) continue;
         begin = std::min(begin, object.record.worldTileBase);
         end = std::max(end, object.record.worldTileBase + object.record.tileCount);
         for (const BurnMaterial& material : object.materials)
@@ -313,35 +313,133 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     }
     if (burning) {
         // After the last flame: until all is gone, and as long as it takes to notice.
-        s.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
+        s.simulation.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
         if (latest == 0) return;
     }
     if (end <= begin) return;
     const uint32_t parts = (end - begin + kMostTiles - 1) / kMostTiles;
-    const bool goesOn = s.supportFirst > begin && s.supportFirst < end;
-    const uint32_t first = goesOn ? s.supportFirst : begin;
+    const bool goesOn = s.simulation.supportFirst > begin && s.simulation.supportFirst < end;
+    const uint32_t first = goesOn ? s.simulation.supportFirst : begin;
     const uint32_t count = std::min(end - first, kMostTiles);
-    s.supportFirst = first + count;
+    s.simulation.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
-    recordSupport(recorder, plan.endTick, ticks, first, count);
+    recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
 
-// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
-// than hides where that part ends. Where nobody looks it is laid a few times a second.
-void recordSooting(VkBackend::State& s, bool seen, FrameRecorder& recorder) {
-    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
-    const uint32_t mostTicksOfAPart = seen ? kTicksPerSecond / 64 : kTicksPerSecond;
-    if (!seen && s.open.endTick - s.sootTick < kUnseenTicks) return;
-    const uint32_t tiles = s.planes.capacity(kSpaceObjectTiles);
-    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
-    const uint32_t first = s.sootFirst < tiles ? s.sootFirst : 0;
-    const uint32_t count = std::min(tiles - first, kMostTiles);
-    const uint32_t ticks = std::min(s.open.endTick - s.sootTick, kTicksPerSecond);
-    s.sootTick = s.open.endTick;
-    if (count == 0 || ticks == 0) return;
-    s.sootFirst = first + count;
-    recordSoot(recorder, parts > 1 ? std::min(ticks * parts, mostTicksOfAPart) : ticks, first,
-               count);
+// What was created, moved or restored since the last frame, and what the plan brings that is no
+// step.
+void recordChanges(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                   FrameRecorder& recorder, UploadWriter& writer) {
+    const Table& vk = s.device.table;
+    if (s.buffers.recordMoves(vk, s.open.commands, s.open.ringFrame))
+        s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
+    if (!s.scene.initialized) {
+        for (const uint32_t resource :
+             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
+              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
+            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
+        s.scene.initialized = true;
+    }
+    recordUploads(s);
+    if (s.scene.recordsDirty) recordObjects(s, recorder, writer);
+    if (s.scene.roomsDirty) recordRooms(s, recorder, writer);
+    recordRestores(s, recorder);
+    recordMovedTiles(s, recorder);
+    recordForgetting(s, recorder);
+    s.surfaces.drawVertices = s.buffers.buffer(kResourceVertices).handle;
+    s.surfaces.drawIndices = s.buffers.buffer(kResourceIndices).handle;
+    s.surfaces.drawShown = s.buffers.buffer(FW_BIND_SHOWN).handle;
+    recordFieldSteps(s, plan, recorder, writer);
+    if (plan.volumes) recordVolumes(s, *plan.volumes, recorder, writer);
+    s.particles.emittersMove = plan.emitters != nullptr;
+    if (plan.emitters) recordEmitters(s, *plan.emitters, recorder, writer);
+    if (needs.skins) recordSkins(s, recorder, writer);
+}
+
+// Uploads what step `planned` brings. `first`: the plan's first; `iterate`: its front may move.
+StepRecord stepOf(VkBackend::State& s, const FramePlan& plan, const StepPlan& planned,
+                  const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder,
+                  UploadWriter& writer) {
+    StepRecord step;
+    step.now = planned.now;
+    step.stepShift = planned.substepShift;
+    step.switches = plan.switches;
+    step.objectSlots = uint32_t(s.scene.objects.size());
+    step.iterate = iterate;
+    step.reduce = planned.reduce && needs.burning;
+    step.heat = planned.heat && needs.heating;
+    step.rooms = planned.rooms;
+    s.scene.airs = s.scene.airs || planned.rooms;
+    step.exchange = step.reduce && planned.exchange;
+    step.governed = planned.governed;
+    step.capped = planned.capped;
+    step.plays = planned.plays;
+    step.rules = planned.rules;
+    if (planned.remote) recordRemote(s, *planned.remote, recorder, writer);
+    step.links = s.simulation.links;
+    step.parts = s.scene.partMeshes != 0;
+    if (planned.shield) recordShield(s, *planned.shield, recorder, writer);
+    step.rules.blockers = s.simulation.blockers;
+    placeShield(s.simulation.shield, step.rules);
+    recordMaterials(s, planned.materials, recorder, writer);
+    step.wakeGroups =
+        writeWakeGroups(s, planned.materials, needs.dense, needs.findsAnew && first, writer);
+    step.events = writer.write(planned.events);
+    step.eventList = planned.events;
+    for (const TexelEvent& event : planned.events) {
+        noteEvent(s, event, planned.now);
+        if (addressesAll(event))
+            step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
+    }
+    if (!needs.publishedRuns) return step;
+    for (PublishedStep& one : s.simulation.published) {
+        one.parity = s.scene.objects[one.object].publishedParity;
+        s.scene.objects[one.object].publishedParity ^= 1;
+    }
+    step.published = s.simulation.published;
+    return step;
+}
+
+void recordSteps(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
+                 FrameRecorder& recorder, UploadWriter& writer) {
+    ReadbackLayout& layout = s.open.slot->layout;
+    if (needs.iterations) recordCounters(recorder, s.simulation.lists, uint32_t(needs.iterations));
+    layout.firstRow = s.simulation.lists.row;
+    bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& planned : plan.steps) {
+        iterates |= bringsNews(planned) || (planned.exchange && !s.simulation.burnEmpty);
+        const bool first = &planned == plan.steps.data();
+        const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder, writer);
+        recordSimulation(recorder, s.simulation.lists, step);
+        s.simulation.frontWalks += step.iterate ? 1 : 0;
+        s.simulation.burnWalks += step.reduce ? 1 : 0;
+        s.simulation.hotWalks += step.heat ? 1 : 0;
+    }
+    layout.rows = s.simulation.lists.row;
+    layout.burnParity = s.simulation.lists.burnParity;
+    layout.hotParity = s.simulation.lists.hotParity;
+    if (!needs.stimulus) return;
+    s.simulation.lastStimulus = s.open.ringFrame;
+    s.simulation.frontEmpty = s.simulation.burnEmpty = s.simulation.predictEmpty =
+        s.simulation.hotEmpty = false;
+}
+
+DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadWriter& writer) {
+    DeformRecord deform;
+    deform.count = needs.deform;
+    deform.steps = s.deforming.softSteps;
+    deform.way = s.deforming.softWay;
+    deform.begins = needs.sheetsBegin;
+    deform.groups = writeDeformGroups(s, writer);
+    DeformPush& push = deform.push;
+    push.now = s.open.endTick;
+    push.step = float(kSoftTicks) / float(kTicksPerSecond);
+    push.wind = {s.simulation.wind[0], s.simulation.wind[1], s.simulation.wind[2],
+                 float(s.deforming.softStep % (4096 * 128)) * push.step};
+    push.up = {s.limits.up[0], s.limits.up[1], s.limits.up[2],
+               s.simulation.tickFraction * float(kStepTicks)};
+    return deform;
 }
 
 }  // namespace
@@ -353,8 +451,27 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
         s.barriers.use(vk, s.open.commands, uses);
         const VkBufferCopy copy{region.from, region.at, region.bytes};
         vk.CmdCopyBuffer(s.open.commands, upload.staging.handle,
-                         s.planes.buffer(region.resource).handle, 1, &copy);
+                         s.buffers.buffer(region.resource).handle, 1, &copy);
     }
+}
+
+// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
+// than hides where that part ends. Where nobody looks it is laid a few times a second.
+TileShare VkBackend::State::sootShare(bool looked) noexcept {
+    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
+    const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
+    if (!looked && open.endTick - simulation.sootTick < kUnseenTicks) return {};
+    const uint32_t tiles = buffers.capacity(kPoolObjectTiles);
+    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
+    TileShare share;
+    share.first = simulation.sootFirst < tiles ? simulation.sootFirst : 0;
+    share.count = std::min(tiles - share.first, kMostTiles);
+    share.ticks = std::min(open.endTick - simulation.sootTick, kTicksPerSecond);
+    simulation.sootTick = open.endTick;
+    if (share.count == 0 || share.ticks == 0) return {};
+    simulation.sootFirst = share.first + share.count;
+    if (parts > 1) share.ticks = std::min(share.ticks * parts, mostTicksOfAPart);
+    return share;
 }
 
 void VkBackend::State::openFrame(VkCommandBuffer commands, uint64_t ringFrame) {
@@ -370,7 +487,7 @@ RecordTarget VkBackend::State::recordTarget(FrameInFlight& slot,
     target.device = &device;
     target.pipelines = &context.pipelines;
     target.sets = &sets;
-    target.planes = &planes;
+    target.buffers = &buffers;
     target.barriers = &barriers;
     target.slot = &slot;
     target.commands = commands;
@@ -389,17 +506,18 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     input.viewport[1] = viewport.y;
     input.viewport[2] = viewport.width;
     input.viewport[3] = viewport.height;
-    input.now = shownTick;
-    input.tickFraction = tickFraction;
+    input.now = simulation.shownTick;
+    input.tickFraction = simulation.tickFraction;
     for (int i = 0; i < 3; ++i) {
-        input.wind[i] = wind[i];
+        input.wind[i] = simulation.wind[i];
         input.up[i] = limits.up[i];
     }
     input.paceFactor = limits.paceFactor;
-    input.lightCount = uint32_t(std::ceil(lightCount));
-    input.lastLight = lightCount > 0 ? lightCount - float(input.lightCount - 1) : 1;
+    input.lightCount = uint32_t(std::ceil(particles.lightCount));
+    input.lastLight =
+        particles.lightCount > 0 ? particles.lightCount - float(input.lightCount - 1) : 1;
     input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
-    input.quadShare = quadShare;
+    input.quadShare = particles.quadShare;
     input.seed = limits.seed;
     ViewParams params{};
     if (limits.looks.viewParams) limits.looks.viewParams(input, params);
@@ -410,34 +528,37 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     return offset;
 }
 
+// What a frame's plan says of detail, which comes and goes little by little.
+void VkBackend::State::followDetail(const Detail& planned) noexcept {
+    const auto toward = [](auto& now, auto wanted, auto turn) {
+        now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);
+    };
+    detail = planned;
+    toward(flames.volumeStepsNow, detail.volumeSteps, kStepsTurn);
+    toward(particles.quadShare, detail.quads, kQuadsTurn);
+    toward(particles.lightCount, float(lightsOf(detail, limits.maxLights)), kLightsTurn);
+}
+
 void VkBackend::State::run(const FramePlan& plan) {
     if (!open.open || open.ran)
         core::fail(FW_ERROR_INTERNAL, "A frame's plan is run once, after the frame is begun.");
     // Sheets and springs step at a rate of their own; a hitch drops steps and never stretches one.
     const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
     const auto softNow = uint64_t(ticks / kSoftTicks);
-    softSteps =
-        uint32_t(std::min<uint64_t>(softNow > softStep ? softNow - softStep : 0, kMostSoftSteps));
-    softStep = softNow;
+    deforming.softSteps = uint32_t(std::min<uint64_t>(
+        softNow > deforming.softStep ? softNow - deforming.softStep : 0, kMostSoftSteps));
+    deforming.softStep = softNow;
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
     open.endTick = plan.endTick;
     open.readback = needs.readback;
-    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(wind));
-    tickFraction = plan.tickFraction;
-    detail = plan.detail;
-    volumeStepsNow = volumeStepsNow > detail.volumeSteps
-                         ? std::max(volumeStepsNow - kStepsTurn, detail.volumeSteps)
-                         : std::min(volumeStepsNow + kStepsTurn, detail.volumeSteps);
-    quadShare = quadShare > detail.quads ? std::max(quadShare - kQuadsTurn, detail.quads)
-                                         : std::min(quadShare + kQuadsTurn, detail.quads);
-    const auto lights = float(lightsOf(detail, limits.maxLights));
-    lightCount = lightCount > lights ? std::max(lightCount - kLightsTurn, lights)
-                                     : std::min(lightCount + kLightsTurn, lights);
+    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(simulation.wind));
+    simulation.tickFraction = plan.tickFraction;
+    followDetail(plan.detail);
     crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
     if (!needs.work) {
         open.ran = true;
-        shownTick = plan.endTick;
+        simulation.shownTick = plan.endTick;
         if (plan.frameIndex == 0) return;
         PendingReadback same;
         same.ringFrame = open.ringFrame;
@@ -449,230 +570,43 @@ void VkBackend::State::run(const FramePlan& plan) {
     FrameInFlight& slot = makeRoom(*this, plan, needs);
 
     // From here on nothing fails.
-    const Table& vk = device.table;
     open.ran = true;
     open.slot = &slot;
     open.recording = true;
-    barriers.begin(vk, open.commands);
+    barriers.begin(device.table, open.commands);
     slot.timers.reset(device, open.commands);
     FrameRecorder recorder(recordTarget(slot, open.commands));
     UploadWriter writer(slot);
-    if (planes.recordMoves(vk, open.commands, open.ringFrame))
-        barriers.begin(vk, open.commands);  // rare: waits for all of the moves
-    if (!initialized) {
-        for (const uint32_t resource :
-             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
-              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
-            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
-        initialized = true;
-    }
-    recordUploads(*this);
-    if (recordsDirty) recordObjects(*this, recorder, writer);
-    if (roomsDirty) recordRooms(*this, recorder, writer);
-    recordRestores(*this, recorder);
-    recordMovedTiles(*this, recorder);
-    recordForgetting(*this, recorder);
-    drawVertices = planes.buffer(kResourceVertices).handle;
-    drawIndices = planes.buffer(kResourceIndices).handle;
-    drawShown = planes.buffer(FW_BIND_SHOWN).handle;
-    recordFieldSteps(*this, plan, recorder, writer);
-    if (plan.volumes) recordVolumes(*this, *plan.volumes, recorder, writer);
-    emittersMove = plan.emitters != nullptr;
-    if (plan.emitters) recordEmitters(*this, *plan.emitters, recorder, writer);
-    if (needs.skins) recordSkins(*this, recorder, writer);
-
-    if (needs.iterations) recordCounters(recorder, lists, uint32_t(needs.iterations));
-    slot.layout.firstRow = lists.row;
-    bool iterates = !frontEmpty || needs.dense || needs.never;
-    for (const StepPlan& planned : plan.steps) {
-        iterates |= bringsNews(planned) || (planned.exchange && !burnEmpty);
-        StepRecord step;
-        step.now = planned.now;
-        step.stepShift = planned.substepShift;
-        step.switches = plan.switches;
-        step.objectSlots = uint32_t(objects.size());
-        step.iterate = iterates;
-        step.reduce = planned.reduce && needs.burning;
-        step.heat = planned.heat && needs.heating;
-        step.rooms = planned.rooms;
-        airs = airs || planned.rooms;
-        step.exchange = step.reduce && planned.exchange;
-        step.governed = planned.governed;
-        step.capped = planned.capped;
-        step.plays = planned.plays;
-        step.rules = planned.rules;
-        if (planned.remote) recordRemote(*this, *planned.remote, recorder, writer);
-        step.links = links;
-        step.parts = partMeshes != 0;
-        if (planned.shield) recordShield(*this, *planned.shield, recorder, writer);
-        step.rules.blockers = blockers;
-        placeShield(shield, step.rules);
-        recordMaterials(*this, planned.materials, recorder, writer);
-        const bool findsAnew = needs.findsAnew && &planned == plan.steps.data();
-        step.wakeGroups = writeWakeGroups(*this, planned.materials, needs.dense, findsAnew, writer);
-        step.events = writer.write(planned.events);
-        step.eventList = planned.events;
-        for (const TexelEvent& event : planned.events) {
-            noteEvent(*this, event, planned.now);
-            if (addressesAll(event))
-                step.allTiles = std::max(step.allTiles, objects[event.object].record.tileCount);
-        }
-        if (needs.publishedRuns) {
-            for (PublishedStep& one : published) {
-                one.parity = objects[one.object].publishedParity;
-                objects[one.object].publishedParity ^= 1;
-            }
-            step.published = published;
-        }
-        recordStep(recorder, lists, step);
-        frontWalks += step.iterate ? 1 : 0;
-        burnWalks += step.reduce ? 1 : 0;
-        hotWalks += step.heat ? 1 : 0;
-    }
-    slot.layout.rows = lists.row;
-    slot.layout.burnParity = lists.burnParity;
-    slot.layout.hotParity = lists.hotParity;
-    if (needs.stimulus) {
-        lastStimulus = open.ringFrame;
-        frontEmpty = burnEmpty = predictEmpty = hotEmpty = false;
-    }
-    shownTick = plan.endTick;
+    recordChanges(*this, plan, needs, recorder, writer);
+    recordSteps(*this, plan, needs, recorder, writer);
+    simulation.shownTick = plan.endTick;
     if (needs.predicting && predictsNow(*this, needs, plan.endTick))
         recordPredictions(*this, plan, recorder, writer);
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
-    slot.layout.predictParity = lists.predictParity;
-    if (needs.vertexGroups) {
-        DeformRecord deform;
-        deform.nodeGroups = needs.nodeGroups;
-        deform.sheetGroups = needs.sheetGroups;
-        deform.springGroups = needs.springGroups;
-        deform.steps = softSteps;
-        deform.way = softWay;
-        deform.begins = needs.sheetsBegin;
-        deform.vertexGroups = needs.vertexGroups;
-        deform.innerGroups = needs.innerGroups;
-        deform.groups = writeDeformGroups(*this, writer);
-        deform.push.now = plan.endTick;
-        deform.push.step = float(kSoftTicks) / float(kTicksPerSecond);
-        deform.push.wind = {wind[0], wind[1], wind[2],
-                            float(softStep % (4096 * 128)) * deform.push.step};
-        deform.push.up = {limits.up[0], limits.up[1], limits.up[2],
-                          tickFraction * float(kStepTicks)};
-        recordDeform(recorder, deform);
-    }
-    softWay = (softWay + softSteps) % kArmWays;
+    slot.layout.predictParity = simulation.lists.predictParity;
+    if (needs.deform.vertices) recordDeformation(recorder, deformationOf(*this, needs, writer));
+    deforming.softWay = (deforming.softWay + deforming.softSteps) % kArmWays;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
-}
-
-// Flames, particles and marches of each of the frame's views; where there is none, lights alone.
-void VkBackend::State::recordAppearance(FrameInFlight& slot) {
-    const std::span<OutsideView* const> from = seenFrom();
-    const bool looked = !from.empty(), particles = showsEmitters();
-    const bool fieldsShow = looked && !fieldDraws.empty(), marches = looked && !volumes.empty();
-    if ((burnEmpty && !marches && !particles && !fieldsShow) || !limits.looks.viewParams) return;
-    const VkViewport whole{0, 0, 1, 1, 0, 1};
-    RecordTarget target = recordTarget(slot, open.commands);
-    target.profiles = profiles.set.set;
-    // A step of an own device has no view: lights alone, which flicker with simulated time.
-    FwView none{};
-    none.time = float(double(open.endTick) / kTicksPerSecond);
-    target.viewOffset = pushView(slot, looked ? from[0]->view : none, whole);
-    FrameRecorder ofAll(target);
-    if (!burnEmpty) {
-        recordLights(ofAll, lists, open.endTick);
-        recordSooting(*this, looked, ofAll);
-    }
-    const SortPush room = quadRoom();
-    ParticlePush push{};
-    push.quads = room.particles;
-    push.firstQuad = room.tiles;
-    push.lights = room.lights;
-    push.burnRow = burnEmpty ? kNoBurnRow : kRowBurn + lists.burnParity;
-    push.moved = vec4(particlesMove, 0.0f);
-    if (particles && emittersMove && emitterGroups > 0) {
-        recordParticles(ofAll, push, emitterGroups);
-        particlesMove = vec3(0.0f);
-    }
-    for (OutsideView* const of : from) {
-        if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
-        target.view = of->number;
-        FrameRecorder looks(target);
-        // The lights begin the first view's quads.
-        if ((particles && burnEmpty) || (!burnEmpty && of->number != 0)) recordNoQuads(looks);
-        if (!burnEmpty) recordFlameQuads(looks, lists, open.endTick, books.live ? flameBooks : 0);
-        if (emitterGroups > 0) recordParticleQuads(looks, push, emitterGroups);
-        if (sparkSources > 0)
-            recordSparks(looks, {room.lights, room.tiles + room.particles, push.burnRow, 0},
-                         sparkSources);
-        if (!burnEmpty || particles) recordFlameSort(looks, room);
-        if (marches) marchVolumes(*of, looks);
-    }
-    if (fieldsShow) recordFieldShow(ofAll, uint32_t(fieldDraws.size()));
 }
 
 void VkBackend::State::closeFrame() {
     const std::span<OutsideView* const> from = seenFrom();
     for (const OutsideView* const of : from) look(of->view, of->height, open.ringFrame);
-    if (!from.empty() && burnEmpty && !showsEmitters()) quadsShown = 0;
+    if (!from.empty() && simulation.burnEmpty && !showsEmitters()) particles.quadsShown = 0;
     if (!open.recording) {
         open = {};
         return;
     }
-    const Table& vk = device.table;
     FrameInFlight& slot = *open.slot;
-    recordAppearance(slot);
+    recordEffects(slot);
     if (!from.empty()) {
-        recordRefinement(slot);
-        recordArp(slot);
+        refineObjects(slot);
+        refineAsPublished(slot);
     }
-    for (DrawItem& item : drawItems)
-        if (awake.contains(item.object)) showRefined(objects[item.object].refine, item);
-    RecordTarget target = recordTarget(slot, open.commands);
-    if (!from.empty()) target.view = from[0]->number;  // whose quads are counted
-    FrameRecorder recorder(target);
-    const ReadbackLayout& layout = slot.layout;
-    const auto copyShown = [&] {
-        slot.layout.quads = !from.empty() && (!burnEmpty || showsEmitters());
-        slot.layout.bias = open.refined;
-        if (layout.quads) recorder.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
-        if (layout.bias)
-            recorder.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
-    };
-    if (open.planFrame == 0) {
-        if (!from.empty()) copyShown();  // a picture of an own device's
-    } else if (open.readback) {
-        // Counters before the lists: rows that this frame used, and the one its list ended in.
-        recorder.copyOut(FW_BIND_COUNTERS, 0, layout.countersAt,
-                         uint64_t(layout.rows + 1) * sizeof(IterationCounters));
-        if (layout.objects)
-            recorder.copyOut(FW_BIND_OBJECT_COUNTERS, 0, layout.objectsAt,
-                             layout.objects * sizeof(ObjectCounters));
-        if (layout.answers)
-            recorder.copyOut(FW_BIND_ANSWERS, 0, layout.answersAt,
-                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
-        if (layout.lights)
-            recorder.copyOut(FW_BIND_LIGHTS, 0, layout.lightsAt,
-                             uint64_t(layout.lights) * sizeof(BurnLight));
-        copyShown();
-        if (layout.fields)
-            recorder.copyOut(FW_BIND_FIELD_COUNTERS, 0, layout.fieldsAt,
-                             layout.fields * sizeof(FieldCounters));
-        if (layout.rooms)
-            recorder.copyOut(FW_BIND_ROOM_AIR, 0, layout.roomsAt, kMaxRooms * sizeof(RoomAir));
-        for (uint32_t i = 0; i < layout.mapCount; ++i) {
-            const ReadbackLayout::MapAt& map = layout.maps[i];
-            const BurnObject& object = objects[map.object].record;
-            recorder.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at,
-                             uint64_t(map.texels) * 4);
-            if (map.heat)
-                recorder.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2),
-                                 map.heatAt, uint64_t(map.texels) * sizeof(uvec2));
-        }
-        if (layout.images) recordImages(*this, recorder);
-        slot.readbackPending = true;
-    }
+    for (DrawItem& item : surfaces.drawItems)
+        if (scene.awake.contains(item.object)) showRefined(scene.objects[item.object].refine, item);
+    recordReadback(slot);
     if (open.planFrame) {
         PendingReadback one;
         one.ringFrame = open.ringFrame;
@@ -681,7 +615,7 @@ void VkBackend::State::closeFrame() {
         one.endTick = open.endTick;
         pushPending(one);
     }
-    barriers.end(vk, open.commands);
+    barriers.end(device.table, open.commands);
     open = {};
 }
 

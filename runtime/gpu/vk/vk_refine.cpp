@@ -1,4 +1,4 @@
-// Adaptive refinement's side of the backend: what a mesh and an object bring to the planes, and
+// Adaptive refinement's side of the backend: what a mesh and an object bring to the buffers, and
 // which objects a frame refines. What their passes do is in shaders/refine.
 #include "core/error.h"
 #include "gpu/vk/world_state.h"
@@ -42,14 +42,14 @@ void append(PendingUpload& upload, uint64_t& from, uint32_t resource, uint64_t f
     from += data.size_bytes();
 }
 
-void releaseAll(Planes& planes, std::span<const SpaceRange> ranges) noexcept {
-    for (const SpaceRange& one : ranges)
-        if (one.range->units) planes.release(one.space, one.range->first, one.range->units);
+void releaseAll(WorldBuffers& buffers, std::span<const PoolRange> ranges) noexcept {
+    for (const PoolRange& one : ranges)
+        if (one.range->units) buffers.release(one.pool, one.range->first, one.range->units);
 }
 
 }  // namespace
 
-// The pattern table is the first thing in the plane of words. Of the look textures the noise of
+// The pattern table is the first thing in the buffer of words. Of the look textures the noise of
 // holes is kept: a mip of the first layer, its first channel.
 void VkBackend::State::uploadRefineTable() {
     const size_t texels = size_t(kNoiseSide) * kNoiseSide;
@@ -58,7 +58,7 @@ void VkBackend::State::uploadRefineTable() {
     if (limits.looks.textures.size() >= first + texels * 4)
         for (size_t i = 0; i < texels; ++i)
             refine.noise.push_back(uint8_t(limits.looks.textures[first + i * 4]));
-    const uint32_t table = planes.allocate(kSpaceRefineWords, kTableWords, 0);
+    const uint32_t table = buffers.allocate(kPoolRefineWords, kTableWords, 0);
     PendingUpload& upload = stage(kTableWords * 4, "refinement table");
     uint64_t from = 0;
     append(upload, from, FW_BIND_REFINE_WORDS, uint64_t(table) * 2,
@@ -99,22 +99,22 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     std::pmr::vector<RefineSlot> slots(model.slots, s.memory);
     if (!s.refine.noise.empty())
         mesh::refineRoughen(domain, model, materials, s.refine.noise, kNoiseSide, slots);
-    const size_t uploadsBefore = s.uploads.size();
+    const size_t uploadsBefore = s.scene.uploads.size();
     const auto units = [](size_t count) { return std::max(1u, uint32_t(count)); };
     const size_t words = model.tileStart.size() + model.tileItems.size();
     const struct {
-        SpaceRange place;
+        PoolRange place;
         uint32_t units;
     } wanted[] = {
-        {{&fresh.triangles, kSpaceRefineMeshTriangles}, units(fresh.triangleCount)},
-        {{&fresh.edges, kSpaceRefineMeshEdges}, units(fresh.edgeCount)},
-        {{&fresh.slots, kSpaceRefineMeshSlots}, units(fresh.slotCount)},
-        {{&fresh.words, kSpaceRefineWords}, units(words)},
-        {{&fresh.draws, kSpaceVertices}, units(vertices.size())},
+        {{&fresh.triangles, kPoolRefineMeshTriangles}, units(fresh.triangleCount)},
+        {{&fresh.edges, kPoolRefineMeshEdges}, units(fresh.edgeCount)},
+        {{&fresh.slots, kPoolRefineMeshSlots}, units(fresh.slotCount)},
+        {{&fresh.words, kPoolRefineWords}, units(words)},
+        {{&fresh.draws, kPoolVertices}, units(vertices.size())},
     };
     try {
         for (const auto& one : wanted)
-            *one.place.range = {s.planes.allocate(one.place.space, one.units, last), one.units};
+            *one.place.range = {s.buffers.allocate(one.place.pool, one.units, last), one.units};
         PendingUpload& upload = s.stage(model.triangles.size() * sizeof(RefineTriangle) +
                                             model.edges.size() * sizeof(RefineEdge) +
                                             model.slots.size() * sizeof(RefineSlot) + words * 4 +
@@ -134,62 +134,62 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
         append(upload, from, kResourceVertices, fresh.draws.first,
                std::span<const mesh::RenderVertex>(vertices));
     } catch (...) {
-        fresh.release(s.planes);
+        fresh.release(s.buffers);
         s.dropUploads(uploadsBefore);
         throw;
     }
-    s.meshes[slot].refine[refineKey(published, depth)] = fresh;
+    s.scene.meshes[slot].refine[refineKey(published, depth)] = fresh;
 }
 
-void RefineMesh::release(Planes& planes) noexcept {
-    const SpaceRange all[] = {{&triangles, kSpaceRefineMeshTriangles},
-                              {&edges, kSpaceRefineMeshEdges},
-                              {&slots, kSpaceRefineMeshSlots},
-                              {&words, kSpaceRefineWords},
-                              {&draws, kSpaceVertices}};
-    releaseAll(planes, all);
+void RefineMesh::release(WorldBuffers& buffers) noexcept {
+    const PoolRange all[] = {{&triangles, kPoolRefineMeshTriangles},
+                             {&edges, kPoolRefineMeshEdges},
+                             {&slots, kPoolRefineMeshSlots},
+                             {&words, kPoolRefineWords},
+                             {&draws, kPoolVertices}};
+    releaseAll(buffers, all);
     *this = {};
 }
 
-void RefineUse::allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last) {
+void RefineUse::allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last) {
     inner = thick && mesh.solid ? mesh.slotCount : 0;
     border = inner != 0 && mesh.openEdges > 0;
-    const auto take = [&](RangeOf& range, Space space, uint32_t units) {
+    const auto take = [&](RangeOf& range, BufferPool pool, uint32_t units) {
         units = std::max(1u, units);
-        range = {planes.allocate(space, units, last), units};
+        range = {buffers.allocate(pool, units, last), units};
     };
-    take(items, kSpaceRefineItems, mesh.edgeCount + mesh.triangleCount);
-    take(triangles, kSpaceRefineTriangles, mesh.triangleCount + kRefineSums);
-    take(slots, kSpaceRefineSlots, mesh.slotCount + inner);
-    take(indices, kSpaceRefineIndices, mesh.fullCount * 3);
+    take(items, kPoolRefineItems, mesh.edgeCount + mesh.triangleCount);
+    take(triangles, kPoolRefineTriangles, mesh.triangleCount + kRefineSums);
+    take(slots, kPoolRefineSlots, mesh.slotCount + inner);
+    take(indices, kPoolRefineIndices, mesh.fullCount * 3);
     // Along rims, of up to four for a small triangle; with an inner skin and along borders more.
     const uint32_t rims = mesh.fullCount / (inner ? 3 : 4) + 64;
     const uint32_t walls = border ? mesh.openEdges << (kRefineDepth + 1) : 0;
-    take(cuts, kSpaceRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
+    take(cuts, kPoolRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
 }
 
-void RefineUse::allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last) {
-    slots = {planes.allocate(kSpaceRefineSlots, mesh.slotCount, last), mesh.slotCount};
+void RefineUse::allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last) {
+    slots = {buffers.allocate(kPoolRefineSlots, mesh.slotCount, last), mesh.slotCount};
     const uint32_t listed = groupsOf(mesh.fullCount) * 64;
-    arpList = {planes.allocate(kSpaceArpList, listed, last), listed};
-    indices = {planes.allocate(kSpaceRefineIndices, listed * 3, last), listed * 3};
+    arpList = {buffers.allocate(kPoolArpList, listed, last), listed};
+    indices = {buffers.allocate(kPoolRefineIndices, listed * 3, last), listed * 3};
 }
 
-void RefineUse::release(Planes& planes) noexcept {
-    const SpaceRange all[] = {{&items, kSpaceRefineItems}, {&triangles, kSpaceRefineTriangles},
-                              {&slots, kSpaceRefineSlots}, {&indices, kSpaceRefineIndices},
-                              {&cuts, kSpaceRefineCuts},   {&arpList, kSpaceArpList}};
-    releaseAll(planes, all);
+void RefineUse::release(WorldBuffers& buffers) noexcept {
+    const PoolRange all[] = {{&items, kPoolRefineItems}, {&triangles, kPoolRefineTriangles},
+                             {&slots, kPoolRefineSlots}, {&indices, kPoolRefineIndices},
+                             {&cuts, kPoolRefineCuts},   {&arpList, kPoolArpList}};
+    releaseAll(buffers, all);
     *this = {};
 }
 
 void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
-    awake.insert(object);
-    RefineUse& use = objects[object].refine;
+    scene.awake.insert(object);
+    RefineUse& use = scene.objects[object].refine;
     if (!use.on) return;
     uint32_t opens = 0;  // what burns may open later than it goes out
-    if ((objects[object].record.flags & kObjectNoHoles) == 0)
-        for (const BurnMaterial& m : objects[object].materials)
+    if ((scene.objects[object].record.flags & kObjectNoHoles) == 0)
+        for (const BurnMaterial& m : scene.objects[object].materials)
             opens = std::max(opens, m.holeTicks);
     const uint64_t quiet = uint64_t(tick) + kQuietTicks + opens;
     use.quietTick = std::max(use.quietTick, uint32_t(std::min<uint64_t>(quiet, kLiveEnd)));
@@ -211,21 +211,21 @@ uint64_t VkBackend::State::planRefine(const FramePlan& plan) {
     const RefinePush& push = refine.push;
     if (push.objects == 0) return 0;
     const uint32_t jobs = (push.cutJobs - push.placeJobs) / 2;
-    planes.atLeast(kSpaceRefineWork, push.cutJobs + jobs + 2 * 64 * push.edgeGroups, ring.newest());
+    buffers.atLeast(kPoolRefineWork, push.cutJobs + jobs + 2 * 64 * push.edgeGroups, ring.newest());
     return refine.lists.size() * 4 + uint64_t(push.objectEnd) * sizeof(RefineObject) + 64;
 }
 
-// The work plane of the objects that are due, or of all that refine. Throws only where it has more
+// The work buffer of the objects that are due, or of all that refine. Throws only where it has more
 // to list than ever.
 void VkBackend::State::listRefined(bool all) {
     refine.lists.clear();
     refine.push = {};
     uint64_t emitJobs = 0, placeJobs = 0;
     const auto each = [&](auto&& use) {
-        for (const uint32_t i : awake) {
-            const ObjectEntry& object = objects[i];
+        for (const uint32_t i : scene.awake) {
+            const ObjectEntry& object = scene.objects[i];
             if (all ? refines(object) : object.refine.due)
-                use(i, meshes[object.mesh].refine[object.refine.key]);
+                use(i, scene.meshes[object.mesh].refine[object.refine.key]);
         }
     };
     const auto list = [&](uint32_t object, uint32_t count) {
@@ -256,9 +256,9 @@ void VkBackend::State::listRefined(bool all) {
     }
     // The budget is shared with those whose turn it is not.
     uint64_t full = 0;
-    for (const uint32_t i : awake) {
-        if (!refines(objects[i])) continue;
-        full += meshes[objects[i].mesh].refine[objects[i].refine.key].fullCount;
+    for (const uint32_t i : scene.awake) {
+        if (!refines(scene.objects[i])) continue;
+        full += scene.meshes[scene.objects[i].mesh].refine[scene.objects[i].refine.key].fullCount;
         push.objectEnd = i + 1;
     }
     const auto most = uint32_t(detail.triangles * float(limits.maxRefinedTriangles));
@@ -276,20 +276,21 @@ bool VkBackend::State::chooseDue(double now) noexcept {
     const auto due = [&](const ObjectEntry& object) {
         return refines(object) && isDue(object, refineRecord(object, refine.full), now);
     };
-    for (const uint32_t i : awake) any = any || due(objects[i]);
+    for (const uint32_t i : scene.awake) any = any || due(scene.objects[i]);
     if (!any) return false;
     // Full ones are compared with what has no turns.
-    for (const uint32_t i : awake)
-        objects[i].refine.due = refines(objects[i]) && (refine.full || due(objects[i]));
+    for (const uint32_t i : scene.awake)
+        scene.objects[i].refine.due =
+            refines(scene.objects[i]) && (refine.full || due(scene.objects[i]));
     return true;
 }
 
 // The views' eyes and the heights of their last pictures limit levels.
-void VkBackend::State::recordRefinement(FrameInFlight& slot) {
+void VkBackend::State::refineObjects(FrameInFlight& slot) {
     RefinePush& push = refine.push;
     if (push.objects == 0) return;
     lookFromViews();
-    const double now = double(shownTick) + double(tickFraction);
+    const double now = double(simulation.shownTick) + double(simulation.tickFraction);
     const bool turn = chooseDue(now);
     if (!turn && !refine.full) return;
     FrameRecorder recorder(recordTarget(slot, open.commands));
@@ -303,13 +304,13 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot) {
         at += (refine.lists.size() * 4 + 15) / 16 * 16;
     }
     push = refine.last;
-    push.nowTick = shownTick;
+    push.nowTick = simulation.shownTick;
     const uint64_t recordsAt = at;
     uint32_t ordinal = 0;
     bool cuts = false, fresh = false;
     for (uint32_t i = 0; i < push.objectEnd; ++i, at += sizeof(RefineObject)) {
         RefineObject record{};
-        ObjectEntry& object = objects[i];
+        ObjectEntry& object = scene.objects[i];
         if (object.refine.due) {
             record = refineRecord(object, refine.full);
             record.flags |= kRefineIsActive | kRefineIsCounted;
@@ -320,7 +321,8 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot) {
         if (!object.refine.due && object.refine.started && refines(object)) {
             record.flags = kRefineIsCounted;
             record.triangles = object.refine.triangles.first;
-            record.triangleCount = meshes[object.mesh].refine[object.refine.key].triangleCount;
+            record.triangleCount =
+                scene.meshes[object.mesh].refine[object.refine.key].triangleCount;
         }
         if (object.refine.due && turn) {
             object.refine.turnTick = now;
@@ -352,7 +354,7 @@ void VkBackend::State::recordRefinement(FrameInFlight& slot) {
     slot.uploadUsed = at;
     recorder.copyIn(recordsAt, FW_BIND_REFINE_OBJECTS, 0,
                     uint64_t(push.objectEnd) * sizeof(RefineObject));
-    recordRefine(recorder, lists, push, turn, cuts, fresh);
+    recordRefinement(recorder, simulation.lists, {push, turn, cuts, fresh});
 }
 
 void VkBackend::State::lookFromViews() noexcept {
@@ -388,7 +390,8 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
                                     const RefineObject& record) const noexcept {
     if ((object.record.flags & kObjectNoHoles) != 0 && !object.refine.border) return 0;
     if (record.eye.w == 0) return kCutNear;
-    const float pixels = meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
+    const float pixels =
+        scene.meshes[object.mesh].refine[object.refine.key].edgeLength * record.eye.w;
     return pixels / std::max(record.pixelsPerEdge * eyeDistance(object, record.eye), 1e-6f);
 }
 
@@ -402,7 +405,7 @@ bool VkBackend::State::tellsByTexels(const ObjectEntry& object) const noexcept {
 
 // m, object space, from the eye to the mesh's bounds.
 float VkBackend::State::eyeDistance(const ObjectEntry& object, const vec4& eye) const noexcept {
-    const MeshEntry& entry = meshes[object.mesh];
+    const MeshEntry& entry = scene.meshes[object.mesh];
     float square = 0;
     for (int k = 0; k < 3; ++k) {
         const float out = std::max(
@@ -457,7 +460,7 @@ bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& reco
 }
 
 RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full) const noexcept {
-    const MeshEntry& entry = meshes[object.mesh];
+    const MeshEntry& entry = scene.meshes[object.mesh];
     const RefineMesh& mesh = entry.refine[object.refine.key];
     const RefineUse& use = object.refine;
     RefineObject r{};
@@ -478,8 +481,9 @@ RefineObject VkBackend::State::refineRecord(const ObjectEntry& object, bool full
     r.stateBase = object.record.stateBase;
     r.epochTick = use.epochTick;
     r.pixelsPerEdge = use.pixelsPerEdge;
-    r.now =
-        float((double(shownTick) - double(use.epochTick) + double(tickFraction)) / kTicksPerSecond);
+    r.now = float(
+        (double(simulation.shownTick) - double(use.epochTick) + double(simulation.tickFraction)) /
+        kTicksPerSecond);
     r.eye = eyeFor(object);
     if (full) r.eye.w = 0;
     r.inner = use.inner;

@@ -17,7 +17,7 @@ bool showsWater(const ObjectImage& image) noexcept {
 }
 
 void stageImage(VkBackend::State& s, const ObjectImage& image) {
-    const BurnObject& record = s.objects[image.object].record;
+    const BurnObject& record = s.scene.objects[image.object].record;
     PendingUpload& upload =
         s.stage(image.ticks.size_bytes() + image.heat.size_bytes() + image.tiles.size_bytes() +
                     image.tileHeat.size_bytes() + sizeof image.counters,
@@ -51,9 +51,9 @@ void stageImage(VkBackend::State& s, const ObjectImage& image) {
 
 void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick) {
     State& s = *state_;
-    const size_t uploadsBefore = s.uploads.size();
-    s.restores.reserve(std::max(s.restores.size(), restored.size()));
-    s.restoredObjects.reserve(restored.size());
+    const size_t uploadsBefore = s.scene.uploads.size();
+    s.scene.restores.reserve(std::max(s.scene.restores.size(), restored.size()));
+    s.scene.restoredObjects.reserve(restored.size());
     try {
         for (const RestoredObject& one : restored) stageImage(s, one.image);
     } catch (...) {
@@ -61,126 +61,115 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
         throw;
     }
     // One that no frame has recorded is of no use any more.
-    for (PendingUpload& old : s.restores) s.deviceMemory.destroy(old.staging);
-    s.restores.assign(s.uploads.begin() + std::ptrdiff_t(uploadsBefore), s.uploads.end());
-    s.uploads.resize(uploadsBefore);
-    s.restoredObjects.clear();
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        ObjectEntry& object = s.objects[i];
+    for (PendingUpload& old : s.scene.restores) s.deviceMemory.destroy(old.staging);
+    s.scene.restores.assign(s.scene.uploads.begin() + std::ptrdiff_t(uploadsBefore),
+                            s.scene.uploads.end());
+    s.scene.uploads.resize(uploadsBefore);
+    s.scene.restoredObjects.clear();
+    for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
+        ObjectEntry& object = s.scene.objects[i];
         if (!object.live) continue;
         s.changed(i);
         object.resetDue = true;
-        object.touched = object.doused = object.warmed = object.charred = object.lit = false;
+        object.burn.touched = object.burn.doused = object.burn.warmed = object.burn.charred =
+            object.burn.lit = false;
         object.publishedTouched = false;
         object.publishedParity = 0;
-        object.lastDouse = 0;
-        object.lastEvent = 0;
-        object.softUntil = 0;
+        object.burn.lastDouse = 0;
+        object.burn.lastEvent = 0;
+        object.deforms.softUntil = 0;
         object.refine.quietTick = 0;
         object.refine.epochTick = std::min(object.refine.epochTick, tick);
-        if (object.shown.units != 0 && object.skinPlus1 == 0) object.deformReset = true;
+        if (object.shown.units != 0 && object.deforms.skinPlus1 == 0) object.deforms.reset = true;
     }
     for (const RestoredObject& one : restored) {
         if (one.rests) continue;
-        ObjectEntry& object = s.objects[one.image.object];
+        ObjectEntry& object = s.scene.objects[one.image.object];
         std::copy_n(one.materials, kMaterialsPerObject, object.materials);
         object.record.window = one.window;
         object.record.substepShift = one.substepShift;
         object.materialsDirty = true;
-        object.touched = true;
-        object.doused = showsWater(one.image);
-        object.warmed = one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
-        object.lastEvent = tick;
-        s.restoredObjects.push_back(one.image.object);
+        object.burn.touched = true;
+        object.burn.doused = showsWater(one.image);
+        object.burn.warmed =
+            one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
+        object.burn.lastEvent = tick;
+        s.scene.restoredObjects.push_back(one.image.object);
         if (one.image.counters.ignited != 0) s.noteFire(one.image.object, tick);
     }
-    s.recordsDirty = s.restoreDue = true;
-    s.shownTick = tick;
-    s.links = s.blockers = 0;
-    s.shield = {};
-    s.pendingCount = 0;
+    s.scene.recordsDirty = s.scene.restoreDue = true;
+    s.simulation.shownTick = tick;
+    s.simulation.links = s.simulation.blockers = 0;
+    s.simulation.shield = {};
+    s.results.pendingCount = 0;
     for (FrameInFlight& slot : s.ring.slots()) slot.readbackPending = false;
-    s.frontEmpty = s.burnEmpty = s.predictEmpty = s.hotEmpty = false;
+    s.simulation.frontEmpty = s.simulation.burnEmpty = s.simulation.predictEmpty =
+        s.simulation.hotEmpty = false;
 }
 
 void VkBackend::moveWorld(const double (&by)[3]) noexcept {
     State& s = *state_;
     const vec3 metres{float(by[0]), float(by[1]), float(by[2])};
     const vec3 up{s.limits.up[0], s.limits.up[1], s.limits.up[2]};
-    s.particlesMove += metres;
-    s.tilesMoved = true;
-    for (uint32_t i = 0; i < s.objects.size(); ++i) {
-        ObjectEntry& object = s.objects[i];
+    s.particles.particlesMove += metres;
+    s.simulation.tilesMoved = true;
+    for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
+        ObjectEntry& object = s.scene.objects[i];
         if (!object.live || (object.deform.flags & kDeformShell) == 0) continue;
         object.deform.ground += glm::dot(metres, up);
-        object.deformDirty = true;
+        object.deforms.recordDirty = true;
         s.changed(i);
     }
 }
 
 namespace {
 
-// BurnTiles of the burn list as it is: see kSwitchShows.
-void recordShown(VkBackend::State& s, FrameRecorder& recorder) {
-    const uint32_t row = kRowBurn + s.lists.burnParity;
-    recorder.fillZero(FW_BIND_COUNTERS,
-                      row * sizeof(IterationCounters) + offsetof(IterationCounters, runX),
-                      4 * sizeof(uint32_t));
-    StepPush push{};
-    push.burnParity = s.lists.burnParity;
-    push.now = s.shownTick;
-    push.switches = kSwitchShows;
-    recorder.dispatchList(kReducePass, &push, row);
-    s.tilesMoved = false;
+void showTiles(VkBackend::State& s, FrameRecorder& recorder) {
+    recordShownTiles(recorder, s.simulation.lists, s.simulation.shownTick);
+    s.simulation.tilesMoved = false;
 }
 
 }  // namespace
 
 void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder) {
-    if (s.tilesMoved && !s.burnEmpty) recordShown(s, recorder);
+    if (s.simulation.tilesMoved && !s.simulation.burnEmpty) showTiles(s, recorder);
 }
 
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
-    if (!s.restoreDue) return;
-    s.restoreDue = false;
+    if (!s.scene.restoreDue) return;
+    s.scene.restoreDue = false;
     // The lists begin anew: whoever waited for a walk through them need not.
     recorder.fillZero(FW_BIND_COUNTERS, 0, VK_WHOLE_SIZE);
-    ++s.frontWalks, ++s.burnWalks, ++s.predictWalks, ++s.hotWalks;
+    ++s.simulation.frontWalks, ++s.simulation.burnWalks, ++s.simulation.predictWalks,
+        ++s.simulation.hotWalks;
     const Table& vk = s.device.table;
-    for (PendingUpload& upload : s.restores) {
+    for (PendingUpload& upload : s.scene.restores) {
         recordRegions(vk, s, upload);
         s.retired.push(s.open.ringFrame, upload.staging);
     }
-    s.restores.clear();
-    StepPush push{};
-    push.parity = s.lists.parity;
-    push.row = s.lists.row;
-    push.burnParity = s.lists.burnParity;
-    push.predictParity = s.lists.predictParity;
-    push.hotParity = s.lists.hotParity;
-    for (const uint32_t slot : s.restoredObjects) {
-        const ObjectEntry& object = s.objects[slot];
+    s.scene.restores.clear();
+    for (const uint32_t slot : s.scene.restoredObjects) {
+        const ObjectEntry& object = s.scene.objects[slot];
         if (!object.live) continue;
         const uint64_t texels = uint64_t(object.record.width) * object.record.height;
         recorder.fillZero(FW_BIND_SETTLED, uint64_t(object.record.stateBase) / 8 * 4,
                           texels / 8 * 4);
         recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
                              texels * 4);
-        push.object = slot;
-        recorder.dispatch(kRestorePass, &push, std::max((object.record.tileCount + 63) / 64, 1u));
+        recordRestore(recorder, s.simulation.lists, slot, object.record.tileCount);
     }
-    s.restoredObjects.clear();
-    recordShown(s, recorder);
+    s.scene.restoredObjects.clear();
+    showTiles(s, recorder);
 }
 
 void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
                const std::function<uint64_t(uint64_t)>& place) {
     layout.images = !slots.empty();
     if (slots.empty()) return;
-    s.imageLayout.clear();
+    s.results.imageLayout.clear();
     for (const uint32_t slot : slots) {
-        const BurnObject& record = s.objects[slot].record;
-        ImageAt& at = s.imageLayout.emplace_back();
+        const BurnObject& record = s.scene.objects[slot].record;
+        ImageAt& at = s.results.imageLayout.emplace_back();
         at.object = slot;
         at.texels = record.width * record.height;
         at.tiles = record.tileCount;
@@ -190,12 +179,12 @@ void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLay
         at.tilesAt = place(uint64_t(at.tiles) * sizeof(TileState));
         at.tileHeatAt = place(uint64_t(at.tiles) * sizeof(TileHeat));
     }
-    s.imagesFrame = s.open.ringFrame;
+    s.results.imagesFrame = s.open.ringFrame;
 }
 
 void recordImages(VkBackend::State& s, FrameRecorder& recorder) {
-    for (const ImageAt& at : s.imageLayout) {
-        const BurnObject& record = s.objects[at.object].record;
+    for (const ImageAt& at : s.results.imageLayout) {
+        const BurnObject& record = s.scene.objects[at.object].record;
         recorder.copyOut(FW_BIND_STATE, uint64_t(record.stateBase) * 4, at.ticksAt,
                          uint64_t(at.texels) * 4);
         if (at.heat)
@@ -210,20 +199,21 @@ void recordImages(VkBackend::State& s, FrameRecorder& recorder) {
 
 // As they lie in the readback buffer, which is not written again before the next frame.
 std::span<const ObjectImage> giveImages(VkBackend::State& s, const std::byte* from) {
-    s.givenImages.clear();
+    s.results.givenImages.clear();
     const auto array = [&]<class T>(uint64_t at, uint32_t count, std::span<const T>& out) {
         out = {reinterpret_cast<const T*>(from + at), count};
     };
-    for (const ImageAt& at : s.imageLayout) {
-        ObjectImage& image = s.givenImages.emplace_back();
+    for (const ImageAt& at : s.results.imageLayout) {
+        ObjectImage& image = s.results.givenImages.emplace_back();
         image.object = at.object;
         array(at.ticksAt, at.texels, image.ticks);
         if (at.heat) array(at.heatAt, at.texels, image.heat);
         array(at.tilesAt, at.tiles, image.tiles);
         array(at.tileHeatAt, at.tiles, image.tileHeat);
-        if (at.object < s.givenObjects.size()) image.counters = s.givenObjects[at.object];
+        if (at.object < s.results.givenObjects.size())
+            image.counters = s.results.givenObjects[at.object];
     }
-    return s.givenImages;
+    return s.results.givenImages;
 }
 
 }  // namespace fw::gpu::vk

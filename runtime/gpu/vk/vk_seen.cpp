@@ -93,24 +93,24 @@ void VkBackend::State::look(const FwView& view, float height, uint64_t frame) no
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;
         // A host moves the vertices of what is skinned where it likes.
-        if (object.skinPlus1 == 0 &&
-            !shows(params, sphereOf(object, *meshes[object.mesh].domain, params.eye)))
+        if (object.deforms.skinPlus1 == 0 &&
+            !shows(params, sphereOf(object, *scene.meshes[object.mesh].domain, params.eye)))
             return;
         object.seenFrame = frame;
-        if ((object.record.flags & kObjectHidden) == 0) seenFrame = frame;
+        if ((object.record.flags & kObjectHidden) == 0) simulation.seenFrame = frame;
     };
-    for (const uint32_t i : awake)
-        if (objects[i].touched) lookAt(objects[i]);
-    for (size_t i = frame % kIdleTurns; i < objects.size(); i += kIdleTurns)
-        if (!objects[i].touched) lookAt(objects[i]);
+    for (const uint32_t i : scene.awake)
+        if (scene.objects[i].burn.touched) lookAt(scene.objects[i]);
+    for (size_t i = frame % kIdleTurns; i < scene.objects.size(); i += kIdleTurns)
+        if (!scene.objects[i].burn.touched) lookAt(scene.objects[i]);
 }
 
 void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         const bool unseen = (object.record.flags & kObjectUnseen) != 0;
         const bool wanted = seenLately(object, s.open.ringFrame);
-        object.turns = object.live && object.touched && unseen == wanted;
+        object.turns = object.live && object.burn.touched && unseen == wanted;
         if (!object.turns) continue;
         needs.uploadBytes += 2 * uploaded(sizeof object.record.flags);
         needs.appears |= wanted;
@@ -121,11 +121,12 @@ bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t en
     const double shortOf = 1.0 - double(s.detail.triangles);
     if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
     double pause = kLongestPause * shortOf;
-    for (const uint32_t i : s.awake)
-        if (const ObjectEntry& object = s.objects[i];
-            object.live && object.touched && (object.record.flags & kObjectUnseen) == 0)
+    for (const uint32_t i : s.scene.awake)
+        if (const ObjectEntry& object = s.scene.objects[i];
+            object.live && object.burn.touched && (object.record.flags & kObjectUnseen) == 0)
             pause = std::min(pause, kCrossedInPause / std::max(paceOf(object), 1e-9));
-    return double(endTick - s.predictTick) >= pause;  // of a save that was loaded: long ago
+    return double(endTick - s.simulation.predictTick) >=
+           pause;  // of a save that was loaded: long ago
 }
 
 void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
@@ -136,39 +137,40 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
                         uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
                         sizeof flags);
     };
-    s.predictTick = plan.endTick;
+    s.simulation.predictTick = plan.endTick;
     const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
     uint32_t rings = 0;
-    bool seen = lately(s.seenFrame, s.open.ringFrame);  // what others lit is known only later
-    for (const uint32_t i : s.awake) {
-        ObjectEntry& object = s.objects[i];
+    bool seen =
+        lately(s.simulation.seenFrame, s.open.ringFrame);  // what others lit is known only later
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
         uint32_t& flags = object.record.flags;
         if (object.turns) {
             flags ^= kObjectUnseen;
             const bool comes = (flags & kObjectUnseen) == 0;
             tell(i, comes ? flags | kObjectShownAgain : flags);
             if (comes) {
-                recordPredictAnew(recorder, s.lists, i, object.record.tileCount);
+                recordPredictAnew(recorder, s.simulation.lists, i, object.record.tileCount);
                 rings = std::max(rings, std::min(ringsOf(object), most));
             }
         }
-        if (object.catches && (flags & kObjectUnseen) == 0)
+        if (object.burn.catches && (flags & kObjectUnseen) == 0)
             rings = std::max(rings, std::min(ringsOf(object), kRingsOfFrame));
-        object.catches = false;
-        seen |= object.live && object.touched && (flags & kObjectUnseen) == 0;
+        object.burn.catches = false;
+        seen |= object.live && object.burn.touched && (flags & kObjectUnseen) == 0;
     }
     // A ring a round: long frames need more to stay ahead of a fast front.
     auto rounds = uint32_t(std::clamp<size_t>(plan.steps.size() * 2, 2, 9) - 1);
-    recordPredict(recorder, s.lists, plan.endTick, seen);
+    recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
     if (rings > 0) {
         rounds += rings;
-        for (const uint32_t i : s.awake)
-            if (s.objects[i].turns && (s.objects[i].record.flags & kObjectUnseen) == 0)
-                tell(i, s.objects[i].record.flags);
+        for (const uint32_t i : s.scene.awake)
+            if (s.scene.objects[i].turns && (s.scene.objects[i].record.flags & kObjectUnseen) == 0)
+                tell(i, s.scene.objects[i].record.flags);
     }
     for (uint32_t i = 1; seen && i < rounds; ++i)
-        recordPredict(recorder, s.lists, plan.endTick, seen);
-    s.predictWalks += seen ? rounds : 1;
+        recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);
+    s.simulation.predictWalks += seen ? rounds : 1;
 }
 
 }  // namespace fw::gpu::vk

@@ -23,16 +23,16 @@ OutsideView& VkBackend::State::takeView(std::span<OutsideView* const> taken) {
         return of.frame == 0 || of.frame + kViewKept < open.ringFrame;
     };
     OutsideView* best = nullptr;
-    for (const core::Owned<OutsideView>& of : outsideViews) {
+    for (const core::Owned<OutsideView>& of : flames.outsideViews) {
         if (!of || contains(taken, of.get())) continue;
         if (!best || (isStale(*of) && !isStale(*best)) ||
             (isStale(*of) == isStale(*best) && of->frame < best->frame))
             best = of.get();
     }
     for (uint32_t number = 1; number < kMaxViews && (!best || !isStale(*best)); ++number) {
-        if (outsideViews[number]) continue;
-        outsideViews[number] = core::Owned<OutsideView>::make(memory, number);
-        return *outsideViews[number];
+        if (flames.outsideViews[number]) continue;
+        flames.outsideViews[number] = core::Owned<OutsideView>::make(memory, number);
+        return *flames.outsideViews[number];
     }
     const uint32_t number = best->number;
     std::destroy_at(best);
@@ -43,15 +43,15 @@ void VkBackend::State::openViews(std::span<const FwView> from) {
     std::array<OutsideView*, kMaxViews> taken{};
     // Views that were given before keep what they have; new ones take the rest.
     for (size_t i = 0; i < from.size(); ++i)
-        for (const core::Owned<OutsideView>& of : outsideViews)
+        for (const core::Owned<OutsideView>& of : flames.outsideViews)
             if (of && of->frame != 0 && of->view.viewId == from[i].viewId) taken[i] = of.get();
     for (size_t i = 0; i < from.size(); ++i)
         if (!taken[i]) taken[i] = &takeView(taken);
-    for (core::Owned<OutsideView>& of : outsideViews) {
+    for (core::Owned<OutsideView>& of : flames.outsideViews) {
         if (!of) continue;
         of->given = contains(taken, of.get());
         if (of->given || of->number == 0 || of->frame + kViewKept >= open.ringFrame) continue;
-        planes.dropView(of->number, ring.newest());
+        buffers.dropView(of->number, ring.newest());
         sets.drop(of->number, ring.newest());
         of = {};
     }
@@ -64,24 +64,25 @@ void VkBackend::State::openViews(std::span<const FwView> from) {
     }
 }
 
-void VkBackend::State::makeViewRoom(uint32_t flames, bool marches, uint64_t last) {
+void VkBackend::State::makeViewRoom(uint32_t flameCount, bool marches, uint64_t last) {
     for (OutsideView* const of : seenFrom()) {
         if (of->number > 0) {
-            planes.makeView(of->number, last);
-            planes.fit(spaceOf(kSpaceFlames, of->number), planes.capacity(kSpaceFlames),
-                       detail.memory < 1, last);
-            planes.atLeast(spaceOf(kSpaceVolumes, of->number), kVolumeWorks * flames, last);
+            buffers.makeView(of->number, last);
+            buffers.fit(poolOf(kPoolFlames, of->number), buffers.capacity(kPoolFlames),
+                        detail.memory < 1, last);
+            buffers.atLeast(poolOf(kPoolVolumes, of->number), kVolumeWorks * flameCount, last);
         }
-        if (marches && flames > 0) makeMarchRoom(*of, flames, last);
+        if (marches && flameCount > 0) makeMarchRoom(*of, flameCount, last);
     }
     // A limit on memory also holds while nobody looks.
-    if (seenFrom().empty() && marches && flames > 0) makeMarchRoom(*outsideViews[0], flames, last);
+    if (seenFrom().empty() && marches && flameCount > 0)
+        makeMarchRoom(*flames.outsideViews[0], flameCount, last);
 }
 
 OutsideView& VkBackend::State::viewFor(const FwView& view) const noexcept {
-    OutsideView* best = outsideViews[0].get();
+    OutsideView* best = flames.outsideViews[0].get();
     int most = -int(kMaxViews);
-    for (const core::Owned<OutsideView>& of : outsideViews) {
+    for (const core::Owned<OutsideView>& of : flames.outsideViews) {
         if (!of || !of->given || !sets.has(of->number)) continue;
         const int alike = (sameView(view, of->view) ? 2 * int(kMaxViews) : 0) +
                           (view.viewId == of->view.viewId ? int(kMaxViews) : 0) - int(of->place);

@@ -20,10 +20,10 @@ static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
 
 void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) {
     State& s = *state_;
-    if (!s.profiles.live) return;
+    if (!s.scene.profiles.live) return;
     PendingUpload& upload = s.stage(kProfileBytes, "fire profile");
     std::memcpy(upload.staging.mapped, texels.data(), kProfileBytes);
-    upload.image = s.profiles.image.handle;
+    upload.image = s.scene.profiles.image.handle;
     upload.width = kProfileWidth;
     upload.height = kProfileHeight;
     upload.mips = upload.layers = 1;
@@ -32,28 +32,28 @@ void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) 
 
 void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorder& recorder,
                    UploadWriter& writer) {
-    s.volumes.clear();  // room was made for all of them
+    s.flames.volumes.clear();  // room was made for all of them
     const std::span<const VolumeFlame> flames(update.flames, update.count);
     for (const VolumeFlame& flame : flames) {
         const FlameRecord& record = flame.record;
-        VkBackend::State::VolumeBox box{record.low,
-                                        record.high,
-                                        {},
-                                        {},
-                                        volumeIntervals(flame.nodes, kFlameNodes),
-                                        vec3(flame.nodes[0].centre),
-                                        record.key,
-                                        record.tier,
-                                        record.smoke > 0.0f,
-                                        {},
-                                        {},
-                                        {},
-                                        {},
-                                        volumeBasePlane(record, flame.nodes, kFlameNodes)};
+        VolumeBox box{record.low,
+                      record.high,
+                      {},
+                      {},
+                      volumeIntervals(flame.nodes, kFlameNodes),
+                      vec3(flame.nodes[0].centre),
+                      record.key,
+                      record.tier,
+                      record.smoke > 0.0f,
+                      {},
+                      {},
+                      {},
+                      {},
+                      volumeBasePlane(record, flame.nodes, kFlameNodes)};
         box.kind = bookKind(record, flame.nodes, kFlameNodes, box.tip);
         volumeBounds(record, flame.nodes, kFlameNodes, box.flameLow, box.flameHigh);
         volumeHazeBounds(record, flame.nodes, kFlameNodes, box.hazeLow, box.hazeHigh);
-        s.volumes.push_back(box);
+        s.flames.volumes.push_back(box);
     }
     if (flames.empty()) return;
     const Staged staged = writer.write(flames);
@@ -62,28 +62,30 @@ void recordVolumes(VkBackend::State& s, const VolumeUpdate& update, FrameRecorde
 
 uint32_t VkBackend::State::orderVolumes(
     uint32_t slabs, std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept {
-    if (!profiles.live) return 0;
+    if (!scene.profiles.live) return 0;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < volumes.size(); ++i) {
+    for (uint32_t i = 0; i < flames.volumes.size(); ++i) {
         VolumeItem& item = out[count];
         item.flame = i;
-        if (!volumeDraw(seen, volumes[i].low, volumes[i].high, slabs, item.draw, &item.whole))
+        if (!volumeDraw(seen, flames.volumes[i].low, flames.volumes[i].high, slabs, item.draw,
+                        &item.whole))
             continue;
-        item.middle = 0.5f * (vec3(volumes[i].flameLow) + vec3(volumes[i].flameHigh));
-        item.base = volumes[i].base;
-        item.tip = volumes[i].tip;
-        item.smokes = volumes[i].smokes;
-        item.hero = volumes[i].tier == FW_FIRE_TIER_MARCH_HIGH;
+        item.middle = 0.5f * (vec3(flames.volumes[i].flameLow) + vec3(flames.volumes[i].flameHigh));
+        item.base = flames.volumes[i].base;
+        item.tip = flames.volumes[i].tip;
+        item.smokes = flames.volumes[i].smokes;
+        item.hero = flames.volumes[i].tier == FW_FIRE_TIER_MARCH_HIGH;
         item.near = item.draw.front;
         item.far = item.draw.front + item.draw.deep * float(slabs);
-        volumeSlabs(seen, volumes[i].flameLow, volumes[i].flameHigh, item.draw);
-        if (slabs > 1) volumeBase(seen, volumes[i].basePlane, item.draw);
+        volumeSlabs(seen, flames.volumes[i].flameLow, flames.volumes[i].flameHigh, item.draw);
+        if (slabs > 1) volumeBase(seen, flames.volumes[i].basePlane, item.draw);
         VolumeDraw burning;
-        item.burns = volumes[i].smokes && volumeDraw(seen, volumes[i].flameLow,
-                                                     volumes[i].flameHigh, slabs, burning)
-                         ? burning.rect
-                         : vec4(0.0f);
-        item.draw.intervals = volumes[i].intervals;
+        item.burns =
+            flames.volumes[i].smokes && volumeDraw(seen, flames.volumes[i].flameLow,
+                                                   flames.volumes[i].flameHigh, slabs, burning)
+                ? burning.rect
+                : vec4(0.0f);
+        item.draw.intervals = flames.volumes[i].intervals;
         ++count;
     }
     chooseVolumes({out.data(), count});
@@ -127,14 +129,14 @@ uint32_t VkBackend::State::rayWords(const March& march) const noexcept {
     return uint32_t(double(detail.memory) * volumeRayWords(march.screen));
 }
 
-void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last) {
-    if (!profiles.live) return;
+void VkBackend::State::makeMarchRoom(OutsideView& of, uint32_t flameCount, uint64_t last) {
+    if (!scene.profiles.live) return;
     March& march = of.march;
-    while (march.slots < flames) march.slots = std::max(2 * march.slots, kLeastCards);
+    while (march.slots < flameCount) march.slots = std::max(2 * march.slots, kLeastCards);
     try {
-        planes.fit(spaceOf(kSpaceVolumeRays, of.number),
-                   march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
-                   detail.memory < 1 || march.bookSpare, last);
+        buffers.fit(poolOf(kPoolVolumeRays, of.number),
+                    march.slots * kPairWords + march.bookRoom * kVolumeBookWords + rayWords(march),
+                    detail.memory < 1 || march.bookSpare, last);
         march.bookSpare = false;
     } catch (const core::Error& error) {
         if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
@@ -166,10 +168,10 @@ void setFade(const TierLife& life, bool now, float& from, float& to) noexcept {
 uint32_t VkBackend::State::orderHazes(
     const March* march, float strength,
     std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept {
-    if (!profiles.live) return 0;
+    if (!scene.profiles.live) return 0;
     uint32_t count = 0;
-    for (uint32_t i = 0; i < volumes.size(); ++i) {
-        const VolumeBox& box = volumes[i];
+    for (uint32_t i = 0; i < flames.volumes.size(); ++i) {
+        const VolumeBox& box = flames.volumes[i];
         const float share = march ? march->haze[i] : hazeAlone(box.tier);
         HazedVolume& one = out[count];
         if (!layVolumeHaze(seen, box.hazeLow, box.hazeHigh, share * strength, one.draw)) continue;
@@ -183,16 +185,16 @@ uint32_t VkBackend::State::orderHazes(
     return count;
 }
 
-void VkBackend::State::marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept {
+MarchRecord VkBackend::State::marchVolumes(OutsideView& of) noexcept {
     March& march = of.march;
     march.count = march.cardCount = march.slicedCount = march.order.count = 0;
     march.there = false;
     march.screen.steps = volumeSteps();
-    if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return;
+    if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return {};
     std::array<VolumeItem, kMaxVolumeFlames> items;
     const uint32_t count = orderVolumes(march.screen.slabs, items);
-    if (count == 0) return;
-    layMarch(of, {items.data(), count}, recorder);
+    if (count == 0) return {};
+    return layMarch(of, {items.data(), count});
 }
 
 void VkBackend::State::showPair(March& march, const VolumeItem& item,
@@ -210,7 +212,7 @@ void VkBackend::State::showPair(March& march, const VolumeItem& item,
             !showCard(seen, item, march.screen, 2 * place + half, pair.shapes[half], card))
             return;
         card.from = first, card.to = last;
-        march.order.add(kVolumeCardPass, march.cardCount++);
+        march.order.add(draw::volume_card, march.cardCount++);
     };
     show(pair.newest, from, border);
     show(older, border, to);
@@ -222,7 +224,7 @@ void VkBackend::State::shareBooks(March& march, std::span<const VolumeItem> item
     std::array<uint32_t, kMaxVolumeFlames> had;
     bool wanted = false;
     for (size_t i = 0; i < items.size(); ++i) {
-        const VolumeBox& box = volumes[items[i].flame];
+        const VolumeBox& box = flames.volumes[items[i].flame];
         const uint32_t at = lifeOf(box.key, march.lives);
         const TierLife* life = at < kMaxVolumeFlames ? &march.lives[at] : nullptr;
         had[i] = life && march.readers[at].key == box.key ? march.readers[at].book : kNoBook;
@@ -271,16 +273,16 @@ void VkBackend::State::showBook(March& march, const VolumeItem& item, uint32_t p
                       march.books[book].pages[page], mirrored, card))
             return;
         card.from = first, card.to = last;
-        march.order.add(kVolumeCardPass, march.cardCount++);
+        march.order.add(draw::volume_card, march.cardCount++);
     };
     show(reader.book, reader.at, reader.mirrored, from, border);
     if (border < to) show(reader.bookBefore, reader.before, reader.mirroredBefore, border, to);
 }
 
-void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> items,
-                                FrameRecorder& recorder) noexcept {
+MarchRecord VkBackend::State::layMarch(OutsideView& of,
+                                       std::span<const VolumeItem> items) noexcept {
     March& march = of.march;
-    const uint32_t capacity = planes.capacity(spaceOf(kSpaceVolumeRays, of.number));
+    const uint32_t capacity = buffers.capacity(poolOf(kPoolVolumeRays, of.number));
     if (capacity != march.capacity)
         for (VolumeCardPair& pair : march.pairs)
             for (VolumeCardShape& shape : pair.shapes) shape.there = false;
@@ -302,7 +304,7 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
     std::array<uint32_t, kMaxVolumeFlames> places{}, numbers;
     shareBooks(march, items, bookRoom, {numbers.data(), items.size()});
     for (size_t i = 0; i < items.size(); ++i) {
-        const VolumeBox& box = volumes[items[i].flame];
+        const VolumeBox& box = flames.volumes[items[i].flame];
         const vec4& r = items[i].draw.rect;
         const VolumeBook* book = numbers[i] == kNoBook ? nullptr : &march.books[numbers[i]];
         // Its newest page is this frame's.
@@ -346,19 +348,20 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
     if (count > 0) {
         laid = layVolumes({marched.data(), count}, march.screen, seen.eye.w / march.screen.size.y,
                           std::min(capacity, first + rays), march.items, first);
-        if (laid.end == 0) return;
+        if (laid.end == 0) return {};
     }
     for (uint32_t i = 0, k = 0; k < laid.count; ++k) {
         MarchedVolume& one = march.items[k];
         while (marched[i].flame != one.flame) ++i;
         const TierLife& life = march.lives[lives[i]];
         setFade(life, life.marchedNow(), one.composite.from, one.composite.to);
-        if (one.window) one.march.flame = 2 * uint32_t(volumes.size()) + one.flame;
+        if (one.window) one.march.flame = 2 * uint32_t(flames.volumes.size()) + one.flame;
     }
 
     // What is marched with all its samples has haze; it goes with them, little by little.
     // Of a flame beside the view its column may be in it.
-    for (size_t i = 0; i < volumes.size(); ++i) march.haze[i] = hazeAlone(volumes[i].tier);
+    for (size_t i = 0; i < flames.volumes.size(); ++i)
+        march.haze[i] = hazeAlone(flames.volumes[i].tier);
     for (size_t i = 0; i < items.size(); ++i)
         if (places[i] != kMaxVolumeFlames)
             march.haze[items[i].flame] = hazeOf(march.lives[places[i]]);
@@ -368,13 +371,13 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
         VolumeBook& book = march.books[b];
         if (!book.used) continue;
         for (size_t i = 0; i < items.size(); ++i) {
-            if (volumes[items[i].flame].key != book.key || numbers[i] != b) continue;
+            if (flames.volumes[items[i].flame].key != book.key || numbers[i] != b) continue;
             const auto at = uint32_t(book.written % kBookPages);
             MarchedVolume& one = march.items[laid.count + cards++];
             layPage(seen, items[i], march.screen, march.bookSlot + b * kBookPages + at,
                     book.pages[at], one);
             book.pages[at].run = book.run;
-            one.march.flame = 3 * uint32_t(volumes.size()) + one.flame;
+            one.march.flame = 3 * uint32_t(flames.volumes.size()) + one.flame;
             ++book.written;
             break;
         }
@@ -409,7 +412,7 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
         layCard(seen, items[i], march.screen, 2 * places[i] + pair.newest, shape, one);
         shape.key = march.lives[places[i]].key;
         shape.frame = march.passed;
-        one.march.flame = uint32_t(volumes.size()) + one.flame;
+        one.march.flame = uint32_t(flames.volumes.size()) + one.flame;
         ++cards;
     }
     // In the order in which they lie behind each other, whatever they are shown as.
@@ -417,12 +420,12 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
         if (places[i] == kMaxVolumeFlames) continue;
         const TierLife& life = march.lives[places[i]];
         for (; shown < laid.count && march.items[shown].flame == items[i].flame; ++shown)
-            march.order.add(kVolumeCompositePass, shown);
+            march.order.add(draw::volume_composite, shown);
         if (life.shows(FW_FIRE_TIER_SLICES)) {
             SlicedVolume& one = march.sliced[march.slicedCount];
             one = layVolumeSlices(items[i]);
             setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
-            march.order.add(kVolumeSlicesPass, march.slicedCount++);
+            march.order.add(draw::volume_slices, march.slicedCount++);
         }
         if (life.shows(FW_FIRE_TIER_FLIPBOOK))
             showBook(march, items[i], places[i], numbers[i]);
@@ -434,7 +437,7 @@ void VkBackend::State::layMarch(OutsideView& of, std::span<const VolumeItem> ite
     march.view = of.view;
     march.count = laid.count;
     march.there = true;
-    recordVolumeMarch(recorder, {march.items.data(), laid.count + cards}, first, laid.end, cards);
+    return {{march.items.data(), laid.count + cards}, first, laid.end, cards};
 }
 
 bool VkBackend::State::marchedFor(const OutsideView& of, const FwView& view,
@@ -450,19 +453,19 @@ uint32_t VkBackend::State::leastRays(OutsideView& of, const FwView& view,
     return kUnknownRays;
 }
 
-uint32_t VkBackend::quadsShown() const noexcept { return state_->quadsShown; }
+uint32_t VkBackend::quadsShown() const noexcept { return state_->particles.quadsShown; }
 
 uint64_t VkBackend::detailBytes() const noexcept {
     const State& s = *state_;
     uint64_t all = 0;
-    for (const core::Owned<OutsideView>& of : s.outsideViews) {
+    for (const core::Owned<OutsideView>& of : s.flames.outsideViews) {
         if (!of) continue;
         // Cards and books lie before the rays; those are by flames.
         const uint64_t cards =
             (uint64_t(of->march.slots) * kPairWords + of->march.bookRoom * kVolumeBookWords) *
             sizeof(uint32_t);
-        const uint64_t rays = s.planes.bytes(spaceOf(kSpaceVolumeRays, of->number));
-        all += rays - std::min(rays, cards) + s.planes.bytes(spaceOf(kSpaceFlames, of->number));
+        const uint64_t rays = s.buffers.bytes(poolOf(kPoolVolumeRays, of->number));
+        all += rays - std::min(rays, cards) + s.buffers.bytes(poolOf(kPoolFlames, of->number));
     }
     return all;
 }

@@ -2,7 +2,7 @@
 // uploaded with the next frame. Internal to the backend's .cpp files.
 #pragma once
 #include "gpu/passes/draw.h"
-#include "gpu/passes/frame_graph.h"
+#include "gpu/vk/frame.h"
 #include "gpu/vk/outside_view.h"
 #include "gpu/vk/recorder.h"
 #include "gpu/vk/vk_backend.h"
@@ -24,13 +24,13 @@ struct Context::State {
     Pipelines pipelines;
 };
 
-struct RangeOf {  // of a space
+struct RangeOf {  // of a pool
     uint32_t first = 0, units = 0;
 };
 
-struct SpaceRange {
+struct PoolRange {
     RangeOf* range;
-    Space space;
+    BufferPool pool;
 };
 
 // A mesh's refinement at one depth: what its objects share.
@@ -43,7 +43,7 @@ struct RefineMesh {
     float edgeLength = 0;                            // m, mean of its edges
     uint32_t materialEnd[kMaterialsPerObject] = {};  // of its triangles
     RangeOf triangles, edges, slots, words, draws;
-    void release(Planes& planes) noexcept;
+    void release(WorldBuffers& buffers) noexcept;
 };
 
 struct RefineUse {  // an object's own
@@ -66,9 +66,9 @@ struct RefineUse {  // an object's own
     uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
     RangeOf arpList;
     // `thick`: with an inner skin, where the mesh has an inside.
-    void allocate(Planes& planes, const RefineMesh& mesh, bool thick, uint64_t last);
-    void allocateArp(Planes& planes, const RefineMesh& mesh, uint64_t last);
-    void release(Planes& planes) noexcept;
+    void allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last);
+    void allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last);
+    void release(WorldBuffers& buffers) noexcept;
 };
 
 // What the published scheme keeps of an object.
@@ -78,9 +78,6 @@ struct ArpUse {
     mesh::ArpSettings settings;
     mesh::ArpState state;
 };
-
-// Groups of 64 that hold so many.
-constexpr uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64; }
 
 constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
     return published ? kRefineDepth + 1 + depth : depth;
@@ -102,43 +99,51 @@ struct MeshEntry {
     RangeOf skin, skinSources;  // once one is skinned
 };
 
-struct ObjectEntry {
-    bool live = false;
-    bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
-    bool resetDue = false;
-    bool drawable = false;   // a recorded frame holds it
-    bool inner = false;      // what faces away is drawn on the mesh's inner skin
+// How far an object's fire has come, as far as draws and predictions ask.
+struct BurnLifecycle {
     bool touched = false;    // some event reached it: it may burn, or be wet
     bool doused = false;     // one of them was not fire
     bool lit = false;        // one of them was
     bool catches = false;    // scratch of run: the first that was
     bool warmed = false;     // others' fires sent heat to it
     bool charred = false;    // most of it burns or has burnt: its cold rest is not worth a draw
+    bool forget = false;     // scratch of run
+    uint32_t douseEnds = 0;  // tick by which the last dousing has had its effect
+    uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
+    uint64_t lastEvent = 0;  // tick
+};
+
+struct DeformUse {  // an object's deformation
+    RangeOf range;  // of DeformObjects
+    bool recordDirty = false, reset = false;
+    bool now = false;         // scratch of run: it deforms in this frame
+    bool woke = false;        // scratch of run: it did not move in the frame before
+    bool softOdd = false;     // its places are the second ones
+    uint32_t recedeTurn = 0;  // which groups of a sheet learn next what has burnt
+    uint32_t ticks = 0;       // that something moves after the last texel caught
+    uint64_t softUntil = 0;   // tick until which it is not yet at rest
+    uint32_t skinPlus1 = 0;   // of a skinned object: its Skin
+};
+
+struct ObjectEntry {
+    bool live = false;
+    bool recordDirty = false, materialsDirty = false;  // to upload with the next frame
+    bool resetDue = false;
+    bool drawable = false;  // a recorded frame holds it
+    bool inner = false;     // what faces away is drawn on the mesh's inner skin
+    BurnLifecycle burn;
     uint64_t seenFrame = 0;  // ring frame whose view last showed it; kObjectUnseen: long ago
     bool turns = false;      // scratch of run: it comes into view, or leaves it
-    uint64_t lastDouse = 0;  // ring frame that wetted or put out some of it; 0: none to forget
-    uint32_t douseEnds = 0;  // tick by which that has had its effect
-    bool forget = false;     // scratch of run
     uint32_t mesh = 0;
     BurnObject record{};
     RangeOf tiles, slowness, published, heatTiles, sources;
     RefineUse refine;
     bool publishedTouched = false;  // as-published mode: some event reached it
     uint32_t publishedParity = 0;
-    // Deformation: none if `shown` is empty.
-    RangeOf deformer, shown, soft;  // soft: sheets and springs
-    bool deformDirty = false, deformReset = false;
-    bool deformsNow = false;     // scratch of run
-    uint32_t recedeTurn = 0;     // which groups of a sheet learn next what has burnt
-    uint32_t deformTicks = 0;    // that something moves after the last texel caught
-    uint64_t lastEvent = 0;      // tick
-    bool softOdd = false;        // its places are the second ones
-    bool deformWoke = false;     // scratch of run: it did not move in the frame before
-    uint64_t softUntil = 0;      // tick until which it is not yet at rest
-    uint32_t skinPlus1 = 0;      // of a skinned object: its Skin
+    DeformUse deforms;           // none if `shown` is empty
+    RangeOf shown, soft;         // its shown vertices; of sheets and springs
     float shape[3] = {1, 1, 1};  // what its mesh was stretched by
-    // What frames do not read of an object that rests stands behind all that they do: loops over
-    // objects cost what they fetch.
+    // Cold data: not read for sleeping objects, so it is stored last.
     DeformObject deform{};
     BurnMaterial materials[kMaterialsPerObject]{};
     uint32_t images[kMaterialsPerObject] = {};  // slot + 1, 0: none
@@ -183,7 +188,7 @@ struct ImageEntry {
     bool live = false;
 };
 
-// Bytes for the planes or an image, in a staging buffer of their own until the next frame.
+// Bytes for the buffers or an image, in a staging buffer of their own until the next frame.
 struct PendingUpload {
     Buffer staging;
     struct Region {
@@ -243,6 +248,13 @@ struct HalfImages {
 // that over it.
 enum class DrawPart : uint8_t { all, half, over };
 
+// Sets with images that a view's draws read, or null.
+struct HostImages {
+    VkDescriptorSet depth = VK_NULL_HANDLE;  // the host's, of half resolution where they draw there
+    VkDescriptorSet color = VK_NULL_HANDLE;  // a copy of what the host's target holds
+    const HalfImages* half = nullptr;        // what was drawn at half resolution
+};
+
 struct OwnDevice {  // command pool and offscreen images of the own-device mode
     VkCommandPool pool = VK_NULL_HANDLE;
     VkCommandBuffer commands = VK_NULL_HANDLE;
@@ -254,6 +266,161 @@ struct OwnDevice {  // command pool and offscreen images of the own-device mode
     FwTargetId target{};
     VkFormat depthFormat = VK_FORMAT_UNDEFINED;
     uint32_t width = 0, height = 0;
+};
+
+// What the host has made: meshes, objects, images and rooms, and what of them waits for a frame.
+struct SceneTables {
+    explicit SceneTables(std::pmr::memory_resource* pmr)
+        : meshes(pmr),
+          objects(pmr),
+          awake(pmr),
+          images(pmr),
+          uploads(pmr),
+          restores(pmr),
+          restoredObjects(pmr),
+          quarantine(pmr) {}
+    std::pmr::vector<MeshEntry> meshes;
+    std::pmr::vector<ObjectEntry> objects;
+    // Objects that frames look at. The others sleep: a change or an event inserts an object here,
+    // and settle lets it go.
+    core::SlotSet awake;
+    std::pmr::vector<ImageEntry> images;
+    ImageEntry white, lookTextures, profiles;
+    ImageEntry books;  // the flipbooks; not live: there are none
+    std::pmr::vector<PendingUpload> uploads;
+    // For the next frame: the content of restored objects, which replaces that of new ones.
+    std::pmr::vector<PendingUpload> restores;
+    std::pmr::vector<uint32_t> restoredObjects;
+    bool restoreDue = false;
+    std::pmr::vector<Quarantined> quarantine;
+    uint32_t liveObjects = 0;
+    uint32_t partMeshes = 0;    // of parts that touch
+    bool initialized = false;   // the buffers that must start as zero do
+    bool recordsDirty = false;  // some object has dirty records or a reset due
+    std::array<Room, kMaxRooms> rooms{};
+    bool roomsDirty = false;
+    bool airs = false;  // some step had rooms
+};
+
+// Lists on the device, as the frames recorded so far leave them, and what steps carry over.
+struct SimulationState {
+    explicit SimulationState(std::pmr::memory_resource* pmr) : published(pmr) {}
+    FrameLists lists;
+    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
+    uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
+    uint64_t seenFrame = 0;     // ring frame whose view last showed some object
+    // Known from a readback. While a tile is hot, its front may move again.
+    bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
+    uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
+    uint32_t supportFirst = 0;             // tile that the next `support` begins at
+    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
+    uint32_t predictTick = 0;              // of the last round of predictions
+    uint32_t shownTick = 0;                // tick of the state that draws show
+    uint32_t links = 0, blockers = 0;      // of the last exchange update
+    ShieldUpdate shield;                   // the last one's place, without its words
+    float wind[3] = {};
+    float tickFraction = 0;
+    std::pmr::vector<PublishedStep> published;  // scratch of run
+    bool tilesMoved = false;  // BurnTiles stand where they were before all places moved
+};
+
+struct DeformRenderer {
+    explicit DeformRenderer(std::pmr::memory_resource* pmr) : skins(pmr) {}
+    std::pmr::vector<Skin> skins;
+    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
+    uint32_t softSteps = 0;  // that they take in the frame
+    uint32_t softWay = 0;    // which bending constraints the next one takes
+};
+
+struct VolumeBox {  // as in FlameRecord
+    vec4 low{}, high{};
+    vec4 flameLow{}, flameHigh{};  // without its smoke
+    uint32_t intervals = 1;        // see VolumeDraw
+    vec3 base{};                   // where it stands
+    uint32_t key = 0, tier = 0;
+    bool smokes = false;
+    vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
+    BookKind kind;
+    vec3 tip{};        // as VolumeItem's
+    vec4 basePlane{};  // as volumeBasePlane has it
+};
+
+struct FlameRenderer {
+    explicit FlameRenderer(std::pmr::memory_resource* pmr) : volumes(pmr) {}
+    std::pmr::vector<VolumeBox> volumes;             // volumetric flames that draws show
+    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
+    // Of RecordOutside, by number; null: not there. The first is always there.
+    std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
+};
+
+struct ParticleRenderer {
+    explicit ParticleRenderer(float lights) : lightCount(lights) {}
+    float lightCount;              // on its way to detail's; its fraction is the last one's share
+    float quadShare = 1;           // on its way to detail's
+    uint32_t quadsShown = 0;       // by the last view whose readback came
+    vec3 particlesMove{0.0f};      // m, with the next dispatch that moves particles
+    uint32_t emitterGroups = 0;    // of the dispatch that moves particles; 0: there are none
+    bool particlesByBook = false;  // flipbooks show all fire and smoke of them
+    uint32_t sparkSources = 0;     // that throw sparks
+    float lightShare = 0.0f;       // of particles' quads: those that emit alone, [0, 1]
+    bool emittersMove = false;     // in the open frame
+    uint32_t flameBooks = 0;       // as setFlameBooks has them
+};
+
+struct FieldRenderer {
+    explicit FieldRenderer(std::pmr::memory_resource* pmr) : fields(pmr), fieldDraws(pmr) {}
+    std::pmr::vector<FieldEntry> fields;
+    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their buffer has them
+    bool fieldsDirty = false;                // one of them has something for the next frame
+};
+
+struct SurfaceRenderer {
+    explicit SurfaceRenderer(std::pmr::memory_resource* pmr) : drawItems(pmr), surfaceSteps(pmr) {}
+    std::pmr::vector<DrawItem> drawItems;        // objects that draws show
+    std::pmr::vector<SurfaceStep> surfaceSteps;  // their draws, in order
+    bool surfacesDirty = false;                  // `drawItems` changed since
+    // As last recorded.
+    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
+             drawShown = VK_NULL_HANDLE;
+    // Of the call that is recorded.
+    uint32_t drawnView = 0;  // OutsideView::number
+    float transparency = 0;
+    VkRect2D scissor{};  // px of the host's target; no extent: none
+    std::array<KeptFramebuffer, 16> framebuffers{};
+    static constexpr size_t kHalfSizes = 4;  // of targets that a world draws into round-robin
+    std::array<HalfImages, kHalfSizes> halves{};
+};
+
+// Readbacks that are due, oldest first, and the last one as the world gets it.
+struct ReadbackResults {
+    explicit ReadbackResults(std::pmr::memory_resource* pmr)
+        : givenObjects(pmr),
+          givenAnswers(pmr),
+          givenTexels(pmr),
+          givenHeat(pmr),
+          givenMaps(pmr),
+          givenLights(pmr),
+          givenFields(pmr),
+          times(pmr),
+          imageLayout(pmr),
+          givenImages(pmr) {}
+    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
+    uint32_t pendingFirst = 0, pendingCount = 0;
+    Readback given;
+    std::pmr::vector<ObjectCounters> givenObjects;
+    std::pmr::vector<ProbeAnswer> givenAnswers;
+    std::pmr::vector<uint32_t> givenTexels;
+    std::pmr::vector<uvec2> givenHeat;
+    std::pmr::vector<BurnMap> givenMaps;
+    std::pmr::vector<BurnLight> givenLights;
+    std::pmr::vector<FieldCounters> givenFields;
+    std::array<RoomAir, kMaxRooms> givenRooms{};
+    bool givesRooms = false;
+    std::pmr::vector<PassTime> times;
+    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
+    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
+    uint64_t imagesFrame = 0;               // ring frame, of that
+    std::pmr::vector<ObjectImage> givenImages;
 };
 
 // An entry of a table by slot, which grows as needed.
@@ -279,62 +446,24 @@ struct VkBackend::State {
 
     RetireQueue retired;
     FrameRing ring;
-    Planes planes;
+    WorldBuffers buffers;
     PassSets sets;
     BarrierTracker barriers;
     Buffer views;             // view ring: frame in flight, then view
     uint32_t viewStride = 0;  // bytes
 
-    std::pmr::vector<MeshEntry> meshes;
-    std::pmr::vector<ObjectEntry> objects;
-    // Of these, what frames look at. The others rest: whoever changes an object, or finds that
-    // something reached it, inserts it here, and settle lets it go.
-    core::SlotSet awake;
-    std::pmr::vector<ImageEntry> images;
-    ImageEntry white, lookTextures, profiles;
-    ImageEntry books;  // the flipbooks; not live: there are none
-    std::pmr::vector<PendingUpload> uploads;
-    // Of restore, for the next frame: what goes over objects that were made anew.
-    std::pmr::vector<PendingUpload> restores;
-    std::pmr::vector<uint32_t> restoredObjects;
-    bool restoreDue = false;
-    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
-    uint64_t imagesFrame = 0;               // ring frame, of that
-    std::pmr::vector<ObjectImage> givenImages;
-    std::pmr::vector<Quarantined> quarantine;
-    std::pmr::vector<Skin> skins;
-    std::pmr::vector<core::Owned<ArpUse>> arps;
-    uint32_t liveObjects = 0;
-    bool initialized = false;  // the planes that must start as zero do
-    // As last recorded.
-    VkBuffer drawVertices = VK_NULL_HANDLE, drawIndices = VK_NULL_HANDLE,
-             drawShown = VK_NULL_HANDLE;
-    bool recordsDirty = false;  // some object has dirty records or a reset due
-
-    // Lists on the device, as the frames recorded so far leave them.
-    FrameLists lists;
-    uint64_t frontWalks = 0, burnWalks = 0, predictWalks = 0, hotWalks = 0;
-    uint64_t lastStimulus = 0;  // ring frame that last brought the front something new
-    uint64_t seenFrame = 0;     // ring frame whose view last showed some object
-    // Known from a readback. While a tile is hot, its front may move again.
-    bool frontEmpty = true, burnEmpty = true, predictEmpty = true, hotEmpty = true;
-    uint32_t supportUntil = 0;             // tick until which burnt pieces may still fall
-    uint32_t supportFirst = 0;             // tile that the next look at what holds what begins at
-    uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
-    uint32_t predictTick = 0;              // of the last round of predictions
-    uint32_t shownTick = 0;                // tick of the state that draws show
-    uint32_t links = 0, blockers = 0;      // of the last remote update
-    uint32_t partMeshes = 0;               // of parts that touch
-    ShieldUpdate shield;                   // the last one's place, without its words
-    float wind[3] = {};
-    float tickFraction = 0;
-    Detail detail;                               // as of the frame's plan
-    float quadShare = 1;                         // on its way to detail's
-    float lightCount = float(limits.maxLights);  // the same; its fraction is the last one's share
-    uint32_t crossing = 0;                       // of kSwitchCrossing and kSwitchNoZPass
-    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
-    uint32_t softSteps = 0;  // that they take in the frame
-    uint32_t softWay = 0;    // which arms the next one minds
+    SceneTables scene;
+    SimulationState simulation;
+    DeformRenderer deforming;
+    FlameRenderer flames;
+    ParticleRenderer particles;
+    FieldRenderer particleFields;
+    SurfaceRenderer surfaces;
+    ReadbackResults results;
+    Detail detail;          // as of the frame's plan
+    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
+    ViewParams seen{};      // of the last pushView
+    OwnDevice own;
 
     // The frame that is open.
     struct Open {
@@ -348,43 +477,9 @@ struct VkBackend::State {
         std::array<OutsideView*, kMaxViews> views{};  // that it is recorded for
         uint32_t viewCount = 0;
     } open;
-    std::pmr::vector<PublishedStep> published;  // scratch of run
-    std::pmr::vector<DrawItem> drawItems;       // objects that draws show
-    struct VolumeBox {                          // as in FlameRecord
-        vec4 low{}, high{};
-        vec4 flameLow{}, flameHigh{};  // without its smoke
-        uint32_t intervals = 1;        // see VolumeDraw
-        vec3 base{};                   // where it stands
-        uint32_t key = 0, tier = 0;
-        bool smokes = false;
-        vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
-        BookKind kind;
-        vec3 tip{};        // as VolumeItem's
-        vec4 basePlane{};  // as volumeBasePlane has it
-    };
-    std::pmr::vector<VolumeBox> volumes;  // volumetric flames that draws show
-    uint32_t quadsShown = 0;              // by the last view whose readback came
-    vec3 particlesMove{0.0f};             // m, with the next dispatch that moves particles
-    bool tilesMoved = false;              // BurnTiles stand where they were before all places moved
-    uint32_t emitterGroups = 0;           // of the dispatch that moves particles; 0: there are none
-    bool particlesByBook = false;         // books show all fire and smoke of them
-    uint32_t sparkSources = 0;            // that throw sparks
-    float lightShare = 0.0f;              // of particles' quads: those that emit alone, [0, 1]
-    bool emittersMove = false;            // in the open frame
-    uint32_t flameBooks = 0;              // as setFlameBooks has them
-    std::pmr::vector<FieldEntry> fields;
-    std::array<Room, kMaxRooms> rooms{};
-    bool roomsDirty = false;
-    bool airs = false;                       // some step had rooms
-    std::pmr::vector<FieldDraw> fieldDraws;  // that draws show, as their plane has them
-    bool fieldsDirty = false;                // one of them has something for the next frame
-    ViewParams seen{};                       // of the last pushView
-    // Of RecordOutside, by number; null: not there. The first is always there.
-    std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
-    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
     struct Refine {
         explicit Refine(std::pmr::memory_resource* memory) : lists(memory), noise(memory) {}
-        std::pmr::vector<uint32_t> lists;  // of the frame's work plane, as it begins
+        std::pmr::vector<uint32_t> lists;  // of the frame's work buffer, as it begins
         std::pmr::vector<uint8_t> noise;   // of holes, tiling
         RefinePush push{};                 // of the frame; no objects: nothing is refined
         RefinePush last{};                 // of the last frame that refined
@@ -396,31 +491,13 @@ struct VkBackend::State {
         float bias = -1;    // levels that the budget takes; below 0: not known yet
         bool full = false;  // everything at its deepest, and placed in every frame
     } refine;
-    struct Arp {             // of the frame, refined by the published scheme
+    struct Arp {  // refined by the published scheme
+        explicit Arp(std::pmr::memory_resource* memory) : arps(memory) {}
+        std::pmr::vector<core::Owned<ArpUse>> arps;
         uint32_t users = 0;  // objects
         uint32_t placeGroups = 0, nameGroups = 0;
         double lastTick = 0;  // of the last frame with any
     } arp;
-
-    // Readbacks, oldest first.
-    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
-    uint32_t pendingFirst = 0, pendingCount = 0;
-    Readback given;
-    std::pmr::vector<ObjectCounters> givenObjects;
-    std::pmr::vector<ProbeAnswer> givenAnswers;
-    std::pmr::vector<uint32_t> givenTexels;
-    std::pmr::vector<uvec2> givenHeat;
-    std::pmr::vector<BurnMap> givenMaps;
-    std::pmr::vector<BurnLight> givenLights;
-    std::pmr::vector<FieldCounters> givenFields;
-    std::array<RoomAir, kMaxRooms> givenRooms{};
-    bool givesRooms = false;
-    std::pmr::vector<PassTime> times;
-    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
-    std::array<KeptFramebuffer, 16> framebuffers{};
-    static constexpr size_t kHalfSizes = 4;  // of targets that a world draws into by turns
-    std::array<HalfImages, kHalfSizes> halves{};
-    OwnDevice own;
 
     // vk_backend.cpp
     void failIfLost() const;
@@ -438,8 +515,13 @@ struct VkBackend::State {
     // vk_record.cpp
     void openFrame(VkCommandBuffer commands, uint64_t ringFrame);
     void run(const FramePlan& plan);
+    void followDetail(const Detail& planned) noexcept;
     void closeFrame();
-    void recordAppearance(FrameInFlight& slot);
+    // Whose soot is due; count 0: none is. `looked`: some view may show it.
+    TileShare sootShare(bool looked) noexcept;
+    // frame.cpp
+    void recordEffects(FrameInFlight& slot);
+    void recordReadback(FrameInFlight& slot);
     RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
     uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
     // vk_views.cpp
@@ -447,7 +529,7 @@ struct VkBackend::State {
     void openViews(std::span<const FwView> from);
     [[nodiscard]] OutsideView& takeView(std::span<OutsideView* const> taken);
     // Buffers of the open frame's views; `marches`: they march so many flames.
-    void makeViewRoom(uint32_t flames, bool marches, uint64_t last);
+    void makeViewRoom(uint32_t flameCount, bool marches, uint64_t last);
     [[nodiscard]] std::span<OutsideView* const> seenFrom() const noexcept {
         return {open.views.data(), open.viewCount};
     }
@@ -462,7 +544,7 @@ struct VkBackend::State {
     [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
     void listRefined(bool all);
-    void recordRefinement(FrameInFlight& slot);
+    void refineObjects(FrameInFlight& slot);
     bool chooseDue(double now) noexcept;
     [[nodiscard]] bool isDue(const ObjectEntry& object, const RefineObject& record,
                              double now) const noexcept;
@@ -477,7 +559,7 @@ struct VkBackend::State {
     void takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh, uint64_t last);
     void dropArp(RefineUse& use) noexcept;
     uint64_t planArp();
-    void recordArp(FrameInFlight& slot);
+    void refineAsPublished(FrameInFlight& slot);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
     void takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
@@ -488,7 +570,7 @@ struct VkBackend::State {
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
     [[nodiscard]] uint32_t volumeSteps() const noexcept {
-        return std::min(limits.volumeSteps, volumeStepsNow);
+        return std::min(limits.volumeSteps, flames.volumeStepsNow);
     }
     // How a target of `size` px shows what is marched for it.
     [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
@@ -496,12 +578,11 @@ struct VkBackend::State {
     static void noteScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
                            uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
-    void makeMarchRoom(OutsideView& of, uint32_t flames, uint64_t last);
+    void makeMarchRoom(OutsideView& of, uint32_t flameCount, uint64_t last);
     [[nodiscard]] uint32_t rayWords(const March& march) const noexcept;  // at the frame's detail
     // For the view that was last pushed, which is `of`'s.
-    void marchVolumes(OutsideView& of, FrameRecorder& recorder) noexcept;
-    void layMarch(OutsideView& of, std::span<const VolumeItem> items,
-                  FrameRecorder& recorder) noexcept;
+    [[nodiscard]] MarchRecord marchVolumes(OutsideView& of) noexcept;
+    [[nodiscard]] MarchRecord layMarch(OutsideView& of, std::span<const VolumeItem> items) noexcept;
     // What a flame's card shows, of the last two marches of it.
     void showPair(March& march, const VolumeItem& item, uint32_t place) const noexcept;
     // Which of `room` books each item may show.
@@ -524,10 +605,11 @@ struct VkBackend::State {
     // vk_emitters.cpp
     [[nodiscard]] uint32_t tileQuads() const noexcept;
     [[nodiscard]] bool showsEmitters() const noexcept {
-        return emitterGroups > 0 || sparkSources > 0;
+        return particles.emitterGroups > 0 || particles.sparkSources > 0;
     }
     [[nodiscard]] bool showsAnything() const noexcept {
-        return (drawVertices || showsEmitters()) && lookTextures.live && limits.looks.viewParams;
+        return (surfaces.drawVertices || showsEmitters()) && scene.lookTextures.live &&
+               limits.looks.viewParams;
     }
     // Books show all quads but sparks.
     [[nodiscard]] bool pagesAlone() const noexcept;
@@ -535,32 +617,15 @@ struct VkBackend::State {
     [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_field.cpp
     uint32_t orderFields(std::array<FieldItem, kMaxFields>& out) const noexcept;  // how many
-    void recordFieldDraws(VkCommandBuffer commands, const Target& target, uint32_t firstPass,
-                          std::span<const FieldItem> items, uint32_t viewOffset,
-                          VkDescriptorSet depth) noexcept;
     // vk_draw.cpp
-    struct Lent {  // sets with what the host lends of its scene, or null
-        VkDescriptorSet depth = VK_NULL_HANDLE;
-        VkDescriptorSet color = VK_NULL_HANDLE;  // haze is drawn
-    };
-    // Neighbours of volumetric flames that one pass draws; or all haze.
-    void recordTransparency(VkCommandBuffer commands, const Target& target,
-                            const Lent& lent) const noexcept;
-    void recordVolumeDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                           const DrawList& list, const VolumeRun& run, uint32_t viewOffset,
-                           const Lent& lent);
-    // `half`: with what was drawn at half resolution, or null.
     void recordDraws(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                     const FwView& view, const VkViewport& viewport, const Lent& lent,
-                     DrawPart part = DrawPart::all, const HalfImages* half = nullptr);
-    uint32_t drawnView = 0;  // of the call that is recorded: OutsideView::number
-    float transparency = 0;  // of the call that is recorded
-    VkRect2D scissor{};  // of the call that is recorded, px of the host's target; no extent: none
+                     const FwView& view, const VkViewport& viewport, const HostImages& host,
+                     DrawPart part = DrawPart::all);
     void setViewport(VkCommandBuffer commands, const VkViewport& viewport) const noexcept;
-    Lent lentFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
-                 VkImageView depth, VkImageLayout depthLayout);
+    HostImages hostImagesFor(FrameInFlight& slot, const Target& target, const FwVulkanFrame& frame,
+                             VkImageView depth, VkImageLayout depthLayout);
     [[nodiscard]] bool turnsFaces(const FwView& view, const VkViewport& viewport) const noexcept;
-    VkDescriptorSet lentSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
+    VkDescriptorSet hostSetFor(FrameInFlight& slot, VkImageView view, VkImageLayout layout);
     VkFramebuffer framebufferFor(FrameInFlight& slot, const Target& target, FwTargetId targetId,
                                  const FwVulkanComposite& images);
     // Of targets that are gone, and of `forget`; what the device may still use goes later.
@@ -569,10 +634,9 @@ struct VkBackend::State {
     // vk_half.cpp
     // Outside any pass: what is soft of a view, in images of half resolution. Null: nothing is.
     HalfImages* recordHalf(FrameInFlight& slot, VkCommandBuffer commands, const Target& target,
-                           const FwView& view, const VkViewport& viewport, const Lent& lent);
-    // Over the picture; a view was pushed for it.
-    void recordHalfComposite(VkCommandBuffer commands, const Target& target, const HalfImages& half,
-                             const VkViewport& viewport, const Lent& lent) noexcept;
+                           const FwView& view, const VkViewport& viewport, const HostImages& host);
+    // For the view that was last pushed.
+    [[nodiscard]] HalfPush halfPushFor(const VkViewport& viewport) const noexcept;
     HalfImages& halfFor(VkFormat format, uint32_t width, uint32_t height, uint64_t frame);
     void makeHalf(HalfImages& half, VkFormat format, uint32_t width, uint32_t height);
     void dropHalf(HalfImages& half) noexcept;  // once its last frame is done

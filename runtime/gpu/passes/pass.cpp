@@ -1,0 +1,243 @@
+#include "gpu/passes/pass.h"
+
+#include "shared/half.h"
+#include "shared/volume_haze.h"
+#include "shared/volume_slices.h"
+
+#include <algorithm>
+#include <type_traits>
+
+namespace fw::gpu {
+namespace {
+
+template <class Push>
+constexpr uint32_t pushBytesOf() {
+    return std::is_empty_v<Push> ? 0 : uint32_t(sizeof(Push));
+}
+
+constexpr ComputePass kComputePasses[] = {
+#define FW_COMPUTE_PASS(name, Push) {#name, pushBytesOf<Push>()},
+#include "gpu/passes/passes.inl"
+#undef FW_COMPUTE_PASS
+};
+
+constexpr const char* kCompositeTexelShaders[] = {"volume_composite_texels.frag",
+                                                  "volume_composite_texels_soft.frag",
+                                                  "volume_composite_texels_soft_ms.frag"};
+constexpr const char* kCardTexelShaders[] = {
+    "volume_card_texels.frag", "volume_card_texels_soft.frag", "volume_card_texels_soft_ms.frag"};
+
+// Surface pipelines, in the order in which they draw within a phase.
+constexpr auto kSurfaceKeys = [] {
+    using F = MaterialFamily;
+    std::array<SurfaceKey, kSurfacePassCount> rows{};
+    size_t count = 0;
+    // All is drawn in two goes, so that the depth test drops the inside, which only holes show.
+    const auto addFresh = [&](SurfaceState state, Cull cull) {
+        for (const F family : {F::wood, F::plant, F::paint, F::hide})
+            rows[count++] = {family, false, state, cull};
+        rows[count++] = {F::wood, true, state, cull};
+    };
+    addFresh(SurfaceState::fresh, Cull::back);
+    addFresh(SurfaceState::fresh, Cull::front);
+    addFresh(SurfaceState::cold, Cull::back);
+    for (const Cull cull : {Cull::back, Cull::front})
+        for (const bool image : {false, true})
+            for (const F family : {F::wood, F::paint, F::sheet, F::plant, F::hide})
+                rows[count++] = {family, image, SurfaceState::burning, cull};
+    return rows;
+}();
+
+constexpr uint32_t featuresOf(MaterialFamily family) {
+    switch (family) {
+        case MaterialFamily::wood:
+            return kSurfaceWood;
+        case MaterialFamily::paint:
+            return kSurfaceWood | kSurfacePaint;
+        case MaterialFamily::sheet:
+            return kSurfaceSheet;
+        case MaterialFamily::plant:
+            return kSurfacePlant;
+        case MaterialFamily::hide:
+            return kSurfaceSheet | kSurfaceHide;
+    }
+    return 0;
+}
+
+constexpr DrawPass surfaceOf(const SurfaceKey& row) {
+    const bool burns = row.state == SurfaceState::burning;
+    // Without fire an image is all that a material shows.
+    const uint32_t features = (burns || !row.hasImage ? featuresOf(row.family) : 0) |
+                              (row.hasImage ? kSurfaceImage : 0) | (burns ? kSurfaceBurns : 0) |
+                              (row.state == SurfaceState::cold ? kSurfaceCold : 0);
+    return {.name = "surface",
+            .vertexShader = "surface.vert",
+            .fragmentShader = "surface.frag",
+            .vertexInput = VertexInput::mesh,
+            .blend = Blend::opaque,
+            .writeDepth = true,
+            .pushBytes = sizeof(SurfaceDraw),
+            .variant = features,
+            .cull = row.cull,
+            .strict = burns,  // not drawn over cold triangles
+            .drawnIn = DrawnIn::surfaces,
+            .textures1 = Textures::ofItem,
+            .multisampledVertex = "surface_ms.vert",
+            .multisampledFragment = burns ? "surface_ms_holes.frag" : "surface_ms.frag"};
+}
+
+constexpr DrawPass flipbookFlames(bool only) {
+    return {.name = "book_flames",
+            .vertexShader = "book_flames.vert",
+            .fragmentShader = "book_flames.frag",
+            .variant = only ? 1u : 0u,
+            .softShader = "book_flames_soft.frag",
+            .softShaderMultisampled = "book_flames_soft_ms.frag",
+            .atHalf = AtHalf::soft,
+            .textures1 = Textures::flipbooks};
+}
+
+// The sparks alone of `pass`, over what was drawn at half resolution.
+constexpr DrawPass halfSparks(DrawPass pass) {
+    pass.name = "half_sparks";
+    pass.fragmentShader = nullptr;
+    pass.atHalf = AtHalf::sparks;
+    return pass;
+}
+
+// Fields that emit alone, that absorb and that refract differ, so that none pays for another.
+constexpr DrawPass field(uint32_t variant) {
+    return {.name = "field_draw",
+            .vertexShader = "field_draw.vert",
+            .fragmentShader = "field_draw.frag",
+            .variant = variant,
+            .softShader = "field_draw_soft.frag",
+            .softShaderMultisampled = "field_draw_soft_ms.frag",
+            .atHalf = AtHalf::soft,
+            .textures1 = Textures::profiles};
+}
+
+constexpr DrawPass intoHalf(const char* name, const char* shader, const char* multisampled) {
+    return {.name = name,
+            .vertexShader = "half_all.vert",
+            .fragmentShader = nullptr,
+            .blend = Blend::opaque,
+            .pushBytes = sizeof(HalfPush),
+            .softShader = shader,
+            .softShaderMultisampled = multisampled,
+            .atHalf = AtHalf::depth};
+}
+
+constexpr auto kDrawPasses = [] {
+    std::array<DrawPass, kDrawPassCount> passes{};
+    // The published method for walls that have crossed: the nearest depth of an object from both
+    // sides first, then only what faces the eye and is not behind it.
+    passes[draw::self_intersection_depth] = {.name = "z_pass",
+                                             .vertexShader = "z_pass.vert",
+                                             .fragmentShader = nullptr,
+                                             .vertexInput = VertexInput::mesh,
+                                             .blend = Blend::depthAlone,
+                                             .writeDepth = true,
+                                             .pushBytes = sizeof(SurfaceDraw),
+                                             .behind = true,
+                                             .drawnIn = DrawnIn::surfaces};
+    passes[draw::flames] = {.name = "flames",
+                            .vertexShader = "flames.vert",
+                            .fragmentShader = "flames.frag",
+                            .softShader = "flames_soft.frag",
+                            .softShaderMultisampled = "flames_soft_ms.frag",
+                            .atHalf = AtHalf::soft};
+    passes[draw::flipbook_flames] = flipbookFlames(false);
+    passes[draw::flipbook_flames_only] = flipbookFlames(true);
+    passes[draw::volume] = {.name = "volume",
+                            .vertexShader = "volume.vert",
+                            .fragmentShader = "volume.frag",
+                            .pushBytes = sizeof(VolumeDraw),
+                            .softShader = "volume_soft.frag",
+                            .softShaderMultisampled = "volume_soft_ms.frag",
+                            .atHalf = AtHalf::soft,
+                            .textures2 = Textures::profiles};
+    passes[draw::volume_card] = {.name = "volume_card",
+                                 .vertexShader = "volume_card.vert",
+                                 .fragmentShader = "volume_card.frag",
+                                 .pushBytes = sizeof(VolumeCard),
+                                 .softShader = "volume_card_soft.frag",
+                                 .softShaderMultisampled = "volume_card_soft_ms.frag",
+                                 .texelShaders = kCardTexelShaders,
+                                 .atHalf = AtHalf::soft};
+    passes[draw::volume_composite] = {.name = "volume_composite",
+                                      .vertexShader = "volume_composite.vert",
+                                      .fragmentShader = "volume_composite.frag",
+                                      .pushBytes = sizeof(VolumeComposite),
+                                      .softShader = "volume_composite_soft.frag",
+                                      .softShaderMultisampled = "volume_composite_soft_ms.frag",
+                                      .texelShaders = kCompositeTexelShaders,
+                                      .atHalf = AtHalf::soft};
+    passes[draw::volume_slices] = {.name = "volume_slices",
+                                   .vertexShader = "volume_slices.vert",
+                                   .fragmentShader = "volume_slices.frag",
+                                   .pushBytes = sizeof(VolumeSlices),
+                                   .softShader = "volume_slices_soft.frag",
+                                   .softShaderMultisampled = "volume_slices_soft_ms.frag",
+                                   .atHalf = AtHalf::soft,
+                                   .textures2 = Textures::profiles};
+    passes[draw::volume_haze] = {.name = "volume_haze",
+                                 .vertexShader = "volume_haze.vert",
+                                 .fragmentShader = nullptr,
+                                 .pushBytes = sizeof(VolumeHaze),
+                                 .softShader = "volume_haze_soft.frag",
+                                 .softShaderMultisampled = "volume_haze_soft_ms.frag",
+                                 .drawnIn = DrawnIn::haze,
+                                 .textures1 = Textures::hostColor,
+                                 .textures2 = Textures::profiles};
+    passes[draw::field_emitting] = field(0);
+    passes[draw::field_absorbing] = field(1);
+    passes[draw::field_refracting] = field(2);
+    // What is soft of a view is drawn at half resolution against the host's depth, and laid over
+    // the picture at once, along its edges of full resolution.
+    passes[draw::half_depth] = intoHalf("half_depth", "half_depth.frag", "half_depth_ms.frag");
+    passes[draw::half_tiles] = intoHalf("half_tiles", "half_tiles.frag", "half_tiles.frag");
+    passes[draw::half_tiles].textures1 = Textures::halfColor;
+    passes[draw::half_composite] = {.name = "half_composite",
+                                    .vertexShader = "half_composite.vert",
+                                    .fragmentShader = nullptr,
+                                    .pushBytes = sizeof(HalfPush),
+                                    .softShader = "half_composite.frag",
+                                    .softShaderMultisampled = "half_composite_ms.frag",
+                                    .atHalf = AtHalf::over,
+                                    .textures1 = Textures::halfColor,
+                                    .textures2 = Textures::halfDepth};
+    passes[draw::half_sparks] = halfSparks(passes[draw::flames]);
+    passes[draw::half_flipbook_sparks] = halfSparks(passes[draw::flipbook_flames_only]);
+    // The host's picture over ours, by how transparent the host has all of ours together: exact
+    // whatever lies over what, and no other pass knows of it.
+    passes[draw::transparency] = {.name = "transparency",
+                                  .vertexShader = "half_all.vert",
+                                  .fragmentShader = "transparency.frag",
+                                  .blend = Blend::constant,
+                                  .softShader = "transparency.frag",
+                                  .softShaderMultisampled = "transparency.frag",
+                                  .drawnIn = DrawnIn::transparency,
+                                  .textures1 = Textures::hostColor,
+                                  .textures2 = Textures::none};
+    for (uint32_t i = 0; i < kSurfacePassCount; ++i)
+        passes[draw::count + i] = surfaceOf(kSurfaceKeys[i]);
+    return passes;
+}();
+
+}  // namespace
+
+std::span<const ComputePass> computePasses() noexcept { return kComputePasses; }
+std::span<const DrawPass> drawPasses() noexcept { return kDrawPasses; }
+
+uint32_t surfacePass(const SurfaceKey& key) noexcept {
+    SurfaceKey drawn = key;
+    if (key.state != SurfaceState::burning) {
+        if (key.hasImage) drawn.family = MaterialFamily::wood;
+        if (drawn.family == MaterialFamily::sheet) drawn.family = MaterialFamily::hide;
+    }
+    const auto row = std::find(kSurfaceKeys.begin(), kSurfaceKeys.end(), drawn);
+    return draw::count + uint32_t(row - kSurfaceKeys.begin());
+}
+
+}  // namespace fw::gpu

@@ -1,0 +1,499 @@
+#include "gpu/vk/frame.h"
+
+#include "gpu/vk/frame_needs.h"
+#include "shared/grant.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint64_t kRowBytes = sizeof(IterationCounters);
+constexpr uint64_t kListPart = offsetof(IterationCounters, listX);
+
+void zeroRow(FrameRecorder& r, uint32_t row) {
+    r.fillZero(FW_BIND_COUNTERS, row * kRowBytes, kRowBytes);
+}
+
+StepPush pushOf(const FrameLists& lists) {
+    StepPush push{};
+    push.row = lists.row;
+    push.parity = lists.parity;
+    push.burnParity = lists.burnParity;
+    push.predictParity = lists.predictParity;
+    push.hotParity = lists.hotParity;
+    return push;
+}
+
+StepPush pushOf(const FrameLists& lists, const StepRecord& step) {
+    StepPush push = pushOf(lists);
+    push.now = step.now;
+    push.stepShift = step.stepShift;
+    push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
+                    (step.capped ? kSwitchCapped : 0u) | (step.plays ? kSwitchPlays : 0u);
+    push.tilesMost = step.rules.tilesMost;
+    return push;
+}
+
+StepPush pushOf(const TileShare& share) {
+    StepPush push{};
+    push.count = share.ticks;
+    push.object = share.first;
+    push.iteration = share.count;
+    return push;
+}
+
+// Records `light`, passes that light texels. Where the number of burning tiles is limited they run
+// first to request tiles (kSwitchAsks in `switches`), `grant` allots them, then they light.
+template <class Grant, class Light>
+void recordLighting(bool capped, uint32_t& switches, const Grant& grant, const Light& light) {
+    if (capped) {
+        switches |= kSwitchAsks;
+        light();
+        switches &= ~kSwitchAsks;
+        grant();
+    }
+    light();
+}
+
+// Calls `record(first, rows)` for runs of the list of events in which each first one concerns all
+// texels of an object, with few events of single texels between two of those.
+template <class Record>
+void forWholeObjects(const StepRecord& step, const Record& record) {
+    constexpr uint32_t kMostBetween = 16;
+    const auto count = uint32_t(step.allTiles != 0 ? step.eventList.size() : 0);
+    for (uint32_t first = 0, end = 0; first < count; first = end) {
+        end = first + 1;
+        if (!addressesAll(step.eventList[first])) continue;
+        for (uint32_t i = end; i < count && i <= end + kMostBetween && i - first < kMaxGroups; ++i)
+            if (addressesAll(step.eventList[i])) end = i + 1;
+        record(first, end - first);
+    }
+}
+
+void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord& step,
+                    const StepPush& grant);
+
+}  // namespace
+
+bool addressesAll(const TexelEvent& event) noexcept {
+    const uint32_t kind = eventKind(event.kind);
+    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+}
+
+// --- What changed since the last frame ---
+
+void recordReset(FrameRecorder& r, uint32_t object, uint32_t tiles) {
+    StepPush push{};
+    push.object = object;
+    r.fillZero(FW_BIND_OBJECT_COUNTERS, object * sizeof(ObjectCounters), sizeof(ObjectCounters));
+    r.dispatch(pass::reset, push, tiles);
+}
+
+void recordRestore(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles) {
+    StepPush push = pushOf(lists);
+    push.object = object;
+    r.dispatchItems(pass::restore, push, tiles);
+}
+
+void recordFields(FrameRecorder& r, const FieldsRecord& fields) {
+    if (fields.runs.count == 0) return;
+    r.copyIn(fields.runs.at, FW_BIND_FIELD_RUNS, 0, uint64_t(fields.runs.count) * sizeof(FieldRun));
+    FieldPush push{};
+    if (fields.masked) r.dispatch(pass::field_mask, push, fields.masked);
+    push.first = fields.masked;
+    for (uint32_t i = 0; i < fields.rounds; ++i) {
+        if (fields.groups[i] > 0) r.dispatch(pass::field, push, fields.groups[i]);
+        push.first += fields.groups[i] * kFieldUnits;
+    }
+}
+
+void recordSkin(FrameRecorder& r, const SkinPush& push) {
+    r.dispatchItems(pass::skin, push, push.count);
+}
+
+// --- Simulation ---
+
+void recordCounters(FrameRecorder& r, FrameLists& lists, uint32_t iterations) {
+    if (lists.row != kRowIteration)
+        r.copyWithin(FW_BIND_COUNTERS, lists.row * kRowBytes + kListPart,
+                     kRowIteration * kRowBytes + kListPart, kRowBytes - kListPart);
+    r.fillZero(FW_BIND_COUNTERS, kRowIteration * kRowBytes, kListPart);
+    if (iterations)
+        r.fillZero(FW_BIND_COUNTERS, (kRowIteration + 1) * kRowBytes, iterations * kRowBytes);
+    lists.row = kRowIteration;
+}
+
+void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& step) {
+    const bool dense = (step.switches & kSwitchDense) != 0;
+    StepPush push = pushOf(lists, step);
+    const auto grant = [&] { r.dispatch(pass::grant, push, 1); };
+    const auto lighting = [&](const auto& light) {
+        recordLighting(step.capped, push.switches, grant, light);
+    };
+    if (step.wakeGroups.count) {
+        r.copyIn(step.wakeGroups.at, FW_BIND_WAKE_GROUPS, 0, uint64_t(step.wakeGroups.count) * 8);
+        push.count = step.wakeGroups.count;
+        if (!dense) r.dispatch(pass::wake, push, push.count);
+    }
+    if (step.events.count) {
+        r.copyIn(step.events.at, FW_BIND_EVENTS, 0,
+                 uint64_t(step.events.count) * sizeof(TexelEvent));
+        push.count = step.events.count;
+        lighting([&] {
+            r.dispatchItems(pass::events, push, push.count);
+            forWholeObjects(step, [&](uint32_t first, uint32_t rows) {
+                push.object = first;
+                r.dispatch(pass::events_all, push, step.allTiles, rows);
+            });
+        });
+    }
+    if (step.rooms) {
+        push = pushOf(lists, step);
+        push.count = step.objectSlots;
+        r.dispatch(pass::rooms, push, 1);
+    }
+    if (step.heat) {
+        push = pushOf(lists, step);
+        zeroRow(r, kRowHot + (lists.hotParity ^ 1));
+        lighting([&] { r.dispatchList(pass::heat, push, kRowHot + lists.hotParity); });
+        lists.hotParity ^= 1;
+    }
+    for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
+        push = pushOf(lists, step);
+        push.iteration = k;
+        push.count = step.wakeGroups.count;
+        if (dense) r.dispatch(pass::schedule, push, std::max(push.count, 1u));
+        if (!dense) r.dispatchList(pass::schedule, push, lists.row);
+        r.dispatchRun(pass::gather, push, lists.row);
+        r.dispatchWork(pass::arrival, push, lists.row);
+        r.dispatchRim(pass::arrival_rim, push, lists.row);
+        if (step.capped) {
+            push.switches |= kSwitchAsks;
+            grant();
+            push.switches &= ~kSwitchAsks;
+        }
+        r.dispatchWork(pass::commit, push, lists.row);
+        lists.row += 1;
+        lists.parity ^= 1;
+    }
+    push = pushOf(lists, step);
+    if (!step.published.empty())
+        lighting([&] {
+            for (const PublishedStep& object : step.published) {
+                push.object = object.object;
+                push.publishedParity = object.parity;
+                r.dispatch(pass::published, push, object.groups);
+            }
+        });
+    if (!step.reduce) return;
+    push = pushOf(lists, step);
+    push.now = step.now + kStepTicks;
+    push.count = step.objectSlots;
+    zeroRow(r, kRowBurn + (lists.burnParity ^ 1));
+    r.dispatchItems(pass::reduce_clear, push, push.count);
+    r.dispatchList(pass::reduce_front, push, lists.row);
+    r.dispatchList(pass::reduce, push, kRowBurn + lists.burnParity);
+    lists.burnParity ^= 1;
+    if (!step.exchange) return;
+    push = pushOf(lists, step);
+    push.now = step.now + kStepTicks;
+    recordExchange(r, lists, step, push);
+}
+
+namespace {
+
+// Heat from object to object. `grant`: the push of the pass.
+void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord& step,
+                    const StepPush& grant) {
+    ExchangePush push = step.rules;
+    push.now = grant.now;
+    push.row = lists.row;
+    push.parity = lists.parity;
+    push.burnParity = lists.burnParity;
+    push.predictParity = lists.predictParity;
+    push.hotParity = lists.hotParity;
+    push.switches = grant.switches;
+    push.count = step.objectSlots;
+    zeroRow(r, kRowExchange);
+    r.dispatchRun(pass::fire_cells, push, kRowBurn + lists.burnParity);
+    r.dispatchItems(pass::fire_sources, push, push.count);
+    if (push.warms != 0) {
+        r.dispatchItems(pass::receivers, push, push.count);
+        if (push.shieldCell == 0) r.dispatchRun(pass::exchange, push, kRowExchange);
+        if (push.shieldCell != 0) r.dispatchRun(pass::exchange_shield, push, kRowExchange);
+    }
+    const bool touches = (push.flags & kRemoteContact) && step.links;
+    const bool parts = (push.flags & kRemoteContact) && step.parts;
+    const bool throws = (push.flags & kRemoteEmbers) != 0;
+    if (throws) r.dispatchItems(pass::ember_ways, push, push.count);
+    if (!touches && !parts && !throws) return;
+    const auto allot = [&] { r.dispatch(pass::grant, grant, 1); };
+    recordLighting(step.capped, push.switches, allot, [&] {
+        push.count = step.links;
+        if (touches) r.dispatchItems(pass::contacts, push, step.links);
+        push.count = step.objectSlots;
+        if (parts) r.dispatchRun(pass::parts, push, kRowBurn + lists.burnParity);
+        if (throws) r.dispatchItems(pass::embers, push, push.count);
+    });
+}
+
+}  // namespace
+
+void recordShownTiles(FrameRecorder& r, const FrameLists& lists, uint32_t tick) {
+    const uint32_t row = kRowBurn + lists.burnParity;
+    r.fillZero(FW_BIND_COUNTERS, row * kRowBytes + offsetof(IterationCounters, runX),
+               4 * sizeof(uint32_t));
+    StepPush push{};
+    push.burnParity = lists.burnParity;
+    push.now = tick;
+    push.switches = kSwitchShows;
+    r.dispatchList(pass::reduce, push, row);
+}
+
+// --- Prediction: arrival ahead of the front, and which burnt pieces fall. Cosmetic. ---
+
+void recordPredictAnew(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles) {
+    StepPush push{};
+    push.object = object;
+    push.predictParity = lists.predictParity;
+    r.dispatchItems(pass::predict_anew, push, tiles);
+}
+
+void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, bool seen) {
+    StepPush push{};
+    push.now = endTick;
+    push.predictParity = lists.predictParity;
+    zeroRow(r, kRowPredict + (lists.predictParity ^ 1));
+    const uint32_t row = kRowPredict + lists.predictParity;
+    r.dispatchList(pass::predict_states, push, row);
+    r.dispatchList(pass::predict_gather, push, row);
+    if (seen) {
+        r.dispatchWork(pass::predict, push, row);
+        r.dispatchRim(pass::predict_rim, push, row);
+        for (push.iteration = 0; push.iteration < 2; ++push.iteration)
+            r.dispatchWork(pass::predict_commit, push, row);
+    }
+    lists.predictParity ^= 1;
+}
+
+void recordSupport(FrameRecorder& r, uint32_t endTick, const TileShare& share) {
+    StepPush push = pushOf(share);
+    push.now = endTick;
+    for (push.row = 0; push.row < 2; ++push.row) r.dispatchItems(pass::support, push, share.count);
+}
+
+// --- Deformation ---
+
+void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
+    if (deform.groups.count == 0) return;
+    r.copyIn(deform.groups.at, FW_BIND_DEFORM_GROUPS, 0, uint64_t(deform.groups.count) * 8);
+    const auto dispatch = [&](ComputePassOf<DeformPush> pass, uint32_t first, uint32_t groups,
+                              uint32_t parity) {
+        DeformPush push = deform.push;
+        push.parity = parity;
+        for (uint32_t done = 0; done < groups; done += kMaxGroups) {
+            push.first = first + done;
+            r.dispatch(pass, push, groups - done);
+        }
+    };
+    const uint32_t sheets = deform.count.nodes, springs = sheets + deform.count.sheets;
+    dispatch(pass::recede, 0, deform.count.nodes, deform.steps << 1);
+    // A sheet that did not move in the frame before knows of no link yet.
+    if (deform.begins && !(deform.steps > 0 && tiesAt(deform.way)))
+        dispatch(pass::ties, sheets, deform.count.sheets, 0);
+    for (uint32_t i = 0; i < deform.steps; ++i) {
+        const uint32_t way = (deform.way + i) % kArmWays;
+        if (tiesAt(way)) dispatch(pass::ties, sheets, deform.count.sheets, i & 1);
+        dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | way << 1);
+        dispatch(pass::springs, springs, deform.count.springs, i & 1);
+    }
+    const uint32_t vertices = springs + deform.count.springs;
+    dispatch(pass::drape, vertices, deform.count.vertices, 0);
+    dispatch(pass::inner, vertices + deform.count.vertices, deform.count.inner, 0);
+}
+
+void recordProbes(FrameRecorder& r, const Staged& probes) {
+    if (probes.count == 0) return;
+    StepPush push{};
+    push.count = probes.count;
+    r.copyIn(probes.at, FW_BIND_PROBES, 0, uint64_t(probes.count) * 8);
+    r.dispatchItems(pass::probe, push, probes.count);
+}
+
+// --- Effects ---
+
+namespace {
+
+// Zeroes what the march of `march` accumulates into.
+void clearMarch(FrameRecorder& r, const MarchRecord& march) {
+    if (march.end > march.first)
+        r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(march.first) * 4,
+                   uint64_t(march.end - march.first) * 4);
+    // Cells of impostors that no tile has are read too.
+    for (const MarchedVolume& one : march.volumes.last(march.cards))
+        r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(one.march.tiles) * 4, uint64_t(kCardWords) * 4);
+    uint32_t last = 0;
+    for (const MarchedVolume& one : march.volumes) last = std::max(last, one.march.flame);
+    r.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
+}
+
+}  // namespace
+
+// Lights once a frame; flames, particles and marches of each view. Without a view lights alone.
+void VkBackend::State::recordEffects(FrameInFlight& slot) {
+    const std::span<OutsideView* const> from = seenFrom();
+    const bool looked = !from.empty(), emits = showsEmitters(), burns = !simulation.burnEmpty;
+    const bool fieldsShow = looked && !particleFields.fieldDraws.empty(),
+               marches = looked && !flames.volumes.empty();
+    if ((!burns && !marches && !emits && !fieldsShow) || !limits.looks.viewParams) return;
+    const VkViewport whole{0, 0, 1, 1, 0, 1};
+    RecordTarget target = recordTarget(slot, open.commands);
+    target.profiles = scene.profiles.set.set;
+    // A step of an own device has no view: lights alone, which flicker with simulated time.
+    FwView none{};
+    none.time = float(double(open.endTick) / kTicksPerSecond);
+    target.viewOffset = pushView(slot, looked ? from[0]->view : none, whole);
+    FrameRecorder r(target);
+    StepPush push{};
+    push.now = open.endTick;
+    push.burnParity = simulation.lists.burnParity;
+    if (burns) r.dispatch(pass::lights, push, 1);
+    const TileShare soot = burns ? sootShare(looked) : TileShare{};
+    if (soot.count > 0) r.dispatch(pass::soot, pushOf(soot), (soot.count + 7) / 8);
+    const SortPush room = quadRoom();
+    ParticlePush moving{};
+    moving.quads = room.particles;
+    moving.firstQuad = room.tiles;
+    moving.lights = room.lights;
+    moving.burnRow = burns ? kRowBurn + simulation.lists.burnParity : kNoBurnRow;
+    moving.moved = vec4(particles.particlesMove, 0.0f);
+    if (emits && particles.emittersMove && particles.emitterGroups > 0) {
+        r.dispatch(pass::particles, moving, particles.emitterGroups);
+        particles.particlesMove = vec3(0.0f);
+    }
+    push.count = scene.books.live ? particles.flameBooks : 0;
+    const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
+    for (OutsideView* const of : from) {
+        if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
+        target.view = of->number;
+        FrameRecorder view(target);
+        // The lights begin the first view's quads.
+        if ((emits && !burns) || (burns && of->number != 0))
+            view.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
+        if (burns) view.dispatch(pass::flame_quads, push, 16);
+        if (particles.emitterGroups > 0)
+            view.dispatch(pass::particle_quads, moving, particles.emitterGroups);
+        if (particles.sparkSources > 0)
+            view.dispatch(pass::sparks, sparks, particles.sparkSources * kSparkGroups);
+        if (burns || emits) view.dispatch(pass::flame_sort, room, 1);
+        if (const MarchRecord march = marches ? marchVolumes(*of) : MarchRecord{};
+            !march.volumes.empty()) {
+            clearMarch(view, march);
+            view.dispatchVolumes(pass::volume_probe, march.volumes, VolumesOf::all);
+            view.dispatchVolumes(pass::volume_march, march.volumes, VolumesOf::clear);
+            view.dispatchVolumes(pass::volume_smoke, march.volumes, VolumesOf::smoke);
+        }
+    }
+    if (fieldsShow)
+        r.dispatch(pass::field_show, NoPush{},
+                   uint32_t(particleFields.fieldDraws.size()) * kFieldShowGroups);
+}
+
+// --- Refinement ---
+
+namespace {
+
+// Heat to levels, levels to triangles; what moves is listed to be placed.
+void recordLevels(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine) {
+    RefinePush push = refine.push;
+    push.row = lists.row;
+    push.parity = lists.parity;
+    r.dispatchList(pass::refine_heat, push, lists.row);
+    push.row = kRowBurn + lists.burnParity;
+    push.parity = 2 + lists.burnParity;
+    r.dispatchList(pass::refine_heat, push, push.row);
+    push.parity = kRefineFreshHeat;
+    if (refine.fresh) r.dispatch(pass::refine_heat, push, push.objects);
+    const uint32_t items = push.edgeGroups + push.triangleGroups, triangles = push.triangleGroups;
+    const uint32_t groups[5] = {items, push.budget ? triangles : 0, push.budget ? 1u : 0, items,
+                                triangles};
+    for (push.phase = 0; push.phase < 5; ++push.phase)
+        if (groups[push.phase]) r.dispatch(pass::refine_levels, push, groups[push.phase]);
+    r.dispatch(pass::refine_scan, push, push.objects);
+    r.dispatchIndirect(pass::refine_emit, push, FW_BIND_REFINE_WORK, kRefineWorkEmit * 4);
+}
+
+}  // namespace
+
+void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine) {
+    if (refine.turn) recordLevels(r, lists, refine);
+    RefinePush push = refine.push;
+    push.phase = 0;
+    r.dispatch(pass::refine_place, push, push.cornerGroups);
+    for (const uint32_t list : {kRefineWorkEdges, kRefineWorkPlace, kRefineWorkMorph}) {
+        ++push.phase;
+        r.dispatchIndirect(pass::refine_place, push, FW_BIND_REFINE_WORK, list * 4);
+    }
+    if (!refine.turn || !refine.cuts) return;
+    push.phase = 0;
+    r.dispatch(pass::refine_cut, push, push.triangleGroups);
+    push.phase = 1;
+    r.dispatchIndirect(pass::refine_cut, push, FW_BIND_REFINE_WORK, kRefineWorkCut * 4);
+    push.phase = 2;
+    r.dispatchItems(pass::refine_cut, push, push.objects * kMaterialsPerObject);
+}
+
+void recordRefinementAsPublished(FrameRecorder& r, const ArpPush& with, uint32_t placeGroups,
+                                 uint32_t nameGroups) {
+    ArpPush push = with;
+    for (push.phase = 0; push.phase < 2; ++push.phase) {
+        const uint32_t first = push.phase ? placeGroups : 0;
+        const uint32_t groups = push.phase ? nameGroups : placeGroups;
+        for (uint32_t done = 0; done < groups; done += kMaxGroups) {
+            push.firstGroup = first + done;
+            r.dispatch(pass::refine_published, push, groups - done);
+        }
+    }
+}
+
+// --- Readback ---
+
+void VkBackend::State::recordReadback(FrameInFlight& slot) {
+    RecordTarget target = recordTarget(slot, open.commands);
+    const bool looked = open.viewCount > 0;
+    if (looked) target.view = seenFrom()[0]->number;  // whose quads are counted
+    FrameRecorder r(target);
+    ReadbackLayout& layout = slot.layout;
+    const auto copyShown = [&] {
+        layout.quads = looked && (!simulation.burnEmpty || showsEmitters());
+        layout.bias = open.refined;
+        if (layout.quads) r.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
+        if (layout.bias) r.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
+    };
+    if (open.planFrame == 0 && looked) copyShown();  // a picture of an own device's
+    if (open.planFrame == 0 || !open.readback) return;
+    const auto copy = [&](uint32_t resource, uint64_t at, uint64_t bytes) {
+        if (bytes > 0) r.copyOut(resource, 0, at, bytes);
+    };
+    // Counters before the lists: rows that this frame used, and the one its list ended in.
+    copy(FW_BIND_COUNTERS, layout.countersAt, uint64_t(layout.rows + 1) * kRowBytes);
+    copy(FW_BIND_OBJECT_COUNTERS, layout.objectsAt, layout.objects * sizeof(ObjectCounters));
+    copy(FW_BIND_ANSWERS, layout.answersAt, layout.answers * sizeof(ProbeAnswer));
+    copy(FW_BIND_LIGHTS, layout.lightsAt, layout.lights * sizeof(BurnLight));
+    copyShown();
+    copy(FW_BIND_FIELD_COUNTERS, layout.fieldsAt, layout.fields * sizeof(FieldCounters));
+    copy(FW_BIND_ROOM_AIR, layout.roomsAt, layout.rooms ? kMaxRooms * sizeof(RoomAir) : 0);
+    for (uint32_t i = 0; i < layout.mapCount; ++i) {
+        const ReadbackLayout::MapAt& map = layout.maps[i];
+        const BurnObject& object = scene.objects[map.object].record;
+        r.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at, uint64_t(map.texels) * 4);
+        if (map.heat)
+            r.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2), map.heatAt,
+                      uint64_t(map.texels) * sizeof(uvec2));
+    }
+    if (layout.images) recordImages(*this, r);
+    slot.readbackPending = true;
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,512 @@
+#include "gpu/vk/world_buffers.h"
+
+#include "core/error.h"
+#include "shared/book.h"
+#include "shared/deform.h"
+#include "shared/exchange.h"
+#include "shared/field.h"
+#include "shared/field_draw.h"
+#include "shared/look.h"
+#include "shared/refine.h"
+#include "shared/room.h"
+#include "shared/spark.h"
+#include "shared/volume_draw.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iterator>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint32_t kCounterRows = kRowIteration + 64 * kMaxSubsteps + 1;  // one more to carry over
+
+// Beside words: dropped where a device has too few texels.
+constexpr VkBufferUsageFlags kTexels = VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
+
+// All buffers of a world. Buffers of a pool grow together, so they have one initial capacity.
+constexpr BufferRow kBuffers[] = {
+    // binding, name, pool, stride, initial capacity, keeps content, component, extra usage
+    {FW_BIND_OBJECTS, "object records", kPoolObjects, sizeof(BurnObject), 64, true,
+     kComponentObjects},
+    {FW_BIND_MATERIALS, "materials", kPoolObjects, sizeof(BurnMaterial) * kMaterialsPerObject, 64,
+     true, kComponentObjects},
+    {FW_BIND_OBJECT_COUNTERS, "object counters", kPoolObjects, sizeof(ObjectCounters), 64, true,
+     kComponentObjects},
+    {FW_BIND_TEXELS, "texels", kPoolMeshTiles, 8 * kTileTexels, 512, true, kComponentMeshes},
+    {FW_BIND_NORMALS, "normals", kPoolMeshTiles, 4 * kTileTexels, 512, true, kComponentMeshes},
+    {FW_BIND_TILES, "tiles", kPoolMeshTiles, 32, 512, true, kComponentMeshes},
+    {FW_BIND_SLOWNESS, "slowness", kPoolSlowness, 2 * kTileTexels, 512, true, kComponentMeshes},
+    {FW_BIND_LINKS, "links", kPoolLinks, 32, 1024, true, kComponentMeshes},
+    {FW_BIND_READERS, "readers", kPoolReaders, 4, 1024, true, kComponentMeshes},
+    {kResourceVertices, "vertices", kPoolVertices, 48, 4096, true, kComponentMeshes,
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
+    {kResourceIndices, "indices", kPoolIndices, 4, 16384, true, kComponentMeshes,
+     VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
+    {FW_BIND_STATE, "state", kPoolObjectTiles, 4 * kTileTexels, 1024, true, kComponentObjects},
+    {FW_BIND_PENDING, "pending", kPoolObjectTiles, 4 * kTileTexels, 1024, true, kComponentObjects},
+    {FW_BIND_SETTLED, "settled", kPoolObjectTiles, 4 * kTileTexels / 8, 1024, true,
+     kComponentObjects},
+    {FW_BIND_TILE_STATE, "tile state", kPoolObjectTiles, sizeof(TileState), 1024, true,
+     kComponentObjects},
+    {FW_BIND_LIST_A, "front list A", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_LIST_B, "front list B", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_RUN, "run list", kPoolObjectTiles, 16, 1024, false, kComponentLists},
+    {FW_BIND_SCRATCH, "scratch", kPoolObjectTiles, 6 * kTileTexels, 1024, false, kComponentLists},
+    {FW_BIND_MASKS, "masks", kPoolObjectTiles, 16, 1024, false, kComponentLists},
+    {FW_BIND_BURN_A, "burn list A", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_BURN_B, "burn list B", kPoolObjectTiles, 4, 1024, true, kComponentLists},
+    {FW_BIND_BURN_TILES, "burn tiles", kPoolObjectTiles, sizeof(BurnTile), 1024, true,
+     kComponentLists},
+    {FW_BIND_PREDICT, "predicted arrivals", kPoolObjectTiles, 4 * kTileTexels, 1024, true,
+     kComponentPredict},
+    {FW_BIND_GRADIENT, "gradient", kPoolObjectTiles, 4 * kTileTexels, 1024, true,
+     kComponentPredict},
+    {FW_BIND_PREDICT_LIST_A, "predict list A", kPoolObjectTiles, 4, 1024, true, kComponentPredict},
+    {FW_BIND_PREDICT_LIST_B, "predict list B", kPoolObjectTiles, 4, 1024, true, kComponentPredict},
+    {FW_BIND_COUNTERS, "counters", kPoolIterations, sizeof(IterationCounters), kCounterRows, true,
+     kComponentLists, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_EVENTS, "events", kPoolEvents, sizeof(TexelEvent), 4096, false, kComponentLists},
+    {FW_BIND_WAKE_GROUPS, "wake groups", kPoolWakeGroups, 8, 1024, false, kComponentLists},
+    {FW_BIND_PROBES, "probes", kPoolProbes, 8, 1024, false, kComponentLists},
+    {FW_BIND_ANSWERS, "answers", kPoolProbes, sizeof(ProbeAnswer), 1024, false, kComponentLists},
+    {FW_BIND_PUBLISHED, "published", kPoolPublished, 3 * 4 * kTileTexels, 1, true,
+     kComponentObjects},
+    {FW_BIND_HEAT, "heat texels", kPoolHeat, 8 * kTileTexels, 1, true, kComponentHeat},
+    {FW_BIND_TILE_HEAT, "tile heat", kPoolObjectTiles, sizeof(TileHeat), 1024, true,
+     kComponentHeat},
+    {FW_BIND_HEAT_MATERIALS, "heat materials", kPoolObjects,
+     sizeof(HeatMaterial) * kMaterialsPerObject, 64, true, kComponentHeat},
+    {FW_BIND_HOT_LISTS, "hot lists", kPoolObjectTiles, 8, 1024, true, kComponentHeat},
+    {FW_BIND_TILE_FIRE, "tile fire", kPoolObjectTiles, 4, 1024, true, kComponentHeat},
+    {FW_BIND_DEFORM_OBJECTS, "deforming objects", kPoolDeformers, sizeof(DeformObject), 1, true,
+     kComponentObjects},
+    {FW_BIND_SHOWN, "shown vertices", kPoolShown, sizeof(ShownVertex), 1, true, kComponentObjects,
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kTexels},
+    {FW_BIND_SOFT, "soft nodes", kPoolSoft, 16 * kSoftQuads, 1, true, kComponentObjects, kTexels},
+    {FW_BIND_DEFORM_NODES, "nodes", kPoolNodes, sizeof(DeviceNode), 1, true, kComponentMeshes,
+     kTexels},
+    {FW_BIND_DEFORM_COATS, "coats", kPoolCoats, sizeof(DeformCoat), 1, true, kComponentMeshes,
+     kTexels},
+    {FW_BIND_DEFORM_GROUPS, "deform groups", kPoolDeformGroups, 8, 1, false, kComponentLists},
+    {FW_BIND_SKIN_SOURCES, "skin sources", kPoolSkinSources, 4, 1, true, kComponentMeshes},
+    {FW_BIND_SKIN_GIVEN, "skin vertices", kPoolSkinGiven, 4, 1, false, kComponentObjects},
+    {FW_BIND_SKIN_TEXELS, "skin texels", kPoolSkin, 16 * kTileTexels, 1, true, kComponentMeshes},
+    {FW_BIND_REMOTE_OBJECTS, "remote objects", kPoolObjects, sizeof(RemoteObject), 64, true,
+     kComponentObjects},
+    {FW_BIND_REMOTE_TILES, "remote tiles", kPoolMeshTiles, sizeof(RemoteTile), 512, true,
+     kComponentMeshes},
+    {FW_BIND_SOURCES, "fire sources", kPoolSources, sizeof(FireSource), 1024, true,
+     kComponentObjects},
+    {FW_BIND_RECEIVERS, "receivers", kPoolObjects, 4 * kReceiverWords, 64, false, kComponentLists},
+    {FW_BIND_NEIGHBOURS, "neighbours", kPoolNeighbours, 4, 1, true, kComponentObjects},
+    {FW_BIND_CONTACTS, "contacts", kPoolContacts, sizeof(ContactLink), 1, true, kComponentObjects},
+    {FW_BIND_BLOCKERS, "blockers", kPoolFixed, sizeof(Blocker) * kMaxBlockers, 1, true,
+     kComponentObjects},
+    {FW_BIND_SHIELD, "heat shield", kPoolShield, 4, 1, true, kComponentObjects},
+    {FW_BIND_ROOMS, "rooms", kPoolFixed, sizeof(Room) * kMaxRooms, 1, true, kComponentObjects},
+    {FW_BIND_ROOM_AIR, "rooms' air", kPoolFixed, sizeof(RoomAir) * kMaxRooms, 1, true,
+     kComponentObjects},
+    {FW_BIND_LIGHTS, "lights", kPoolFixed, sizeof(BurnLight), 1, true, kComponentFlames,
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
+    {FW_BIND_LIGHT_CELLS, "light cells", kPoolFixed, 4, 1, true, kComponentFlames},
+    {FW_BIND_FLAMES, "flame quads", kPoolFlames, sizeof(FlameQuad), 1, true, kComponentFlames},
+    {FW_BIND_DRAW_ARGS, "draw arguments", kPoolFlames, 8, 1, true, kComponentFlames,
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_EMITTERS, "emitters", kPoolEmitters, sizeof(ParticleEmitter), 1, false,
+     kComponentFlames},
+    {FW_BIND_EMITTER_GROUPS, "emitter groups", kPoolEmitterGroups, 8, 1, false, kComponentFlames},
+    {FW_BIND_SPARKS, "spark sources", kPoolSparks, sizeof(SparkSource), 1, false, kComponentFlames,
+     kTexels},
+    {FW_BIND_PARTICLES, "particles", kPoolParticles, sizeof(ParticleWords), 1, true,
+     kComponentFlames, kTexels},
+    {FW_BIND_BOOKS, "flipbooks", kPoolFixed, 4 * kBookWords, 1, true, kComponentFlames},
+    {FW_BIND_REFINE_OBJECTS, "refined objects", kPoolObjects, sizeof(RefineObject), 64, true,
+     kComponentRefine},
+    {FW_BIND_REFINE_DRAWS, "refined draws", kPoolObjects, 20 * kMaterialsPerObject, 64, true,
+     kComponentRefine, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_REFINE_TRIANGLES, "coarse triangles", kPoolRefineMeshTriangles, sizeof(RefineTriangle),
+     256, true, kComponentRefine},
+    {FW_BIND_REFINE_EDGES, "coarse edges", kPoolRefineMeshEdges, sizeof(RefineEdge), 256, true,
+     kComponentRefine},
+    {FW_BIND_REFINE_SLOTS, "refined rest places", kPoolRefineMeshSlots, sizeof(RefineSlot), 1024,
+     true, kComponentRefine},
+    {FW_BIND_REFINE_WORDS, "refinement tables", kPoolRefineWords, 4, 1024, true, kComponentRefine},
+    {FW_BIND_REFINE_ITEMS, "levels", kPoolRefineItems, sizeof(RefineLevel), 512, true,
+     kComponentRefine},
+    {FW_BIND_REFINE_HEAT, "refinement heat", kPoolRefineItems, 4, 512, true, kComponentRefine},
+    {FW_BIND_REFINE_LEVELS, "triangle levels", kPoolRefineTriangles, 8, 256, true,
+     kComponentRefine},
+    {FW_BIND_REFINE_VERTICES, "refined places", kPoolRefineSlots, sizeof(RefineVertex), 1024, true,
+     kComponentRefine},
+    {FW_BIND_REFINE_INDICES, "refined indices", kPoolRefineIndices, 4, 4096, true, kComponentRefine,
+     VK_BUFFER_USAGE_INDEX_BUFFER_BIT},
+    {FW_BIND_REFINE_CUTS, "cut vertices", kPoolRefineCuts, 48, 256, true, kComponentRefine,
+     VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
+    {FW_BIND_REFINE_CUT_DRAWS, "cut draws", kPoolObjects, 16 * kMaterialsPerObject, 64, true,
+     kComponentRefine, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_ARP_LIST, "template triangles", kPoolArpList, 4, 1, true, kComponentRefine},
+    {FW_BIND_ARP_GROUPS, "template groups", kPoolArpGroups, 8, 1, false, kComponentRefine},
+    {FW_BIND_REFINE_WORK, "refinement work", kPoolRefineWork, 4, 256, false, kComponentRefine,
+     VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_VOLUMES, "volumes", kPoolVolumes, kVolumeFlameBytes, 1, false, kComponentFlames,
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
+    {FW_BIND_VOLUME_RAYS, "marched volumes", kPoolVolumeRays, 4, 4, false, kComponentFlames,
+     kTexels},
+    {FW_BIND_VOLUME_WORK, "volumes' work", kPoolVolumes, sizeof(VolumeWork), 1, false,
+     kComponentFlames, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
+    {FW_BIND_FIELDS, "fields", kPoolFields, sizeof(FieldRecord), 1, true, kComponentFlames},
+    {FW_BIND_FIELD_COUNTERS, "field counters", kPoolFields, sizeof(FieldCounters), 1, true,
+     kComponentFlames},
+    {FW_BIND_FIELD_CELLS, "field cells", kPoolFieldCells, 2 * 4 * kFieldUnit, 1, true,
+     kComponentFlames, kTexels},
+    {FW_BIND_FIELD_MASKS, "field masks", kPoolFieldCells, kFieldUnit, 1, true, kComponentFlames},
+    {FW_BIND_FIELD_SHOWN, "field shown", kPoolFieldCells, 4 * kFieldUnit, 1, false,
+     kComponentFlames},
+    {FW_BIND_FIELD_DRAWS, "field draws", kPoolFieldDraws, sizeof(FieldDraw), 1, true,
+     kComponentFlames},
+    {FW_BIND_FIELD_RUNS, "field runs", kPoolFieldRuns, 8, 1, false, kComponentFlames},
+    {FW_BIND_LOOKS, "looks", kPoolFixed, sizeof(MaterialLook), 1, true, kComponentFlames,
+     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
+};
+
+constexpr uint32_t initialCapacity(BufferPool pool) noexcept {
+    for (const BufferRow& row : kBuffers)
+        if (row.pool == pool) return row.initialCapacity;
+    return 0;
+}
+static_assert(std::all_of(std::begin(kBuffers), std::end(kBuffers), [](const BufferRow& row) {
+    return row.initialCapacity == initialCapacity(row.pool);
+}));
+
+}  // namespace
+
+// --- RangeAllocator ---
+
+void RangeAllocator::addCapacity(uint32_t units) {
+    core::growTo(free_, pieces_ + 3);
+    if (!free_.empty() && free_.back().first + free_.back().units == capacity_)
+        free_.back().units += units;
+    else
+        free_.push_back({capacity_, units});
+    capacity_ += units;
+}
+
+void RangeAllocator::dropCapacity(uint32_t units) noexcept {
+    free_.back().units -= units;
+    if (free_.back().units == 0) free_.pop_back();
+    capacity_ -= units;
+}
+
+uint32_t RangeAllocator::allocate(uint32_t units) {
+    for (size_t i = 0; i < free_.size(); ++i) {
+        if (free_[i].units < units) continue;
+        core::growTo(free_, pieces_ + 3);
+        const uint32_t first = free_[i].first;
+        free_[i].first += units;
+        free_[i].units -= units;
+        if (free_[i].units == 0) free_.erase(free_.begin() + std::ptrdiff_t(i));
+        used_ += units;
+        ++pieces_;
+        return first;
+    }
+    return kNoRange;
+}
+
+void RangeAllocator::release(uint32_t first, uint32_t units) noexcept {
+    auto at =
+        std::lower_bound(free_.begin(), free_.end(), first,
+                         [](const Range& range, uint32_t wanted) { return range.first < wanted; });
+    at = free_.insert(at, {first, units});
+    if (at + 1 != free_.end() && at->first + at->units == (at + 1)->first) {
+        at->units += (at + 1)->units;
+        free_.erase(at + 1);
+    }
+    if (at != free_.begin() && (at - 1)->first + (at - 1)->units == at->first) {
+        (at - 1)->units += at->units;
+        free_.erase(at);
+    }
+    used_ -= units;
+    --pieces_;
+}
+
+// --- RetireQueue ---
+
+void RetireQueue::add(const Retired& one) noexcept {
+    queue_.push_back(one);  // room was promised
+    if (promised_) --promised_;
+}
+
+void RetireQueue::push(uint64_t lastFrame, Buffer& buffer) noexcept {
+    if (!buffer.handle) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.buffer = buffer;
+    add(one);
+    buffer = {};
+}
+
+void RetireQueue::push(uint64_t lastFrame, Image& image) noexcept {
+    if (!image.handle) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.image = image;
+    add(one);
+    image = {};
+}
+
+void RetireQueue::push(uint64_t lastFrame, VkDescriptorPool pool) noexcept {
+    if (!pool) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.pool = pool;
+    add(one);
+}
+
+void RetireQueue::pushFramebuffer(uint64_t lastFrame, VkFramebuffer framebuffer) noexcept {
+    if (!framebuffer) return;
+    Retired one;
+    one.frameIndex = lastFrame;
+    one.framebuffer = framebuffer;
+    add(one);
+}
+
+void RetireQueue::collect(uint64_t completedFrame) noexcept {
+    size_t kept = 0;
+    for (Retired& one : queue_) {
+        if (one.frameIndex > completedFrame) {
+            queue_[kept++] = one;
+            continue;
+        }
+        deviceMemory_.destroy(one.buffer);
+        deviceMemory_.destroy(one.image);
+        if (one.framebuffer)
+            device_.table.DestroyFramebuffer(device_.handle, one.framebuffer,
+                                             device_.allocationCallbacks);
+        if (one.pool)
+            device_.table.DestroyDescriptorPool(device_.handle, one.pool,
+                                                device_.allocationCallbacks);
+    }
+    queue_.resize(kept);
+}
+
+// --- WorldBuffers ---
+
+WorldBuffers::WorldBuffers(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
+                           const WorldSizes& sizes, std::pmr::memory_resource* memory)
+    : device_(device),
+      deviceMemory_(deviceMemory),
+      retired_(retired),
+      pools_(memory),
+      exact_(sizes.exact) {
+    for (uint32_t pool = 0; pool < kPoolCount; ++pool) pools_.emplace_back(memory);
+    for (const BufferRow& row : kBuffers) {
+        Slot& slot = slots_[row.binding];
+        slot.row = row;
+        if (!device.texels) slot.row.extraUsage &= ~kTexels;
+        if (row.binding == FW_BIND_LIGHTS) slot.row.stride *= std::max(1u, sizes.lights);
+        if (row.binding == FW_BIND_LIGHT_CELLS)
+            slot.row.stride *= kLightCellHeader + kLightCells * kLightCellWords;
+        if (row.binding == FW_BIND_LOOKS) slot.row.stride *= kLookRows;
+    }
+    for (uint32_t view = 1; view < kMaxViews; ++view)
+        for (size_t i = 0; i < kResourcesOfViews.size(); ++i) {
+            BufferRow row = slots_[kResourcesOfViews[i]].row;
+            row.binding = resourceOf(row.binding, view);
+            row.pool = poolOf(row.pool, view);
+            auto& name = viewNames_[(view - 1) * kResourcesOfViews.size() + i];
+            std::snprintf(name.data(), name.size(), "%s, view %u", row.name, view + 1);
+            row.name = name.data();
+            slots_[row.binding].row = row;
+        }
+    try {
+        for (uint32_t pool = 0; pool < kPoolOfViews; ++pool)
+            resize(BufferPool(pool),
+                   pool == kPoolFlames                 ? quadUnits(sizes.flames)
+                   : exact_ && pool != kPoolIterations ? 1
+                                                       : initialCapacity(BufferPool(pool)),
+                   0);
+    } catch (...) {
+        for (Slot& slot : slots_) deviceMemory_.destroy(slot.now);
+        throw;
+    }
+}
+
+WorldBuffers::~WorldBuffers() {
+    for (Slot& slot : slots_) {
+        deviceMemory_.destroy(slot.now);
+        deviceMemory_.destroy(slot.before);
+    }
+}
+
+uint32_t WorldBuffers::limit(BufferPool pool) const noexcept {
+    uint64_t units = 0xFFFFFFFEu;
+    for (const Slot& slot : slots_) {
+        if (!slot.row.stride || slot.row.pool != pool) continue;
+        const VkPhysicalDeviceLimits& limits = device_.properties.limits;
+        uint64_t bytes = limits.maxStorageBufferRange;
+        if (slot.row.extraUsage & kTexels)
+            bytes = std::min(bytes, uint64_t(limits.maxTexelBufferElements) * 16);
+        units = std::min(units, bytes / slot.row.stride);
+    }
+    return uint32_t(units);
+}
+
+void WorldBuffers::resize(BufferPool pool, uint32_t units, uint64_t lastFrame) {
+    std::array<Buffer, kResourceCount> fresh{};
+    size_t made = 0;
+    try {
+        for (uint32_t i = 0; i < kResourceCount; ++i) {
+            const BufferRow& row = slots_[i].row;
+            if (!row.stride || row.pool != pool) continue;
+            fresh[i] = deviceMemory_.createBuffer(
+                uint64_t(row.stride) * units,
+                VK_BUFFER_USAGE_STORAGE_BUFFER_BIT | VK_BUFFER_USAGE_TRANSFER_SRC_BIT |
+                    VK_BUFFER_USAGE_TRANSFER_DST_BIT | row.extraUsage,
+                MemoryKind::device, row.component, row.name);
+            ++made;
+        }
+        retired_.promise(made);
+        if (const uint32_t had = pools_[pool].capacity(); units < had)
+            pools_[pool].dropCapacity(had - units);
+        else
+            pools_[pool].addCapacity(units - had);
+    } catch (...) {
+        for (Buffer& buffer : fresh) deviceMemory_.destroy(buffer);
+        throw;
+    }
+    for (uint32_t i = 0; i < kResourceCount; ++i) {
+        if (!fresh[i].handle) continue;
+        Slot& slot = slots_[i];
+        if (!slot.recorded)
+            deviceMemory_.destroy(slot.now);  // no frame ever saw it
+        else if (slot.row.keepsContent)
+            std::swap(slot.before, slot.now);
+        else
+            retired_.push(lastFrame, slot.now);
+        slot.now = fresh[i];
+        bytes_[i] = slot.now.size;
+        slot.recorded = false;
+        if (slot.before.handle) movesPending_ = true;
+    }
+    ++generation_;
+}
+
+uint32_t WorldBuffers::allocate(BufferPool pool, uint32_t units, uint64_t lastFrame) {
+    const uint32_t first = allocateIn(pool, units, lastFrame);
+    usedUnits_[pool] = pools_[pool].used();
+    return first;
+}
+
+uint32_t WorldBuffers::allocateIn(BufferPool pool, uint32_t units, uint64_t lastFrame) {
+    const uint32_t first = pools_[pool].allocate(units);
+    if (first != RangeAllocator::kNoRange) return first;
+    const uint32_t capacity = pools_[pool].capacity();
+    const uint32_t most = limit(pool);
+    if (units > most || capacity > most - units)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%u more units do not fit: %u are in use and the device's "
+                   "maxStorageBufferRange of %u bytes holds %u.",
+                   units, pools_[pool].used(), device_.properties.limits.maxStorageBufferRange,
+                   most);
+    const uint32_t least = capacity + units - (exact_ ? pools_[pool].freeAtEnd() : 0);
+    const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(capacity) * 2));
+    if (doubled > least && !exact_) {
+        try {
+            resize(pool, doubled, lastFrame);
+            return pools_[pool].allocate(units);
+        } catch (const core::Error& error) {
+            if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
+        }
+    }
+    resize(pool, least, lastFrame);
+    return pools_[pool].allocate(units);
+}
+
+void WorldBuffers::release(BufferPool pool, uint32_t first, uint32_t units) noexcept {
+    pools_[pool].release(first, units);
+    usedUnits_[pool] = pools_[pool].used();
+}
+
+void WorldBuffers::atLeast(BufferPool pool, uint32_t units, uint64_t lastFrame) {
+    const uint32_t capacity = pools_[pool].capacity();
+    if (units <= capacity) return;
+    checkLimit(pool, units);
+    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, capacity * 2ull);
+    resize(pool, uint32_t(std::min<uint64_t>(limit(pool), doubled)), lastFrame);
+}
+
+void WorldBuffers::checkLimit(BufferPool pool, uint32_t units) const {
+    const uint32_t most = limit(pool);
+    if (units > most)
+        core::fail(FW_ERROR_OUT_OF_MEMORY,
+                   "%u units in one frame do not fit: the device's maxStorageBufferRange of %u "
+                   "bytes holds %u.",
+                   units, device_.properties.limits.maxStorageBufferRange, most);
+}
+
+void WorldBuffers::fit(BufferPool pool, uint32_t units, bool shrinks, uint64_t lastFrame) {
+    // What is asked for sways, and it grows by and by.
+    const uint32_t capacity = pools_[pool].capacity(), spare = units / 8;
+    if (units <= capacity && (!shrinks || capacity - units <= spare)) return;
+    checkLimit(pool, units);
+    const uint32_t room = shrinks || exact_ ? units : std::min(limit(pool), units + spare);
+    resize(pool, std::max(room, 1u), lastFrame);
+}
+
+void WorldBuffers::makeView(uint32_t view, uint64_t lastFrame) {
+    for (const BufferPool pool : {kPoolFlames, kPoolVolumeRays, kPoolVolumes})
+        atLeast(poolOf(pool, view), exact_ ? 1 : std::max(initialCapacity(BufferPool(pool)), 1u),
+                lastFrame);
+}
+
+void WorldBuffers::dropView(uint32_t view, uint64_t lastFrame) {
+    size_t made = 0;
+    for (const uint32_t resource : kResourcesOfViews) {
+        const Slot& slot = slots_[resourceOf(resource, view)];
+        made += (slot.now.handle ? 1 : 0) + (slot.before.handle ? 1 : 0);
+    }
+    retired_.promise(made);
+    for (const uint32_t resource : kResourcesOfViews) {
+        Slot& slot = slots_[resourceOf(resource, view)];
+        retired_.push(lastFrame, slot.now);
+        retired_.push(lastFrame, slot.before);
+        bytes_[resourceOf(resource, view)] = 0;
+        slot.recorded = false;
+    }
+    for (const BufferPool pool : {kPoolFlames, kPoolVolumeRays, kPoolVolumes})
+        if (const uint32_t units = capacity(poolOf(pool, view)))
+            pools_[poolOf(pool, view)].dropCapacity(units);
+}
+
+uint64_t WorldBuffers::bytes(BufferPool pool) const noexcept {
+    uint64_t all = 0;
+    for (const Slot& slot : slots_)
+        if (slot.row.stride && slot.row.pool == pool) all += slot.now.size;
+    return all;
+}
+
+bool WorldBuffers::recordMoves(const Table& table, VkCommandBuffer commands, uint64_t frameIndex) {
+    bool moved = false;
+    for (Slot& slot : slots_) {
+        slot.recorded = slot.now.handle != VK_NULL_HANDLE;
+        if (!slot.before.handle) continue;
+        const VkBufferCopy all{0, 0, std::min(slot.before.size, slot.now.size)};
+        table.CmdCopyBuffer(commands, slot.before.handle, slot.now.handle, 1, &all);
+        retired_.push(frameIndex, slot.before);  // room was reserved by resize
+        moved = true;
+    }
+    movesPending_ = false;
+    return moved;
+}
+
+void WorldBuffers::rows(std::pmr::vector<MemoryRow>& out) const {
+    for (uint32_t i = 0; i < kResourceCount; ++i) {
+        const BufferRow& row = slots_[i].row;  // written by the constructor alone
+        const uint64_t units = usedUnits_[row.pool], capacity = bytes_[i];
+        if (!row.stride || capacity == 0) continue;
+        out.push_back({row.name, units ? units * row.stride : capacity, capacity});
+    }
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,107 @@
+// Volumetric flames as cards: a flame is marched into cells as wide as a part of its diameter,
+// whatever its size on the screen, and for some frames shown as it was, facing the camera, where
+// and as large as it is now.
+#include "lod/tiers.h"
+#include "lod/volumes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::lod {
+namespace {
+
+constexpr float kCardCells = 24.0f;  // of a flame's diameter, where its smoke leaves as many
+constexpr float kGrows = 1.15f;      // cells, until they are few enough
+
+// m per unit of the view at so many m along it.
+vec2 metresAt(const VolumeDraw& draw, float depth) {
+    const float away = draw.clip.z > 0.0f ? depth : 1.0f;
+    return away * vec2(glm::length(vec3(draw.rayX)), glm::length(vec3(draw.rayY)));
+}
+
+// x, y of the view; m along it.
+vec3 placeOf(const ViewParams& view, vec3 point) {
+    const vec3 from = point - vec3(view.eye);
+    const vec4 clip = from.x * view.clip0 + from.y * view.clip1 + from.z * view.clip2 + view.clip3;
+    return {clip.x / clip.w, clip.y / clip.w, glm::dot(from, vec3(view.forward))};
+}
+
+}  // namespace
+
+bool cardFits(const VolumeItem& item) noexcept {
+    return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;
+}
+
+void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept {
+    const VolumeDraw& draw = item.draw;
+    const vec3 at = placeOf(view, item.middle);
+    const vec2 metres = metresAt(draw, at.z);
+    const vec2 size = metres * vec2(item.whole.z - item.whole.x, item.whole.w - item.whole.y);
+    float cell = draw.wide / kCardCells;
+    const auto tiles = [&](float length) {
+        return std::max(std::ceil(length / (cell * float(kVolumeTile))), 1.0f);
+    };
+    while (tiles(size.x) * tiles(size.y) > float(kCardTiles)) cell *= kGrows;
+    card.there = true;
+    card.middle = item.middle - item.base;
+    card.direction = glm::normalize(item.middle - vec3(view.eye));
+    card.low = metres * (vec2(item.whole) - vec2(at));
+    card.cell = cell;
+    card.tilesX = uint32_t(tiles(size.x));
+    card.tilesY = uint32_t(tiles(size.y));
+    card.encoding = screen.encoding;
+
+    const vec2 perCell = cell / metres;
+    out.flame = item.flame;
+    out.smokes = item.smokes;
+    out.march = {};
+    out.composite = {};
+    VolumeMarch& march = out.march;
+    march.rayX = vec4(perCell.x * vec3(draw.rayX), 0.0f);
+    march.rayX.w = kFinestDetail * glm::length(vec3(march.rayX));
+    march.turns = uint32_t(std::clamp(
+        std::ceil(2.0f * draw.deep * float(draw.slabs) / draw.spacing), 1.0f, float(screen.steps)));
+    march.rayY =
+        vec4(perCell.y * vec3(draw.rayY), draw.deep * float(draw.slabs) / float(march.turns));
+    march.rayO = vec4(vec3(draw.rayO) + (item.whole.x + 0.5f * perCell.x) * vec3(draw.rayX) +
+                          (item.whole.y + 0.5f * perCell.y) * vec3(draw.rayY),
+                      draw.front);
+    march.slabs = 1;
+    march.intervals = draw.intervals;
+    march.tilesX = card.tilesX;
+    march.cells = card.tilesX * card.tilesY * kVolumeTile * kVolumeTile;
+    march.tiles = slot * kCardWords;
+    march.samples = march.tiles + kCardTiles * kVolumeTileWords;
+    march.encoding = screen.encoding;
+    march.apart = 2;
+    march.least = 0;
+    march.perPixel = kVolumeTile;  // rays go where the mean of many is the flame
+    out.composite.tilesX = card.tilesX;
+    out.composite.tilesY = card.tilesY;
+}
+
+bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept {
+    const VolumeDraw& draw = item.draw;
+    const vec3 at = placeOf(view, item.base + card.middle);
+    if (draw.clip.z > 0.0f && !(at.z > 1e-3f)) return false;
+    const vec2 perMetre = 1.0f / metresAt(draw, at.z);
+    const vec2 perCell = card.cell * perMetre;
+    out = {};
+    out.place = vec4(vec2(at) + card.low * perMetre, perCell.x, 0.0f);
+    out.upY = perCell.y;
+    out.clip = draw.clip;
+    out.front = draw.front;
+    out.deep = draw.deep * float(draw.slabs);
+    out.base = draw.base;
+    out.perX = 2.0f / (screen.size.x * perCell.x);
+    out.perY = 2.0f / (screen.size.y * perCell.y);
+    out.tilesX = card.tilesX;
+    out.tilesY = card.tilesY;
+    out.samples = slot * kCardWords + kCardTiles * kVolumeTileWords;
+    out.to = 1.0f;
+    return true;
+}
+
+}  // namespace fw::lod

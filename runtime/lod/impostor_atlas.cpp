@@ -1,0 +1,205 @@
+#include "lod/impostor_atlas.h"
+
+#include "core/hash.h"
+#include "shared/volume.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+namespace fw::lod {
+namespace {
+
+constexpr float kWider = 1.3f;      // at most, than the book's flame, or narrower
+constexpr float kTaller = 1.25f;    // the same of their heights in diameters
+constexpr float kFacing = 0.17f;    // of cosines: 10 degrees where it is seen from the side
+constexpr float kKeepsBook = 1.5f;  // as much further off is what has shown the book already
+constexpr float kStraight = 0.4f;   // diameters off the line from its base to its tip
+constexpr float kWhole = 0.9f;      // of FlameRecord::air.w
+constexpr float kSeenAside = 0.3f;  // of its height: less is seen along its axis
+
+// Pages late, least and most; what turns over needs some of those that are older.
+constexpr uint32_t kLeastLate = 1, kMostLate = kBookPages - kBookTurn - 2;
+
+bool isAlike(const BookKind& a, const BookKind& b, float keeps) noexcept {
+    if (a.look != b.look || !a.plain || !b.plain) return false;
+    const auto within = [keeps](float x, float y, float most) {
+        return std::abs(std::log(x / y)) < keeps * std::log(most);
+    };
+    return within(a.wide, b.wide, kWider) && within(a.tall, b.tall, kTaller) &&
+           std::abs(a.facing - b.facing) < keeps * kFacing;
+}
+
+vec2 axesOf(const VolumeDraw& draw, vec3 v) noexcept {
+    return {glm::dot(v, glm::normalize(vec3(draw.rayX))),
+            glm::dot(v, glm::normalize(vec3(draw.rayY)))};
+}
+
+}  // namespace
+
+BookKind bookKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count, vec3& tip) {
+    BookKind kind;
+    const float numbers[] = {r.tint.x,         r.tint.y,         r.tint.z,   r.tint.w,
+                             r.stretch,        r.turbulence,     r.radial,   r.columns,
+                             r.ridge,          r.converge,       r.puff,     r.blue,
+                             r.blueHeight,     r.erode,          r.filament, r.filamentWidth,
+                             r.filamentBase,   r.filamentHeight, r.tipFill,  r.smoke,
+                             r.smokeTop,       r.smokeAlbedo,    r.tintLow,  r.tintHigh,
+                             float(r.profile), float(r.octaves)};
+    kind.look = core::hash32(r.tintCore);
+    for (const float number : numbers) {
+        uint32_t bits = 0;
+        std::memcpy(&bits, &number, sizeof bits);
+        kind.look = core::hash32(kind.look ^ bits);
+    }
+    kind.wide = std::max(r.low.w, 1e-4f);
+    const float height = r.tauStart / 0.04f;  // without the pulse, as describeFlame has it
+    kind.tall = height / kind.wide;
+    const vec3 base(nodes[0].centre);
+    tip = vec3(nodes[count - 1].centre) - base;
+    for (uint32_t k = 1; k < count; ++k) {
+        const float s0 = nodes[k - 1].along.w, s1 = nodes[k].along.w;
+        if (s1 < height) continue;
+        const float part = s1 > s0 ? std::clamp((height - s0) / (s1 - s0), 0.0f, 1.0f) : 0.0f;
+        tip = glm::mix(vec3(nodes[k - 1].centre), vec3(nodes[k].centre), part) - base;
+        break;
+    }
+    const float length2 = glm::dot(tip, tip);
+    kind.plain = r.air.w > kWhole && length2 > 1e-8f;
+    for (uint32_t k = 0; k < count && kind.plain; ++k) {
+        if (nodes[k].along.w > height) break;
+        const vec3 at = vec3(nodes[k].centre) - base;
+        const vec3 off = at - tip * (glm::dot(at, tip) / length2);
+        kind.plain = nodes[k].squeeze.w <= 0.0f && nodes[k].side.w < 1.01f &&
+                     glm::length(off) < kStraight * kind.wide;
+    }
+    return kind;
+}
+
+void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had, uint32_t room,
+                 VolumeBookShelf& books, std::span<uint32_t> out) noexcept {
+    std::fill(out.begin(), out.end(), kNoBook);
+    const auto take = [&](uint32_t number) {
+        VolumeBook& book = books[number];
+        book.shares = 0;
+        for (size_t i = 0; i < items.size(); ++i) {
+            const BookItem& item = items[i];
+            if (!item.wants || out[i] != kNoBook ||
+                !isAlike(item.kind, book.kind, had[i] == number ? kKeepsBook : 1.0f))
+                continue;
+            out[i] = number;
+            ++book.shares;
+        }
+    };
+    // Whose pages a book gets: the largest of those that want it and are like it.
+    const auto lead = [&](VolumeBook& book, const auto& may) {
+        const BookItem* best = nullptr;
+        for (size_t i = 0; i < items.size(); ++i)
+            if (items[i].wants && items[i].fits && items[i].kind.plain && out[i] == kNoBook &&
+                may(i) && (!best || items[i].covers > best->covers))
+                best = &items[i];
+        if (!best) return false;
+        if (book.key != best->key) ++book.run;
+        book.key = best->key;
+        book.kind = best->kind;
+        return true;
+    };
+    for (uint32_t b = 0; b < kVolumeBooks; ++b) {
+        VolumeBook& book = books[b];
+        if (!book.used) continue;
+        book.used = b < room &&
+                    (lead(book,
+                          [&](size_t i) {
+                              return items[i].key == book.key &&
+                                     isAlike(items[i].kind, book.kind, kKeepsBook);
+                          }) ||
+                     lead(book, [&](size_t i) {
+                         return isAlike(items[i].kind, book.kind, had[i] == b ? kKeepsBook : 1.0f);
+                     }));
+        if (book.used) take(b);
+    }
+    for (uint32_t b = 0; b < std::min(room, kVolumeBooks); ++b) {
+        VolumeBook& book = books[b];
+        if (book.used) continue;
+        const uint32_t run = book.run + 1;
+        book.used = lead(book, [](size_t) { return true; });
+        if (!book.used) return;
+        book.run = run;
+        book.written = 0;
+        take(b);
+    }
+}
+
+void BookReader::read(uint32_t number, const VolumeBookShelf& books) noexcept {
+    const VolumeBook& shown = books[number];
+    const uint64_t newest = shown.written - 1;
+    const bool own = key == shown.key;
+    const uint32_t hash = core::hash32(key);
+    const uint64_t late = own ? 0 : kLeastLate + (hash >> 1) % (kMostLate - kLeastLate + 1);
+    const uint64_t wanted = newest - std::min(newest, late);
+    const bool mirror = !own && (hash & 1u) != 0;
+    const auto isThere = [&](uint32_t in, uint64_t page) {
+        return in != kNoBook && page < books[in].written && page + kBookPages > books[in].written;
+    };
+    const auto runOf = [&](uint64_t page) { return shown.pages[page % kBookPages].run; };
+    const bool goesOn = book == number && mirrored == mirror && isThere(book, at) && wanted >= at &&
+                        wanted <= at + 2 && runOf(at) == runOf(wanted);
+    if (turned < kBookTurn) ++turned;
+    if (!goesOn && book != kNoBook) {
+        before = at, bookBefore = book, mirroredBefore = mirrored;
+        turned = 1;
+    }
+    book = number, at = wanted, mirrored = mirror;
+    if (!isThere(bookBefore, before)) turned = kBookTurn;
+}
+
+void layPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+             uint32_t slot, BookPage& page, MarchedVolume& out) noexcept {
+    layCard(view, item, screen, slot, page.card, out);
+    page.middle =
+        vec3(axesOf(item.draw, page.card.middle), glm::dot(page.card.middle, vec3(view.forward)));
+    page.tip = axesOf(item.draw, item.tip);
+    page.wide = item.draw.wide;
+}
+
+bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+              uint32_t slot, const BookPage& page, bool mirrored, VolumeCard& out) noexcept {
+    // Across the view: what lies along the page's flame comes to lie along the item's, what lies
+    // across it across.
+    const float wider = item.draw.wide / page.wide, side = mirrored ? -wider : wider;
+    const vec2 tip = axesOf(item.draw, item.tip);
+    const vec2 from = page.tip, ours(mirrored ? -from.x : from.x, from.y);
+    const float length = glm::length(ours), now = glm::length(tip);
+    vec2 x(side, 0.0f), y(0.0f, wider);
+    float deeper = wider;
+    if (length > kSeenAside * page.wide && now > kSeenAside * item.draw.wide) {
+        const vec2 a = ours / length, b = tip / now;
+        const float taller = now / length;
+        deeper = taller;
+        const auto turn = [&](vec2 p) {
+            const float along = glm::dot(p, a), aside = p.x * a.y - p.y * a.x;
+            return taller * along * b + wider * aside * vec2(b.y, -b.x);
+        };
+        x = turn({mirrored ? -1.0f : 1.0f, 0.0f}), y = turn({0.0f, 1.0f});
+    }
+    // As far from the eye as its middle is: seen from above that is nearer than where it stands,
+    // and a page in the distance of its foot would be too small.
+    const vec2 aside = page.middle.x * x + page.middle.y * y;
+    VolumeCardShape stands = page.card;
+    stands.middle = aside.x * glm::normalize(vec3(item.draw.rayX)) +
+                    aside.y * glm::normalize(vec3(item.draw.rayY)) +
+                    deeper * page.middle.z * vec3(view.forward);
+    if (!showCard(view, item, screen, slot, stands, out)) return false;
+    // showCard has cells as they lie in the page: by how much a metre is.
+    const vec2 perMetre = vec2(out.place.z, out.upY) / page.card.cell;
+    const vec2 middle = vec2(out.place) - page.card.low * perMetre;
+    const vec2 first = page.card.low.x * x + page.card.low.y * y;
+    const vec2 cellX = page.card.cell * x * perMetre, cellY = page.card.cell * y * perMetre;
+    out.place = vec4(middle + first * perMetre, cellX);
+    out.upX = cellY.x, out.upY = cellY.y;
+    out.perX = 2.0f / glm::length(screen.size * cellX);
+    out.perY = 2.0f / glm::length(screen.size * cellY);
+    return true;
+}
+
+}  // namespace fw::lod

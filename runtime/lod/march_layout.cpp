@@ -1,0 +1,288 @@
+// Volumetric flames of the frame's view before it is drawn: each ray once for a cell of a few
+// pixels, or of a part of one where the flame is small, kept in slabs, of the tiles that
+// volume_probe finds worth it. Memory is bounded: where not all fits, those that take most of it
+// are marched in larger cells.
+#include "lod/tiers.h"
+#include "lod/volumes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace fw::lod {
+namespace {
+
+constexpr float kMostCell = 64.0f;     // px
+constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
+// A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
+// depend on where cells lie.
+constexpr float kCellsAcross = 16.0f;
+constexpr float kAllDetail = 96.0f;  // px across a flame from which its samples are as it says
+// Cells across one from which those around a cell are narrower than a quarter of a step: layers of
+// samples would show as bands.
+constexpr float kNoLayers = 100.0f;
+// Samples that a ray takes closer together rather than fewer, of a flame of that many cells; of
+// smaller ones, whose rays are fewer, up to so many times as many; of one that is to be as good as
+// can be so many for a cell, up to that: where it is small they are close already.
+constexpr float kLeastSamples = 20.0f, kLeastInSmall = 1.6f;
+constexpr float kLeastPerCell = 0.5f, kLeastOfHero = 48.0f;
+constexpr float kLeastSpacing = 0.5f;  // of small and of large ones, of what they say
+constexpr float kSamplesPerStep = 2.75f;
+constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
+constexpr uint64_t kLeastTiles = 2048;      // of small flames, however small the screen
+constexpr uint64_t kHalfScreens = 5;        // whose tiles there is room for: plumes overlap
+// Where room is short: times as large as those of fire are smoke's cells at least, and so many
+// tiles of fire are worth one of smoke.
+constexpr float kSmokeCells = 4.0f;
+constexpr float kSmokeTiles = 4.0f;
+constexpr uint64_t kFewTiles = 32;  // of a flame, which keeps its cells as long as others have more
+
+static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
+
+uint32_t wordsOfTile(uint32_t slabs) {
+    return kVolumeTileWords + kVolumeTile * kVolumeTile * kVolumeCellWords * slabs;
+}
+
+struct Tiles {
+    uint32_t originX, originY, x, y;
+};
+
+// That cover a part of the view, from a whole pixel on.
+Tiles tilesOf(const vec4& rect, vec2 size, float cell) {
+    const float whole = std::max(cell, 1.0f);  // px
+    const auto first = [&](float ndc, float pixels) {
+        const float at = std::max(std::floor((0.5f * ndc + 0.5f) * pixels / whole), 0.0f);
+        return uint32_t(at * (whole / cell));
+    };
+    const auto tiles = [&](float ndc, float pixels, uint32_t from) {
+        const float end = std::ceil((0.5f * ndc + 0.5f) * pixels / whole) * (whole / cell);
+        return uint32_t(std::max(std::ceil((end - float(from)) / float(kVolumeTile)), 1.0f));
+    };
+    const uint32_t x = first(rect.x, size.x), y = first(rect.y, size.y);
+    return {x, y, tiles(rect.z, size.x, x), tiles(rect.w, size.y, y)};
+}
+
+// m along the view to where a pixel of it is as wide as VolumeDraw::rayX says.
+float awayOf(const VolumeDraw& draw) {
+    const bool perspective = draw.clip.z > 0.0f;
+    return perspective ? draw.front + 0.5f * draw.deep * float(draw.slabs) : 1.0f;
+}
+
+// px, of a flame's cells.
+float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    const float wanted = volumeWide(draw, screen) / kCellsAcross;
+    const auto most = float(screen.cell);
+    if (wanted >= most) return most;
+    float cell = 1.0f;
+    while (cell > wanted && cell * float(kMostPerPixel) > 1.0f) cell *= 0.5f;
+    return cell;
+}
+
+// m between samples. Where sheets are closer than samples thick flame is too dark; a small one,
+// which costs little, gets up to twice as many, and so does one around the eye or near it.
+float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    const float wide = volumeWide(draw, screen);
+    const float few = std::min(wide / kAllDetail, kNoLayers * cellOf(draw, screen) / wide);
+    return draw.spacing * std::clamp(few, kLeastSpacing, 1.0f);
+}
+
+// Samples of a ray: of those with few steps as many as show the light of those with many.
+uint32_t mostOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    return std::min(uint32_t(kSamplesPerStep * float(draw.mostSteps)), screen.steps);
+}
+
+// Of a slab.
+uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+    const float spacing = spacingOf(draw, screen);
+    const uint32_t most = mostOf(draw, screen) / draw.slabs;
+    return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
+}
+
+// VolumeMarch::least: of those with few steps no more than three quarters of what they may take.
+uint32_t leastOf(const VolumeItem& item, const VolumeScreen& screen, float cells) {
+    float least = kLeastSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
+    if (item.hero) least = std::max(least, std::min(kLeastPerCell * cells, kLeastOfHero));
+    return std::min(uint32_t(least), 3 * mostOf(item.draw, screen) / 4);
+}
+
+float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
+
+struct Laid {  // a part of the view for a flame
+    uint32_t item = 0;
+    bool window = false;
+    bool smoke = false;  // most of it
+    vec4 rect{};
+    float cell = 0;  // px
+    Tiles tiles{};
+    [[nodiscard]] uint64_t count() const { return uint64_t(tiles.x) * tiles.y; }
+    // Cells of the part of the largest become larger first: of those with many tiles that of small
+    // cells, so that what is near does not show its cells before what is far. 0: they cannot.
+    [[nodiscard]] float weight() const {
+        if (coarser(cell) > kMostCell) return 0.0f;
+        const auto n = float(count());
+        const float size = count() <= kFewTiles ? n / kMostCell : n / std::max(cell, 1.0f);
+        return smoke ? kSmokeTiles * size : size;
+    }
+};
+
+// All flames' parts and cells, which together take no more than so many tiles: what small flames
+// need is little, and they alone would be lost in larger ones.
+class Layout {
+ public:
+    Layout(std::span<const VolumeItem> items, const VolumeScreen& screen)
+        : items_(items), screen_(screen) {}
+    // False: they do not fit.
+    bool fit(uint64_t room) {
+        for (size_t i = 0; i < items_.size(); ++i)
+            add(uint32_t(i), false, items_[i].draw.rect, cellOf(items_[i].draw, screen_));
+        if (all_ > room) smokeMakesWay();
+        while (all_ > room) {
+            Laid& most = *std::max_element(
+                parts_.begin(), parts_.begin() + ptrdiff_t(count_),
+                [](const Laid& a, const Laid& b) { return a.weight() < b.weight(); });
+            if (most.weight() == 0.0f) return false;
+            lay(most, coarser(most.cell));
+        }
+        return true;
+    }
+    [[nodiscard]] std::span<const Laid> parts() const { return {parts_.data(), count_}; }
+    [[nodiscard]] uint64_t tiles() const { return all_; }
+
+ private:
+    void lay(Laid& part, float cell) {
+        all_ -= part.count();
+        part.cell = cell;
+        part.tiles = tilesOf(part.rect, screen_.size, cell);
+        all_ += part.count();
+    }
+    void add(uint32_t item, bool window, const vec4& rect, float cell) {
+        Laid& part = parts_[count_++];
+        part = {item, window, false, rect, cell, {}};
+        lay(part, cell);
+    }
+    void smokeMakesWay() {
+        count_ = 0, all_ = 0;
+        for (size_t i = 0; i < items_.size(); ++i) {
+            const VolumeItem& item = items_[i];
+            const float cell = cellOf(item.draw, screen_);
+            add(uint32_t(i), false, item.draw.rect, cell);
+            if (!item.smokes) continue;
+            Laid& whole = parts_[count_ - 1];
+            const bool seen = item.burns.x < item.burns.z && item.burns.y < item.burns.w;
+            const Tiles fire = tilesOf(item.burns, screen_.size, cell);
+            // A window nearly as large as the flame would save nothing.
+            if (seen && 3 * whole.count() < 4 * uint64_t(fire.x) * fire.y) continue;
+            whole.smoke = true;
+            lay(whole, std::max(kSmokeCells * cell, 1.0f));
+            if (seen) add(uint32_t(i), true, item.burns, cell);
+        }
+    }
+
+    std::span<const VolumeItem> items_;
+    const VolumeScreen& screen_;
+    std::array<Laid, 2 * kMaxVolumeFlames> parts_;  // a flame's window behind the flame
+    size_t count_ = 0;
+    uint64_t all_ = 0;  // tiles
+};
+
+}  // namespace
+
+float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept {
+    const float pixel = 2.0f / screen.size.x * glm::length(vec3(draw.rayX)) * awayOf(draw);
+    return draw.wide / std::max(pixel, 1e-9f);
+}
+
+void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
+    const float cell = cellOf(draw, screen);
+    draw.perPixel = cell <= 1.0f ? std::max(uint32_t(1.0f / cell), 2u) : 1;
+    draw.spacing = spacingOf(draw, screen);
+    draw.mostSteps = mostOf(draw, screen);
+    if (draw.perPixel == 1) return;
+    // Of a pixel that is flame in part slabs would show less light than it has.
+    draw.deep *= float(draw.slabs);
+    draw.slabs = 1;
+}
+
+uint32_t volumeRayWords(const VolumeScreen& screen) {
+    const float tile = float(screen.cell * kVolumeTile);
+    const auto tiles = [&](float pixels) {
+        return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
+    };
+    const uint64_t all = std::max<uint64_t>(
+        tiles(screen.size.x) * tiles(screen.size.y) * kHalfScreens / 2, kLeastTiles);
+    return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMostWords));
+}
+
+LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                       uint32_t first) {
+    Layout layout(items, screen);
+    const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
+    if (!layout.fit(room)) return {};
+    LaidVolumes laid;
+    laid.end = first + uint32_t(layout.tiles() * kVolumeTileWords);
+    uint32_t known = first, samples = laid.end;
+    for (const Laid& part : layout.parts()) {
+        const VolumeItem& item = items[part.item];
+        const VolumeDraw& draw = item.draw;
+        const float cell = part.cell;
+        const vec2 perCell = vec2(2.0f * cell) / screen.size;  // of the view's [-1, 1]
+        const Tiles& tiles = part.tiles;
+        const uint32_t count = tiles.x * tiles.y;
+        MarchedVolume& one = out[laid.count++];
+        one.flame = item.flame;
+        one.window = part.window;
+        one.smokes = item.smokes;
+        VolumeMarch& march = one.march;
+        march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinestDetail);
+        march.turns = turnsOf(draw, screen);
+        march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
+        march.rayO = vec4(vec3(draw.rayO) + (0.5f * perCell.x - 1.0f) * vec3(draw.rayX) +
+                              (0.5f * perCell.y - 1.0f) * vec3(draw.rayY),
+                          draw.front);
+        march.slabs = draw.slabs;
+        march.intervals = draw.intervals;
+        march.originX = tiles.originX;
+        march.originY = tiles.originY;
+        march.tilesX = tiles.x;
+        march.cells = count * kVolumeTile * kVolumeTile;
+        march.tiles = known;
+        march.samples = samples;
+        march.encoding = screen.encoding;
+        march.flame = one.flame;
+        // Flames of few cells are probed more closely, or rays go past them.
+        const float wide = volumeWide(draw, screen) / cell;
+        march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
+        march.least = leastOf(item, screen, wide);
+        march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
+        VolumeComposite& composite = one.composite;
+        composite.place =
+            vec4(perCell * vec2(float(tiles.originX), float(tiles.originY)) - vec2(1.0f), perCell);
+        composite.clip = draw.clip;
+        composite.base = draw.base;
+        composite.front = draw.front;
+        composite.deep = draw.deep;
+        composite.slabs = draw.slabs;
+        composite.tilesX = tiles.x;
+        composite.tilesY = tiles.y;
+        composite.flags = known;
+        composite.samples = samples;
+        composite.perPixel = march.perPixel;
+        composite.from = 0.0f;
+        composite.to = 1.0f;
+        composite.window = vec4(0.0f);
+        if (part.window) {
+            // Of the whole flame's cells, which end where these begin.
+            VolumeComposite& whole = out[laid.count - 2].composite;
+            const vec2 low = vec2(composite.place), size(tiles.x, tiles.y);
+            const vec2 high = low + perCell * float(kVolumeTile) * size;
+            const vec2 from(whole.place), per(whole.place.z, whole.place.w);
+            whole.window = vec4((low - from) / per, (high - from) / per);
+        }
+        known += count * kVolumeTileWords;
+        samples += march.cells * kVolumeCellWords * draw.slabs;
+    }
+    return laid;
+}
+
+}  // namespace fw::lod

@@ -1,0 +1,132 @@
+// How a view shows its volumetric flames: where they are on the screen, and as what each is drawn.
+// tiers.h chooses between a march, an impostor and a billboard.
+#pragma once
+#include "shared/look.h"
+#include "shared/volume_draw.h"
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+namespace fw::gpu {
+struct FlameNode;  // shared/volume.h
+struct FlameRecord;
+}  // namespace fw::gpu
+
+namespace fw::lod {
+
+using namespace gpu;  // what shaders share
+
+struct VolumeItem {  // a volumetric flame that a view may show
+    uint32_t flame = 0;
+    VolumeDraw draw{};
+    vec4 whole{};  // VolumeDraw::rect as if the view had no edge; empty: it is around the eye
+    vec3 middle{}, base{};    // m, world: of its bounds; where it stands
+    vec3 tip{};               // m, from there to where its mean height ends
+    float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
+    bool smokes = false;
+    bool hero = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
+    vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
+};
+// Where the view shows it, in so many slabs; false: nowhere.
+bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
+                VolumeDraw& out, vec4* whole = nullptr);
+// The plane through its base: dot(xyz, x) + w is m on the flame's side. Lower where it leans below
+// its base: nothing that it shows is beyond.
+vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t count);
+// VolumeDraw::base of such a plane, of a draw that volumeDraw made: that has none.
+void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept;
+// VolumeDraw::clip: what tells how far something is from its depth.
+vec4 volumeClip(const ViewParams& view) noexcept;
+// How many samples each of them is worth where all are marched as they are drawn.
+void chooseVolumes(std::span<VolumeItem> items);
+// VolumeDraw::intervals for a curve.
+uint32_t volumeIntervals(const FlameNode* nodes, uint32_t count);
+// Of the flame without its smoke.
+void volumeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                  vec4& high);
+// Slabs are for the flame: smoke before and behind it is in the outermost. Bounds of the flame
+// alone.
+void volumeSlabs(const ViewParams& view, const vec4& low, const vec4& high, VolumeDraw& out);
+
+struct MarchedVolume {  // one whose rays are marched before the drawing, and how it is shown
+    uint32_t flame = 0;
+    bool smokes = false;  // marched by volume_smoke
+    bool window = false;  // finer cells where it burns, of the one before it
+    VolumeMarch march{};
+    VolumeComposite composite{};
+};
+// Of VolumeWork per flame: it, its card, where it burns, its book's page.
+constexpr uint32_t kVolumeWorks = 4;
+struct VolumeScreen {     // what the marched view is shown on
+    vec2 size{};          // px
+    uint32_t slabs = 1;   // of a flame
+    uint32_t cell = 2;    // px, at least
+    uint32_t steps = 64;  // of a ray, at most
+    uint32_t encoding = 0;
+    bool operator==(const VolumeScreen&) const = default;
+};
+// Words of FW_BIND_VOLUME_RAYS that a screen is worth: flames over all of it and half as much
+// again.
+uint32_t volumeRayWords(const VolumeScreen& screen);
+// px, across a flame.
+float volumeWide(const VolumeDraw& draw, const VolumeScreen& screen) noexcept;
+// Rays and samples of a flame that is marched as it is drawn: as many as if it were before.
+void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
+// Cells of all `items`, as fine as `words` allow, where those of most tiles get larger ones, in
+// their order, behind the `first` words, which are others'; `perPixel`: m per pixel at a depth
+// of 1. Where room is short smoke, thin and wide, makes way for fire: a flame that smokes gets
+// large cells, and behind it in `out` fine ones where it burns. So `out` needs room for twice as
+// many.
+struct LaidVolumes {
+    uint32_t end = 0;    // of the words that are known of tiles; 0: they do not fit
+    uint32_t count = 0;  // of `out`
+};
+LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                       uint32_t first = 0);
+
+struct VolumeCardShape {  // what is in a card's words
+    bool there = false;
+    uint32_t key = 0;    // whose
+    uint64_t frame = 0;  // that marched it
+    vec3 middle{};       // m, from where the flame stands
+    vec3 direction{};    // unit, from the eye
+    vec2 low{};          // m across the view, from the middle: of its first cell
+    float cell = 0;      // m
+    uint32_t tilesX = 0, tilesY = 0, encoding = 0;
+};
+// What a flame's card shows goes over, pixel by pixel, from one march of it to the next.
+struct VolumeCardPair {
+    std::array<VolumeCardShape, 2> shapes;
+    uint32_t newest = 0;  // of them
+    uint32_t over = 1;    // frames from when it was marched until it shows alone
+};
+bool cardFits(const VolumeItem& item) noexcept;
+// How the card in `slot`, a half of a pair, is marched, from where it is seen now.
+void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept;
+// False: it is behind the eye.
+bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept;
+
+struct SlicedVolume {  // one that is drawn as slices of its lattice
+    uint32_t flame = 0;
+    VolumeSlices draw{};
+};
+bool slicesShow(uint32_t encoding) noexcept;  // whether slices add up there, see FwOutputEncoding
+SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept;
+
+struct HazedVolume {  // one whose heat bends what is seen behind it
+    uint32_t flame = 0;
+    float away = 0;  // m along the view
+    VolumeHaze draw{};
+};
+// Of the column of hot gas in and above a flame.
+void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
+                      vec4& high);
+// False: the view shows none of it.
+bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, float strength,
+                   VolumeHaze& out) noexcept;
+
+}  // namespace fw::lod

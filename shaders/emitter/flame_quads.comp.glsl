@@ -1,0 +1,212 @@
+// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of ignition ticks:
+// nothing is stored, and nothing pops. Each of a tile's slots shows one short life after another, fixed by the state at
+// its birth.
+#version 450
+#extension GL_GOOGLE_include_directive : require
+layout(local_size_x = 64) in;
+#define FW_USE_PUSH
+#define FW_USE_OBJECTS readonly
+#define FW_USE_MATERIALS readonly
+#define FW_USE_TEXELS readonly
+#define FW_USE_NORMALS readonly
+#define FW_USE_STATE readonly
+#define FW_USE_COUNTERS readonly
+#define FW_USE_TILE_STATE readonly
+#define FW_USE_BURN_TILES readonly
+#include "lib/buffers.glsl"
+#include "shared/front.h"
+#include "shared/wind.h"
+#define FW_EMITTER_LOOKS
+#define FW_EMITTER_FLAMES writeonly
+#define FW_EMITTER_DRAW_ARGS
+#define FW_EMITTER_BOOKS
+#include "emitter/buffers.glsl"
+#define FW_CELLS readonly
+#include "emitter/cells.glsl"
+#include "emitter/nearer.glsl"
+#include "lib/turn.glsl"
+#include "lib/skin.glsl"
+
+const float kLeastPixels = 20.0;  // of a flame's height
+const float kMaxMerged = 1.6;    // height factor of merged flames
+const float kMaxClear = 0.9;     // half widths, see clearance
+
+float saturate(float x) { return clamp(x, 0.0, 1.0); }
+
+vec3 perpendicular(vec3 n) {
+    return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
+}
+
+// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces the camera and its
+// wall does not, so one side would intersect the wall. Quads on walls facing away are offset behind them, or they would
+// show through thin walls. Sheets need none.
+vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
+    vec3 toEye = view.forward.w > 0.5 ? normalize(view.eye.xyz - place) : -view.forward.xyz;
+    float facing = dot(normal, toEye);
+    if ((object.flags & kObjectTwoSided) != 0u) return vec3(0.0);
+    float slant = sqrt(max(1.0 - facing * facing, 0.0)) / max(abs(facing), 0.2);
+    float before = clamp(slant - 0.15, kQuadNearer, kMaxClear);
+    return toEye * (mix(-before, before, smoothstep(-0.3, 0.0, facing)) - kQuadNearer);
+}
+
+void emit(FlameQuad quad) {
+    uint slot = atomicAdd(drawArgs[kFlameTiles], 1u);
+    if (slot < min(view.flameCapacity, kFlameCapacity)) flameQuad[slot] = quad;
+}
+
+struct Foot {
+    uint texel, material;
+    float age;   // ticks at birth
+    float left;  // ticks of flame it has left now
+    bool found;
+};
+
+// A texel of the tile that flamed at a birth `ago` ticks back: the youngest of the first few found, so that fire stands
+// along the front. Later ignitions do not change the choice.
+Foot footOf(BurnTile tile, uint seed, float ago) {
+    BurnObject object = objects[tile.object];
+    uint corner = (tile.tile / object.tilesX) * 8u * object.width + (tile.tile % object.tilesX) * 8u;
+    Foot foot;
+    foot.found = false;
+    foot.age = 1e30;
+    uint met = 0u, start = seed & 63u, stride = (seed >> 6u & 63u) | 1u;
+    for (uint i = 0u; i < 64u && met < 4u; ++i) {
+        uint lane = start + i * stride & 63u;
+        uint texel = corner + (lane >> 3u) * object.width + (lane & 7u);
+        uint t = state[object.stateBase + texel];
+        if (!isSource(t) || t > view.now) continue;
+        float age = float(view.now - t) + view.ambientGround.w;
+        if (age < ago) continue;  // it caught later
+        uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
+        MaterialLook look = looks[materials[material].look];
+        float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
+        // Thin materials burn at hole edges while the hole grows.
+        if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 / materials[material].timeScale);
+        if (age >= lasts || age - ago >= 0.8 * lasts) continue;
+        ++met;
+        if (age - ago < foot.age) {
+            foot.found = true;
+            foot.age = age - ago;
+            foot.left = (lasts - age) / min(0.3 * lasts, 1400.0);
+            foot.texel = texel;
+            foot.material = material;
+        }
+    }
+    return foot;
+}
+
+void main() {
+    uint count = counters[kRowBurn + push.burnParity].runCount;
+    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
+    float time = view.ambientSky.w;
+    vec3 up = view.up.xyz;
+    for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
+        BurnTile tile = burnTiles[i];
+        vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
+        vec3 drift = wind - up * dot(wind, up);
+        uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);
+        // Jittered cluster lookups hide cell borders in the heights.
+        vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;
+        float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
+        vec3 above = flamePlaceOf(tile, large) + 0.8 * jitter * large;
+        float fade = flameFade(tile);
+        vec2 own = vec2(tile.normalPower.w, tile.positionArea.w) * fade;
+        vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
+        vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
+        float likely = flameLength(near, around);
+        // Merges flames below kLeastPixels: fewer and larger.
+        vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
+        float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
+        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
+        float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
+        float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
+        // A front thinner than its flames still has a row of them.
+        quads *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
+        // A falling tile has no flames.
+        uint worldTile = objects[tile.object].worldTileBase + tile.tile;
+        if ((tileState[worldTile].flag & kTileFalling) != 0u) quads = 0.0;
+        // Lifetimes are independent of the fire, so that changes do not shake all quads.
+        float scale = sqrt(clamp(6.0 * tileSide(tile.object), 0.05, 3.0));
+
+        for (uint k = 0u; k < 4u; ++k) {
+            bool smoke = k == 3u;
+            MaterialLook mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
+            float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
+            odds *= view.quads.x;  // a tile may request more quads than it has slots
+            uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
+            float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
+            float life = time / period + unit(s + 1u) * 16.0;
+            float generation = floor(life), a = life - generation;
+            uint g = hash32(s + uint(generation) * 2654435761u);
+            float chance = odds - unit(g + 4u);
+            if (chance <= 0.0) continue;
+            Foot foot = footOf(tile, hash32(g + 5u), a * period * 4096.0);
+            if (!foot.found) continue;
+            float vigour = flameFade(materials[foot.material], foot.age, 0.2);
+            // Young texels first: a line of fire with embers behind it.
+            float strength = smoothstep(0.0, 0.4 * odds, chance) * saturate(1.8 * (vigour - 0.07)) *
+                             smoothstep(0.0, 1.0, foot.left);
+            if (strength < 0.02) continue;
+            BurnObject object = objects[tile.object];
+            MaterialLook look = looks[materials[foot.material].look];
+            uvec2 packedTexel = texels[object.texelBase + foot.texel];
+            vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
+                                                               packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);
+            vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
+            bool skinned = (object.flags & kObjectSkinned) != 0u;
+            SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
+            if (skinned) {
+                rest.xyz = moved.place;
+                n = moved.normal;
+            }
+            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest), dot(object.worldRow2, rest));
+            vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
+                                               object.worldRow2.xyz, n) + up * 1e-4);
+            vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
+            float r1 = unit(g), r2 = unit(g + 1u), r3 = unit(g + 2u), r4 = unit(g + 3u);
+            float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);
+            FlameQuad quad;
+            float rise = 1.0 + 2.5 * sqrt(len);  // m/s
+            if (!smoke) {
+                float grown = 0.4 + 0.6 * smoothstep(0.0, 0.45, a);
+                float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
+                vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
+                                      (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
+                // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their share.
+                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
+                                  (0.5 + 0.5 * strength);
+                float loose = smoothstep(0.55, 1.0, a);
+                vec3 stands = normal * 0.15 + clearance(object, place, normal);
+                quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
+                                           axis * (0.10 * tall * loose * loose), tall);
+                quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) * (1.0 - smoothstep(0.62, 1.0, a));
+                quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
+                quad.kelvin = 1570.0 + 90.0 * r3;
+            } else {
+                float age = a * period;
+                float size = (0.30 + 0.55 * a + 0.15 * r3) * len + 0.04;
+                vec3 at = place + up * (len * (0.75 + 0.2 * r4) + 0.55 * rise * age) +
+                          drift * (0.75 * age) + right * ((r2 - 0.5) * 0.5 * len * a);
+                quad.baseHeight = vec4(at - up * size, 2.0 * size);
+                quad.axisWidth = vec4(up, size);
+                quad.opacity = strength * 0.42 * min(look.smoke, 1.6) * smoothstep(0.0, 0.30, a) *
+                               (1.0 - smoothstep(0.35, 1.0, a));
+                quad.phase = 0.10 * age + 5.0 * r4;
+                // Lit by the fire below from birth.
+                quad.kelvin = 1.0 - a;
+            }
+            quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
+            // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame, its foot at 1/20.
+            uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
+            if (showByBook(quad, book, a, a * period, r4) && !smoke) {
+                quad.axisWidth.w *= 2.4;
+                quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
+                quad.baseHeight.w *= 1.45;
+            }
+            if (quad.opacity > 0.004) emit(quad);
+        }
+    }
+}
