@@ -1,7 +1,8 @@
-// A client's side of a shared burn: it does what the server's host did, before the same steps, and
-// goes no further than it has heard of. Hashes of objects show whether both burn alike; if not, or
-// if it has no state yet, it asks for one. Messages of the server's host are handed on in order and
-// once each, even where a state stands for the records between them.
+// A client's side of a shared burn: it applies the server's commands before the same steps, and
+// goes no further than the last step that the server reported. Hashes of objects show whether both
+// burn alike. If they differ, or if the client has no state, it asks for one. Messages of the
+// server's host are handed on in order and once each, even where a state replaces the records
+// between them.
 #pragma once
 #include "net/packet.h"
 #include "net/records.h"
@@ -82,8 +83,8 @@ class Client {
     uint32_t repairs_ = 0;
     double stuck_ = 0;                          // s since a piece of it came
     double retryIn_ = 0;                        // s until a state is asked for again
-    uint32_t next_ = 0;                         // record to be done next
-    uint32_t received_ = 0;                     // the records before it are done or wait
+    uint32_t next_ = 0;                         // record to be applied next
+    uint32_t received_ = 0;                     // the records before it are applied or wait
     uint32_t messagesEnd_ = 0;                  // behind the last message that was handed on
     std::pmr::map<uint32_t, Waiting> waiting_;  // by record
     uint32_t contradictions_ = 0;  // newest packets, in a row, against what others said

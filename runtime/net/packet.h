@@ -35,16 +35,16 @@ constexpr size_t kPacketLeast = 512, kPacketMost = 1400;  // that packets have a
 
 // Begins a packet in `out`, whose room is kept.
 core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head);
-// Once all is in it.
+// Writes the checksum of a complete packet.
 void sealPacket(std::span<std::byte> packet) noexcept;
-// Throws where it is none; the reader goes on behind the head.
+// Throws unless it is a packet; the reader is then behind the head.
 PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
 
-// s without a packet that counts: then one that seems old may be of a sequence whose newest number
-// was wrong.
+// s without an accepted packet: a packet that seems old then restarts the sequence, since its
+// newest number may have been wrong.
 constexpr double kSilentMost = 3;
 
-// What of a sequence came already. Packets that are far behind the newest count as if they had.
+// The packets of a sequence that have arrived. Those far behind the newest count as arrived.
 class SequenceWindow {
  public:
     [[nodiscard]] bool isNew(uint32_t sequence) const noexcept {
@@ -59,7 +59,7 @@ class SequenceWindow {
         newest_ = sequence - 1;
         seen_ = 0;
     }
-    // Is it the newest? It is new.
+    // Marks a new packet as arrived. True: it is the newest.
     bool take(uint32_t sequence) noexcept {
         if (sequence <= newest_) {
             seen_ |= uint64_t(1) << (newest_ - sequence);
@@ -80,7 +80,7 @@ class SequenceWindow {
 struct Traffic {  // one way and the other
     uint64_t bytesOut = 0, bytesIn = 0, packetsOut = 0, packetsIn = 0;
     uint64_t ignored = 0;  // that came again, much too late, or faster than a peer may send
-    uint64_t refused = 0;  // damaged, or with a number that cannot be
+    uint64_t refused = 0;  // damaged, or with an impossible number
 };
 void addTraffic(const Traffic& traffic, FwNetState& state) noexcept;
 

@@ -1,6 +1,5 @@
-// The protocol's states: what a server keeps of each peer, what it sends in each of these phases,
-// and the phase that each event leads to. One table; a packet whose event the table does not have
-// is refused.
+// The protocol as one table: the phases of a peer, what the server sends in each phase, and the
+// phase that each event leads to. A packet whose event the table does not have is refused.
 #pragma once
 #include "flamewright/flamewright.h"
 

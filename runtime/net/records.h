@@ -1,6 +1,6 @@
-// Records that a server sends its clients in order: commands, hashes of objects, the host's own
-// messages, where a state was saved; each with the step before which it belongs. To a client that
-// gets a whole state instead, runs of records are sent as skipped, but never a message.
+// Records that a server sends its clients in order: commands, hashes of objects, messages of the
+// host, and the places of saved states, each with the step before which it belongs. A client that
+// gets a whole state instead is sent runs of records as skipped, but every message.
 #pragma once
 #include "core/stream.h"
 #include "world/recording.h"
@@ -48,7 +48,7 @@ struct Record {
 };
 
 void writeRecord(const Record& record, std::pmr::vector<std::byte>& out);
-// Throws where the bytes are none of writeRecord's; a message lies in them.
+// Throws unless writeRecord wrote the bytes. A message of the record points into them.
 void readRecord(std::span<const std::byte> bytes, Record& record);
 
 // Records by their number since the beginning: those from begin() on, and of those before it the

@@ -140,7 +140,7 @@ void Server::push(const Record& record) {
     }
 }
 
-// What the world noted since.
+// Makes records of what the world recorded since the last call.
 void Server::drain(world::World& world) {
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
     if (recording_.lost || recording_.loaded) {

@@ -1,8 +1,7 @@
-// The server's side of a shared burn: its world is the truth. What its host does to it becomes
-// records, which every client gets in order, with the step that each came before; a client that
-// comes late, falls too far behind or has gone wrong gets the whole state. The server moves no
-// packet itself and knows no clock but what the host says has passed. It checks every number of a
-// packet against what it sent, and all of them before it uses one.
+// The server's side of a shared burn: its world is authoritative. Its host's commands become
+// records, which every client gets in order, each with its step. A client that joins late, falls
+// too far behind or diverges gets the whole state. The host moves the packets and gives the time.
+// The server checks every number of a packet against what it sent before it uses any of them.
 #pragma once
 #include "core/handle_pool.h"
 #include "net/packet.h"
@@ -23,7 +22,7 @@ class Server {
     FwPeerId addPeer();
     void removePeer(FwPeerId id) { peers_.destroy(id); }
     void update(world::World& world, float seconds);
-    // A save is requested, which the next frame of the world brings, even one of no time.
+    // A save is requested; the next frame of the world takes it, even one of deltaTime 0.
     [[nodiscard]] bool awaitsFrame() const noexcept { return capturing_ && !captureNoted_; }
     // False: nothing is due.
     bool write(FwPeerId to, std::span<std::byte> room, uint32_t& size);

@@ -1,7 +1,6 @@
 // Archives visit the fields of state. A state struct has one `template <class A> void
-// serialize(A& a)`, and what it does depends on the archive: a Writer turns fields into bytes, a
-// Reader turns bytes into fields, a Hasher sums them, and a Checker (world/save.cpp) refuses values
-// out of range.
+// serialize(A& a)`. A Writer turns its fields into bytes, a Reader turns bytes into fields, a
+// Hasher sums them, and a SnapshotChecker (world/save.cpp) refuses values out of range.
 #pragma once
 #include "core/hash.h"
 #include "core/owned.h"
@@ -28,22 +27,22 @@ class Archive {
     void operator()(T&... values) {
         (visit(values), ...);
     }
-    // An id, as its index: ids of one index may be of another generation where they are loaded.
+    // An id as its index: the loading world's generation may differ.
     template <class Id>
     void id(Id& id) {
         visit(id.index1);
     }
-    // Of a burnable mesh that the loading world must have. Null is fine.
+    // The id of a burnable mesh that the loading world must have, or null.
     template <class Id>
     void object(const char*, Id& value) {
         id(value);
     }
-    // The same, by its slot.
+    // The same as a slot.
     template <std::integral T>
     void object(const char*, T& slot) {
         visit(slot);
     }
-    // And a texel of it that a triangle covers.
+    // A burnable mesh, and a texel of it that a triangle covers.
     template <class Object>
     void texel(const char*, Object& object, uint32_t& texel) {
         if constexpr (std::integral<Object>)

@@ -7,6 +7,7 @@
 #include "components/wind_grid.h"
 #include "save/archive.h"
 
+#include <algorithm>
 #include <variant>
 
 namespace fw::world {

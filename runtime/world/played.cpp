@@ -34,7 +34,7 @@ uint32_t mostAtOnce(const Burn& burn, const Play& play, uint32_t steps) noexcept
     return most;
 }
 
-// What catches from a tick on.
+// The texels that catch from a tick on.
 auto catchFrom(const Burn& burn, const Play& play, uint64_t tick) noexcept {
     return std::partition_point(burn.order.begin(), burn.order.end(), [&](uint32_t texel) {
         return play.tickOf(burn.ticks[texel]) < tick;
@@ -173,7 +173,7 @@ void World::stopBurn(FwBurnableMeshId id) {
 
 // ---- a frame ------------------------------------------------------------------------------------
 
-// Room for the events of a frame in which all that play have the most, and `more`.
+// Reserves the most events that all that play make in a frame, and `more`.
 void World::reservePlays(size_t more) {
     core::growTo(frame_.plays, playing_.size() + 1);
     size_t events = pending_.size() + more;
@@ -198,7 +198,7 @@ void World::endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept
           float(double(tick) / gpu::kTicksPerSecond));
 }
 
-// Those that play; how many events that makes up to a tick, at most.
+// Lists the objects that play. Returns the most events that they make up to a tick.
 size_t World::beginPlays(uint64_t end) {
     frame_.plays.clear();
     size_t events = 0;
@@ -213,7 +213,7 @@ size_t World::beginPlays(uint64_t end) {
     return events;
 }
 
-// What they do in a step; `due`: what others do to objects in it, by object.
+// Adds the events of a step. `due`: all other events of that step, by object.
 void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
     const uint32_t end = now + gpu::kStepTicks;
     for (Frame::PlayOf& entry : frame_.plays) {

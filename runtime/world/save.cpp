@@ -90,7 +90,7 @@ void captureEach(Pool& pool, List& to, const Fill& fill) {
         }
 }
 
-// With the next frame?
+// Whether the next frame takes the save.
 bool startsSave(const core::Owned<Save>& save) noexcept {
     return save && save->requested && !save->pending;
 }
@@ -181,7 +181,7 @@ uint64_t World::assetOf(const Object& object) noexcept {
     return hash;
 }
 
-// Ticks beyond which nobody asks when a tile last changed.
+// Ticks after which the time of a tile's last change does not matter.
 uint32_t World::windowOf(const Object& object) noexcept {
     components::Latch latch = object.latch;
     const components::Records records = components::makeRecords(
@@ -224,7 +224,7 @@ const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
     return save->ready && !save->requested ? &save->bytes : nullptr;
 }
 
-// Before a frame's plan: the objects that have something to save.
+// Before a frame is planned: lists the objects whose images a save needs.
 void World::planSave() {
     frame_.images.clear();
     if (std::none_of(saves_.begin(), saves_.end(), startsSave)) return;
@@ -247,7 +247,7 @@ void World::commitSave(uint64_t frameIndex) noexcept {
             capture(save.snapshot);
             save.pending = true;
             save.frameIndex = frameIndex;
-            // A network's are for who was not there: they are of no past of theirs.
+            // A network's saves have no events: they are not of the receiver's past.
             save.eventsFrom = who == size_t(SaveFor::net) ? kNoEvents : events_.next();
         } catch (...) {
             save.failed = true;
@@ -362,7 +362,7 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         const auto* now = object.slot < objects_.slotCount() ? objects_.at(object.slot) : nullptr;
         whole = whole && now && (*now)->firstFrame <= save.frameIndex;
     }
-    // What came is of less than was noted: objects went since. The next frame tries again.
+    // Objects were destroyed since the capture: the next frame tries again.
     if (!whole || touched != readback.images.size()) {
         save.requested = true;
         return;
@@ -425,7 +425,7 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     save.ready = true;
 }
 
-// A tag that the readback of a frame says is reached: its event is in the save, it is not.
+// Of a tag that was reached by the save's frame the save has the event alone.
 void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
     if (frameIndex > save.frameIndex) return;
     std::pmr::vector<Tag>& tags = save.snapshot.tags;
@@ -436,7 +436,7 @@ void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept 
     if (same != tags.end()) tags.erase(same);
 }
 
-// What the host had not polled at the save's frame, and what came of that frame since.
+// Events that the host had not polled at the save's frame, and later ones of that frame.
 void World::captureEvents(Save& save) {
     std::pmr::vector<SavedEvent>& to = save.snapshot.events;
     to.clear();
@@ -447,7 +447,8 @@ void World::captureEvents(Save& save) {
         if (event.object.index1 != 0 && !objects_.find(event.object)) continue;
         found.emplace_back(event.frameIndex, i);
     }
-    std::sort(found.begin(), found.end());  // readbacks of a device are behind what is at hand
+    std::sort(found.begin(),
+              found.end());  // readbacks of a device come later than the world's own events
     for (size_t k = found.size() - std::min<size_t>(found.size(), kMostSavedEvents);
          k < found.size(); ++k) {
         const FwEvent& event = events_.at(found[k].second);
@@ -550,7 +551,7 @@ BurnRecords World::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
     BurnRecords made;
-    // What has not burnt yet: the backend may have records of another wind, of this world's past.
+    // The backend may have records of an unburnt object from this world's past, of another wind.
     latch.sent = from.touched;
     if (!from.touched) return made;
     latch.filters = from.filters;
@@ -571,7 +572,7 @@ void World::load(std::span<const std::byte> bytes) {
     readSnapshot(bytes, saved);
     checkSnapshot(saved);
     settlePlays(saved);
-    // The latches first: what the backend gets follows from them.
+    // The latches come first: the backend's records follow from them.
     std::pmr::vector<components::Latch> latches(memory_);
     std::pmr::vector<ImageStore> stores(memory_);
     std::pmr::vector<gpu::RestoredObject> restored(memory_);
@@ -619,7 +620,7 @@ void World::load(std::span<const std::byte> bytes) {
     backend_.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
-    double by[3];  // what is in no save goes along
+    double by[3];  // the origin's move, for everything that no save has
     for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
     shiftBy(by);
     shiftCount_ = 0;
@@ -687,7 +688,7 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
     loadedTick_ = clock_.tick;
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending) continue;
-        save->pending = false;  // of the world that was
+        save->pending = false;  // of the world before the load
         save->requested = true;
     }
     if (timeline_) {
@@ -711,7 +712,7 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
               event.object.index1 != 0 ? objects_.at(event.object.index1 - 1)->get() : nullptr,
               event.tag, lastFrame_, event.position, event.value, event.other);
     readbackTick_ = clock_.tick;
-    // Awake it would see the wind from here on, and not from where its first fire begins.
+    // An awake world would filter the wind from here on, not from its first ignition.
     idle_ = seenIdle_ = saved.idle;
     lastStimulus_ = seenStimulus_ = saved.lastStimulus;
     stimuli_.clear();
@@ -722,7 +723,6 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
     hotTiles_ = saved.stats.hotTiles;
     receivers_ = loadedReceivers_ = saved.stats.receivers;
     lateClamps_ = saved.stats.lateClamps;
-    // Who is where.
     remote_.unsent = true;
     remote_.blockersDue = saved.blockersDue;
     remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
@@ -781,7 +781,7 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
     }
     for (const Slotted<FieldSnapshot>& from : saved.fields) {
         Field& field = **fields_.at(from.slot);
-        // The backend counts its own steps: what it shows goes on from where it is.
+        // The backend counts its own steps, and continues from them.
         const uint32_t ran = field.steps - field.shownBase;
         field.began = from.began;
         std::copy_n(from.position, 3, field.data.position);

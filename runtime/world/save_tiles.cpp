@@ -1,5 +1,5 @@
-// The parts of one object that differ between two saves of the same tick: blocks of tiles, found by
-// their hashes, sent as planes of their own, and put into the other save.
+// Blocks of tiles of one object that differ between two saves of the same tick: found by their
+// hashes, written as planes of their own, and merged into the other save.
 #include "core/hash.h"
 #include "core/stream.h"
 #include "world/save.h"

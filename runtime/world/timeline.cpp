@@ -112,7 +112,7 @@ void World::planTimeline(uint64_t after) noexcept {
     save->ready = false;
 }
 
-// A frame was: from `before` to the present.
+// After a frame from `before` to the present.
 void World::commitTimeline(uint64_t before) noexcept {
     if (!timeline_) return;
     Timeline& timeline = *timeline_;
@@ -130,7 +130,7 @@ void World::keepKeyframe() noexcept {
         timeline.keyframes.push_back(
             {save.snapshot.clock.tick, timeline.captured,
              std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), memory_)});
-    } catch (...) {  // there will be another one
+    } catch (...) {  // a later keyframe does
         return;
     }
     timeline.fit();
