@@ -163,36 +163,36 @@ uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> 
     return hash;
 }
 
-Journal& World::keepJournal(bool follows) {
-    journal_ = core::Owned<Journal>::make(memory_, memory_);
+Journal& PersistenceSystem::keepJournal(bool follows) {
+    journal_ = core::Owned<Journal>::make(world_.context_.memory, world_.context_.memory);
     journal_->follows = follows;
-    journal_->until = clock_.tick;
+    journal_->until = world_.context_.clock.tick;
     return *journal_;
 }
 
-void World::mayChange() const {
+void PersistenceSystem::mayChange() const {
     if (journal_ && journal_->follows && !journal_->performs)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The world follows a server's: what burns in it is changed there.");
 }
 
-void World::note(const Deed& deed) noexcept {
-    if (noted_) noted_->push({clock_.tick, false, deed});
+void PersistenceSystem::note(const Deed& deed) noexcept {
+    if (noted_) noted_->push({world_.context_.clock.tick, false, deed});
     noteInTimeline(deed);
     if (!journal_ || journal_->follows) return;
     try {
-        journal_->deeds.push_back({clock_.tick, deed});
+        journal_->deeds.push_back({world_.context_.clock.tick, deed});
     } catch (...) {  // what is done is done: all others are told anew
         journal_->lost = true;
     }
 }
 
-void World::noteSaveInLog() noexcept {
-    if (noted_) noted_->push({clock_.tick, true, {}});
+void PersistenceSystem::noteSaveInLog() noexcept {
+    if (noted_) noted_->push({world_.context_.clock.tick, true, {}});
 }
 
-void World::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
-                     uint32_t word) noexcept {
+void PersistenceSystem::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_t count,
+                                 uint32_t word) noexcept {
     if (!notes()) return;
     Deed deed;
     deed.kind = kind;
@@ -202,18 +202,19 @@ void World::noteMove(Deed::Kind kind, uint32_t slot, const float* numbers, size_
     note(deed);
 }
 
-void World::notePose(Deed::Kind kind, uint32_t slot, const float transform[16]) noexcept {
+void PersistenceSystem::notePose(Deed::Kind kind, uint32_t slot,
+                                 const float transform[16]) noexcept {
     float columns[12];
     for (int c = 0; c < 4; ++c) std::copy_n(transform + 4 * c, 3, columns + 3 * c);
     noteMove(kind, slot, columns, 12);
 }
 
-void World::performLoad(std::span<const std::byte> bytes) {
+void PersistenceSystem::performLoad(std::span<const std::byte> bytes) {
     const Performing performing(journal_.get());
     load(bytes);
 }
 
-void World::perform(const Deed& deed) {
+void PersistenceSystem::perform(const Deed& deed) {
     const Performing performing(journal_.get());
     const float* numbers = deed.numbers.data();
     float transform[16] = {};
@@ -221,68 +222,75 @@ void World::perform(const Deed& deed) {
     transform[15] = 1;
     switch (deed.kind) {
         case Deed::Kind::wind:
-            return setWind(numbers);
+            return world_.wind_.set(numbers);
         case Deed::Kind::flags:
-            return setFlags(deed.word);
+            return world_.exchange_.setFlags(deed.word);
         case Deed::Kind::pose:
-            return setTransform(idAt(objects_, deed.slot), transform);
+            return world_.setTransform(idAt(world_.scene_.objects, deed.slot), transform);
         case Deed::Kind::moveBlocker:
-            return moveBlocker(idAt(blockers_, deed.slot), transform);
+            return world_.exchange_.moveBlocker(idAt(world_.exchange_.state_.blockers, deed.slot),
+                                                transform);
         case Deed::Kind::moveFire:
-            return moveVolumetricFire(idAt(fires_, deed.slot), numbers);
+            return world_.flames_.move(idAt(world_.flames_.state_.fires, deed.slot), numbers);
         case Deed::Kind::firePower:
-            return setVolumetricFirePower(idAt(fires_, deed.slot), numbers[0]);
+            return world_.flames_.setPower(idAt(world_.flames_.state_.fires, deed.slot),
+                                           numbers[0]);
         case Deed::Kind::moveEmitter:
-            return moveFireEmitter(idAt(emitters_, deed.slot), numbers,
-                                   deed.word != 0 ? numbers + 3 : nullptr);
+            return world_.emitters_.move(idAt(world_.emitters_.state_.emitters, deed.slot), numbers,
+                                         deed.word != 0 ? numbers + 3 : nullptr);
         case Deed::Kind::emitterPower:
-            return setFireEmitterPower(idAt(emitters_, deed.slot), numbers[0]);
+            return world_.emitters_.setPower(idAt(world_.emitters_.state_.emitters, deed.slot),
+                                             numbers[0]);
         case Deed::Kind::moveField:
-            return moveParticleField(idAt(fields_, deed.slot), numbers,
-                                     deed.word != 0 ? numbers + 3 : nullptr);
+            return world_.fields_.move(idAt(world_.fields_.state_.fields, deed.slot), numbers,
+                                       deed.word != 0 ? numbers + 3 : nullptr);
         case Deed::Kind::fieldAmount:
-            return setParticleFieldAmount(idAt(fields_, deed.slot), numbers[0]);
+            return world_.fields_.setAmount(idAt(world_.fields_.state_.fields, deed.slot),
+                                            numbers[0]);
         case Deed::Kind::windZone:
-            return setWindZone(idAt(windPool_, deed.slot), windZoneDefOf(deed));
+            return world_.wind_.setZone(idAt(world_.wind_.state_.zones, deed.slot),
+                                        windZoneDefOf(deed));
         case Deed::Kind::room:
-            return setRoom(idAt(rooms_, deed.slot), roomDefOf(deed));
+            return world_.rooms_.set(idAt(world_.rooms_.state_.rooms, deed.slot), roomDefOf(deed));
         case Deed::Kind::playBurn:
-            if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
-            return playBurnAt(idAt(objects_, deed.slot), idAt(burns_, deed.word - 1), deed.tick,
-                              numbers[0]);
+            if (deed.tick < world_.context_.clock.tick || deed.tick > Clock::kLastTick) break;
+            return world_.burn_.playBurnAt(idAt(world_.scene_.objects, deed.slot),
+                                           idAt(world_.burn_.state_.burns, deed.word - 1),
+                                           deed.tick, numbers[0]);
         case Deed::Kind::stopBurn:
-            return stopBurn(idAt(objects_, deed.slot));
+            return world_.burn_.stopBurn(idAt(world_.scene_.objects, deed.slot));
         case Deed::Kind::windGrid:
-            return takeWindGrid(deed);
+            return world_.wind_.applyGridCommand(deed);
         case Deed::Kind::windPoints:
-            return takeWindPoints(deed);
+            return world_.wind_.applyPointsCommand(deed);
         case Deed::Kind::heatShield:
-            return takeShield(deed);
+            return world_.exchange_.applyShieldCommand(deed);
         case Deed::Kind::shieldCells:
-            return takeShieldCells(deed);
+            return world_.exchange_.applyShieldCells(deed);
         case Deed::Kind::shieldObject:
-            return takeShieldObject(deed);
+            return world_.exchange_.applyShieldObject(deed);
         case Deed::Kind::transferBurn:
-            return transferBurn(idAt(objects_, deed.word - 1), idAt(objects_, deed.slot));
+            return world_.burn_.transferBurn(idAt(world_.scene_.objects, deed.word - 1),
+                                             idAt(world_.scene_.objects, deed.slot));
         case Deed::Kind::shiftOrigin:
-            return shiftOrigin(numbers, nullptr);
+            return world_.shiftOrigin(numbers, nullptr);
         case Deed::Kind::gusts: {
             FwGustDef def{};
             def.structSize = sizeof def;
             def.strength = numbers[0];
             def.size = numbers[1];
-            return setGusts(def);
+            return world_.wind_.setGusts(def);
         }
         case Deed::Kind::ignite: {
-            if (deed.tick < clock_.tick || deed.tick > Clock::kLastTick) break;
+            if (deed.tick < world_.context_.clock.tick || deed.tick > Clock::kLastTick) break;
             FwIgnitionDef def{};
             def.structSize = sizeof def;
             def.kind = deed.word;
-            if (deed.slot != 0) def.object = idAt(objects_, deed.slot - 1);
+            if (deed.slot != 0) def.object = idAt(world_.scene_.objects, deed.slot - 1);
             std::copy_n(numbers, 3, def.position);
             def.radius = numbers[3];
             def.water = numbers[4];
-            (void)igniteAt(def, deed.tick);
+            (void)world_.burn_.igniteAt(def, deed.tick);
             return;
         }
         case Deed::Kind::count:
@@ -292,29 +300,38 @@ void World::perform(const Deed& deed) {
                deed.tick);
 }
 
-double World::seconds() const noexcept {
-    return double(clock_.tick) / gpu::kTicksPerSecond +
-           double(clock_.fraction) / double(uint64_t(1) << Clock::kFractionBits);
+double PersistenceSystem::seconds() const noexcept {
+    return double(world_.context_.clock.tick) / gpu::kTicksPerSecond +
+           double(world_.context_.clock.fraction) / double(uint64_t(1) << Clock::kFractionBits);
 }
 
-double World::secondsTo(uint64_t tick) const noexcept {
+double PersistenceSystem::secondsTo(uint64_t tick) const noexcept {
     constexpr double kUnit = 1.0 / double(uint64_t(1) << Clock::kFractionBits);
-    if (tick <= clock_.tick) return 0;
-    const uint64_t steps = (tick - clock_.tick) / gpu::kStepTicks;
-    return double(steps * Clock::kStepUnits - clock_.fraction) * kUnit;
+    if (tick <= world_.context_.clock.tick) return 0;
+    const uint64_t steps = (tick - world_.context_.clock.tick) / gpu::kStepTicks;
+    return double(steps * Clock::kStepUnits - world_.context_.clock.fraction) * kUnit;
 }
 
-uint64_t World::identity() noexcept {
-    const float rules[] = {def_.paceFactor, def_.up[0],        def_.up[1],
-                           def_.up[2],      def_.spreadChance, def_.timeToLive};
+uint64_t PersistenceSystem::identity() noexcept {
+    const float rules[] = {world_.context_.def.paceFactor,   world_.context_.def.up[0],
+                           world_.context_.def.up[1],        world_.context_.def.up[2],
+                           world_.context_.def.spreadChance, world_.context_.def.timeToLive};
     uint64_t hash = core::hashBytes(std::as_bytes(std::span(rules)));
-    const uint32_t counts[] = {kSaveVersion,         def_.seed,        def_.maxHops,
-                               def_.maxBurningTiles, objects_.live(),  blockers_.live(),
-                               fires_.live(),        emitters_.live(), fields_.live(),
-                               windPool_.live(),     rooms_.live(),    burns_.live()};
+    const uint32_t counts[] = {kSaveVersion,
+                               world_.context_.def.seed,
+                               world_.context_.def.maxHops,
+                               world_.context_.def.maxBurningTiles,
+                               world_.scene_.objects.live(),
+                               world_.exchange_.state_.blockers.live(),
+                               world_.flames_.state_.fires.live(),
+                               world_.emitters_.state_.emitters.live(),
+                               world_.fields_.state_.fields.live(),
+                               world_.wind_.state_.zones.live(),
+                               world_.rooms_.state_.rooms.live(),
+                               world_.burn_.state_.burns.live()};
     hash = core::hashWords(counts, hash);
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (const auto* object = objects_.at(i)) {
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
+        if (const auto* object = world_.scene_.objects.at(i)) {
             const uint64_t asset = assetOf(**object);
             const uint32_t words[] = {i, uint32_t(asset), uint32_t(asset >> 32)};
             hash = core::hashWords(words, hash);
@@ -323,19 +340,20 @@ uint64_t World::identity() noexcept {
 }
 
 // The objects whose turn it is are read back with a frame that ends there.
-void World::planHashes(const ClockAdvance& time) {
+void PersistenceSystem::planHashes(const ClockAdvance& time) {
     const uint64_t end = time.after.tick;
     if (time.steps == 0 || end % kHashTicks != 0) return;
-    const uint32_t slots = objects_.slotCount(), rounds = hashRounds(slots);
+    const uint32_t slots = world_.scene_.objects.slotCount(), rounds = hashRounds(slots);
     for (auto slot = uint32_t(end / kHashTicks % rounds); slot < slots; slot += rounds)
-        if (objects_.at(slot) && std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
-                                     frame_.burnMaps.end())
-            frame_.burnMaps.push_back(slot);
+        if (world_.scene_.objects.at(slot) &&
+            std::find(world_.queries_.burnMaps_.begin(), world_.queries_.burnMaps_.end(), slot) ==
+                world_.queries_.burnMaps_.end())
+            world_.queries_.burnMaps_.push_back(slot);
 }
 
-void World::noteHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
+void PersistenceSystem::noteHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
     const uint64_t end = readback.endTick;
-    const uint32_t rounds = hashRounds(objects_.slotCount());
+    const uint32_t rounds = hashRounds(world_.scene_.objects.slotCount());
     if (end % kHashTicks != 0 || map.object % rounds != end / kHashTicks % rounds) return;
     // Once, however many frames end there.
     const auto before = std::find_if(

@@ -90,14 +90,14 @@ SavedTouch savedTouch(const FireTouch& touch) noexcept {
 
 }  // namespace
 
-uint64_t World::meshHash(const Object& object) noexcept {
-    MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
+uint64_t Scene::meshHash(const Object& object) noexcept {
+    MeshEntry& mesh = *meshes.at(object.data.meshSlot);
     if (mesh.hash == 0) mesh.hash = hashOf(*mesh.domain) | 1;
     return mesh.hash;
 }
 
-uint64_t World::assetOf(const Object& object) noexcept {
-    uint64_t hash = meshHash(object);
+uint64_t PersistenceSystem::assetOf(const Object& object) noexcept {
+    uint64_t hash = world_.scene_.meshHash(object);
     const components::BurnableMesh& data = object.data;
     const uint32_t flags = data.flags & ~uint32_t(FW_BURNABLE_HIDDEN);
     hashMore(hash, &flags, sizeof flags);
@@ -114,10 +114,11 @@ uint64_t World::assetOf(const Object& object) noexcept {
 }
 
 // Ticks beyond which nobody asks when a tile last changed.
-uint32_t World::windowOf(const Object& object) noexcept {
+uint32_t PersistenceSystem::windowOf(const Object& object) noexcept {
     components::Latch latch = object.latch;
-    const components::Records records = components::makeRecords(
-        object.data, domainOf(object), driveInput(object, clock_.tick), latch);
+    const components::Records records =
+        components::makeRecords(object.data, world_.scene_.domainOf(object),
+                                world_.wind_.driveInput(object, world_.context_.clock.tick), latch);
     uint32_t window = records.timing.window;
     for (const gpu::BurnMaterial& material : records.materials)
         window = std::max(window, material.windowMax);
@@ -126,28 +127,28 @@ uint32_t World::windowOf(const Object& object) noexcept {
 
 // ---- saving ------------------------------------------------------------------------------------
 
-uint32_t World::unsavable() noexcept {
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* object = objects_.at(i);
+uint32_t PersistenceSystem::unsavable() noexcept {
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
+        if (auto* object = world_.scene_.objects.at(i);
             object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
             return i + 1;
     return 0;
 }
 
-void World::requestSave(SaveFor who) {
+void PersistenceSystem::requestSave(SaveFor who) {
     if (const uint32_t object1 = unsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
                    object1);
     core::Owned<Save>& save = saves_[size_t(who)];
-    if (!save) save = core::Owned<Save>::make(memory_, memory_);
+    if (!save) save = core::Owned<Save>::make(world_.context_.memory, world_.context_.memory);
     save->wished = true;
     save->ready = false;
 }
 
-void World::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
+void PersistenceSystem::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
 
-const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
+const std::pmr::vector<std::byte>* PersistenceSystem::fetchSave(SaveFor who) {
     const core::Owned<Save>& save = saves_[size_t(who)];
     if (!save || (!save->wished && !save->pending && !save->ready))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
@@ -159,20 +160,21 @@ const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
 }
 
 // Before a frame's plan: the objects that have something to save.
-void World::planSave() {
-    frame_.images.clear();
+void PersistenceSystem::planSave() {
+    images_.clear();
     if (std::none_of(saves_.begin(), saves_.end(), startsSave)) return;
-    frame_.images.reserve(objects_.slotCount());
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
-        auto* owned = objects_.at(i);
+    images_.reserve(world_.scene_.objects.slotCount());
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i) {
+        auto* owned = world_.scene_.objects.at(i);
         if (!owned) continue;
         // All objects that an event of the frame addresses are among its latches.
-        if ((*owned)->touched || (*owned)->planStamp == planStamp_) frame_.images.push_back(i);
+        if ((*owned)->touched || (*owned)->planStamp == world_.burn_.state_.planStamp)
+            images_.push_back(i);
     }
 }
 
 // After it was committed.
-void World::commitSave(uint64_t frameIndex) noexcept {
+void PersistenceSystem::commitSave(uint64_t frameIndex) noexcept {
     for (size_t who = 0; who < saves_.size(); ++who) {
         if (!startsSave(saves_[who])) continue;
         Save& save = *saves_[who];
@@ -182,7 +184,8 @@ void World::commitSave(uint64_t frameIndex) noexcept {
             save.pending = true;
             save.frameIndex = frameIndex;
             // A network's are for who was not there: they are of no past of theirs.
-            save.eventsFrom = who == size_t(SaveFor::net) ? kNoEvents : events_.next();
+            save.eventsFrom =
+                who == size_t(SaveFor::net) ? kNoEvents : world_.context_.events.next();
         } catch (...) {
             save.failed = true;
         }
@@ -190,70 +193,77 @@ void World::commitSave(uint64_t frameIndex) noexcept {
         if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->done;
         if (who != size_t(SaveFor::net) || !journal_) continue;
         journal_->captured = true;
-        journal_->capturedAt = clock_.tick;
+        journal_->capturedAt = world_.context_.clock.tick;
         journal_->capturedBehind = journal_->deeds.size();
     }
 }
 
-void World::noteSaved(SavedWorld& to) {
-    to.pace = def_.paceFactor;
-    std::copy_n(def_.up, 3, to.up);
-    to.spreadChance = def_.spreadChance;
-    to.timeToLive = def_.timeToLive;
-    to.seed = def_.seed;
-    to.maxHops = def_.maxHops;
-    to.maxBurningTiles = def_.maxBurningTiles;
-    to.clock = clock_;
-    to.droppedSteps = droppedSteps_;
-    to.order = order_;
-    std::copy_n(wind_, 3, to.wind);
-    to.windGrid.shape = windGrid_.shape;
-    to.windGrid.points.assign(windGrid_.points.begin(), windGrid_.points.end());
-    to.heatShield.shape = shield_.grid.shape;
-    to.heatShield.solid.assign(shield_.grid.solid.begin(), shield_.grid.solid.end());
-    to.heatShield.baked.assign(shield_.grid.baked.begin(), shield_.grid.baked.end());
-    to.gusts = gusts_;
-    std::copy_n(origin_, 3, to.origin);
-    to.flags = remote_.flags | remote_.objectFlags;
-    to.warms = remote_.warms;
-    to.blockersDue = remote_.blockersDue;
-    to.fades = remote_.fades;
-    to.gustsShown = gustsShown_;
+void PersistenceSystem::noteSaved(SavedWorld& to) {
+    to.pace = world_.context_.def.paceFactor;
+    std::copy_n(world_.context_.def.up, 3, to.up);
+    to.spreadChance = world_.context_.def.spreadChance;
+    to.timeToLive = world_.context_.def.timeToLive;
+    to.seed = world_.context_.def.seed;
+    to.maxHops = world_.context_.def.maxHops;
+    to.maxBurningTiles = world_.context_.def.maxBurningTiles;
+    to.clock = world_.context_.clock;
+    to.droppedSteps = world_.burn_.state_.droppedSteps;
+    to.order = world_.burn_.state_.order;
+    std::copy_n(world_.wind_.state_.wind, 3, to.wind);
+    to.windGrid.shape = world_.wind_.state_.grid.shape;
+    to.windGrid.points.assign(world_.wind_.state_.grid.points.begin(),
+                              world_.wind_.state_.grid.points.end());
+    to.heatShield.shape = world_.exchange_.state_.shield.grid.shape;
+    to.heatShield.solid.assign(world_.exchange_.state_.shield.grid.solid.begin(),
+                               world_.exchange_.state_.shield.grid.solid.end());
+    to.heatShield.baked.assign(world_.exchange_.state_.shield.grid.baked.begin(),
+                               world_.exchange_.state_.shield.grid.baked.end());
+    to.gusts = world_.wind_.state_.gusts;
+    std::copy_n(world_.context_.origin.moved, 3, to.origin);
+    to.flags = world_.exchange_.state_.book.flags | world_.exchange_.state_.book.objectFlags;
+    to.warms = world_.exchange_.state_.book.warms;
+    to.blockersDue = world_.exchange_.state_.book.blockersDue;
+    to.fades = world_.exchange_.state_.book.fades;
+    to.gustsShown = world_.wind_.state_.gustsShown;
     to.objects.clear();
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* owned = objects_.at(i)) noteObject(**owned, to.objects.emplace_back());
-    to.pending.assign(pending_.begin(), pending_.end());
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
+        if (auto* owned = world_.scene_.objects.at(i))
+            noteObject(**owned, to.objects.emplace_back());
+    to.pending.assign(world_.burn_.state_.pending.begin(), world_.burn_.state_.pending.end());
     to.tags.clear();
-    for (const Tag& tag : tags_) to.tags.push_back({tag.object.index1 - 1, tag.texel, tag.tag});
+    for (const Tag& tag : world_.queries_.state_.tags)
+        to.tags.push_back({tag.object.index1 - 1, tag.texel, tag.tag});
     to.pairs.clear();
-    for (const PairContacts& pair : remote_.pairs)
+    for (const PairContacts& pair : world_.exchange_.state_.book.pairs)
         if (pair.touches) to.pairs.push_back({{pair.slots[0], pair.slots[1]}, pair.since});
     std::sort(to.pairs.begin(), to.pairs.end(), [](const SavedPair& a, const SavedPair& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     });
     to.seen.clear();
-    noteSeen(to.seen);
+    world_.exchange_.recordSeen(to.seen);
     to.blockers.clear();
-    for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
-        if (const BlockerEntry* entry = blockers_.at(i)) {
+    for (uint32_t i = 0; i < world_.exchange_.state_.blockers.slotCount(); ++i)
+        if (const BlockerEntry* entry = world_.exchange_.state_.blockers.at(i)) {
             SavedBlocker& saved = to.blockers.emplace_back();
             saved.slot = i;
             saved.pose = entry->pose;
             std::copy_n(entry->halfSize, 3, saved.halfSize);
         }
-    to.latchedBlockers.assign(remote_.blockers.begin(), remote_.blockers.end());
+    to.latchedBlockers.assign(world_.exchange_.state_.book.blockers.begin(),
+                              world_.exchange_.state_.book.blockers.end());
     to.windZones.clear();
-    for (uint32_t i = 0; i < windPool_.slotCount(); ++i)
-        if (const components::WindZone* zone = windPool_.at(i)) to.windZones.push_back({i, *zone});
+    for (uint32_t i = 0; i < world_.wind_.state_.zones.slotCount(); ++i)
+        if (const components::WindZone* zone = world_.wind_.state_.zones.at(i))
+            to.windZones.push_back({i, *zone});
     to.rooms.clear();
-    for (uint32_t i = 0; i < rooms_.slotCount(); ++i)
-        if (const RoomEntry* entry = rooms_.at(i))
+    for (uint32_t i = 0; i < world_.rooms_.state_.rooms.slotCount(); ++i)
+        if (const RoomEntry* entry = world_.rooms_.state_.rooms.at(i))
             to.rooms.push_back({i, entry->room, entry->air.oxygen, entry->air.power,
                                 entry->air.flash, entry->air.drawn, entry->air.stirs,
                                 entry->air.epoch});
     to.fires.clear();
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-        if (const auto* fire = fires_.at(i)) {
+    for (uint32_t i = 0; i < world_.flames_.state_.fires.slotCount(); ++i)
+        if (const auto* fire = world_.flames_.state_.fires.at(i)) {
             SavedFire& saved = to.fires.emplace_back();
             saved.slot = i;
             saved.flags = (*fire)->data.flags & FW_FIRE_IGNITES;
@@ -265,11 +275,12 @@ void World::noteSaved(SavedWorld& to) {
                 saved.touches[k] = savedTouch((*fire)->touches[k]);
         }
     to.emitters.clear();
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
-        if (const auto* emitter = emitters_.at(i)) noteEmitter(i, *emitter, to.emitters);
+    for (uint32_t i = 0; i < world_.emitters_.state_.emitters.slotCount(); ++i)
+        if (const auto* emitter = world_.emitters_.state_.emitters.at(i))
+            noteEmitter(i, *emitter, to.emitters);
     to.fields.clear();
-    for (uint32_t i = 0; i < fields_.slotCount(); ++i)
-        if (const auto* field = fields_.at(i)) {
+    for (uint32_t i = 0; i < world_.fields_.state_.fields.slotCount(); ++i)
+        if (const auto* field = world_.fields_.state_.fields.at(i)) {
             SavedField& saved = to.fields.emplace_back();
             saved.slot = i;
             saved.width = (*field)->data.def.width;
@@ -289,14 +300,15 @@ void World::noteSaved(SavedWorld& to) {
         }
 }
 
-void World::noteObject(Object& object, SavedObject& saved) noexcept {
+void PersistenceSystem::noteObject(Object& object, SavedObject& saved) noexcept {
     saved = {};
     saved.slot = object.slot;
     saved.asset = assetOf(object);
     saved.pose = object.data.pose;
     saved.firstEvent = object.firstEvent;
     saved.play = object.play;
-    if (object.play.burn1 != 0) saved.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
+    if (object.play.burn1 != 0)
+        saved.burnHash = (*world_.burn_.state_.burns.at(object.play.burn1 - 1))->hash;
     saved.zoneWind = object.zoneWind;
     saved.placed = object.remoteVersion != 0;
     saved.due = object.remoteDue;
@@ -308,8 +320,8 @@ void World::noteObject(Object& object, SavedObject& saved) noexcept {
     saved.latched = object.latch.pose;
 }
 
-void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
-                        std::pmr::vector<SavedEmitter>& to) const {
+void PersistenceSystem::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
+                                    std::pmr::vector<SavedEmitter>& to) const {
     SavedEmitter& saved = to.emplace_back();
     saved.slot = slot;
     saved.flags = emitter.def.flags & (FW_EMITTER_JET | FW_EMITTER_IGNITES);
@@ -332,7 +344,7 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
         saved.places.push_back(place);
         saved.parcels.push_back(parcel);
         for (components::JetRay& ray : saved.parcels.back().rays) {
-            const bool swept = ray.version == geometry_;
+            const bool swept = ray.version == world_.scene_.geometryVersion;
             saved.swept.push_back(swept ? 1 : 0);
             if (!swept) ray.hit = {};  // it is sought anew, and may be of what is gone
         }
@@ -340,7 +352,7 @@ void World::noteEmitter(uint32_t slot, const components::FireEmitter& emitter,
 }
 
 // With a readback, after the counters were taken.
-void World::takeSaves(const gpu::Readback& readback) noexcept {
+void PersistenceSystem::takeSaves(const gpu::Readback& readback) noexcept {
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending || readback.frameIndex < save->frameIndex) continue;
         save->pending = false;
@@ -353,13 +365,15 @@ void World::takeSaves(const gpu::Readback& readback) noexcept {
     keepMoment();
 }
 
-void World::takeSave(Save& save, const gpu::Readback& readback) {
+void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
     SavedWorld& saved = save.saved;
     size_t touched = 0;
     bool whole = readback.frameIndex == save.frameIndex;
     for (const SavedObject& object : saved.objects) {
         touched += object.touched ? 1 : 0;
-        const auto* now = object.slot < objects_.slotCount() ? objects_.at(object.slot) : nullptr;
+        const auto* now = object.slot < world_.scene_.objects.slotCount()
+                              ? world_.scene_.objects.at(object.slot)
+                              : nullptr;
         whole = whole && now && (*now)->firstFrame <= save.frameIndex;
     }
     // What came is of less than was noted: objects went since. The next frame tries again.
@@ -372,14 +386,14 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         size_t image = 0, all = 0;
         SavedBreaks breaks;
     };
-    std::pmr::vector<Ends> ends(memory_);
+    std::pmr::vector<Ends> ends(world_.context_.memory);
     for (const gpu::ObjectImage& image : readback.images) {
-        const Object& object = **objects_.at(image.object);
-        writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.scratch,
-                   save.planes);
+        const Object& object = **world_.scene_.objects.at(image.object);
+        writeImage(image, world_.scene_.domainOf(object), readback.endTick, windowOf(object),
+                   save.scratch, save.planes);
         Ends& end = ends.emplace_back();
         end.image = save.planes.size();
-        if (object.breaks) noteBreaks(object, end.breaks, save.scratch, save.planes);
+        if (object.breaks) world_.burn_.noteBreaks(object, end.breaks, save.scratch, save.planes);
         end.all = save.planes.size();
     }
     noteEvents(save);
@@ -397,12 +411,12 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
         }
         const Ends& end = ends[next++];
         object.planes = std::span(save.planes).subspan(from, end.image - from);
-        object.asksBreaks = bool((*objects_.at(object.slot))->breaks);
+        object.asksBreaks = bool((*world_.scene_.objects.at(object.slot))->breaks);
         object.breaks = end.breaks;
         object.breaks.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
         from = end.all;
-        object.carried = (*objects_.at(object.slot))->carried;
-        object.story = (*objects_.at(object.slot))->story;
+        object.carried = (*world_.scene_.objects.at(object.slot))->carried;
+        object.story = (*world_.scene_.objects.at(object.slot))->story;
         object.counters = image.counters;
         object.counters.refined = 0;
         // Of what the backend alone knew at that frame.
@@ -419,17 +433,19 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             room.drawn = air.drawn;
             room.stirs = air.stirs;
         }
-    saved.steps = steps_;
-    saved.idle = seenIdle_;
-    saved.lastStimulus = seenStimulus_;
-    saved.roomsStirred = seenRoomsStirred_;
-    saved.stats = {frontTiles_, burningTiles_, hotTiles_, receivers_, lateClamps_};
+    saved.steps = world_.burn_.state_.steps;
+    saved.idle = world_.burn_.state_.seenIdle;
+    saved.lastStimulus = world_.burn_.state_.seenStimulus;
+    saved.roomsStirred = world_.rooms_.state_.seenStirred;
+    saved.stats = {world_.burn_.state_.counts.front, world_.burn_.state_.counts.burning,
+                   world_.burn_.state_.counts.hot, world_.burn_.state_.counts.receivers,
+                   world_.burn_.state_.counts.lateClamps};
     writeSaved(saved, save.bytes);
     save.ready = true;
 }
 
 // A tag that the readback of a frame says is reached: its event is in the save, it is not.
-void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
+void PersistenceSystem::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
     if (frameIndex > save.frameIndex) return;
     std::pmr::vector<SavedTag>& tags = save.saved.tags;
     const auto same = std::find_if(tags.begin(), tags.end(), [&](const SavedTag& one) {
@@ -439,43 +455,45 @@ void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept 
 }
 
 // What the host had not polled at the save's frame, and what came of that frame since.
-void World::noteEvents(Save& save) {
+void PersistenceSystem::noteEvents(Save& save) {
     std::pmr::vector<SavedEvent>& to = save.saved.events;
     to.clear();
-    std::pmr::vector<std::pair<uint64_t, uint64_t>> found(memory_);  // frame and number
-    for (uint64_t i = std::max(save.eventsFrom, events_.oldest()); i < events_.end(); ++i) {
-        const FwEvent& event = events_.at(i);
+    std::pmr::vector<std::pair<uint64_t, uint64_t>> found(
+        world_.context_.memory);  // frame and number
+    for (uint64_t i = std::max(save.eventsFrom, world_.context_.events.oldest());
+         i < world_.context_.events.end(); ++i) {
+        const FwEvent& event = world_.context_.events.at(i);
         if (event.frameIndex > save.frameIndex) continue;
-        if (event.object.index1 != 0 && !objects_.find(event.object)) continue;
+        if (event.object.index1 != 0 && !world_.scene_.objects.find(event.object)) continue;
         found.emplace_back(event.frameIndex, i);
     }
     std::sort(found.begin(), found.end());  // readbacks of a device are behind what is at hand
     for (size_t k = found.size() - std::min<size_t>(found.size(), kMostSavedEvents);
          k < found.size(); ++k) {
-        const FwEvent& event = events_.at(found[k].second);
+        const FwEvent& event = world_.context_.events.at(found[k].second);
         SavedEvent& saved = to.emplace_back();
         saved.type = event.type;
         saved.tag = event.tag;
         saved.object1 = event.object.index1;
-        saved.other1 = objects_.find(event.other) ? event.other.index1 : 0;
+        saved.other1 = world_.scene_.objects.find(event.other) ? event.other.index1 : 0;
         std::copy_n(event.position, 3, saved.position);
         for (int i = 0; event.type != FW_EVENT_TIME_DROPPED && i < 3; ++i)  // moved since
-            saved.position[i] =
-                float(double(saved.position[i]) + save.saved.origin[i] - origin_[i]);
+            saved.position[i] = float(double(saved.position[i]) + save.saved.origin[i] -
+                                      world_.context_.origin.moved[i]);
         saved.value = event.value;
     }
 }
 
 // ---- loading -----------------------------------------------------------------------------------
 
-void World::checkSaved(const SavedWorld& saved) {
-    checkRule(saved.pace, def_.paceFactor, "paceFactor");
-    for (int i = 0; i < 3; ++i) checkRule(saved.up[i], def_.up[i], "up");
-    checkRule(saved.spreadChance, def_.spreadChance, "spreadChance");
-    checkRule(saved.timeToLive, def_.timeToLive, "timeToLive");
-    checkRule(saved.seed, def_.seed, "seed");
-    checkRule(saved.maxHops, def_.maxHops, "maxHops");
-    checkRule(saved.maxBurningTiles, def_.maxBurningTiles, "maxBurningTiles");
+void PersistenceSystem::checkSaved(const SavedWorld& saved) {
+    checkRule(saved.pace, world_.context_.def.paceFactor, "paceFactor");
+    for (int i = 0; i < 3; ++i) checkRule(saved.up[i], world_.context_.def.up[i], "up");
+    checkRule(saved.spreadChance, world_.context_.def.spreadChance, "spreadChance");
+    checkRule(saved.timeToLive, world_.context_.def.timeToLive, "timeToLive");
+    checkRule(saved.seed, world_.context_.def.seed, "seed");
+    checkRule(saved.maxHops, world_.context_.def.maxHops, "maxHops");
+    checkRule(saved.maxBurningTiles, world_.context_.def.maxBurningTiles, "maxBurningTiles");
     const Clock& clock = saved.clock;
     if (clock.tick > Clock::kLastTick || clock.tick % gpu::kStepTicks != 0 ||
         clock.fraction >= Clock::kStepUnits)
@@ -494,22 +512,23 @@ void World::checkSaved(const SavedWorld& saved) {
     if ((saved.flags & ~kWorldFlags) != 0)
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
-    checkCount(saved.objects.size(), objects_.live(), "burnable meshes");
-    checkCount(saved.blockers.size(), blockers_.live(), "blockers");
-    checkCount(saved.windZones.size(), windPool_.live(), "wind zones");
-    checkCount(saved.rooms.size(), rooms_.live(), "rooms");
-    checkCount(saved.fires.size(), fires_.live(), "volumetric fires");
-    checkCount(saved.emitters.size(), emitters_.live(), "fire emitters");
-    checkCount(saved.fields.size(), fields_.live(), "particle fields");
+    checkCount(saved.objects.size(), world_.scene_.objects.live(), "burnable meshes");
+    checkCount(saved.blockers.size(), world_.exchange_.state_.blockers.live(), "blockers");
+    checkCount(saved.windZones.size(), world_.wind_.state_.zones.live(), "wind zones");
+    checkCount(saved.rooms.size(), world_.rooms_.state_.rooms.live(), "rooms");
+    checkCount(saved.fires.size(), world_.flames_.state_.fires.live(), "volumetric fires");
+    checkCount(saved.emitters.size(), world_.emitters_.state_.emitters.live(), "fire emitters");
+    checkCount(saved.fields.size(), world_.fields_.state_.fields.live(), "particle fields");
     uint32_t next = 0;
     for (const SavedObject& object : saved.objects) {
-        if (object.slot < next || object.slot >= objects_.slotCount() || !objects_.at(object.slot))
+        if (object.slot < next || object.slot >= world_.scene_.objects.slotCount() ||
+            !world_.scene_.objects.at(object.slot))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has burnable mesh %u, which this world does not. Create what it "
                        "was made with in the same order.",
                        object.slot + 1);
         next = object.slot + 1;
-        const uint64_t mine = assetOf(**objects_.at(object.slot));
+        const uint64_t mine = assetOf(**world_.scene_.objects.at(object.slot));
         if (object.asset != mine)
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u is not the save's: mesh, materials and def hash to "
@@ -527,37 +546,37 @@ void World::checkSaved(const SavedWorld& saved) {
                                object.slot + 1);
     }
     const auto checkObject = [&](uint32_t slot, const char* what) {
-        if (slot >= objects_.slotCount() || !objects_.at(slot))
+        if (slot >= world_.scene_.objects.slotCount() || !world_.scene_.objects.at(slot))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s of burnable mesh %u, which is not there.", what, slot + 1);
     };
     const auto checkTexel = [&](uint32_t slot, uint32_t texel, const char* what) {
         checkObject(slot, what);
-        const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
+        const mesh::BurnDomain& domain = world_.scene_.domainOf(**world_.scene_.objects.at(slot));
         if (texel >= domain.texelCount() || !domain.real(texel))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s at texel %u of burnable mesh %u, which is not there.", what,
                        texel, slot + 1);
     };
-    if (saved.pending.size() > kMaxPending)
+    if (saved.pending.size() > BurnSystem::kMaxPending)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu events that wait; the limit is %zu.",
-                   saved.pending.size(), kMaxPending);
+                   saved.pending.size(), BurnSystem::kMaxPending);
     for (const PendingTexel& event : saved.pending) {
         if (event.texel == kAllTexels && event.kind <= gpu::kEventExtinguish)
             checkObject(event.object, "an event");
         else
             checkTexel(event.object, event.texel, "an event");
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
-            checkCarry(event, clock);
+            world_.burn_.checkCarry(event, clock);
         else if (event.kind > gpu::kEventHeat)
             core::fail(FW_ERROR_BAD_DATA, "The save has an event of kind %u; the limit is %u.",
                        event.kind, gpu::kEventHeat);
         for (uint32_t g = 0; g < event.gateCount; ++g)
             checkTexel(event.gates[g].object, event.gates[g].texel, "a hole");
     }
-    if (saved.tags.size() > kMaxTags)
+    if (saved.tags.size() > QuerySystem::kMaxTags)
         core::fail(FW_ERROR_BAD_DATA, "The save has %zu tags; the limit is %u.", saved.tags.size(),
-                   kMaxTags);
+                   QuerySystem::kMaxTags);
     for (const SavedTag& tag : saved.tags) checkTexel(tag.object, tag.texel, "a tag");
     for (const SavedPair& pair : saved.pairs) {
         checkObject(pair.slots[0], "a contact");
@@ -588,7 +607,8 @@ void World::checkSaved(const SavedWorld& saved) {
                            double(value), double(event.value));
     }
     for (const SavedBlocker& blocker : saved.blockers) {
-        if (blocker.slot >= blockers_.slotCount() || !blockers_.at(blocker.slot))
+        if (blocker.slot >= world_.exchange_.state_.blockers.slotCount() ||
+            !world_.exchange_.state_.blockers.at(blocker.slot))
             core::fail(FW_ERROR_BAD_DATA, "The save has blocker %u, which this world does not.",
                        blocker.slot + 1);
         checkPose(blocker.pose, blocker.slot);
@@ -608,13 +628,13 @@ void World::checkSaved(const SavedWorld& saved) {
     for (const components::ShieldCell& cell : saved.heatShield.baked)
         checkTexel(cell.what & gpu::kShieldSlot, cell.texel, "a cell of the shield");
     for (const SavedWindZone& zone : saved.windZones)
-        if (zone.slot >= windPool_.slotCount() || !windPool_.at(zone.slot) ||
-            !components::plausible(zone.zone))
+        if (zone.slot >= world_.wind_.state_.zones.slotCount() ||
+            !world_.wind_.state_.zones.at(zone.slot) || !components::plausible(zone.zone))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has wind zone %u, which is not here or is absurd.", zone.slot + 1);
     for (const SavedRoom& room : saved.rooms)
-        if (room.slot >= rooms_.slotCount() || !rooms_.at(room.slot) ||
-            !components::plausible(room.room) ||
+        if (room.slot >= world_.rooms_.state_.rooms.slotCount() ||
+            !world_.rooms_.state_.rooms.at(room.slot) || !components::plausible(room.room) ||
             room.power > gpu::kFlashMost * (gpu::kRoomMeans - 1))
             core::fail(FW_ERROR_BAD_DATA, "The save has room %u, which is not here or is absurd.",
                        room.slot + 1);
@@ -630,7 +650,9 @@ void World::checkSaved(const SavedWorld& saved) {
     };
     constexpr float kReached = 4e6f;  // m: a jet, or a mesh, reaches beyond where it stands
     for (const SavedFire& fire : saved.fires) {
-        const auto* mine = fire.slot < fires_.slotCount() ? fires_.at(fire.slot) : nullptr;
+        const auto* mine = fire.slot < world_.flames_.state_.fires.slotCount()
+                               ? world_.flames_.state_.fires.at(fire.slot)
+                               : nullptr;
         if (!mine || ((*mine)->data.flags & FW_FIRE_IGNITES) != fire.flags)
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has volumetric fire %u, which is none or another one here.",
@@ -651,8 +673,9 @@ void World::checkSaved(const SavedWorld& saved) {
         checkTouches(fire.touches);
     }
     for (const SavedEmitter& emitter : saved.emitters) {
-        const auto* mine =
-            emitter.slot < emitters_.slotCount() ? emitters_.at(emitter.slot) : nullptr;
+        const auto* mine = emitter.slot < world_.emitters_.state_.emitters.slotCount()
+                               ? world_.emitters_.state_.emitters.at(emitter.slot)
+                               : nullptr;
         constexpr uint32_t kKind = FW_EMITTER_JET | FW_EMITTER_IGNITES;
         if (!mine || (mine->def.flags & kKind) != emitter.flags ||
             bool(mine->stream) != emitter.streams)
@@ -694,7 +717,9 @@ void World::checkSaved(const SavedWorld& saved) {
         }
     }
     for (const SavedField& field : saved.fields) {
-        const auto* mine = field.slot < fields_.slotCount() ? fields_.at(field.slot) : nullptr;
+        const auto* mine = field.slot < world_.fields_.state_.fields.slotCount()
+                               ? world_.fields_.state_.fields.at(field.slot)
+                               : nullptr;
         if (!mine || bool((*mine)->cells) != field.wets || (*mine)->data.def.width != field.width ||
             (*mine)->data.def.height != field.height || field.began > clock.tick)
             core::fail(FW_ERROR_BAD_DATA,
@@ -710,11 +735,11 @@ void World::checkSaved(const SavedWorld& saved) {
     }
 }
 
-SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
-                              components::Latch& latch) {
-    const Object& object = **objects_.at(from.slot);
-    const mesh::BurnDomain& domain = domainOf(object);
-    components::DriveInput drive = driveInput(object, clock_.tick);
+SavedRecords PersistenceSystem::recordsOf(const SavedWorld& saved, const SavedObject& from,
+                                          components::Latch& latch) {
+    const Object& object = **world_.scene_.objects.at(from.slot);
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
+    components::DriveInput drive = world_.wind_.driveInput(object, world_.context_.clock.tick);
     drive.wind =
         windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones, saved.seed},
                windPlaceOf(from.pose, domain), saved.clock.tick);
@@ -729,7 +754,8 @@ SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
     latch.pose = from.latched;
     made.records = components::makeRecords(posed, domain, drive, latch);
     made.heated = components::hasHeat(object.data);
-    if (made.heated) made.heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
+    if (made.heated)
+        made.heat = components::makeHeatMaterials(posed, domain, world_.context_.def.paceFactor);
     uint32_t window = made.records.timing.window;
     for (const gpu::BurnMaterial& material : made.records.materials)
         window = std::max(window, material.windowMax);
@@ -737,20 +763,20 @@ SavedRecords World::recordsOf(const SavedWorld& saved, const SavedObject& from,
     return made;
 }
 
-void World::load(std::span<const std::byte> bytes) {
+void PersistenceSystem::load(std::span<const std::byte> bytes) {
     mayChange();
-    SavedWorld saved(memory_);
+    SavedWorld saved(world_.context_.memory);
     readSaved(bytes, saved);
     checkSaved(saved);
-    settlePlays(saved);
+    world_.burn_.settlePlays(saved);
     // The latches first: what the backend gets follows from them.
-    std::pmr::vector<components::Latch> latches(memory_);
-    std::pmr::vector<ImageStore> stores(memory_);
-    std::pmr::vector<gpu::RestoredObject> restored(memory_);
+    std::pmr::vector<components::Latch> latches(world_.context_.memory);
+    std::pmr::vector<ImageStore> stores(world_.context_.memory);
+    std::pmr::vector<gpu::RestoredObject> restored(world_.context_.memory);
     latches.reserve(saved.objects.size());
     stores.reserve(saved.objects.size());
     restored.reserve(saved.objects.size());
-    PlaneScratch scratch(memory_);
+    PlaneScratch scratch(world_.context_.memory);
     for (const SavedObject& from : saved.objects) {
         const SavedRecords made = recordsOf(saved, from, latches.emplace_back());
         if (!from.touched && from.air != 0) {
@@ -760,11 +786,12 @@ void World::load(std::span<const std::byte> bytes) {
             one.rests = true;
         }
         if (!from.touched) continue;
-        ImageStore& store = stores.emplace_back(memory_);
-        readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
-                  made.window, made.heatSpan(), scratch, store);
-        if (from.asksBreaks && (*objects_.at(from.slot))->breaks) {
-            const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
+        ImageStore& store = stores.emplace_back(world_.context_.memory);
+        readImage(from.planes, world_.scene_.domainOf(**world_.scene_.objects.at(from.slot)),
+                  uint32_t(saved.clock.tick), made.window, made.heatSpan(), scratch, store);
+        if (from.asksBreaks && (*world_.scene_.objects.at(from.slot))->breaks) {
+            const mesh::BurnDomain& domain =
+                world_.scene_.domainOf(**world_.scene_.objects.at(from.slot));
             store.lost.resize(domain.texelCount());
             if (!save::readPlane(from.breaks.lost, domain.width, {}, store.lost))
                 core::fail(FW_ERROR_BAD_DATA,
@@ -778,88 +805,94 @@ void World::load(std::span<const std::byte> bytes) {
         one.window = made.records.timing.window;
         one.substepShift = made.records.timing.substepShift;
     }
-    remote_.pairs.reserve(saved.pairs.size());
-    remote_.loadedSeen.reserve(saved.seen.size());
-    std::pmr::vector<Tag> tags(memory_);
+    world_.exchange_.state_.book.pairs.reserve(saved.pairs.size());
+    world_.exchange_.state_.book.loadedSeen.reserve(saved.seen.size());
+    std::pmr::vector<Tag> tags(world_.context_.memory);
     for (const SavedTag& tag : saved.tags)
-        tags.push_back({objects_.idOf(tag.object), tag.texel, tag.tag});
-    touched_.reserve(objects_.slotCount());
-    playing_.reserve(objects_.slotCount());
-    remote_.due.reserve(objects_.slotCount());
-    remote_.blockers.reserve(saved.latchedBlockers.size());
+        tags.push_back({world_.scene_.objects.idOf(tag.object), tag.texel, tag.tag});
+    world_.scene_.touched.reserve(world_.scene_.objects.slotCount());
+    world_.scene_.playing.reserve(world_.scene_.objects.slotCount());
+    world_.exchange_.state_.book.due.reserve(world_.scene_.objects.slotCount());
+    world_.exchange_.state_.book.blockers.reserve(saved.latchedBlockers.size());
     uint32_t flames = 0;
     for (const SavedFire& from : saved.fires)
-        flames += components::mostParts(from.power, (*fires_.at(from.slot))->data.diameter);
-    findFireRoom(flames);
-    places_.reserveMoves(objects_.live());
-    backend_.restore(restored, uint32_t(saved.clock.tick));
+        flames += components::mostParts(
+            from.power, (*world_.flames_.state_.fires.at(from.slot))->data.diameter);
+    world_.flames_.reserve(flames);
+    world_.scene_.places.reserveMoves(world_.scene_.objects.live());
+    world_.context_.backend.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
     double by[3];  // what is in no save goes along
-    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
-    shiftBy(by);
-    shiftCount_ = 0;
-    loadedFront_ = saved.stats.frontTiles;
-    loadedHot_ = saved.stats.hotTiles;
+    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - world_.context_.origin.moved[i];
+    world_.shiftBy(by);
+    world_.context_.origin.count = 0;
+    world_.burn_.state_.loaded.front = saved.stats.frontTiles;
+    world_.burn_.state_.loaded.hot = saved.stats.hotTiles;
     for (const ImageStore& store : stores)
         for (const gpu::TileState& tile : store.tiles) {
-            loadedFront_ -= (tile.flag & gpu::kTileListed) != 0 && loadedFront_ > 0 ? 1u : 0u;
-            loadedHot_ -= (tile.flag & gpu::kTileHot) != 0 && loadedHot_ > 0 ? 1u : 0u;
+            world_.burn_.state_.loaded.front -=
+                (tile.flag & gpu::kTileListed) != 0 && world_.burn_.state_.loaded.front > 0 ? 1u
+                                                                                            : 0u;
+            world_.burn_.state_.loaded.hot -=
+                (tile.flag & gpu::kTileHot) != 0 && world_.burn_.state_.loaded.hot > 0 ? 1u : 0u;
         }
-    windGrid_.shape = saved.windGrid.shape;
-    windGrid_.points.swap(saved.windGrid.points);
-    shield_.grid.shape = saved.heatShield.shape;
-    shield_.grid.solid.swap(saved.heatShield.solid);
-    shield_.grid.baked.swap(saved.heatShield.baked);
-    shield_.told.clear();
-    shield_.unsent = shield_.unpacked = true;
+    world_.wind_.state_.grid.shape = saved.windGrid.shape;
+    world_.wind_.state_.grid.points.swap(saved.windGrid.points);
+    world_.exchange_.state_.shield.grid.shape = saved.heatShield.shape;
+    world_.exchange_.state_.shield.grid.solid.swap(saved.heatShield.solid);
+    world_.exchange_.state_.shield.grid.baked.swap(saved.heatShield.baked);
+    world_.exchange_.state_.shield.commandSlots.clear();
+    world_.exchange_.state_.shield.unsent = world_.exchange_.state_.shield.unpacked = true;
     applySaved(saved, latches);
     size_t next = 0;
     for (const SavedObject& from : saved.objects) {
         if (!from.touched) continue;
         const ImageStore& store = stores[next++];
-        if (Object& object = **objects_.at(from.slot); object.breaks)
-            restoreBreaks(object, from.asksBreaks ? &from.breaks : nullptr, store,
-                          uint32_t(clock_.tick));
+        if (Object& object = **world_.scene_.objects.at(from.slot); object.breaks)
+            world_.burn_.restoreBreaks(object, from.asksBreaks ? &from.breaks : nullptr, store,
+                                       uint32_t(world_.context_.clock.tick));
     }
-    tags_.swap(tags);
-    pending_.swap(saved.pending);
-    settlePending();
+    world_.queries_.state_.tags.swap(tags);
+    world_.burn_.state_.pending.swap(saved.pending);
+    world_.burn_.settlePending();
     for (SavedField& field : saved.fields)
-        if (field.wets) (*fields_.at(field.slot))->cells->cells.swap(field.cells);
+        if (field.wets)
+            (*world_.fields_.state_.fields.at(field.slot))->cells->cells.swap(field.cells);
 }
 
-void World::applySaved(const SavedWorld& saved,
-                       std::span<const components::Latch> latches) noexcept {
-    clock_ = saved.clock;
-    steps_ = saved.steps;
-    droppedSteps_ = saved.droppedSteps;
-    order_ = saved.order;
-    std::copy_n(saved.wind, 3, wind_);
-    gusts_ = saved.gusts;
-    for (const SavedWindZone& zone : saved.windZones) *windPool_.at(zone.slot) = zone.zone;
-    listWindZones();
-    windKept_ = true;  // objects find theirs below, one by one
-    windTurns();
-    gustsShown_ = saved.gustsShown;
-    roomsMet_ = !saved.rooms.empty();
+void PersistenceSystem::applySaved(const SavedWorld& saved,
+                                   std::span<const components::Latch> latches) noexcept {
+    world_.context_.clock = saved.clock;
+    world_.burn_.state_.steps = saved.steps;
+    world_.burn_.state_.droppedSteps = saved.droppedSteps;
+    world_.burn_.state_.order = saved.order;
+    std::copy_n(saved.wind, 3, world_.wind_.state_.wind);
+    world_.wind_.state_.gusts = saved.gusts;
+    for (const SavedWindZone& zone : saved.windZones)
+        *world_.wind_.state_.zones.at(zone.slot) = zone.zone;
+    world_.wind_.sortZones();
+    world_.wind_.state_.kept = true;  // objects find theirs below, one by one
+    world_.wind_.updateObjects();
+    world_.wind_.state_.gustsShown = saved.gustsShown;
+    world_.rooms_.state_.met = !saved.rooms.empty();
     for (const SavedRoom& from : saved.rooms) {
-        RoomEntry& entry = *rooms_.at(from.slot);
+        RoomEntry& entry = *world_.rooms_.state_.rooms.at(from.slot);
         entry.room = from.room;
-        fillRoom(entry, from.oxygen, from.power, from.flash);
+        world_.rooms_.fill(entry, from.oxygen, from.power, from.flash);
         entry.air.drawn = from.drawn;
         entry.air.stirs = from.stirs;
-        sendRoom(from.slot);
+        world_.rooms_.send(from.slot);
     }
-    roomsStirred_ = seenRoomsStirred_ = saved.roomsStirred;
-    remote_.flags = saved.flags & kWaysOfFire;
-    remote_.objectFlags = saved.flags & ~kWaysOfFire;
-    remote_.warms = saved.warms;
-    remote_.fades = saved.fades;
-    ++driveChanges_;
-    ++geometry_;
-    loadedFrame_ = lastFrame_;
-    loadedTick_ = clock_.tick;
+    world_.rooms_.state_.stirred = world_.rooms_.state_.seenStirred = saved.roomsStirred;
+    world_.exchange_.state_.book.flags = saved.flags & kHeatTransferModes;
+    world_.exchange_.state_.book.objectFlags = saved.flags & ~kHeatTransferModes;
+    world_.exchange_.state_.book.warms = saved.warms;
+    world_.exchange_.state_.book.fades = saved.fades;
+    ++world_.wind_.state_.changes;
+    ++world_.scene_.geometryVersion;
+    world_.context_.loadedFrame = world_.context_.lastFrame;
+    world_.context_.loadedTick = world_.context_.clock.tick;
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending) continue;
         save->pending = false;  // of the world that was
@@ -867,7 +900,7 @@ void World::applySaved(const SavedWorld& saved,
     }
     if (timeline_) {
         const bool anew = !timeline_->seeks;  // it begins here, or is in its own past
-        if (anew) timeline_->restart(clock_.tick);
+        if (anew) timeline_->restart(world_.context_.clock.tick);
         saves_[size_t(SaveFor::timeline)]->wished = anew;
     }
     if (journal_) {
@@ -877,56 +910,63 @@ void World::applySaved(const SavedWorld& saved,
         journal_->hashes.clear();
     }
     // What was asked of frames before is asked anew.
-    for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
-    for (uint32_t i = 0; i < queries_.slotCount(); ++i)
-        if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;
-    events_.clear();
+    for (QuerySystem::ProbeFrame& frame : world_.queries_.probeFrames_) frame.frameIndex = 0;
+    for (uint32_t i = 0; i < world_.queries_.state_.queries.slotCount(); ++i)
+        if (Query* query = world_.queries_.state_.queries.at(i); query && !query->ready)
+            query->asked = false;
+    world_.context_.events.clear();
     for (const SavedEvent& event : saved.events)
-        raise(event.type, event.object1 != 0 ? objects_.at(event.object1 - 1)->get() : nullptr,
-              event.tag, lastFrame_, event.position, event.value,
-              event.other1 != 0 ? objects_.idOf(event.other1 - 1) : FwBurnableMeshId{});
-    readbackTick_ = clock_.tick;
+        world_.context_.raise(
+            event.type,
+            event.object1 != 0 ? world_.scene_.objects.at(event.object1 - 1)->get() : nullptr,
+            event.tag, world_.context_.lastFrame, event.position, event.value,
+            event.other1 != 0 ? world_.scene_.objects.idOf(event.other1 - 1) : FwBurnableMeshId{});
+    world_.context_.readbackTick = world_.context_.clock.tick;
     // Awake it would see the wind from here on, and not from where its first fire begins.
-    idle_ = seenIdle_ = saved.idle;
-    lastStimulus_ = seenStimulus_ = saved.lastStimulus;
-    stimuli_.clear();
-    frameNotes_.clear();
-    frontTiles_ = saved.stats.frontTiles;
-    runTiles_ = 0;
-    burningTiles_ = loadedBurning_ = saved.stats.burningTiles;
-    hotTiles_ = saved.stats.hotTiles;
-    receivers_ = loadedReceivers_ = saved.stats.receivers;
-    lateClamps_ = saved.stats.lateClamps;
+    world_.burn_.state_.idle = world_.burn_.state_.seenIdle = saved.idle;
+    world_.burn_.state_.lastStimulus = world_.burn_.state_.seenStimulus = saved.lastStimulus;
+    world_.burn_.state_.stimuli.clear();
+    world_.burn_.state_.frameNotes.clear();
+    world_.burn_.state_.counts.front = saved.stats.frontTiles;
+    world_.burn_.state_.counts.run = 0;
+    world_.burn_.state_.counts.burning = world_.burn_.state_.loaded.burning =
+        saved.stats.burningTiles;
+    world_.burn_.state_.counts.hot = saved.stats.hotTiles;
+    world_.burn_.state_.counts.receivers = world_.burn_.state_.loaded.receivers =
+        saved.stats.receivers;
+    world_.burn_.state_.counts.lateClamps = saved.stats.lateClamps;
     // Who is where.
-    remote_.unsent = true;
-    remote_.blockersDue = saved.blockersDue;
-    remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
-    remote_.rebuild = true;
-    remote_.due.clear();
+    world_.exchange_.state_.book.unsent = true;
+    world_.exchange_.state_.book.blockersDue = saved.blockersDue;
+    world_.exchange_.state_.book.blockers.assign(saved.latchedBlockers.begin(),
+                                                 saved.latchedBlockers.end());
+    world_.exchange_.state_.book.rebuild = true;
+    world_.exchange_.state_.book.due.clear();
     for (const SavedBlocker& blocker : saved.blockers) {
-        BlockerEntry& entry = *blockers_.at(blocker.slot);
+        BlockerEntry& entry = *world_.exchange_.state_.blockers.at(blocker.slot);
         entry.pose = blocker.pose;
         std::copy_n(blocker.halfSize, 3, entry.halfSize);
     }
-    touched_.clear();
-    playing_.clear();
+    world_.scene_.touched.clear();
+    world_.scene_.playing.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
-        applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
-    showSavedLights();
-    remote_.pairs.clear();
+        applyObject(saved.objects[i], latches[i],
+                    **world_.scene_.objects.at(saved.objects[i].slot));
+    world_.lights_.showSaved();
+    world_.exchange_.state_.book.pairs.clear();
     for (const SavedPair& from : saved.pairs) {
         PairContacts pair{{from.slots[0], from.slots[1]}};
-        for (int k = 0; k < 2; ++k) pair.ids[k] = objects_.idOf(pair.slots[k]);
+        for (int k = 0; k < 2; ++k) pair.ids[k] = world_.scene_.objects.idOf(pair.slots[k]);
         pair.since = from.since;  // of links that are found anew
         pair.touches = true;
-        remote_.pairs.push_back(pair);
+        world_.exchange_.state_.book.pairs.push_back(pair);
     }
-    remote_.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
+    world_.exchange_.state_.book.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
     const auto idOf = [&](uint32_t plus1) {
-        return plus1 != 0 ? objects_.idOf(plus1 - 1) : FwBurnableMeshId{};
+        return plus1 != 0 ? world_.scene_.objects.idOf(plus1 - 1) : FwBurnableMeshId{};
     };
     for (const SavedFire& from : saved.fires) {
-        Fire& fire = **fires_.at(from.slot);
+        Fire& fire = **world_.flames_.state_.fires.at(from.slot);
         const auto same = [](const volume::ControlPoint& a, const volume::ControlPoint& b) {
             return a.position == b.position && a.radius == b.radius;
         };
@@ -935,13 +975,13 @@ void World::applySaved(const SavedWorld& saved,
                                     fire.data.points.begin(), same);
         if (!led || !std::equal(from.position, from.position + 3, fire.data.position) ||
             from.power != fire.data.power) {  // as if it had always burnt so
-            burning_.drop(fire.data);
+            world_.flames_.burning_.drop(fire.data);
             fire.data.state = {};
             fire.data.points = from.points;
             fire.data.pointCount = from.pointCount;
             components::setFirePosition(fire.data, from.position);
             components::setFirePower(fire.data, from.power);
-            foresee(fire.data);
+            world_.flames_.foresee(fire.data);
         }
         for (size_t k = 0; k < from.touches.size(); ++k) {
             FireTouch& touch = fire.touches[k];
@@ -952,17 +992,19 @@ void World::applySaved(const SavedWorld& saved,
             touch.lit = from.touches[k].flag;
         }
     }
-    emitterTime_ = double(clock_.tick) / double(gpu::kTicksPerSecond);
-    for (const SavedEmitter& from : saved.emitters) applyEmitter(from, *emitters_.at(from.slot));
+    world_.emitters_.state_.time =
+        double(world_.context_.clock.tick) / double(gpu::kTicksPerSecond);
+    for (const SavedEmitter& from : saved.emitters)
+        applyEmitter(from, *world_.emitters_.state_.emitters.at(from.slot));
     for (const SavedField& from : saved.fields) {
-        Field& field = **fields_.at(from.slot);
+        Field& field = **world_.fields_.state_.fields.at(from.slot);
         // The backend counts its own steps: what it shows goes on from where it is.
         const uint32_t ran = field.steps - field.shownBase;
         field.began = from.began;
         std::copy_n(from.position, 3, field.data.position);
         std::copy_n(from.rotation, 4, field.data.rotation);
         field.data.def.look.amount = from.amount;
-        field.steps = components::fieldSteps(field.data, clock_.tick - field.began);
+        field.steps = components::fieldSteps(field.data, world_.context_.clock.tick - field.began);
         field.shownBase = field.steps - ran;
         if (!from.wets) continue;
         field.cells->step = from.step;
@@ -970,37 +1012,37 @@ void World::applySaved(const SavedWorld& saved,
         field.cells->died = from.died;
         field.cells->left = from.left;
     }
-    sendFieldRules();
+    world_.fields_.sendRules();
 }
 
-void World::applyObject(const SavedObject& from, const components::Latch& latch,
-                        Object& object) noexcept {
+void PersistenceSystem::applyObject(const SavedObject& from, const components::Latch& latch,
+                                    Object& object) noexcept {
     object.data.pose = from.pose;
     object.zoneWind = from.zoneWind;
-    backend_.setObjectWind(object.slot, object.zoneWind);
-    placeNow(object);
+    world_.context_.backend.setObjectWind(object.slot, object.zoneWind);
+    world_.scene_.placeNow(object);
     object.restsUnder = 0;
-    object.room1 = roomOf(object);
-    roomsMet_ |= (from.touched ? from.counters.air : from.air) != 0;
-    sendPose(object);
+    object.room1 = world_.rooms_.roomOf(object);
+    world_.rooms_.state_.met |= (from.touched ? from.counters.air : from.air) != 0;
+    world_.scene_.sendPose(object);
     object.latch = latch;
     object.firstEvent = from.firstEvent;
     object.play = from.play;
-    if (object.play.burn1 != 0) startPlay(object);
-    object.firstFrame = lastFrame_ + 1;
+    if (object.play.burn1 != 0) world_.burn_.startPlay(object);
+    object.firstFrame = world_.context_.lastFrame + 1;
     object.touched = from.touched;
     ++object.changes;
-    // What was read back for it and is lost is wished again.
-    const auto again = [&](bool& wished, bool& pending) {
+    // Readbacks on their way are lost: they are requested again.
+    const auto again = [&](bool& requested, bool& pending) {
         if (!pending) return;
         pending = false;
-        if (!wished) ++mapsWished_;
-        wished = true;
+        if (!requested) ++world_.queries_.mapsRequested_;
+        requested = true;
     };
-    again(object.map.wished, object.map.pending);
+    again(object.map.requested, object.map.pending);
     if (object.forecast) {
-        again(object.forecast->wished, object.forecast->pending);
-        object.forecast->told = false;
+        again(object.forecast->requested, object.forecast->pending);
+        object.forecast->began = false;
     }
     if (object.breaks) {  // it has not burnt, or is restored next
         object.breaks->lookCount = 0;
@@ -1010,10 +1052,10 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     object.remote = {};
     object.remoteSent = false;
     object.remoteDue = from.due;
-    object.remoteVersion = from.placed ? ++remote_.version : 0;
-    if (from.due) remote_.due.push_back(object.slot);
+    object.remoteVersion = from.placed ? ++world_.exchange_.state_.book.version : 0;
+    if (from.due) world_.exchange_.state_.book.due.push_back(object.slot);
     if (from.placed) {
-        const mesh::BurnDomain& domain = domainOf(object);
+        const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
         if (from.due) {
             object.remote = from.remote;
         } else {
@@ -1022,8 +1064,8 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
             if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
             object.remote.high.w = from.remote.high.w;
         }
-        object.reach = components::remoteReach(object.data, domain,
-                                               meshes_.at(object.data.meshSlot)->texelsOf);
+        object.reach = components::remoteReach(
+            object.data, domain, world_.scene_.meshes.at(object.data.meshSlot)->texelsOf);
     }
     object.story = from.story;
     object.carried = from.carried;
@@ -1032,25 +1074,26 @@ void World::applyObject(const SavedObject& from, const components::Latch& latch,
     object.ignites = false;
     object.counters = from.counters;
     if (!from.touched) return;
-    touched_.push_back(&object);
+    world_.scene_.touched.push_back(&object);
     if (object.story.ignitionKnown)
-        backend_.startBoundary(object.slot, object.story.ignitionPoint,
-                               uint32_t(object.story.firstIgnition));
+        world_.context_.backend.startBoundary(object.slot, object.story.ignitionPoint,
+                                              uint32_t(object.story.firstIgnition));
 }
 
-void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emitter) noexcept {
+void PersistenceSystem::applyEmitter(const SavedEmitter& from,
+                                     components::FireEmitter& emitter) noexcept {
     std::copy_n(from.position, 3, emitter.position);
     std::copy_n(from.direction, 3, emitter.direction);
     if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
     emitter.births = {};  // what flew belongs to another time
     emitter.births.warms = true;
     emitter.lastShields = {};
-    components::settleSparks(emitter, emitterTime_);
+    components::settleSparks(emitter, world_.emitters_.state_.time);
     emitter.swept = 0;
     for (size_t k = 0; k < from.touches.size(); ++k) {
         components::JetTouch& touch = emitter.touches[k];
         const uint32_t object1 = from.touches[k].object1;
-        touch.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
+        touch.object = object1 != 0 ? world_.scene_.objects.idOf(object1 - 1) : FwBurnableMeshId{};
         touch.since = from.touches[k].since;
         touch.seen = from.touches[k].flag;
     }
@@ -1058,8 +1101,9 @@ void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emit
     emitter.stream->kept = from.kept;
     emitter.stream->patches = from.patches;
     for (components::JetPatch& patch : emitter.stream->patches)
-        patch.object =
-            patch.object.index1 != 0 ? objects_.idOf(patch.object.index1 - 1) : FwBurnableMeshId{};
+        patch.object = patch.object.index1 != 0
+                           ? world_.scene_.objects.idOf(patch.object.index1 - 1)
+                           : FwBurnableMeshId{};
     emitter.stream->before = emitter.stream->patches;
     emitter.stream->patchedAt = from.patchedAt;
     for (components::JetParcel& parcel : emitter.stream->parcels) parcel = {};
@@ -1069,8 +1113,10 @@ void World::applyEmitter(const SavedEmitter& from, components::FireEmitter& emit
         for (uint32_t r = 0; r < components::kJetRays; ++r) {
             components::JetRay& ray = parcel.rays[r];
             const uint32_t object1 = ray.hit.object.index1;
-            ray.hit.object = object1 != 0 ? objects_.idOf(object1 - 1) : FwBurnableMeshId{};
-            ray.version = from.swept[i * components::kJetRays + r] != 0 ? geometry_ : 0;
+            ray.hit.object =
+                object1 != 0 ? world_.scene_.objects.idOf(object1 - 1) : FwBurnableMeshId{};
+            ray.version =
+                from.swept[i * components::kJetRays + r] != 0 ? world_.scene_.geometryVersion : 0;
         }
     }
 }

@@ -2,12 +2,10 @@
 // read from a file and checked against one before anything of it changes.
 #pragma once
 #include "components/remote.h"
+#include "world/shift.h"
 #include "world/world.h"
 
 namespace fw::world {
-
-// m: of places that their owners may have left before the origin moved, see shift.cpp.
-constexpr double kFarPast = 2e6;
 
 struct SavedTouch {        // of a fire or a jet
     uint32_t object1 = 0;  // slot + 1; 0: none

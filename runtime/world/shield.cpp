@@ -1,9 +1,8 @@
-// The shield between fires and what they would warm: given anew by the host, with what objects fill
-// of it as they stand then. Whether such a cell is still there is the backends' to find, so that no
-// call has to come in time.
-#include "components/heat_shield.h"
-#include "components/wind_zone.h"
-#include "world/world.h"
+// The heat-occlusion grid: the host gives all of it at once, with the cells that objects fill as
+// they stand then. Backends find out whether such a cell is still there, so that no call has to
+// come in time.
+#include "world/exchange_system.h"
+#include "world/persistence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,9 +10,9 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kCellsOfNumber = 24;  // a float holds them exactly
-constexpr uint32_t kNumbersOfDeed = 12;
-constexpr uint32_t kCellsOfDeed = kCellsOfNumber * kNumbersOfDeed;
+constexpr uint32_t kCellsPerNumber = 24;  // a float holds them exactly
+constexpr uint32_t kNumbersPerCommand = 12;
+constexpr uint32_t kCellsPerCommand = kCellsPerNumber * kNumbersPerCommand;
 
 // 24 cells from `first` on, as far as there are any.
 uint32_t cellsFrom(std::span<const uint32_t> solid, uint32_t first) noexcept {
@@ -21,7 +20,7 @@ uint32_t cellsFrom(std::span<const uint32_t> solid, uint32_t first) noexcept {
     if (word >= solid.size()) return 0;
     uint64_t two = solid[word];
     if (word + 1 < solid.size()) two |= uint64_t(solid[word + 1]) << 32;
-    return uint32_t(two >> shift) & ((1u << kCellsOfNumber) - 1);
+    return uint32_t(two >> shift) & ((1u << kCellsPerNumber) - 1);
 }
 
 // Where it is, and as far around it as texels fill cells of it.
@@ -37,11 +36,11 @@ mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
 
 }  // namespace
 
-components::ShieldObject World::shieldObjectOf(uint32_t slot) noexcept {
-    const Object& object = **objects_.at(slot);
+components::ShieldObject ExchangeSystem::shieldObjectOf(uint32_t slot) noexcept {
+    const Object& object = scene_.objectAt(slot);
     components::ShieldObject made;
     made.slot = slot;
-    made.domain = &domainOf(object);
+    made.domain = &scene_.domainOf(object);
     components::placeRemote(object.data.pose, *made.domain, made.place);
     double longest = 0;
     for (const float s : object.data.pose.stretch) longest = std::max(longest, std::abs(double(s)));
@@ -49,181 +48,187 @@ components::ShieldObject World::shieldObjectOf(uint32_t slot) noexcept {
         std::clamp(double(made.domain->texelSide) * double(object.data.pose.scale) * longest * 1000,
                    0.0, 1e6));
     for (uint32_t i = 0; i < components::kMaterials; ++i)
-        if (components::holeTicks(object.data, i, def_.paceFactor) == 0) made.stays |= 1u << i;
+        if (components::holeTicks(object.data, i, context_.def.paceFactor) == 0)
+            made.stays |= 1u << i;
     return made;
 }
 
-void World::bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
-                           std::pmr::vector<components::ShieldCell>& baked) {
+void ExchangeSystem::bakeHeatShield(const components::ShieldShape& shape,
+                                    std::pmr::vector<uint32_t>& slots,
+                                    std::pmr::vector<components::ShieldCell>& baked) {
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    std::pmr::vector<components::ShieldObject> objects(memory_);
+    std::pmr::vector<components::ShieldObject> objects(context_.memory);
     for (const uint32_t slot : slots) objects.push_back(shieldObjectOf(slot));
     components::bakeShield(shape, objects, baked);
 }
 
-void World::setHeatShield(const FwHeatShieldDef& def) {
-    mayChange();
-    components::HeatShield made(memory_);
-    std::pmr::vector<uint32_t> slots(memory_);
+void ExchangeSystem::setHeatShield(const FwHeatShieldDef& def) {
+    context_.recorder.mayChange();
+    components::HeatShield made(context_.memory);
+    std::pmr::vector<uint32_t> slots(context_.memory);
     if (def.structSize != 0) {
         made.shape = components::makeShieldShape(def);
         if (def.objectCount != 0 && !def.objects)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwHeatShieldDef::objects is null, and objectCount is %u.", def.objectCount);
         for (uint32_t i = 0; i < def.objectCount; ++i)
-            slots.push_back((*objects_.get(def.objects[i])).slot);
+            slots.push_back((*scene_.objects.get(def.objects[i])).slot);
         if (def.flags & FW_HEAT_SHIELD_ALL_OBJECTS) {
-            const std::span<const uint32_t> near = objectsNear(boxOf(made.shape), 0);
+            const std::span<const uint32_t> near = scene_.objectsNear(boxOf(made.shape), 0);
             slots.insert(slots.end(), near.begin(), near.end());
         }
         components::readShieldCells(def, made.shape, made.solid);
     }
     bakeHeatShield(made.shape, slots, made.baked);
-    noteShield(def, made, slots);
+    recordShield(def, made, slots);
     adoptShield(made);
 }
 
-void World::adoptShield(components::HeatShield& made) noexcept {
-    shield_.grid.shape = made.shape;
-    shield_.grid.solid.swap(made.solid);
-    shield_.grid.baked.swap(made.baked);
+void ExchangeSystem::adoptShield(components::HeatShield& made) noexcept {
+    state_.shield.grid.shape = made.shape;
+    state_.shield.grid.solid.swap(made.solid);
+    state_.shield.grid.baked.swap(made.baked);
     shieldChanged();
 }
 
-// The host's cells are others: jets end there, too.
-void World::shieldChanged() noexcept {
-    shield_.unsent = shield_.unpacked = true;
-    ++geometry_;
+// Jets end at the host's cells, too.
+void ExchangeSystem::shieldChanged() noexcept {
+    state_.shield.unsent = state_.shield.unpacked = true;
+    ++scene_.geometryVersion;
 }
 
-// The grid's place, if it is another; then what of the host's cells is another; then all objects.
-void World::noteShield(const FwHeatShieldDef& def, const components::HeatShield& made,
-                       std::span<const uint32_t> slots) noexcept {
-    if (!notes()) return;
-    const bool stays = made.shape == shield_.grid.shape;
-    if (!stays) noteDef(Deed::Kind::heatShield, 0, def);
+// The grid's place, if it changed; then the host's cells that changed; then all objects.
+void ExchangeSystem::recordShield(const FwHeatShieldDef& def, const components::HeatShield& made,
+                                  std::span<const uint32_t> slots) noexcept {
+    if (!context_.recorder.notes()) return;
+    const bool stays = made.shape == state_.shield.grid.shape;
+    if (!stays) context_.recorder.noteDef(Deed::Kind::heatShield, 0, def);
     const std::span<const uint32_t> before =
-        stays ? std::span<const uint32_t>(shield_.grid.solid) : std::span<const uint32_t>();
-    for (uint32_t first = 0; first < made.shape.cells(); first += kCellsOfDeed) {
-        Deed deed;
-        deed.kind = Deed::Kind::shieldCells;
-        deed.slot = first / kCellsOfDeed;
+        stays ? std::span<const uint32_t>(state_.shield.grid.solid) : std::span<const uint32_t>();
+    for (uint32_t first = 0; first < made.shape.cells(); first += kCellsPerCommand) {
+        Deed command;
+        command.kind = Deed::Kind::shieldCells;
+        command.slot = first / kCellsPerCommand;
         bool other = false;
-        for (uint32_t k = 0; k < kNumbersOfDeed; ++k) {
-            const uint32_t cells = cellsFrom(made.solid, first + k * kCellsOfNumber);
-            other |= cells != cellsFrom(before, first + k * kCellsOfNumber);
-            deed.numbers[k] = float(cells);
+        for (uint32_t k = 0; k < kNumbersPerCommand; ++k) {
+            const uint32_t cells = cellsFrom(made.solid, first + k * kCellsPerNumber);
+            other |= cells != cellsFrom(before, first + k * kCellsPerNumber);
+            command.numbers[k] = float(cells);
         }
-        if (other) note(deed);
+        if (other) context_.recorder.note(command);
     }
-    Deed deed;
-    deed.kind = Deed::Kind::shieldObject;
+    Deed command;
+    command.kind = Deed::Kind::shieldObject;
     for (size_t i = 0; i < slots.size(); ++i) {
-        deed.slot = slots[i] + 1;
-        deed.word = i + 1 == slots.size() ? 1 : 0;
-        note(deed);
+        command.slot = slots[i] + 1;
+        command.word = i + 1 == slots.size() ? 1 : 0;
+        context_.recorder.note(command);
     }
-    deed.slot = 0;
-    deed.word = 1;
-    if (slots.empty() && stays && !shield_.grid.baked.empty()) note(deed);
+    command.slot = 0;
+    command.word = 1;
+    if (slots.empty() && stays && !state_.shield.grid.baked.empty())
+        context_.recorder.note(command);
 }
 
-void World::takeShield(const Deed& deed) {
-    mayChange();
-    const FwHeatShieldDef def = heatShieldDefOf(deed);
-    components::HeatShield made(memory_);
+void ExchangeSystem::applyShieldCommand(const Deed& command) {
+    context_.recorder.mayChange();
+    const FwHeatShieldDef def = heatShieldDefOf(command);
+    components::HeatShield made(context_.memory);
     if (def.counts[0] != 0) made.shape = components::makeShieldShape(def);
     made.solid.assign(made.shape.words(), 0);
     adoptShield(made);
-    shield_.told.clear();
-    note(deed);
+    state_.shield.commandSlots.clear();
+    context_.recorder.note(command);
 }
 
-void World::takeShieldCells(const Deed& deed) {
-    mayChange();
-    components::HeatShield& grid = shield_.grid;
-    if (uint64_t{deed.slot} * kCellsOfDeed >= grid.shape.cells())
-        core::fail(FW_ERROR_BAD_DATA, "A deed is of cells %u x %u of the shield, which has %u.",
-                   deed.slot, kCellsOfDeed, grid.shape.cells());
-    for (uint32_t k = 0; k < kNumbersOfDeed; ++k) {
-        const float number = deed.numbers[k];
-        if (!(number >= 0 && number < float(1u << kCellsOfNumber)) || number != std::floor(number))
-            core::fail(FW_ERROR_BAD_DATA, "A deed has %g for cells of the shield.", double(number));
+void ExchangeSystem::applyShieldCells(const Deed& command) {
+    context_.recorder.mayChange();
+    components::HeatShield& grid = state_.shield.grid;
+    if (uint64_t{command.slot} * kCellsPerCommand >= grid.shape.cells())
+        core::fail(FW_ERROR_BAD_DATA, "A command is of cells %u x %u of the shield, which has %u.",
+                   command.slot, kCellsPerCommand, grid.shape.cells());
+    for (uint32_t k = 0; k < kNumbersPerCommand; ++k) {
+        const float number = command.numbers[k];
+        if (!(number >= 0 && number < float(1u << kCellsPerNumber)) || number != std::floor(number))
+            core::fail(FW_ERROR_BAD_DATA, "A command has %g for cells of the shield.",
+                       double(number));
     }
-    for (uint32_t i = 0; i < kCellsOfDeed; ++i) {
-        const uint32_t cell = deed.slot * kCellsOfDeed + i;
+    for (uint32_t i = 0; i < kCellsPerCommand; ++i) {
+        const uint32_t cell = command.slot * kCellsPerCommand + i;
         if (cell >= grid.shape.cells()) break;
         const uint32_t bit = 1u << cell % 32;
-        const bool there = uint32_t(deed.numbers[i / kCellsOfNumber]) >> i % kCellsOfNumber & 1;
+        const bool there =
+            uint32_t(command.numbers[i / kCellsPerNumber]) >> i % kCellsPerNumber & 1;
         grid.solid[cell / 32] = (grid.solid[cell / 32] & ~bit) | (there ? bit : 0u);
     }
     shieldChanged();
-    note(deed);
+    context_.recorder.note(command);
 }
 
-void World::takeShieldObject(const Deed& deed) {
-    mayChange();
-    if (deed.slot != 0 && (deed.slot > objects_.slotCount() || !objects_.at(deed.slot - 1)))
-        core::fail(FW_ERROR_BAD_DATA, "A deed shields by object %u, which is not there.",
-                   deed.slot);
-    if (deed.slot != 0 && shield_.told.size() >= objects_.live())
+void ExchangeSystem::applyShieldObject(const Deed& command) {
+    context_.recorder.mayChange();
+    if (command.slot != 0 &&
+        (command.slot > scene_.objects.slotCount() || !scene_.objects.at(command.slot - 1)))
+        core::fail(FW_ERROR_BAD_DATA, "A command shields by object %u, which is not there.",
+                   command.slot);
+    if (command.slot != 0 && state_.shield.commandSlots.size() >= scene_.objects.live())
         core::fail(FW_ERROR_BAD_DATA,
                    "Commands name more objects for one shield than the %u that there are.",
-                   objects_.live());
-    if (deed.slot != 0) shield_.told.push_back(deed.slot - 1);
-    if (deed.word != 0) {
-        std::pmr::vector<uint32_t> slots(memory_);
-        slots.swap(shield_.told);
-        bakeHeatShield(shield_.grid.shape, slots, shield_.grid.baked);
-        shield_.unsent = shield_.unpacked = true;
+                   scene_.objects.live());
+    if (command.slot != 0) state_.shield.commandSlots.push_back(command.slot - 1);
+    if (command.word != 0) {
+        std::pmr::vector<uint32_t> slots(context_.memory);
+        slots.swap(state_.shield.commandSlots);
+        bakeHeatShield(state_.shield.grid.shape, slots, state_.shield.grid.baked);
+        state_.shield.unsent = state_.shield.unpacked = true;
     }
-    note(deed);
+    context_.recorder.note(command);
 }
 
-// Who is destroyed stands in nobody's way, and its slot may be another's.
-void World::dropFromShield(uint32_t slot) noexcept {
-    std::erase(shield_.told, slot);
-    const size_t gone = std::erase_if(shield_.grid.baked, [&](const components::ShieldCell& cell) {
-        return (cell.what & gpu::kShieldSlot) == slot;
-    });
-    if (gone != 0) shield_.unsent = shield_.unpacked = true;
+// The slot of a destroyed object may become another's.
+void ExchangeSystem::removeFromShield(uint32_t slot) noexcept {
+    std::erase(state_.shield.commandSlots, slot);
+    const size_t gone = std::erase_if(
+        state_.shield.grid.baked,
+        [&](const components::ShieldCell& cell) { return (cell.what & gpu::kShieldSlot) == slot; });
+    if (gone != 0) state_.shield.unsent = state_.shield.unpacked = true;
 }
 
-void World::packHeatShield() {
-    if (shield_.unpacked) components::packShield(shield_.grid, shield_.words);
-    shield_.unpacked = false;
+void ExchangeSystem::packHeatShield() {
+    if (state_.shield.unpacked) components::packShield(state_.shield.grid, state_.shield.words);
+    state_.shield.unpacked = false;
 }
 
-// For who is asked at once, and hears of texels some frames later: an object's cells are there
-// until half of it has burnt.
-components::ShieldView World::shieldView() {
+// For queries, which are answered at once while texels come some frames later: an object's cells
+// are there until half of it has burnt.
+components::ShieldView ExchangeSystem::shieldView() {
     components::ShieldView view;
     packHeatShield();
-    if (shield_.grid.shape.cells() == 0) return view;
-    shield_.fallen.assign(objects_.slotCount(), 0);
-    for (const Object* object : touched_) {  // nothing of the others has burnt
+    if (state_.shield.grid.shape.cells() == 0) return view;
+    state_.shield.fallen.assign(scene_.objects.slotCount(), 0);
+    for (const Object* object : scene_.touched) {  // nothing of the others has burnt
         const gpu::ObjectCounters& now = object->counters;
         const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
         const bool holes = !(object->data.flags & FW_BURNABLE_NO_HOLES);
-        shield_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
+        state_.shield.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
     }
-    view.shape = shield_.grid.shape;
-    view.words = shield_.words;
-    view.fallen = shield_.fallen;
+    view.shape = state_.shield.grid.shape;
+    view.words = state_.shield.words;
+    view.fallen = state_.shield.fallen;
     return view;
 }
 
 // awake: the step will run.
-void World::planShield(gpu::StepPlan& step, bool awake) {
-    if (!awake || !shield_.unsent || frame_.shieldSent) return;
+void ExchangeSystem::planShield(gpu::StepPlan& step, bool awake) {
+    if (!awake || !state_.shield.unsent || frame_.shieldSent) return;
     packHeatShield();
-    const components::ShieldShape& shape = shield_.grid.shape;
-    shield_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
-    shield_.update.cell = shape.cell;
-    shield_.update.counts = components::countsOf(shape);
-    shield_.update.words = shield_.words;
-    step.shield = &shield_.update;
+    const components::ShieldShape& shape = state_.shield.grid.shape;
+    state_.shield.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
+    state_.shield.update.cell = shape.cell;
+    state_.shield.update.counts = components::countsOf(shape);
+    state_.shield.update.words = state_.shield.words;
+    step.shield = &state_.shield.update;
     frame_.shieldSent = true;
 }
 

@@ -72,7 +72,7 @@ void Timeline::restart(uint64_t now) noexcept {
 
 // ---- World --------------------------------------------------------------------------------------
 
-void World::startTimeline(const FwTimelineDef& def) {
+void PersistenceSystem::startTimeline(const FwTimelineDef& def) {
     components::checkValue(def.interval, "FwTimelineDef::interval", kShortest, kLongest);
     components::checkValue(def.longest, "FwTimelineDef::longest", kShortest, kLongest);
     if (def.reserved != 0 || def.longest < def.interval)
@@ -84,23 +84,23 @@ void World::startTimeline(const FwTimelineDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwTimelineDef::bytes is %llu; at least %llu.",
                    static_cast<unsigned long long>(def.bytes),
                    static_cast<unsigned long long>(kLeastTimeline));
-    auto timeline = core::Owned<Timeline>::make(memory_, memory_);
+    auto timeline = core::Owned<Timeline>::make(world_.context_.memory, world_.context_.memory);
     timeline->apart = ticksOf(def.interval);
     timeline->farthest = std::max(ticksOf(def.longest), timeline->apart);
     timeline->most = def.bytes;
-    timeline->restart(clock_.tick);
+    timeline->restart(world_.context_.clock.tick);
     requestSave(SaveFor::timeline);
     saves_[size_t(SaveFor::timeline)]->pending = false;  // of one that was kept before
     timeline_ = std::move(timeline);
 }
 
-void World::stopTimeline() noexcept {
+void PersistenceSystem::stopTimeline() noexcept {
     timeline_ = {};
     saves_[size_t(SaveFor::timeline)] = {};
 }
 
 // Before a frame's plan: is one of its moments to be kept? Of what burnt before, none.
-void World::planTimeline(uint64_t after) noexcept {
+void PersistenceSystem::planTimeline(uint64_t after) noexcept {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     const core::Owned<Save>& save = saves_[size_t(SaveFor::timeline)];
@@ -112,15 +112,16 @@ void World::planTimeline(uint64_t after) noexcept {
 }
 
 // A frame was: from `before` to the present.
-void World::commitTimeline(uint64_t before) noexcept {
+void PersistenceSystem::commitTimeline(uint64_t before) noexcept {
     if (!timeline_) return;
     Timeline& timeline = *timeline_;
-    if (clock_.tick == before) return;
-    if (before < timeline.end && clock_.tick > timeline.granted) timeline.forget(before);
-    timeline.end = std::max(timeline.end, clock_.tick);
+    if (world_.context_.clock.tick == before) return;
+    if (before < timeline.end && world_.context_.clock.tick > timeline.granted)
+        timeline.forget(before);
+    timeline.end = std::max(timeline.end, world_.context_.clock.tick);
 }
 
-void World::keepMoment() noexcept {
+void PersistenceSystem::keepMoment() noexcept {
     if (!timeline_ || !saves_[size_t(SaveFor::timeline)]->ready) return;
     Save& save = *saves_[size_t(SaveFor::timeline)];
     save.ready = false;
@@ -128,7 +129,8 @@ void World::keepMoment() noexcept {
     try {
         timeline.moments.push_back(
             {save.saved.clock.tick, timeline.captured,
-             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), memory_)});
+             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(),
+                                         world_.context_.memory)});
     } catch (...) {  // there will be another one
         return;
     }
@@ -136,15 +138,15 @@ void World::keepMoment() noexcept {
 }
 
 // What the host does: in the past it makes another future.
-void World::noteInTimeline(const Deed& deed) noexcept {
+void PersistenceSystem::noteInTimeline(const Deed& deed) noexcept {
     if (!timeline_ || timeline_->seeks) return;
     Timeline& timeline = *timeline_;
-    if (clock_.tick < timeline.end) timeline.forget(clock_.tick);
-    timeline.deeds.push({clock_.tick, false, deed});
+    if (world_.context_.clock.tick < timeline.end) timeline.forget(world_.context_.clock.tick);
+    timeline.deeds.push({world_.context_.clock.tick, false, deed});
     timeline.done = timeline.deeds.entries.size();
 }
 
-bool World::seek(uint64_t untilTick, float& seconds) {
+bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     seconds = 0;
     if (!timeline_)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -159,7 +161,8 @@ bool World::seek(uint64_t untilTick, float& seconds) {
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the timeline was kept; it has a gap.");
     const uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (timeline.moments.empty() && until <= timeline.end) return until == clock_.tick;
+    if (timeline.moments.empty() && until <= timeline.end)
+        return until == world_.context_.clock.tick;
     if (timeline.moments.empty() || until < timeline.moments.front().tick || until > timeline.end)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "untilTick is %llu; the timeline has %llu to %llu.",
                    static_cast<unsigned long long>(untilTick),
@@ -170,32 +173,36 @@ bool World::seek(uint64_t untilTick, float& seconds) {
     auto from = std::upper_bound(timeline.moments.begin(), timeline.moments.end(), until,
                                  [](uint64_t tick, const Moment& m) { return tick < m.tick; });
     --from;
-    if (until < clock_.tick || from->tick > clock_.tick) {
+    if (until < world_.context_.clock.tick || from->tick > world_.context_.clock.tick) {
         load(from->save);
         timeline.done = from->deeds;
     }
     const auto& entries = timeline.deeds.entries;
-    const bool present = clock_.tick == timeline.end;  // with all that was done in it
-    if (clock_.tick < until || present) {
-        for (; timeline.done < entries.size() && entries[timeline.done].tick <= clock_.tick;
+    const bool present =
+        world_.context_.clock.tick == timeline.end;  // with all that was done in it
+    if (world_.context_.clock.tick < until || present) {
+        for (; timeline.done < entries.size() &&
+               entries[timeline.done].tick <= world_.context_.clock.tick;
              ++timeline.done) {
             try {
                 perform(entries[timeline.done].deed);
             } catch (const core::Error& error) {
-                log_.write(FW_LOG_WARNING, "A call of the timeline at tick %llu is refused: %s",
-                           static_cast<unsigned long long>(clock_.tick), error.message);
+                world_.context_.log.write(
+                    FW_LOG_WARNING, "A call of the timeline at tick %llu is refused: %s",
+                    static_cast<unsigned long long>(world_.context_.clock.tick), error.message);
             }
         }
     }
-    if (clock_.tick >= until) return true;
-    uint64_t next = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
+    if (world_.context_.clock.tick >= until) return true;
+    uint64_t next = std::min(
+        until, world_.context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
     if (timeline.done < entries.size()) next = std::min(next, entries[timeline.done].tick);
     timeline.granted = next;
     seconds = secondsUpTo(next);
     return true;
 }
 
-void World::timelineState(FwTimelineState& state) {
+void PersistenceSystem::timelineState(FwTimelineState& state) {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     state.moments = uint32_t(timeline.moments.size());
