@@ -17,8 +17,8 @@ void* Memory::do_allocate(size_t size, size_t alignment) {
 }
 
 void Memory::do_deallocate(void* memory, size_t size, size_t alignment) {
-    [[maybe_unused]] const size_t before = bytes_.fetch_sub(size, std::memory_order_relaxed);
-    FW_ASSERT(memory && before >= size, "%zu of %zu bytes", size, before);
+    FW_ASSERT(memory);
+    bytes_.fetch_sub(size, std::memory_order_relaxed);
     if (callbacks_.release)
         callbacks_.release(callbacks_.userData, memory, size, alignment);
     else

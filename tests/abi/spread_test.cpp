@@ -285,17 +285,23 @@ uint64_t mixedSession(float deltaTime, uint32_t switches) {
     Panels p(def, 30.0f);
     EXPECT_EQ(FW_OK, fwDebug_SetSwitches(p.world, switches));
     std::mt19937 random(4);
-    for (int i = 0; i < 30; ++i)
-        p.add(float(random() % 300) / 100, float(random() % 5) * 0.03f,
-              float(random() % 100) / 100);
+    // One draw a statement: compilers order the arguments of a call differently.
+    const auto draw = [&random](uint32_t below) { return float(random() % below); };
+    for (int i = 0; i < 30; ++i) {
+        const float z = draw(100) / 100;
+        const float y = draw(5) * 0.03f;
+        const float x = draw(300) / 100;
+        p.add(x, y, z);
+    }
     const FwBurnableMeshDef first = p.def(0, 0, 0);
     EXPECT_EQ(FW_OK, fwWorld_SetTransform(p.world, p.ids[0], first.transform));
     p.ignite(p.ids[0], 0.2f, 0, 0.1f);
     for (int turn = 0; turn < 40; ++turn) {  // one second per turn
-        const FwBurnableMeshDef there =
-            p.def(float(random() % 300) / 100, 0.02f, float(random() % 100) / 100);
+        const float z = draw(100) / 100;
+        const float x = draw(300) / 100;
+        const FwBurnableMeshDef there = p.def(x, 0.02f, z);
         EXPECT_EQ(FW_OK, fwWorld_SetTransform(p.world, p.ids[1 + random() % 29], there.transform));
-        const float wind[3] = {float(random() % 5), 0, 1};
+        const float wind[3] = {draw(5), 0, 1};
         EXPECT_EQ(FW_OK, fwWorld_SetWind(p.world, wind));
         p.run(1, deltaTime);
     }
