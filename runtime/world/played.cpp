@@ -103,7 +103,7 @@ void readBurn(std::span<const std::byte> bytes, Burn& burn) {
     });
 }
 
-// ---- World --------------------------------------------------------------------------------------
+// ---- the system ---------------------------------------------------------------------------------
 
 const std::pmr::vector<std::byte>* BurnSystem::fetchBurn(FwBurnableMeshId id) {
     const BurnMapCopy* map = queries_.fetchBurnMap(id);
@@ -266,7 +266,7 @@ void BurnSystem::settlePlays(Snapshot& saved) {
         const core::Owned<Burn>* burn =
             play.burn1 <= state_.burns.slotCount() ? state_.burns.at(play.burn1 - 1) : nullptr;
         if (!burn || (*burn)->hash != object.burnHash ||
-            (*burn)->mesh != scene_.meshHash(**scene_.objects.at(object.slot)))
+            (*burn)->mesh != scene_.meshHash(scene_.objectAt(object.slot)))
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u of the save plays baked burn %u, which is none or another "
                        "one here.",

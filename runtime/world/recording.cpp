@@ -153,7 +153,7 @@ void BurnSystem::igniteObjects(const IgniteObjects& command) {
     });
     reservePending(count);
     command.slots.each(
-        [&](uint32_t slot) { addChange(**scene_.objects.at(slot), command.change, all); });
+        [&](uint32_t slot) { addChange(scene_.objectAt(slot), command.change, all); });
     context_.recorder.record(command);
 }
 

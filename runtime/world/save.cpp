@@ -128,7 +128,7 @@ class SnapshotChecker : public save::Archive<SnapshotChecker> {
     }
     void texel(const char* name, uint32_t slot, uint32_t texel) const {
         object(name, slot);
-        const mesh::BurnDomain& domain = scene_.domainOf(**scene_.objects.at(slot));
+        const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(slot));
         if (texel >= domain.texelCount() || !domain.real(texel))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s at texel %u of burnable mesh %u, which is not there.", name,
@@ -384,7 +384,7 @@ void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
     std::pmr::vector<Ends> ends(world_.context_.memory);
     std::pmr::vector<uint32_t> lost(world_.context_.memory);
     for (const gpu::ObjectImage& image : readback.images) {
-        const Object& object = **world_.scene_.objects.at(image.object);
+        const Object& object = world_.scene_.objectAt(image.object);
         writeImage(image, world_.scene_.domainOf(object), readback.endTick, windowOf(object),
                    save.planes);
         Ends& end = ends.emplace_back();
@@ -409,7 +409,7 @@ void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
             return;
         }
         const Ends& end = ends[next++];
-        const Object& live = **world_.scene_.objects.at(object.slot);
+        const Object& live = world_.scene_.objectAt(object.slot);
         object.planes = std::span(save.planes).subspan(from, end.image - from);
         object.findsBreaks = bool(live.breaks);
         if (live.breaks) object.breaks = *live.breaks;
@@ -500,7 +500,7 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
     for (const ObjectSnapshot& object : saved.objects) {
-        const uint64_t mine = assetOf(**world_.scene_.objects.at(object.slot));
+        const uint64_t mine = assetOf(world_.scene_.objectAt(object.slot));
         if (object.asset != mine)
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u is not the save's: mesh, materials and def hash to "
@@ -557,7 +557,7 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
 
 BurnRecords PersistenceSystem::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
                                          components::Latch& latch) {
-    const Object& object = **world_.scene_.objects.at(from.slot);
+    const Object& object = world_.scene_.objectAt(from.slot);
     const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
     components::DriveInput drive = world_.wind_.driveInput(object, world_.context_.clock.tick);
     drive.wind = windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones,
@@ -606,11 +606,11 @@ void PersistenceSystem::load(std::span<const std::byte> bytes) {
         }
         if (!from.touched) continue;
         ImageStore& store = stores.emplace_back(world_.context_.memory);
-        readImage(from.planes, world_.scene_.domainOf(**world_.scene_.objects.at(from.slot)),
+        readImage(from.planes, world_.scene_.domainOf(world_.scene_.objectAt(from.slot)),
                   uint32_t(saved.clock.tick), made.window, made.heatSpan(), store);
         if (from.findsBreaks && (*world_.scene_.objects.at(from.slot))->breaks) {
             const mesh::BurnDomain& domain =
-                world_.scene_.domainOf(**world_.scene_.objects.at(from.slot));
+                world_.scene_.domainOf(world_.scene_.objectAt(from.slot));
             store.lost.resize(domain.texelCount());
             if (!save::readPlane(from.lost, domain.width, {}, store.lost))
                 core::fail(FW_ERROR_BAD_DATA,
@@ -665,7 +665,7 @@ void PersistenceSystem::load(std::span<const std::byte> bytes) {
     for (const ObjectSnapshot& from : saved.objects) {
         if (!from.touched) continue;
         const ImageStore& store = stores[next++];
-        if (Object& object = **world_.scene_.objects.at(from.slot); object.breaks)
+        if (Object& object = world_.scene_.objectAt(from.slot); object.breaks)
             world_.burn_.restoreBreaks(object, from.findsBreaks ? &from.breaks : nullptr, store,
                                        uint32_t(world_.context_.clock.tick));
     }
@@ -762,8 +762,7 @@ void PersistenceSystem::apply(const Snapshot& saved,
     world_.scene_.touched.clear();
     world_.scene_.playing.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
-        applyObject(saved.objects[i], latches[i],
-                    **world_.scene_.objects.at(saved.objects[i].slot));
+        applyObject(saved.objects[i], latches[i], world_.scene_.objectAt(saved.objects[i].slot));
     world_.lights_.showSaved();
     world_.exchange_.state_.book.pairs.clear();
     for (PairContacts pair : saved.pairs) {

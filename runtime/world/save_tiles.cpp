@@ -119,7 +119,7 @@ bool PersistenceSystem::readObject(std::span<const std::byte> save, uint32_t slo
     if (!object || !object->touched) return false;
     components::Latch latch;
     const BurnRecords records = recordsOf(saved, *object, latch);
-    readImage(object->planes, world_.scene_.domainOf(**world_.scene_.objects.at(slot)),
+    readImage(object->planes, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
               uint32_t(saved.clock.tick), records.window, records.heatSpan(), store);
     return true;
 }
@@ -130,7 +130,7 @@ std::pmr::vector<uint32_t> PersistenceSystem::hashBlocks(std::span<const std::by
     ImageStore store(world_.context_.memory);
     if (!readObject(save, slot, saved, store))
         return std::pmr::vector<uint32_t>(world_.context_.memory);
-    return hashesOf(store, world_.scene_.domainOf(**world_.scene_.objects.at(slot)),
+    return hashesOf(store, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
                     world_.context_.memory);
 }
 
@@ -140,7 +140,7 @@ bool PersistenceSystem::writeBlocks(std::span<const std::byte> save, uint32_t sl
     Snapshot saved(world_.context_.memory);
     ImageStore store(world_.context_.memory);
     if (!readObject(save, slot, saved, store)) return false;
-    const mesh::BurnDomain& domain = world_.scene_.domainOf(**world_.scene_.objects.at(slot));
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(slot));
     const BlockGrid grid = gridOf(domain);
     const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, world_.context_.memory);
     if (theirs.size() != ours.size()) return false;
@@ -175,7 +175,7 @@ void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
         core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
                    static_cast<unsigned long long>(part.clock.tick));
     const ObjectSnapshot& from = part.objects[0];
-    const mesh::BurnDomain& domain = world_.scene_.domainOf(**world_.scene_.objects.at(from.slot));
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(from.slot));
     const BlockGrid grid = gridOf(domain);
     core::Reader reader(from.planes, "state");
     const uint32_t count = reader.count("blocks of tiles", sizeof(uint32_t));

@@ -1,6 +1,7 @@
 // Helpers of systems whose places move with the world's origin. Offsets are whole metres, so that
 // places counted in millimetres, and grids of a metre, move exactly.
 #pragma once
+#include "components/pose.h"
 #include "core/error.h"
 #include "gpu/backend.h"
 
@@ -12,8 +13,6 @@
 
 namespace fw::world {
 
-// m: of places that their owners may have left before the origin moved.
-constexpr double kFarPast = 2e6;
 constexpr double kFar = 1e6;  // m: of every place
 
 inline void moveBy(float (&place)[3], const double (&by)[3]) noexcept {
@@ -30,12 +29,12 @@ template <class Place>
 inline void movePast(Place& place, const double (&by)[3]) noexcept {
     for (int i = 0; i < 3; ++i) {
         auto& metres = place[i];
-        metres = std::remove_reference_t<decltype(metres)>(
-            std::clamp(double(metres) + by[i], -kFarPast, kFarPast));
+        metres = std::remove_reference_t<decltype(metres)>(std::clamp(
+            double(metres) + by[i], -components::kFarthestPlace, components::kFarthestPlace));
     }
 }
 inline void movePast(int& millimetres, double metres) noexcept {
-    constexpr double kMost = kFarPast * 1000;
+    constexpr double kMost = components::kFarthestPlace * 1000;
     millimetres = int(std::clamp(double(millimetres) + metres * 1000, -kMost, kMost));
 }
 // Wraps where a load goes to an origin so far off that only its save has places there.
