@@ -30,7 +30,7 @@ uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld* world, FwPassTime* times, uint32_
 
 FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld* world, FwBurnableMeshId id) {
     return onWorld("fwDebug_RequestBurnMap", world, [&](world::World& w) {
-        w.requestBurnMap(id);
+        w.queries().requestBurnMap(id);
         edge::Device& device = *world->context->device;
         if (device.answersAtOnce()) device.step(*world->backend, w, 0.0f);
         return FW_OK;
@@ -42,7 +42,7 @@ FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld* world, FwBurnableMeshId id, uint3
                                       uint64_t* tick) {
     return onWorld("fwDebug_FetchBurnMap", world, [&](world::World& w) {
         if (capacity > 0) checkPointer(ticks, "ticks");
-        const world::BurnMapCopy* map = w.fetchBurnMap(id);
+        const world::BurnMapCopy* map = w.queries().fetchBurnMap(id);
         if (!map) return FW_NOT_READY;
         if (ticks)
             std::copy_n(map->ticks.begin(), std::min<uint64_t>(capacity, map->ticks.size()), ticks);
@@ -64,7 +64,7 @@ FwResult FW_CALL fwDebug_PushTexels(FwWorld* world, FwBurnableMeshId id, uint32_
                                     const uint32_t* texels, uint32_t count) {
     return onWorld("fwDebug_PushTexels", world, [&](world::World& w) {
         if (count > 0) checkPointer(texels, "texels");
-        w.pushTexels(id, kind, {texels, count});
+        w.burn().pushTexels(id, kind, {texels, count});
         return FW_OK;
     });
 }
@@ -73,7 +73,7 @@ FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* p
                                            uint32_t* flags, uint64_t capacityTexels,
                                            uint64_t* count) {
     return onWorld("fwDebug_GetTexelPositions", world, [&](world::World& w) {
-        const mesh::BurnDomain& domain = w.domain(id);
+        const mesh::BurnDomain& domain = w.scene().domain(id);
         const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityTexels, domain.texelCount());
         for (uint64_t i = 0; i < given; ++i) {
@@ -95,7 +95,7 @@ FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* p
 FwResult FW_CALL fwDebug_GetUnwrap(FwWorld* world, FwMeshId id, float* corners,
                                    uint64_t capacityCorners, uint64_t* count) {
     return onWorld("fwDebug_GetUnwrap", world, [&](world::World& w) {
-        const mesh::BurnDomain& domain = w.domain(id);
+        const mesh::BurnDomain& domain = w.scene().domain(id);
         const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityCorners, domain.indices.size());
         for (uint64_t i = 0; corners && i < given; ++i) {

@@ -32,47 +32,47 @@ bool destroyNow(world::World& w, const FwObjectRef& object) {
     try {
         switch (object.kind) {
             case FW_OBJECT_MATERIAL:
-                w.destroyMaterial(idOf<FwMaterialId>(object));
+                w.scene().destroyMaterial(idOf<FwMaterialId>(object));
                 break;
             case FW_OBJECT_IMAGE:
-                if (w.showsImage(idOf<FwImageId>(object))) return false;
-                w.destroyImage(idOf<FwImageId>(object));
+                if (w.scene().showsImage(idOf<FwImageId>(object))) return false;
+                w.scene().destroyImage(idOf<FwImageId>(object));
                 break;
             case FW_OBJECT_MESH:
-                w.destroyMesh(idOf<FwMeshId>(object));
+                w.scene().destroyMesh(idOf<FwMeshId>(object));
                 break;
             case FW_OBJECT_BURNABLE_MESH:
                 w.destroyBurnableMesh(idOf<FwBurnableMeshId>(object));
                 break;
             case FW_OBJECT_BLOCKER:
-                w.removeBlocker(idOf<FwBlockerId>(object));
+                w.exchange().removeBlocker(idOf<FwBlockerId>(object));
                 break;
             case FW_OBJECT_VOLUMETRIC_FIRE:
-                w.destroyVolumetricFire(idOf<FwVolumetricFireId>(object));
+                w.flames().destroy(idOf<FwVolumetricFireId>(object));
                 break;
             case FW_OBJECT_FIRE_PROFILE:
-                w.destroyFireProfile(idOf<FwFireProfileId>(object));
+                w.flames().destroyProfile(idOf<FwFireProfileId>(object));
                 break;
             case FW_OBJECT_FIRE_COLLIDER:
-                w.removeFireCollider(idOf<FwFireColliderId>(object));
+                w.flames().removeCollider(idOf<FwFireColliderId>(object));
                 break;
             case FW_OBJECT_FIRE_EMITTER:
-                w.destroyFireEmitter(idOf<FwFireEmitterId>(object));
+                w.emitters().destroy(idOf<FwFireEmitterId>(object));
                 break;
             case FW_OBJECT_FLIPBOOK:
-                w.destroyFlipbook(idOf<FwFlipbookId>(object));
+                w.flames().destroyFlipbook(idOf<FwFlipbookId>(object));
                 break;
             case FW_OBJECT_PARTICLE_FIELD:
-                w.destroyParticleField(idOf<FwParticleFieldId>(object));
+                w.fields().destroy(idOf<FwParticleFieldId>(object));
                 break;
             case FW_OBJECT_WIND_ZONE:
-                w.destroyWindZone(idOf<FwWindZoneId>(object));
+                w.wind().destroyZone(idOf<FwWindZoneId>(object));
                 break;
             case FW_OBJECT_ROOM:
-                w.destroyRoom(idOf<FwRoomId>(object));
+                w.rooms().destroy(idOf<FwRoomId>(object));
                 break;
             default:
-                w.destroyBurn(idOf<FwBurnId>(object));
+                w.burn().destroyBurn(idOf<FwBurnId>(object));
                 break;
         }
     } catch (const core::Error& error) {

@@ -44,7 +44,8 @@ class Stopwatch {
  public:
     explicit Stopwatch(world::World& world) noexcept : world_(world) {}
     ~Stopwatch() {
-        world_.spend(std::chrono::duration<float, std::milli>(Clock::now() - from_).count());
+        world_.budget().spend(
+            std::chrono::duration<float, std::milli>(Clock::now() - from_).count());
     }
     Stopwatch(const Stopwatch&) = delete;
     Stopwatch& operator=(const Stopwatch&) = delete;

@@ -57,7 +57,7 @@ FwResult FW_CALL fwNet_Leave(FwWorld* world) {
     return onWorld("fwNet_Leave", world, [&](world::World& w) {
         world->server.reset();
         world->client.reset();
-        w.stopRecording();
+        w.persistence().stopRecording();
         return FW_OK;
     });
 }

@@ -8,6 +8,7 @@
 #include <atomic>
 #include <mutex>
 #include <optional>
+#include <tuple>
 
 namespace fw::edge {
 
@@ -113,6 +114,14 @@ FwResult onWorld(const char* function, FwWorld* world, Body&& body,
             world->context->log.write(FW_LOG_ERROR, "%s", text);
         },
         [&] { return body(*world->world); }, unit ? *unit : world->unit);
+}
+
+// A system of a world, or the world itself.
+template <class System>
+System& systemOf(world::World& w) noexcept {
+    return std::get<System&>(std::tie(w, w.scene(), w.wind(), w.rooms(), w.fields(), w.flames(),
+                                      w.emitters(), w.lights(), w.exchange(), w.burn(), w.queries(),
+                                      w.persistence(), w.budget()));
 }
 
 // A def of the host's, in metres while the call lasts.

@@ -16,8 +16,8 @@ void publish(FwWorld& handle) noexcept {
     try {
         const std::lock_guard lock(snapshot.mutex);
         snapshot.lights.resize(world.maxLights());
-        snapshot.lights.resize(world.lights(snapshot.lights));
-        world.copyStates(snapshot.objects);
+        snapshot.lights.resize(world.lights().gather(snapshot.lights));
+        world.queries().copyStates(snapshot.objects);
         snapshot.there = true;
     } catch (...) {  // no memory: readers keep what an earlier frame left
         handle.context->log.write(FW_LOG_WARNING,

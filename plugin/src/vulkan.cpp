@@ -612,7 +612,7 @@ FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
         const FwVulkanVertices def =
             edge::readDef(given, FW_DEF_VULKAN_VERTICES, "FwVulkanVertices");
         edge::checkVertices(def);
-        backend.setVertexBuffer(w.skinnedSlot(id, def.vertexCount), def,
+        backend.setVertexBuffer(w.scene().skinnedSlot(id, def.vertexCount), def,
                                 float(edge::objectUnit(*world, id).inverse().perMetre()));
         return FW_OK;
     });

@@ -10,21 +10,22 @@ using edge::InMetres;
 using edge::Metres;
 using edge::onContext;
 using edge::onWorld;
+using edge::systemOf;
 
 namespace {
 
 FwResult ask(const char* function, FwWorld* world,
-             FwQueryId (world::World::*request)(FwBurnableMeshId, const float*),
+             FwQueryId (world::QuerySystem::*request)(FwBurnableMeshId, const float*),
              FwBurnableMeshId id, const float* position, FwQueryId* query) {
     return onWorld(function, world, [&](world::World& w) {
         checkPointer(position, "position");
         checkPointer(query, "query");
         *query = {};
-        const FwQueryId made = (w.*request)(id, Metres(world->unit, position));
+        const FwQueryId made = (w.queries().*request)(id, Metres(world->unit, position));
         try {
             answerAtOnce(world);
         } catch (...) {
-            w.cancelQuery(made);
+            w.queries().cancel(made);
             throw;
         }
         *query = made;
@@ -32,15 +33,14 @@ FwResult ask(const char* function, FwWorld* world,
     });
 }
 
-// Fills a struct of the caller's by a member of the world; `what`: whose state it is, if not the
-// world's.
-template <class Info, class Member, class... What>
-FwResult fill(const char* function, FwWorld* world, Info* info, const char* name, Member member,
-              What... what) {
+// Fills a struct of the caller's by a member of a system; `what`: the id whose state it is, if any.
+template <class Info, class System, class Function, class... What>
+FwResult fill(const char* function, FwWorld* world, Info* info, const char* name,
+              Function System::*member, What... what) {
     return onWorld(function, world, [&](world::World& w) {
         const uint32_t size = edge::checkInfo(info, name);
         Info filled{};
-        (w.*member)(what..., filled);
+        (systemOf<System>(w).*member)(what..., filled);
         edge::fromMetres(world->unit, filled);
         edge::writeInfo(info, size, filled);
         return FW_OK;
@@ -49,12 +49,12 @@ FwResult fill(const char* function, FwWorld* world, Info* info, const char* name
 
 template <class State>
 FwResult answer(const char* function, FwWorld* world,
-                bool (world::World::*fetch)(FwQueryId, State&), FwQueryId query, State* state,
+                bool (world::QuerySystem::*fetch)(FwQueryId, State&), FwQueryId query, State* state,
                 const char* name) {
     return onWorld(function, world, [&](world::World& w) {
         const uint32_t size = edge::checkInfo(state, name);
         State filled{};
-        if (!(w.*fetch)(query, filled)) return FW_NOT_READY;
+        if (!(w.queries().*fetch)(query, filled)) return FW_NOT_READY;
         edge::fromMetres(world->unit, filled);
         edge::writeInfo(state, size, filled);
         return FW_OK;
@@ -81,21 +81,21 @@ void freeWorld(FwWorld* world) noexcept {
     std::pmr::polymorphic_allocator<>(&context->memory).delete_object(world);
 }
 
-template <class Id, class Def>
-FwResult createOf(const char* function, FwWorld* world, Id (world::World::*create)(const Def&),
+template <class System, class Id, class Def>
+FwResult createOf(const char* function, FwWorld* world, Id (System::*create)(const Def&),
                   const Def* given, FwDefType type, const char* name, Id* id) {
     return onWorld(function, world, [&](world::World& w) {
         checkPointer(id, "id");
         *id = {};
-        *id = (w.*create)(InMetres<Def>(*world, given, type, name));
+        *id = (systemOf<System>(w).*create)(InMetres<Def>(*world, given, type, name));
         return FW_OK;
     });
 }
 
-template <class Id>
-FwResult destroyOf(const char* function, FwWorld* world, void (world::World::*destroy)(Id), Id id) {
+template <class System, class Id>
+FwResult destroyOf(const char* function, FwWorld* world, void (System::*destroy)(Id), Id id) {
     return onWorld(function, world, [&](world::World& w) {
-        (w.*destroy)(id);
+        (systemOf<System>(w).*destroy)(id);
         return FW_OK;
     });
 }
@@ -156,14 +156,14 @@ size_t FW_CALL fwWorld_GetLastMessage(FwWorld* world, char* text, size_t capacit
 FwResult FW_CALL fwWorld_SetWind(FwWorld* world, const float wind[3]) {
     return onWorld("fwWorld_SetWind", world, [&](world::World& w) {
         checkPointer(wind, "wind");
-        w.setWind(Metres(world->unit, wind));
+        w.wind().set(Metres(world->unit, wind));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags) {
     return onWorld("fwWorld_SetFlags", world, [&](world::World& w) {
-        w.setFlags(flags);
+        w.exchange().setFlags(flags);
         return FW_OK;
     });
 }
@@ -172,7 +172,7 @@ FwResult FW_CALL fwWorld_AddBlocker(FwWorld* world, const FwBlockerDef* given, F
     return onWorld("fwWorld_AddBlocker", world, [&](world::World& w) {
         checkPointer(id, "id");
         *id = {};
-        *id = w.addBlocker(InMetres(*world, given, FW_DEF_BLOCKER, "FwBlockerDef"));
+        *id = w.exchange().addBlocker(InMetres(*world, given, FW_DEF_BLOCKER, "FwBlockerDef"));
         return FW_OK;
     });
 }
@@ -181,55 +181,55 @@ FwResult FW_CALL fwWorld_MoveBlocker(FwWorld* world, FwBlockerId id, const float
     return onWorld("fwWorld_MoveBlocker", world, [&](world::World& w) {
         checkPointer(transform, "transform");
         const edge::TransformInMetres pose(world->unit, world->unit, transform);
-        w.moveBlocker(id, pose.matrix);
+        w.exchange().moveBlocker(id, pose.matrix);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
-    return destroyOf("fwWorld_RemoveBlocker", world, &world::World::removeBlocker, id);
+    return destroyOf("fwWorld_RemoveBlocker", world, &world::ExchangeSystem::removeBlocker, id);
 }
 
 FwResult FW_CALL fwWorld_SetHeatShield(FwWorld* world, const FwHeatShieldDef* given) {
     return onWorld("fwWorld_SetHeatShield", world, [&](world::World& w) {
         if (given)
-            w.setHeatShield(edge::ShieldInMetres(*world, given));
+            w.exchange().setHeatShield(edge::ShieldInMetres(*world, given));
         else
-            w.setHeatShield({});
+            w.exchange().setHeatShield({});
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_CreateWindZone(FwWorld* world, const FwWindZoneDef* given,
                                         FwWindZoneId* id) {
-    return createOf("fwWorld_CreateWindZone", world, &world::World::createWindZone, given,
+    return createOf("fwWorld_CreateWindZone", world, &world::WindSystem::createZone, given,
                     FW_DEF_WIND_ZONE, "FwWindZoneDef", id);
 }
 
 FwResult FW_CALL fwWorld_SetWindZone(FwWorld* world, FwWindZoneId id, const FwWindZoneDef* given) {
     return onWorld("fwWorld_SetWindZone", world, [&](world::World& w) {
-        w.setWindZone(id, InMetres(*world, given, FW_DEF_WIND_ZONE, "FwWindZoneDef"));
+        w.wind().setZone(id, InMetres(*world, given, FW_DEF_WIND_ZONE, "FwWindZoneDef"));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_DestroyWindZone(FwWorld* world, FwWindZoneId id) {
-    return destroyOf("fwWorld_DestroyWindZone", world, &world::World::destroyWindZone, id);
+    return destroyOf("fwWorld_DestroyWindZone", world, &world::WindSystem::destroyZone, id);
 }
 
 FwResult FW_CALL fwWorld_SetWindGrid(FwWorld* world, const FwWindGridDef* given) {
     return onWorld("fwWorld_SetWindGrid", world, [&](world::World& w) {
         if (given)
-            w.setWindGrid(InMetres(*world, given, FW_DEF_WIND_GRID, "FwWindGridDef"));
+            w.wind().setGrid(InMetres(*world, given, FW_DEF_WIND_GRID, "FwWindGridDef"));
         else
-            w.setWindGrid({});
+            w.wind().setGrid({});
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_SetGusts(FwWorld* world, const FwGustDef* given) {
     return onWorld("fwWorld_SetGusts", world, [&](world::World& w) {
-        w.setGusts(InMetres(*world, given, FW_DEF_GUSTS, "FwGustDef"));
+        w.wind().setGusts(InMetres(*world, given, FW_DEF_GUSTS, "FwGustDef"));
         return FW_OK;
     });
 }
@@ -238,51 +238,52 @@ FwResult FW_CALL fwWorld_GetWindAt(FwWorld* world, const float point[3], float w
     return onWorld("fwWorld_GetWindAt", world, [&](world::World& w) {
         checkPointer(point, "point");
         checkPointer(wind, "wind");
-        w.windAtPoint(Metres(world->unit, point), wind);
+        w.wind().atPoint(Metres(world->unit, point), wind);
         edge::fromMetres3(world->unit, wind);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_CreateRoom(FwWorld* world, const FwRoomDef* given, FwRoomId* id) {
-    return createOf("fwWorld_CreateRoom", world, &world::World::createRoom, given, FW_DEF_ROOM,
+    return createOf("fwWorld_CreateRoom", world, &world::RoomSystem::create, given, FW_DEF_ROOM,
                     "FwRoomDef", id);
 }
 
 FwResult FW_CALL fwWorld_SetRoom(FwWorld* world, FwRoomId id, const FwRoomDef* given) {
     return onWorld("fwWorld_SetRoom", world, [&](world::World& w) {
-        w.setRoom(id, InMetres(*world, given, FW_DEF_ROOM, "FwRoomDef"));
+        w.rooms().set(id, InMetres(*world, given, FW_DEF_ROOM, "FwRoomDef"));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_DestroyRoom(FwWorld* world, FwRoomId id) {
-    return destroyOf("fwWorld_DestroyRoom", world, &world::World::destroyRoom, id);
+    return destroyOf("fwWorld_DestroyRoom", world, &world::RoomSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_GetRoomState(FwWorld* world, FwRoomId id, FwRoomState* state) {
-    return fill("fwWorld_GetRoomState", world, state, "FwRoomState", &world::World::roomState, id);
+    return fill("fwWorld_GetRoomState", world, state, "FwRoomState", &world::RoomSystem::fillState,
+                id);
 }
 
 // ---- materials, images, meshes ----------------------------------------------------------------
 
 FwResult FW_CALL fwWorld_CreateMaterial(FwWorld* world, const FwMaterialDef* given,
                                         FwMaterialId* id) {
-    return createOf("fwWorld_CreateMaterial", world, &world::World::createMaterial, given,
+    return createOf("fwWorld_CreateMaterial", world, &world::Scene::createMaterial, given,
                     FW_DEF_MATERIAL, "FwMaterialDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyMaterial(FwWorld* world, FwMaterialId id) {
-    return destroyOf("fwWorld_DestroyMaterial", world, &world::World::destroyMaterial, id);
+    return destroyOf("fwWorld_DestroyMaterial", world, &world::Scene::destroyMaterial, id);
 }
 
 FwResult FW_CALL fwWorld_CreateImage(FwWorld* world, const FwImageDef* given, FwImageId* id) {
-    return createOf("fwWorld_CreateImage", world, &world::World::createImage, given, FW_DEF_IMAGE,
+    return createOf("fwWorld_CreateImage", world, &world::Scene::createImage, given, FW_DEF_IMAGE,
                     "FwImageDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyImage(FwWorld* world, FwImageId id) {
-    return destroyOf("fwWorld_DestroyImage", world, &world::World::destroyImage, id);
+    return destroyOf("fwWorld_DestroyImage", world, &world::Scene::destroyImage, id);
 }
 
 FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMeshId* id) {
@@ -293,11 +294,12 @@ FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMe
         *id = {};
         unit = edge::checkedUnit(edge::readDef(given, FW_DEF_MESH, "FwMeshDef").metersPerUnit,
                                  "FwMeshDef::metersPerUnit", world->unit);
-        const FwMeshId made = w.createMesh(InMetres(*world, given, FW_DEF_MESH, "FwMeshDef", unit));
+        const FwMeshId made =
+            w.scene().createMesh(InMetres(*world, given, FW_DEF_MESH, "FwMeshDef", unit));
         try {
             edge::setUnit(*world, world->meshUnits, made.index1, unit);
         } catch (...) {
-            w.destroyMesh(made);
+            w.scene().destroyMesh(made);
             throw;
         }
         *id = made;
@@ -307,14 +309,14 @@ FwResult FW_CALL fwWorld_CreateMesh(FwWorld* world, const FwMeshDef* given, FwMe
 }
 
 FwResult FW_CALL fwWorld_DestroyMesh(FwWorld* world, FwMeshId id) {
-    return destroyOf("fwWorld_DestroyMesh", world, &world::World::destroyMesh, id);
+    return destroyOf("fwWorld_DestroyMesh", world, &world::Scene::destroyMesh, id);
 }
 
 FwResult FW_CALL fwWorld_GetMeshInfo(FwWorld* world, FwMeshId id, FwMeshInfo* info) {
     return onWorld("fwWorld_GetMeshInfo", world, [&](world::World& w) {
         const uint32_t size = edge::checkInfo(info, "FwMeshInfo");
         FwMeshInfo filled{};
-        w.meshInfo(id, filled);
+        w.scene().meshInfo(id, filled);
         edge::fromMetres(edge::meshUnit(*world, id), filled);
         edge::writeInfo(info, size, filled);
         return FW_OK;
@@ -364,7 +366,7 @@ FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld* world, FwBurnableMeshId id,
                                             uint32_t vertexCount) {
     return onWorld("fwWorld_SetVertexPositions", world, [&](world::World& w) {
         checkPointer(positions, "positions");
-        (void)w.skinnedSlot(id, vertexCount);
+        (void)w.scene().skinnedSlot(id, vertexCount);
         edge::MetreArrays arrays(edge::objectUnit(*world, id), &world->context->memory);
         const uint64_t count = uint64_t(vertexCount) * 3;
         w.setVertexPositions(id, arrays(positions, count, count), normals, vertexCount);
@@ -374,7 +376,7 @@ FwResult FW_CALL fwWorld_SetVertexPositions(FwWorld* world, FwBurnableMeshId id,
 
 FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t hidden) {
     return onWorld("fwWorld_SetHidden", world, [&](world::World& w) {
-        w.setHidden(id, hidden != 0);
+        w.scene().setHidden(id, hidden != 0);
         return FW_OK;
     });
 }
@@ -383,20 +385,19 @@ FwResult FW_CALL fwWorld_SetHidden(FwWorld* world, FwBurnableMeshId id, uint32_t
 
 FwResult FW_CALL fwWorld_CreateVolumetricFire(FwWorld* world, const FwVolumetricFireDef* given,
                                               FwVolumetricFireId* id) {
-    return createOf("fwWorld_CreateVolumetricFire", world, &world::World::createVolumetricFire,
-                    given, FW_DEF_VOLUMETRIC_FIRE, "FwVolumetricFireDef", id);
+    return createOf("fwWorld_CreateVolumetricFire", world, &world::FlameSystem::create, given,
+                    FW_DEF_VOLUMETRIC_FIRE, "FwVolumetricFireDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyVolumetricFire(FwWorld* world, FwVolumetricFireId id) {
-    return destroyOf("fwWorld_DestroyVolumetricFire", world, &world::World::destroyVolumetricFire,
-                     id);
+    return destroyOf("fwWorld_DestroyVolumetricFire", world, &world::FlameSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld* world, FwVolumetricFireId id,
                                             const float position[3]) {
     return onWorld("fwWorld_MoveVolumetricFire", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveVolumetricFire(id, Metres(world->unit, position));
+        w.flames().move(id, Metres(world->unit, position));
         return FW_OK;
     });
 }
@@ -404,7 +405,7 @@ FwResult FW_CALL fwWorld_MoveVolumetricFire(FwWorld* world, FwVolumetricFireId i
 FwResult FW_CALL fwWorld_SetVolumetricFirePower(FwWorld* world, FwVolumetricFireId id,
                                                 float power) {
     return onWorld("fwWorld_SetVolumetricFirePower", world, [&](world::World& w) {
-        w.setVolumetricFirePower(id, power);
+        w.flames().setPower(id, power);
         return FW_OK;
     });
 }
@@ -413,7 +414,7 @@ FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld* world, FwVolumetricFir
                                                  const FwFirePoint* points, uint32_t pointCount) {
     return onWorld("fwWorld_SetVolumetricFirePoints", world, [&](world::World& w) {
         edge::MetreArrays arrays(world->unit, &world->context->memory);
-        w.setVolumetricFirePoints(id, arrays(points, pointCount, 32), pointCount);
+        w.flames().setPoints(id, arrays(points, pointCount, 32), pointCount);
         return FW_OK;
     });
 }
@@ -421,7 +422,7 @@ FwResult FW_CALL fwWorld_SetVolumetricFirePoints(FwWorld* world, FwVolumetricFir
 FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld* world, FwVolumetricFireId id,
                                                  uint32_t hidden) {
     return onWorld("fwWorld_SetVolumetricFireHidden", world, [&](world::World& w) {
-        w.setVolumetricFireHidden(id, hidden != 0);
+        w.flames().setHidden(id, hidden != 0);
         return FW_OK;
     });
 }
@@ -429,7 +430,7 @@ FwResult FW_CALL fwWorld_SetVolumetricFireHidden(FwWorld* world, FwVolumetricFir
 FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld* world, FwVolumetricFireId id,
                                                uint32_t tier) {
     return onWorld("fwWorld_SetVolumetricFireTier", world, [&](world::World& w) {
-        w.setVolumetricFireTier(id, tier);
+        w.flames().setTier(id, tier);
         return FW_OK;
     });
 }
@@ -437,7 +438,7 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTier(FwWorld* world, FwVolumetricFireI
 FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld* world, FwVolumetricFireId id,
                                                 FwVolumetricFireState* state) {
     return fill("fwWorld_GetVolumetricFireState", world, state, "FwVolumetricFireState",
-                &world::World::volumetricFireState, id);
+                &world::FlameSystem::fillState, id);
 }
 
 FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFireId id,
@@ -445,9 +446,9 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFire
     return onWorld("fwWorld_SetVolumetricFireTrack", world, [&](world::World& w) {
         if (given) {
             const InMetres def(*world, given, FW_DEF_FIRE_TRACK, "FwFireTrackDef");
-            w.setVolumetricFireTrack(id, &static_cast<const FwFireTrackDef&>(def));
+            w.flames().setTrack(id, &static_cast<const FwFireTrackDef&>(def));
         } else {
-            w.setVolumetricFireTrack(id, nullptr);
+            w.flames().setTrack(id, nullptr);
         }
         return FW_OK;
     });
@@ -455,33 +456,33 @@ FwResult FW_CALL fwWorld_SetVolumetricFireTrack(FwWorld* world, FwVolumetricFire
 
 FwResult FW_CALL fwWorld_CreateFireEmitter(FwWorld* world, const FwFireEmitterDef* given,
                                            FwFireEmitterId* id) {
-    return createOf("fwWorld_CreateFireEmitter", world, &world::World::createFireEmitter, given,
+    return createOf("fwWorld_CreateFireEmitter", world, &world::EmitterSystem::create, given,
                     FW_DEF_FIRE_EMITTER, "FwFireEmitterDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyFireEmitter(FwWorld* world, FwFireEmitterId id) {
-    return destroyOf("fwWorld_DestroyFireEmitter", world, &world::World::destroyFireEmitter, id);
+    return destroyOf("fwWorld_DestroyFireEmitter", world, &world::EmitterSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_MoveFireEmitter(FwWorld* world, FwFireEmitterId id,
                                          const float position[3], const float* direction) {
     return onWorld("fwWorld_MoveFireEmitter", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveFireEmitter(id, Metres(world->unit, position), direction);
+        w.emitters().move(id, Metres(world->unit, position), direction);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_SetFireEmitterPower(FwWorld* world, FwFireEmitterId id, float power) {
     return onWorld("fwWorld_SetFireEmitterPower", world, [&](world::World& w) {
-        w.setFireEmitterPower(id, power);
+        w.emitters().setPower(id, power);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld* world, FwFireEmitterId id, uint32_t hidden) {
     return onWorld("fwWorld_SetFireEmitterHidden", world, [&](world::World& w) {
-        w.setFireEmitterHidden(id, hidden != 0);
+        w.emitters().setHidden(id, hidden != 0);
         return FW_OK;
     });
 }
@@ -489,32 +490,32 @@ FwResult FW_CALL fwWorld_SetFireEmitterHidden(FwWorld* world, FwFireEmitterId id
 FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld* world, FwFireEmitterId id,
                                              FwFireEmitterState* state) {
     return fill("fwWorld_GetFireEmitterState", world, state, "FwFireEmitterState",
-                &world::World::fireEmitterState, id);
+                &world::EmitterSystem::fillState, id);
 }
 
 FwResult FW_CALL fwWorld_CreateFireProfile(FwWorld* world, const FwFireProfileDef* given,
                                            FwFireProfileId* id) {
-    return createOf("fwWorld_CreateFireProfile", world, &world::World::createFireProfile, given,
+    return createOf("fwWorld_CreateFireProfile", world, &world::FlameSystem::createProfile, given,
                     FW_DEF_FIRE_PROFILE, "FwFireProfileDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyFireProfile(FwWorld* world, FwFireProfileId id) {
-    return destroyOf("fwWorld_DestroyFireProfile", world, &world::World::destroyFireProfile, id);
+    return destroyOf("fwWorld_DestroyFireProfile", world, &world::FlameSystem::destroyProfile, id);
 }
 
 FwResult FW_CALL fwWorld_CreateFlipbook(FwWorld* world, const FwFlipbookDef* given,
                                         FwFlipbookId* id) {
-    return createOf("fwWorld_CreateFlipbook", world, &world::World::createFlipbook, given,
+    return createOf("fwWorld_CreateFlipbook", world, &world::FlameSystem::createFlipbook, given,
                     FW_DEF_FLIPBOOK, "FwFlipbookDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyFlipbook(FwWorld* world, FwFlipbookId id) {
-    return destroyOf("fwWorld_DestroyFlipbook", world, &world::World::destroyFlipbook, id);
+    return destroyOf("fwWorld_DestroyFlipbook", world, &world::FlameSystem::destroyFlipbook, id);
 }
 
 FwResult FW_CALL fwWorld_SetFlameFlipbooks(FwWorld* world, FwFlipbookId fire, FwFlipbookId smoke) {
     return onWorld("fwWorld_SetFlameFlipbooks", world, [&](world::World& w) {
-        w.setFlameFlipbooks(fire, smoke);
+        w.flames().setFlipbooks(fire, smoke);
         return FW_OK;
     });
 }
@@ -525,7 +526,7 @@ FwResult FW_CALL fwWorld_AddFireCollider(FwWorld* world, const FwFireColliderDef
         checkPointer(id, "id");
         *id = {};
         const InMetres def(*world, given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef");
-        *id = w.addFireCollider(def, float(world->unit.perMetre()));
+        *id = w.flames().addCollider(def, float(world->unit.perMetre()));
         return FW_OK;
     });
 }
@@ -534,13 +535,13 @@ FwResult FW_CALL fwWorld_SetFireCollider(FwWorld* world, FwFireColliderId id,
                                          const FwFireColliderDef* given) {
     return onWorld("fwWorld_SetFireCollider", world, [&](world::World& w) {
         const InMetres def(*world, given, FW_DEF_FIRE_COLLIDER, "FwFireColliderDef");
-        w.setFireCollider(id, def, float(world->unit.perMetre()));
+        w.flames().setCollider(id, def, float(world->unit.perMetre()));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld* world, FwFireColliderId id) {
-    return destroyOf("fwWorld_RemoveFireCollider", world, &world::World::removeFireCollider, id);
+    return destroyOf("fwWorld_RemoveFireCollider", world, &world::FlameSystem::removeCollider, id);
 }
 
 FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld* world, const float point[3],
@@ -549,7 +550,7 @@ FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld* world, const float point[3]
         checkPointer(point, "point");
         const uint32_t size = edge::checkInfo(answer, "FwFireAnswer");
         FwFireAnswer filled{};
-        w.askVolumetricFires(Metres(world->unit, point), filled);
+        w.flames().ask(Metres(world->unit, point), filled);
         edge::fromMetres(world->unit, filled);
         edge::writeInfo(answer, size, filled);
         return FW_OK;
@@ -564,7 +565,7 @@ FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centr
         FwFirePush filled{};
         const edge::Scale metres(world->unit);
         metres(radius);
-        w.volumetricFirePush(Metres(world->unit, centre), radius, filled);
+        w.flames().push(Metres(world->unit, centre), radius, filled);
         edge::writeInfo(push, size, filled);
         return FW_OK;
     });
@@ -572,20 +573,19 @@ FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centr
 
 FwResult FW_CALL fwWorld_CreateParticleField(FwWorld* world, const FwParticleFieldDef* given,
                                              FwParticleFieldId* id) {
-    return createOf("fwWorld_CreateParticleField", world, &world::World::createParticleField, given,
+    return createOf("fwWorld_CreateParticleField", world, &world::FieldSystem::create, given,
                     FW_DEF_PARTICLE_FIELD, "FwParticleFieldDef", id);
 }
 
 FwResult FW_CALL fwWorld_DestroyParticleField(FwWorld* world, FwParticleFieldId id) {
-    return destroyOf("fwWorld_DestroyParticleField", world, &world::World::destroyParticleField,
-                     id);
+    return destroyOf("fwWorld_DestroyParticleField", world, &world::FieldSystem::destroy, id);
 }
 
 FwResult FW_CALL fwWorld_MoveParticleField(FwWorld* world, FwParticleFieldId id,
                                            const float position[3], const float rotation[4]) {
     return onWorld("fwWorld_MoveParticleField", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.moveParticleField(id, Metres(world->unit, position), rotation);
+        w.fields().move(id, Metres(world->unit, position), rotation);
         return FW_OK;
     });
 }
@@ -593,7 +593,7 @@ FwResult FW_CALL fwWorld_MoveParticleField(FwWorld* world, FwParticleFieldId id,
 FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld* world, FwParticleFieldId id,
                                                 float amount) {
     return onWorld("fwWorld_SetParticleFieldAmount", world, [&](world::World& w) {
-        w.setParticleFieldAmount(id, amount);
+        w.fields().setAmount(id, amount);
         return FW_OK;
     });
 }
@@ -601,7 +601,7 @@ FwResult FW_CALL fwWorld_SetParticleFieldAmount(FwWorld* world, FwParticleFieldI
 FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld* world, FwParticleFieldId id,
                                                 uint32_t hidden) {
     return onWorld("fwWorld_SetParticleFieldHidden", world, [&](world::World& w) {
-        w.setParticleFieldHidden(id, hidden != 0);
+        w.fields().setHidden(id, hidden != 0);
         return FW_OK;
     });
 }
@@ -609,7 +609,7 @@ FwResult FW_CALL fwWorld_SetParticleFieldHidden(FwWorld* world, FwParticleFieldI
 FwResult FW_CALL fwWorld_PaintParticleField(FwWorld* world, FwParticleFieldId id,
                                             const uint8_t* paint, const uint8_t* walls) {
     return onWorld("fwWorld_PaintParticleField", world, [&](world::World& w) {
-        w.paintParticleField(id, paint, walls);
+        w.fields().paint(id, paint, walls);
         return FW_OK;
     });
 }
@@ -617,7 +617,7 @@ FwResult FW_CALL fwWorld_PaintParticleField(FwWorld* world, FwParticleFieldId id
 FwResult FW_CALL fwWorld_GetParticleFieldState(FwWorld* world, FwParticleFieldId id,
                                                FwParticleFieldState* state) {
     return fill("fwWorld_GetParticleFieldState", world, state, "FwParticleFieldState",
-                &world::World::particleFieldState, id);
+                &world::FieldSystem::fillState, id);
 }
 
 FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint32_t* texels) {
@@ -625,14 +625,14 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
         const FwIgnitionDef def =
             edge::readDef(world->unit, given, FW_DEF_IGNITION, "FwIgnitionDef");
         bool acts = false;
-        const uint32_t count = w.ignite(def, &acts);
+        const uint32_t count = w.burn().ignite(def, &acts);
         if (texels) *texels = count;
         if (acts) return FW_OK;
         // Water that meets nothing is a jet's ordinary day; a match that lights nothing is a
         // surprise.
         if (def.kind == FW_IGNITE) {
             char reason[sizeof FwErrorInfo::message];
-            w.explainNothingThere(def, count, reason);
+            w.burn().explainNothingThere(def, count, reason);
             char text[sizeof FwErrorInfo::message];
             edge::composeMessage(text, reason, "fwWorld_Ignite", world->unit);
             world->message.set(text);
@@ -678,7 +678,7 @@ uint32_t FW_CALL fwWorld_PollEvents(FwWorld* world, FwEvent* events, uint32_t ca
     uint32_t count = 0;
     (void)onWorld("fwWorld_PollEvents", world, [&](world::World& w) {
         if (capacity > 0) checkPointer(events, "events");
-        count = w.pollEvents({events, capacity});
+        count = w.queries().pollEvents({events, capacity});
         for (uint32_t i = 0; i < count; ++i) edge::fromMetres(world->unit, events[i]);
         return FW_OK;
     });
@@ -689,34 +689,36 @@ FwResult FW_CALL fwWorld_TagPoint(FwWorld* world, FwBurnableMeshId id, const flo
                                   uint32_t tag) {
     return onWorld("fwWorld_TagPoint", world, [&](world::World& w) {
         checkPointer(position, "position");
-        w.tagPoint(id, Metres(world->unit, position), tag);
+        w.queries().tagPoint(id, Metres(world->unit, position), tag);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_GetObjectState(FwWorld* world, FwBurnableMeshId id, FwObjectState* state) {
-    return fill("fwWorld_GetObjectState", world, state, "FwObjectState", &world::World::objectState,
-                id);
+    return fill("fwWorld_GetObjectState", world, state, "FwObjectState",
+                &world::QuerySystem::objectState, id);
 }
 
 FwResult FW_CALL fwWorld_RequestPoint(FwWorld* world, FwBurnableMeshId id, const float position[3],
                                       FwQueryId* query) {
-    return ask("fwWorld_RequestPoint", world, &world::World::requestPoint, id, position, query);
+    return ask("fwWorld_RequestPoint", world, &world::QuerySystem::requestPoint, id, position,
+               query);
 }
 
 FwResult FW_CALL fwWorld_FetchPoint(FwWorld* world, FwQueryId query, FwPointState* state) {
-    return answer("fwWorld_FetchPoint", world, &world::World::fetchPoint, query, state,
+    return answer("fwWorld_FetchPoint", world, &world::QuerySystem::fetchPoint, query, state,
                   "FwPointState");
 }
 
 FwResult FW_CALL fwWorld_RequestArrival(FwWorld* world, FwBurnableMeshId id,
                                         const float position[3], FwQueryId* query) {
-    return ask("fwWorld_RequestArrival", world, &world::World::requestArrival, id, position, query);
+    return ask("fwWorld_RequestArrival", world, &world::QuerySystem::requestArrival, id, position,
+               query);
 }
 
 FwResult FW_CALL fwWorld_TransferBurn(FwWorld* world, FwBurnableMeshId from, FwBurnableMeshId to) {
     return onWorld("fwWorld_TransferBurn", world, [&](world::World& w) {
-        w.transferBurn(from, to);
+        w.burn().transferBurn(from, to);
         return FW_OK;
     });
 }
@@ -740,29 +742,29 @@ FwResult FW_CALL fwWorld_GetOrigin(FwWorld* world, double* origin) {
 }
 
 FwResult FW_CALL fwWorld_CancelQuery(FwWorld* world, FwQueryId query) {
-    return destroyOf("fwWorld_CancelQuery", world, &world::World::cancelQuery, query);
+    return destroyOf("fwWorld_CancelQuery", world, &world::QuerySystem::cancel, query);
 }
 
 FwResult FW_CALL fwWorld_CancelSave(FwWorld* world) {
     return onWorld("fwWorld_CancelSave", world, [&](world::World& w) {
-        w.cancelSave();
+        w.persistence().cancelSave();
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_CancelBurn(FwWorld* world, FwBurnableMeshId id) {
-    return destroyOf("fwWorld_CancelBurn", world, &world::World::cancelBurnMap, id);
+    return destroyOf("fwWorld_CancelBurn", world, &world::QuerySystem::cancelBurnMap, id);
 }
 
 FwResult FW_CALL fwWorld_UntagPoint(FwWorld* world, FwBurnableMeshId id, uint32_t tag) {
     return onWorld("fwWorld_UntagPoint", world, [&](world::World& w) {
-        w.untagPoint(id, tag);
+        w.queries().untagPoint(id, tag);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_FetchArrival(FwWorld* world, FwQueryId query, FwArrivalState* state) {
-    return answer("fwWorld_FetchArrival", world, &world::World::fetchArrival, query, state,
+    return answer("fwWorld_FetchArrival", world, &world::QuerySystem::fetchArrival, query, state,
                   "FwArrivalState");
 }
 
@@ -770,7 +772,7 @@ uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t cap
     uint32_t count = 0;
     (void)onWorld("fwWorld_GetLights", world, [&](world::World& w) {
         if (capacity > 0) checkPointer(lights, "lights");
-        count = w.lights({lights, capacity});
+        count = w.lights().gather({lights, capacity});
         for (uint32_t i = 0; i < count; ++i) edge::fromMetres(world->unit, lights[i]);
         return FW_OK;
     });
@@ -783,7 +785,7 @@ FwResult FW_CALL fwWorld_AskSurroundings(FwWorld* world, const float point[3],
         checkPointer(point, "point");
         const uint32_t size = edge::checkInfo(surroundings, "FwSurroundings");
         FwSurroundings filled{};
-        w.askSurroundings(Metres(world->unit, point), filled);
+        w.queries().askSurroundings(Metres(world->unit, point), filled);
         edge::fromMetres(world->unit, filled);
         edge::writeInfo(surroundings, size, filled);
         return FW_OK;
@@ -796,7 +798,7 @@ FwResult FW_CALL fwWorld_AskSight(FwWorld* world, const float from[3], const flo
         checkPointer(from, "from");
         checkPointer(to, "to");
         checkPointer(seen, "seen");
-        *seen = w.askSight(Metres(world->unit, from), Metres(world->unit, to));
+        *seen = w.queries().askSight(Metres(world->unit, from), Metres(world->unit, to));
         return FW_OK;
     });
 }
@@ -809,8 +811,8 @@ FwResult FW_CALL fwWorld_MakeSafetyMask(FwWorld* world, const float corner[3],
         checkPointer(columnStep, "columnStep");
         checkPointer(rowStep, "rowStep");
         checkPointer(mask, "mask");
-        w.makeSafetyMask(Metres(world->unit, corner), Metres(world->unit, columnStep),
-                         Metres(world->unit, rowStep), columns, rows, mask);
+        w.queries().makeSafetyMask(Metres(world->unit, corner), Metres(world->unit, columnStep),
+                                   Metres(world->unit, rowStep), columns, rows, mask);
         return FW_OK;
     });
 }
@@ -820,24 +822,25 @@ FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
 }
 
 FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld* world, FwEnergyBook* book) {
-    return fill("fwWorld_GetEnergyBook", world, book, "FwEnergyBook", &world::World::energyBook);
+    return fill("fwWorld_GetEnergyBook", world, book, "FwEnergyBook",
+                &world::QuerySystem::energyLedger);
 }
 
 FwResult FW_CALL fwWorld_SetBudget(FwWorld* world, const FwBudgetDef* def) {
     return onWorld("fwWorld_SetBudget", world, [&](world::World& w) {
-        w.setBudget(edge::readDef(def, FW_DEF_BUDGET, "FwBudgetDef"));
+        w.budget().set(edge::readDef(def, FW_DEF_BUDGET, "FwBudgetDef"));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_GetBudgetState(FwWorld* world, FwBudgetState* state) {
     return fill("fwWorld_GetBudgetState", world, state, "FwBudgetState",
-                &world::World::budgetState);
+                &world::BudgetSystem::fillState);
 }
 
 FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
     return onWorld("fwWorld_RequestSave", world, [&](world::World& w) {
-        w.requestSave();
+        w.persistence().requestSave();
         return FW_OK;
     });
 }
@@ -845,7 +848,7 @@ FwResult FW_CALL fwWorld_RequestSave(FwWorld* world) {
 FwResult FW_CALL fwWorld_FetchSave(FwWorld* world, void* buffer, uint64_t* size) {
     return onWorld("fwWorld_FetchSave", world, [&](world::World& w) {
         checkPointer(size, "size");
-        const std::pmr::vector<std::byte>* bytes = w.fetchSave();
+        const std::pmr::vector<std::byte>* bytes = w.persistence().fetchSave();
         if (!bytes) return FW_NOT_READY;
         giveBytes(*bytes, "save", buffer, *size);
         return FW_OK;
@@ -855,7 +858,7 @@ FwResult FW_CALL fwWorld_FetchSave(FwWorld* world, void* buffer, uint64_t* size)
 FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) {
     return onWorld("fwWorld_Load", world, [&](world::World& w) {
         checkPointer(bytes, "bytes");
-        w.load({static_cast<const std::byte*>(bytes), size_t(size)});
+        w.persistence().load({static_cast<const std::byte*>(bytes), size_t(size)});
         edge::publish(*world);
         return FW_OK;
     });
@@ -863,7 +866,7 @@ FwResult FW_CALL fwWorld_Load(FwWorld* world, const void* bytes, uint64_t size) 
 
 FwResult FW_CALL fwWorld_RequestBurn(FwWorld* world, FwBurnableMeshId id) {
     return onWorld("fwWorld_RequestBurn", world, [&](world::World& w) {
-        w.requestBurnMap(id);
+        w.queries().requestBurnMap(id);
         answerAtOnce(world);
         return FW_OK;
     });
@@ -873,7 +876,7 @@ FwResult FW_CALL fwWorld_FetchBurn(FwWorld* world, FwBurnableMeshId id, void* bu
                                    uint64_t* size) {
     return onWorld("fwWorld_FetchBurn", world, [&](world::World& w) {
         checkPointer(size, "size");
-        const std::pmr::vector<std::byte>* bytes = w.fetchBurn(id);
+        const std::pmr::vector<std::byte>* bytes = w.burn().fetchBurn(id);
         if (!bytes) return FW_NOT_READY;
         giveBytes(*bytes, "baked burn", buffer, *size);
         return FW_OK;
@@ -886,40 +889,40 @@ FwResult FW_CALL fwWorld_CreateBurn(FwWorld* world, const void* bytes, uint64_t 
         checkPointer(id, "id");
         *id = {};
         checkPointer(bytes, "bytes");
-        *id = w.createBurn({static_cast<const std::byte*>(bytes), size_t(size)});
+        *id = w.burn().createBurn({static_cast<const std::byte*>(bytes), size_t(size)});
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_DestroyBurn(FwWorld* world, FwBurnId id) {
-    return destroyOf("fwWorld_DestroyBurn", world, &world::World::destroyBurn, id);
+    return destroyOf("fwWorld_DestroyBurn", world, &world::BurnSystem::destroyBurn, id);
 }
 
 FwResult FW_CALL fwWorld_PlayBurn(FwWorld* world, FwBurnableMeshId id, FwBurnId burn, float delay,
                                   float speed) {
     return onWorld("fwWorld_PlayBurn", world, [&](world::World& w) {
-        w.playBurn(id, burn, delay, speed);
+        w.burn().playBurn(id, burn, delay, speed);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_StopBurn(FwWorld* world, FwBurnableMeshId id) {
     return onWorld("fwWorld_StopBurn", world, [&](world::World& w) {
-        w.stopBurn(id);
+        w.burn().stopBurn(id);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_StartLog(FwWorld* world) {
     return onWorld("fwWorld_StartLog", world, [&](world::World& w) {
-        w.startLog();
+        w.persistence().startLog();
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_StopLog(FwWorld* world) {
     return onWorld("fwWorld_StopLog", world, [&](world::World& w) {
-        w.stopLog();
+        w.persistence().stopLog();
         return FW_OK;
     });
 }
@@ -927,7 +930,7 @@ FwResult FW_CALL fwWorld_StopLog(FwWorld* world) {
 FwResult FW_CALL fwWorld_FetchLog(FwWorld* world, void* buffer, uint64_t* size) {
     return onWorld("fwWorld_FetchLog", world, [&](world::World& w) {
         checkPointer(size, "size");
-        giveBytes(w.fetchLog(), "log", buffer, *size);
+        giveBytes(w.persistence().fetchLog(), "log", buffer, *size);
         return FW_OK;
     });
 }
@@ -935,7 +938,7 @@ FwResult FW_CALL fwWorld_FetchLog(FwWorld* world, void* buffer, uint64_t* size) 
 FwResult FW_CALL fwWorld_OpenLog(FwWorld* world, const void* bytes, uint64_t size) {
     return onWorld("fwWorld_OpenLog", world, [&](world::World& w) {
         if (size > 0) checkPointer(bytes, "bytes");
-        w.openLog({static_cast<const std::byte*>(bytes), size_t(size)});
+        w.persistence().openLog({static_cast<const std::byte*>(bytes), size_t(size)});
         return FW_OK;
     });
 }
@@ -943,21 +946,21 @@ FwResult FW_CALL fwWorld_OpenLog(FwWorld* world, const void* bytes, uint64_t siz
 FwResult FW_CALL fwWorld_PlayLog(FwWorld* world, uint64_t untilTick, float* seconds) {
     return onWorld("fwWorld_PlayLog", world, [&](world::World& w) {
         checkPointer(seconds, "seconds");
-        *seconds = w.playLog(untilTick);
+        *seconds = w.persistence().playLog(untilTick);
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_StartTimeline(FwWorld* world, const FwTimelineDef* given) {
     return onWorld("fwWorld_StartTimeline", world, [&](world::World& w) {
-        w.startTimeline(edge::readDef(given, FW_DEF_TIMELINE, "FwTimelineDef"));
+        w.persistence().startTimeline(edge::readDef(given, FW_DEF_TIMELINE, "FwTimelineDef"));
         return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_StopTimeline(FwWorld* world) {
     return onWorld("fwWorld_StopTimeline", world, [&](world::World& w) {
-        w.stopTimeline();
+        w.persistence().stopTimeline();
         return FW_OK;
     });
 }
@@ -965,13 +968,13 @@ FwResult FW_CALL fwWorld_StopTimeline(FwWorld* world) {
 FwResult FW_CALL fwWorld_Seek(FwWorld* world, uint64_t untilTick, float* seconds) {
     return onWorld("fwWorld_Seek", world, [&](world::World& w) {
         checkPointer(seconds, "seconds");
-        return w.seek(untilTick, *seconds) ? FW_OK : FW_NOT_READY;
+        return w.persistence().seek(untilTick, *seconds) ? FW_OK : FW_NOT_READY;
     });
 }
 
 FwResult FW_CALL fwWorld_GetTimelineState(FwWorld* world, FwTimelineState* state) {
     return fill("fwWorld_GetTimelineState", world, state, "FwTimelineState",
-                &world::World::timelineState);
+                &world::PersistenceSystem::timelineState);
 }
 
 }  // extern "C"

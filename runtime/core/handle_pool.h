@@ -93,8 +93,39 @@ class HandlePool {
         FW_ASSERT(index < slots_.size(), "slot %u of %zu", index, slots_.size());
         return Id{index + 1, slots_[index].generation};
     }
+    // Live values with their slots, in order: for (auto [slot, value] : pool.entries()). A loop may
+    // destroy the value that it is at. Values that own what they point to are given as that.
+    [[nodiscard]] auto entries() noexcept { return Entries<HandlePool>{*this}; }
+    [[nodiscard]] auto entries() const noexcept { return Entries<const HandlePool>{*this}; }
 
  private:
+    template <class Pool>
+    struct Entries {
+        struct End {};
+        struct Iterator {
+            Pool& pool;
+            uint32_t slot;
+            [[nodiscard]] bool operator!=(End) const noexcept { return slot < pool.slotCount(); }
+            auto operator*() const noexcept {
+                auto& value = *pool.at(slot);
+                if constexpr (requires { *value; })
+                    return std::pair<uint32_t, decltype(*value)>(slot, *value);
+                else
+                    return std::pair<uint32_t, decltype(value)>(slot, value);
+            }
+            Iterator& operator++() noexcept {
+                do ++slot;
+                while (slot < pool.slotCount() && !pool.at(slot));
+                return *this;
+            }
+        };
+        Pool& pool;
+        [[nodiscard]] Iterator begin() const noexcept {
+            Iterator first{pool, ~uint32_t(0)};
+            return ++first;
+        }
+        [[nodiscard]] End end() const noexcept { return {}; }
+    };
     struct Slot {
         uint32_t generation = 1;
         std::optional<Value> value;

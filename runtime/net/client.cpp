@@ -23,7 +23,7 @@ constexpr double kCatchUp = 8, kFastest = 1.25, kSlowest = 0.9;  // of real time
 Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resource* memory)
     : def_(def),
       memory_(memory),
-      recording_(world.startRecording(true)),
+      recording_(world.persistence().startRecording(true)),
       state_(memory),
       own_(memory),
       ownBlocks_(memory),
@@ -278,10 +278,11 @@ void Client::goWrong(const world::World& world, const char* why, uint32_t slot) 
 void Client::takeOwn(world::World& world) {
     if (asked_ != Request::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
     try {
-        const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
+        const std::pmr::vector<std::byte>* bytes =
+            world.persistence().fetchSave(world::SaveFor::net);
         if (!bytes) return;
         own_.assign(bytes->begin(), bytes->end());
-        ownBlocks_ = world.hashBlocks(own_, wrongSlot_);
+        ownBlocks_ = world.persistence().hashBlocks(own_, wrongSlot_);
     } catch (const core::Error& error) {
         world.log().write(FW_LOG_WARNING, "The client's own state cannot be compared: %s",
                           error.message);
@@ -335,10 +336,10 @@ void Client::load(world::World& world) {
             std::pmr::vector<std::byte> merged(memory_);
             if (head.id / 2 != ownNumber_ || head.record != ownRecord_)
                 core::fail(FW_ERROR_BAD_DATA, "The tiles are of another state.");
-            world.mergeBlocks(own_, state_.bytes(), merged);
-            world.applyLoad(merged);
+            world.persistence().mergeBlocks(own_, state_.bytes(), merged);
+            world.persistence().applyLoad(merged);
         } else {
-            world.applyLoad(state_.bytes());
+            world.persistence().applyLoad(state_.bytes());
         }
     } catch (const core::Error& error) {
         world.log().write(FW_LOG_WARNING, "The server's state cannot be taken: %s", error.message);
@@ -414,7 +415,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
         if (record_.step < now) goWrong(world, "A record of the server's comes too late.", kNoSlot);
         if (record_.kind == RecordKind::command) {
             try {
-                world.apply(record_.command);
+                world.persistence().apply(record_.command);
             } catch (const core::Error& error) {
                 goWrong(world, error.message, kNoSlot);
             }
@@ -425,7 +426,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
                                             record_.tick, record_.hashes[i]});
         } else if (record_.kind == RecordKind::capture) {
             if (asked_ == Request::tiles && ownNumber_ == 0) {
-                world.requestSave(world::SaveFor::net);
+                world.persistence().requestSave(world::SaveFor::net);
                 ownNumber_ = uint32_t(record_.tick);
                 ownRecord_ = end;
                 turn.kind = FW_TURN_STEP;  // of no time: a save is of the next frame
@@ -446,7 +447,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
         return;
     }
     if (owed_ < kLeast) return;
-    const double most = world.secondsTo(uint64_t(until) * gpu::kStepTicks);
+    const double most = world.persistence().secondsTo(uint64_t(until) * gpu::kStepTicks);
     auto seconds = float(std::min(owed_, most));
     if (owed_ >= most && double(seconds) < most)
         seconds = std::nextafter(seconds, std::numeric_limits<float>::infinity());
@@ -477,7 +478,7 @@ void Client::update(world::World& world, float seconds) {
     }
     if (welcome_ && !joined_) {
         welcome_ = false;
-        const uint64_t mine = world.identity();
+        const uint64_t mine = world.persistence().identity();
         joined_ = mine == theirs_;
         if (!joined_ && !refused_)
             world.log().write(FW_LOG_WARNING,
@@ -490,7 +491,7 @@ void Client::update(world::World& world, float seconds) {
     }
     if (loads_ == 0) return;
     // Far enough behind what was heard for the next of it to come in time.
-    const double late = double(heard_) / 32 - world.seconds() - double(def_.delay);
+    const double late = double(heard_) / 32 - world.persistence().seconds() - double(def_.delay);
     const double rate = late > kLate ? std::min(1 + 2 * late, kCatchUp)
                                      : std::clamp(1 + late / 2, kSlowest, kFastest);
     owed_ = std::min(owed_ + double(seconds) * rate, 2.0);
@@ -537,7 +538,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
                                 : FW_NET_FOLLOWING;
     state.step = world.tick() / gpu::kStepTicks;
     state.heardStep = heard_;
-    state.behind = float(std::max(double(heard_) / 32 - world.seconds(), 0.0));
+    state.behind = float(std::max(double(heard_) / 32 - world.persistence().seconds(), 0.0));
     state.silent = float(silent_);
     state.records = uint32_t(waiting_.size());
     state.peers = joined_ ? 1 : 0;

@@ -49,7 +49,7 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
     : def_(def),
       memory_(memory),
       peers_("Peer", memory),
-      recording_(world.startRecording(false)),
+      recording_(world.persistence().startRecording(false)),
       log_(memory),
       captures_(memory),
       packet_(memory) {
@@ -290,7 +290,8 @@ Server::Capture* Server::captureOf(uint32_t number) noexcept {
 void Server::fetchCapture(world::World& world) {
     if (!capturing_ || !captureNoted_) return;
     try {
-        const std::pmr::vector<std::byte>* bytes = world.fetchSave(world::SaveFor::net);
+        const std::pmr::vector<std::byte>* bytes =
+            world.persistence().fetchSave(world::SaveFor::net);
         if (!bytes) return;
         if (bytes->size() > kStateMost)
             core::fail(FW_ERROR_OUT_OF_MEMORY, "The state has %zu bytes; the limit is %u.",
@@ -357,7 +358,7 @@ void Server::takeCaptures(world::World& world) {
     });
     if (!needed || capturing_ || now_ - captureFailedAt_ < kCaptureRetry) return;
     try {
-        world.requestSave(world::SaveFor::net);
+        world.persistence().requestSave(world::SaveFor::net);
         capturing_ = true;
     } catch (const core::Error& error) {
         failCapture(world, error.message);
@@ -397,7 +398,7 @@ void Server::update(world::World& world, float seconds) {
     now_ += passed;
     drain(world);
     if (now_ - identityAt_ > kIdentityAge || identityAt_ < 0) {
-        identity_ = world.identity();
+        identity_ = world.persistence().identity();
         identityAt_ = now_;
     }
     if (now_ - changeRateAt_ >= 1) {
@@ -743,7 +744,8 @@ void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
         return;  // not yet, not any more, or they are on their way
     peer.compared = number;
     try {
-        if (!world.writeBlocks(capture->bytes, slot, std::span(hashes).first(count), peer.tiles))
+        if (!world.persistence().writeBlocks(capture->bytes, slot, std::span(hashes).first(count),
+                                             peer.tiles))
             return;
     } catch (const core::Error&) {  // of objects that are gone: the client asks for the state next
         return;

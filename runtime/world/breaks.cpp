@@ -1,10 +1,11 @@
-// What of an object is gone, and what no longer hangs on anything: what a host should break. Looked
-// for in the states of objects that are read back twice a second of the world's time, in integers;
-// it changes nothing of the fire.
+// Parts of objects that burnt away or hang on nothing, for hosts that break them. The world reads
+// the states of such objects back twice a second and searches them in integers. The fire does not
+// depend on it.
 #include "mesh/hold.h"
 #include "save/plane.h"
+#include "world/burn_system.h"
+#include "world/query_system.h"
 #include "world/save.h"
-#include "world/world.h"
 
 #include <algorithm>
 #include <cmath>
@@ -27,16 +28,16 @@ uint64_t areaOf(const mesh::BurnDomain& domain, uint32_t texel) noexcept {
 }  // namespace
 
 // Null where the host does not ask.
-core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
-                                      std::span<const uint8_t> gone) {
+core::Owned<Breaks> BurnSystem::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
+                                           std::span<const uint8_t> gone) {
     components::checkValue(def.breakShare, "FwBurnableMeshDef::breakShare", 0, 1);
     components::checkValue(def.breakArea, "FwBurnableMeshDef::breakArea", 0, 1e6f);
     if (def.breakShare == 0 && def.breakArea == 0) return {};
     const mesh::BurnDomain& domain = *entry.domain;
-    auto breaks = core::Owned<Breaks>::make(memory_, memory_);
+    auto breaks = core::Owned<Breaks>::make(context_.memory, context_.memory);
     core::Owned<mesh::Pieces>& pieces = gone.empty() ? entry.pieces : breaks->pieces;
     if (!pieces) {
-        auto made = core::Owned<mesh::Pieces>::make(memory_, memory_);
+        auto made = core::Owned<mesh::Pieces>::make(context_.memory, context_.memory);
         mesh::findPieces(domain, gone, *made);
         pieces = std::move(made);
     }
@@ -52,39 +53,37 @@ core::Owned<Breaks> World::makeBreaks(const FwBurnableMeshDef& def, MeshEntry& e
     return breaks;
 }
 
-// Whose turn it is: twice a second each, not all in the same frame.
-void World::planBreaks(uint64_t end) noexcept {
+// Twice a second for each object, not for all in the same frame.
+void BurnSystem::planBreaks(uint64_t end) noexcept {
     frame_.breaks.clear();
-    for (const Object* object : touched_) {
+    for (const Object* object : scene_.touched) {
         const Breaks* breaks = object->breaks.get();
         if (!breaks || breaks->lookCount == breaks->looks.size() ||
             !(isActive(*object) || breaks->waits))
             continue;
         const uint64_t off = uint64_t(object->slot) * gpu::kStepTicks;
-        if ((clock_.tick + off) / kBreaksTicks == (end + off) / kBreaksTicks) continue;
-        const uint32_t slot = object->slot;  // room for all was found at their creation
-        if (std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
-            frame_.burnMaps.end())
-            frame_.burnMaps.push_back(slot);
+        if ((context_.clock.tick + off) / kBreaksTicks == (end + off) / kBreaksTicks) continue;
+        const uint32_t slot = object->slot;  // capacity was reserved at their creation
+        queries_.addBurnMap(slot);
         frame_.breaks.push_back(slot);
     }
 }
 
-void World::commitBreaks(uint64_t frameIndex) noexcept {
+void BurnSystem::commitBreaks(uint64_t frameIndex) noexcept {
     for (const uint32_t slot : frame_.breaks) {
-        Breaks& breaks = *(*objects_.at(slot))->breaks;
+        Breaks& breaks = *scene_.objectAt(slot).breaks;
         breaks.looks[breaks.lookCount++] = frameIndex;
     }
 }
 
-const mesh::Pieces& World::piecesOf(const Object& object) noexcept {
+const mesh::Pieces& BurnSystem::piecesOf(const Object& object) noexcept {
     return object.breaks->pieces ? *object.breaks->pieces
-                                 : *meshes_.at(object.data.meshSlot)->pieces;
+                                 : *scene_.meshes.at(object.data.meshSlot)->pieces;
 }
 
-// Texels that bear the rest: where it is pinned, or what it stands on.
-void World::markBearers(const Object& object) noexcept {
-    const mesh::BurnDomain& domain = domainOf(object);
+// Marks texels that bear the rest: where the object is pinned, or what it stands on.
+void BurnSystem::markBearers(const Object& object) noexcept {
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
     const Breaks& breaks = *object.breaks;
     if (!breaks.hangs) {
         // How much higher a metre along each axis of the object is.
@@ -95,7 +94,7 @@ void World::markBearers(const Object& object) noexcept {
             axis[i] = 1;
             components::toWorld(object.data.pose, axis, end);
             rises[i] = 0;
-            for (size_t k = 0; k < 3; ++k) rises[i] += def_.up[k] * (end[k] - origin[k]);
+            for (size_t k = 0; k < 3; ++k) rises[i] += context_.def.up[k] * (end[k] - origin[k]);
             most = std::max(most, std::abs(rises[i]));
         }
         int32_t up[3];
@@ -127,16 +126,16 @@ void World::markBearers(const Object& object) noexcept {
     }
 }
 
-// `tells`: as of a frame; null where what is found is known already.
-void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
-                       std::span<const gpu::uvec2> heat, uint32_t now,
-                       const uint64_t* tells) noexcept {
-    const mesh::BurnDomain& domain = domainOf(object);
+// `tells`: the frame of the events that it raises; null: it raises none.
+void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
+                            std::span<const gpu::uvec2> heat, uint32_t now,
+                            const uint64_t* tells) noexcept {
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
     Breaks& breaks = *object.breaks;
     if (ticks.size() != domain.texelCount()) return;
     std::array<uint32_t, gpu::kMaterialsPerObject> holes{};
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        holes[i] = components::holeTicks(object.data, i, def_.paceFactor);
+        holes[i] = components::holeTicks(object.data, i, context_.def.paceFactor);
     const bool heated = heat.size() == ticks.size();
     uint64_t all = 0, gone = 0;
     breaks.waits = false;
@@ -146,7 +145,7 @@ void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
         if (pieces.of[i] == mesh::kNone) continue;
         const uint64_t area = areaOf(domain, i);
         all += area;
-        const uint32_t t = ticks[i], opens = holes[texelMaterial(object, i)];
+        const uint32_t t = ticks[i], opens = holes[scene_.texelMaterial(object, i)];
         bool open = false;
         if (opens != 0 && gpu::isSource(t)) {
             open = heated ? gpu::gateLets(gpu::kEventGate, opens, gpu::unpackHeat(heat[i]), t, now)
@@ -162,8 +161,8 @@ void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
         float middle[3], place[3];
         for (int i = 0; i < 3; ++i) middle[i] = (domain.boundsLow[i] + domain.boundsHigh[i]) * 0.5f;
         components::toWorld(object.data.pose, middle, place);
-        raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_SHARE, *tells, place,
-              float(double(gone) * scale));
+        context_.raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_SHARE, *tells, place,
+                       float(double(gone) * scale));
     }
     breaks.shareTold = much;
     if (!(breaks.area > 0) || gone == 0 || (breaks.hangs && breaks.pinCount == 0)) return;
@@ -176,19 +175,20 @@ void World::findBreaks(Object& object, std::span<const uint32_t> ticks,
             breaks.lost[texel] = true;
             area += areaOf(domain, texel);
             float place[3];
-            texelPosition(object, texel, place);
+            scene_.texelPosition(object, texel, place);
             for (int k = 0; k < 3; ++k) sum[k] += double(place[k]);
         }
         if (!tells || double(area) * scale < double(breaks.area)) continue;
         float middle[3];
         for (int k = 0; k < 3; ++k) middle[k] = float(sum[k] / double(holds_.lost.size()));
-        raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_PART, *tells, middle,
-              float(double(area) * scale));
+        context_.raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_PART, *tells, middle,
+                       float(double(area) * scale));
     }
 }
 
-void World::takeBreaks(Object& object, const gpu::BurnMap& map,
-                       const gpu::Readback& readback) noexcept {
+void BurnSystem::onBurnMap(Object& object, const gpu::BurnMap& map,
+                           const gpu::Readback& readback) noexcept {
+    if (!object.breaks) return;
     Breaks& breaks = *object.breaks;
     const auto end = breaks.looks.begin() + breaks.lookCount;
     const auto later = std::upper_bound(breaks.looks.begin(), end, readback.frameIndex);
@@ -197,9 +197,9 @@ void World::takeBreaks(Object& object, const gpu::BurnMap& map,
     findBreaks(object, map.ticks, map.heat, readback.endTick, &readback.frameIndex);
 }
 
-// Null, or of who asked for something else: what is gone by now passes for told.
-void World::restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
-                          uint32_t now) noexcept {
+// `saved` is null, or of another def: what is gone by now counts as reported.
+void BurnSystem::restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
+                               uint32_t now) noexcept {
     Breaks& breaks = *object.breaks;
     breaks.lookCount = 0;
     breaks.shareTold = breaks.waits = false;

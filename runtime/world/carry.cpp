@@ -1,7 +1,8 @@
 // A burn that goes on on another object: what each of its texels gets is found here, once; the step
 // that begins next copies it, on whatever backend.
 #include "mesh/carry.h"
-#include "world/world.h"
+#include "world/burn_system.h"
+#include "world/persistence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -17,9 +18,9 @@ uint32_t endOfStep(uint32_t tick) noexcept {
 
 }  // namespace
 
-void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
-    mayChange();
-    Object &from = *objects_.get(fromId), &to = *objects_.get(toId);
+void BurnSystem::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
+    context_.recorder.mayChange();
+    Object &from = *scene_.objects.get(fromId), &to = *scene_.objects.get(toId);
     if (&from == &to)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "Burnable mesh %u gives its burn to itself.",
                    fromId.index1);
@@ -37,12 +38,12 @@ void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "Burnable mesh %u plays a baked burn; fwWorld_StopBurn makes it live.",
                        one->id.index1);
-        if (one->carryEnd > clock_.tick)
+        if (one->carryEnd > context_.clock.tick)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "Burnable mesh %u is part of another transfer until the next step.",
                        one->id.index1);
     }
-    const mesh::BurnDomain &source = domainOf(from), &target = domainOf(to);
+    const mesh::BurnDomain &source = scene_.domainOf(from), &target = scene_.domainOf(to);
     float diagonal = 0;
     for (int i = 0; i < 3; ++i) {
         const float side = target.boundsHigh[i] - target.boundsLow[i];
@@ -50,27 +51,27 @@ void World::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     }
     const float reach = kReachOfBox * std::sqrt(diagonal) +
                         kReachOfTexel * std::max(source.texelSide, target.texelSide);
-    std::pmr::vector<uint32_t> match(memory_);
+    std::pmr::vector<uint32_t> match(context_.memory);
     const uint32_t matched = mesh::matchTexels(source, target, reach, match);
     if (matched * 2 < target.report.realTexels)
         core::fail(FW_ERROR_BAD_DATA,
                    "%u of %u texels of burnable mesh %u have one of %u within %g m; at least half "
                    "of them must. The meshes are of one shape.",
                    matched, target.report.realTexels, toId.index1, fromId.index1, double(reach));
-    findPendingRoom(matched);
-    const auto now = uint32_t(clock_.tick);
+    reservePending(matched);
+    const auto now = uint32_t(context_.clock.tick);
     const uint32_t kind = gpu::kEventCarry | (from.slot + 1) << gpu::kEventKindBits;
     for (uint32_t i = 0; i < match.size(); ++i)
         if (match[i] != mesh::kNone)
-            pending_.push_back({to.slot, i, kind, now, match[i], order_++});
+            state_.pending.push_back({to.slot, i, kind, now, match[i], state_.order++});
     to.firstEvent = std::min(to.firstEvent, now);
     from.carryEnd = to.carryEnd = endOfStep(now);
-    carriesUntil_ = std::max<uint64_t>(carriesUntil_, to.carryEnd);
-    record(TransferBurn{to.slot, from.slot});
+    state_.carriesUntil = std::max<uint64_t>(state_.carriesUntil, to.carryEnd);
+    context_.recorder.record(TransferBurn{to.slot, from.slot});
 }
 
 // With the readback of the frame that carried it: its fire is the other's, its own counts stay.
-void World::continueBurn(Object& to, const Story& from) noexcept {
+void BurnSystem::continueBurn(Object& to, const Story& from) noexcept {
     Story& story = to.story;
     const Story before = story;
     story = from;
@@ -83,18 +84,29 @@ void World::continueBurn(Object& to, const Story& from) noexcept {
     to.carried = true;
 }
 
-void World::keepGiven(const Object& from) {
-    for (Stimulus& one : stimuli_)
-        if (one.from1 == from.slot + 1) one.given = core::Owned<Story>::make(memory_, from.story);
+void BurnSystem::checkGone(const Object& object) const {
+    if (gives(object.slot))
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
+            "that.",
+            object.id.index1);
+}
+
+void BurnSystem::keepGiven(const Object& from) {
+    for (Stimulus& one : state_.stimuli)
+        if (one.from1 == from.slot + 1)
+            one.given = core::Owned<Story>::make(context_.memory, from.story);
 }
 
 // Of a save. Throws FW_ERROR_BAD_DATA.
-void World::checkCarry(const PendingTexel& event, const Clock& clock) {
+void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
     const uint32_t slot = carriedFrom(event);
-    const auto* owned = slot < objects_.slotCount() ? objects_.at(slot) : nullptr;
-    const Object& to = **objects_.at(event.object);
+    const auto* owned = slot < scene_.objects.slotCount() ? scene_.objects.at(slot) : nullptr;
+    const Object& to = scene_.objectAt(event.object);
     if (!owned || slot == event.object || event.tick > clock.tick ||
-        event.water >= domainOf(**owned).texelCount() || !domainOf(**owned).real(event.water) ||
+        event.water >= scene_.domainOf(**owned).texelCount() ||
+        !scene_.domainOf(**owned).real(event.water) ||
         (((*owned)->data.flags | to.data.flags) & FW_BURNABLE_PUBLISHED) != 0 ||
         components::hasHeat((*owned)->data) != components::hasHeat(to.data))
         core::fail(
@@ -106,12 +118,12 @@ void World::checkCarry(const PendingTexel& event, const Clock& clock) {
 }
 
 // Within a step no other event may be of a texel that is copied, nor pass through one as a hole.
-void World::waitForCarries() noexcept {
-    if (clock_.tick >= carriesUntil_) return;
-    for (PendingTexel& event : pending_) {
+void BurnSystem::waitForCarries() noexcept {
+    if (context_.clock.tick >= state_.carriesUntil) return;
+    for (PendingTexel& event : state_.pending) {
         if (isCarry(event)) continue;
         const auto waitFor = [&](uint32_t slot) {
-            if (const auto* object = objects_.at(slot))
+            if (const auto* object = scene_.objects.at(slot))
                 event.tick = std::max(event.tick, (*object)->carryEnd);
         };
         waitFor(event.object);
@@ -119,22 +131,25 @@ void World::waitForCarries() noexcept {
     }
 }
 
-bool World::gives(uint32_t slot) const noexcept {
-    return clock_.tick < carriesUntil_ &&
-           std::any_of(pending_.begin(), pending_.end(), [&](const PendingTexel& event) {
-               return isCarry(event) && carriedFrom(event) == slot;
-           });
+bool BurnSystem::gives(uint32_t slot) const noexcept {
+    return context_.clock.tick < state_.carriesUntil &&
+           std::any_of(state_.pending.begin(), state_.pending.end(),
+                       [&](const PendingTexel& event) {
+                           return isCarry(event) && carriedFrom(event) == slot;
+                       });
 }
 
-void World::settlePending() noexcept {
-    carriesUntil_ = wetUntil_ = 0;
-    for (const PendingTexel& event : pending_) {
+void BurnSystem::settlePending() noexcept {
+    state_.carriesUntil = state_.wetUntil = 0;
+    for (const PendingTexel& event : state_.pending) {
         if (event.kind == FW_WET)
-            wetUntil_ = std::max<uint64_t>(wetUntil_, event.tick + uint64_t(gpu::kStepTicks));
+            state_.wetUntil =
+                std::max<uint64_t>(state_.wetUntil, event.tick + uint64_t(gpu::kStepTicks));
         if (isCarry(event))
             for (const uint32_t slot : {event.object, carriedFrom(event)}) {
-                (*objects_.at(slot))->carryEnd = endOfStep(event.tick);
-                carriesUntil_ = std::max<uint64_t>(carriesUntil_, endOfStep(event.tick));
+                scene_.objectAt(slot).carryEnd = endOfStep(event.tick);
+                state_.carriesUntil =
+                    std::max<uint64_t>(state_.carriesUntil, endOfStep(event.tick));
             }
     }
 }

@@ -1,6 +1,6 @@
 // Commands: the host's calls that change what burns, as values. A command log, a timeline and a
-// network carry them; World::apply makes each of them again. Creating and destroying is no command:
-// every host does that by itself. Things are named by slot.
+// network carry them; PersistenceSystem::apply makes each of them again. Creating and destroying is
+// no command: every host does that by itself. Things are named by slot.
 #pragma once
 #include "components/heat_shield.h"
 #include "components/room.h"

@@ -99,11 +99,13 @@ std::span<const LogEntry> fromTick(std::span<const LogEntry> entries, uint64_t t
     return entries.subspan(size_t(at - entries.begin()));
 }
 
-void World::startLog() { commandLog_ = core::Owned<CommandLog>::make(memory_, memory_); }
+void PersistenceSystem::startLog() {
+    commandLog_ = core::Owned<CommandLog>::make(world_.context_.memory, world_.context_.memory);
+}
 
-void World::stopLog() noexcept { commandLog_ = {}; }
+void PersistenceSystem::stopLog() noexcept { commandLog_ = {}; }
 
-const std::pmr::vector<std::byte>& World::fetchLog() {
+const std::pmr::vector<std::byte>& PersistenceSystem::fetchLog() {
     if (!commandLog_)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "The world records no log; fwWorld_StartLog first.");
     if (commandLog_->lost)
@@ -113,40 +115,44 @@ const std::pmr::vector<std::byte>& World::fetchLog() {
     return commandLog_->bytes;
 }
 
-void World::openLog(std::span<const std::byte> bytes) {
+void PersistenceSystem::openLog(std::span<const std::byte> bytes) {
     if (bytes.empty()) {
         playedLog_ = {};
         return;
     }
-    auto log = core::Owned<CommandLog>::make(memory_, memory_);
+    auto log = core::Owned<CommandLog>::make(world_.context_.memory, world_.context_.memory);
     readLog(bytes, identity(), log->entries);
     playedLog_ = std::move(log);
 }
 
-float World::playLog(uint64_t untilTick) {
+float PersistenceSystem::playLog(uint64_t untilTick) {
     if (!playedLog_)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "There is no log to play; fwWorld_OpenLog first.");
     mayChange();
     std::span<const LogEntry> ahead =
-        fromTick(playedLog_->entries, clock_.tick, loadedTick_ == clock_.tick);
+        fromTick(playedLog_->entries, world_.context_.clock.tick,
+                 world_.context_.loadedTick == world_.context_.clock.tick);
     uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (until <= clock_.tick) return 0;
-    for (; !ahead.empty() && ahead.front().tick == clock_.tick; ahead = ahead.subspan(1)) {
+    if (until <= world_.context_.clock.tick) return 0;
+    for (; !ahead.empty() && ahead.front().tick == world_.context_.clock.tick;
+         ahead = ahead.subspan(1)) {
         if (ahead.front().save) continue;
         try {
             apply(ahead.front().command);
         } catch (const core::Error& error) {
-            log_.write(FW_LOG_WARNING, "A command of the log at tick %llu is refused: %s",
-                       static_cast<unsigned long long>(clock_.tick), error.message);
+            world_.context_.log.write(
+                FW_LOG_WARNING, "A command of the log at tick %llu is refused: %s",
+                static_cast<unsigned long long>(world_.context_.clock.tick), error.message);
         }
     }
     if (!ahead.empty()) until = std::min(until, ahead.front().tick);
-    until = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
+    until = std::min(until,
+                     world_.context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
     return secondsUpTo(until);
 }
 
 // The next call would find the step still ahead.
-float World::secondsUpTo(uint64_t tick) const noexcept {
+float PersistenceSystem::secondsUpTo(uint64_t tick) const noexcept {
     const double exact = secondsTo(tick);
     const auto seconds = float(exact);
     return double(seconds) < exact ? std::nextafter(seconds, std::numeric_limits<float>::infinity())

@@ -21,7 +21,8 @@ struct CommandLog {
     void push(const LogEntry& entry) noexcept;
 };
 
-// The whole file: a header, and what it sums up. `identity`: of its world (World::identity).
+// The whole file: a header, and what it sums up. `identity`: of its world
+// (PersistenceSystem::identity).
 void writeLog(std::span<const LogEntry> entries, uint64_t identity,
               std::pmr::vector<std::byte>& out);
 // Throws FW_ERROR_BAD_DATA unless writeLog wrote the bytes for such a world.

@@ -1,6 +1,7 @@
-// What flames of volumetric fires flow around: the host's colliders, among them pictures of depth,
-// and the world's blockers as boxes. Looks alone.
-#include "world/world.h"
+// Bodies that flames of volumetric fires flow around: the host's colliders, among them pictures of
+// depth, and the world's blockers as boxes. Cosmetic.
+#include "world/exchange_system.h"
+#include "world/flame_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -138,53 +139,49 @@ void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEnt
 
 }  // namespace
 
-// What flames alone heed stops no jet.
-FwFireColliderId World::addFireCollider(const FwFireColliderDef& def, float unitsPerMetre) {
-    geometry_ += def.kind != FW_COLLIDER_DEPTH;
-    if (fireColliders_.live() >= kMaxFireColliders)
+// Pictures of depth stop no jet: flames alone see them.
+FwFireColliderId FlameSystem::addCollider(const FwFireColliderDef& def, float unitsPerMetre) {
+    scene_.geometryVersion += def.kind != FW_COLLIDER_DEPTH;
+    if (colliders_.live() >= kMaxFireColliders)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
-                   fireColliders_.live(), kMaxFireColliders);
-    auto entry = core::Owned<FireColliderEntry>::make(memory_, memory_);
+                   colliders_.live(), kMaxFireColliders);
+    auto entry = core::Owned<FireColliderEntry>::make(context_.memory, context_.memory);
     setShape(def, unitsPerMetre, *entry);
-    return fireColliders_.create(std::move(entry));
+    return colliders_.create(std::move(entry));
 }
 
-void World::setFireCollider(FwFireColliderId id, const FwFireColliderDef& def,
-                            float unitsPerMetre) {
-    FireColliderEntry& entry = *fireColliders_.get(id);
+void FlameSystem::setCollider(FwFireColliderId id, const FwFireColliderDef& def,
+                              float unitsPerMetre) {
+    FireColliderEntry& entry = *colliders_.get(id);
     const bool body = entry.shape.kind != volume::ColliderKind::Depth;
     setShape(def, unitsPerMetre, entry);
-    geometry_ += body || def.kind != FW_COLLIDER_DEPTH;
+    scene_.geometryVersion += body || def.kind != FW_COLLIDER_DEPTH;
 }
 
-void World::removeFireCollider(FwFireColliderId id) {
-    geometry_ += fireColliders_.get(id)->shape.kind != volume::ColliderKind::Depth;
-    fireColliders_.destroy(id);
+void FlameSystem::removeCollider(FwFireColliderId id) {
+    scene_.geometryVersion += colliders_.get(id)->shape.kind != volume::ColliderKind::Depth;
+    colliders_.destroy(id);
 }
 
-void World::listFireColliders() noexcept {
-    fireShapes_.clear();  // room was found with the first fire
+void FlameSystem::listShapes() noexcept {
+    shapes_.clear();  // capacity was reserved with the first fire
     for (const bool pictures : {true, false}) {
-        for (uint32_t i = 0; i < fireColliders_.slotCount(); ++i) {
-            const auto* entry = fireColliders_.at(i);
-            if (!entry) continue;
-            const volume::Collider& shape = (*entry)->shape;
+        for (auto [i, entry] : colliders_.entries()) {
+            const volume::Collider& shape = entry.shape;
             if ((shape.kind == volume::ColliderKind::Depth) != pictures) continue;
-            fireShapes_.push_back(shape);
-            // What the host's function says may change at any time.
-            if (shape.kind == volume::ColliderKind::Callback) ++geometry_;
+            shapes_.push_back(shape);
+            // The host's function may return something else at any time.
+            if (shape.kind == volume::ColliderKind::Callback) ++scene_.geometryVersion;
         }
-        if (pictures) firePictures_ = uint32_t(fireShapes_.size());
+        if (pictures) pictures_ = uint32_t(shapes_.size());
     }
-    for (uint32_t i = 0; i < blockers_.slotCount(); ++i) {
-        const BlockerEntry* entry = blockers_.at(i);
-        if (!entry) continue;
+    for (auto [i, entry] : exchange_.state().blockers.entries()) {
         volume::Collider box;
         box.kind = volume::ColliderKind::Box;
-        for (int k = 0; k < 3; ++k) box.place[k] = float(entry->pose.translation[k]);
-        box.extent = volume::vecOf(entry->halfSize) * entry->pose.scale;
-        box.rotation = quaternion(entry->pose.rotation);
-        fireShapes_.push_back(box);
+        for (int k = 0; k < 3; ++k) box.place[k] = float(entry.pose.translation[k]);
+        box.extent = volume::vecOf(entry.halfSize) * entry.pose.scale;
+        box.rotation = quaternion(entry.pose.rotation);
+        shapes_.push_back(box);
     }
 }
 

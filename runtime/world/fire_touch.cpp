@@ -1,9 +1,11 @@
-// What volumetric fires light: burnable meshes that are within the flame for as long as their
-// material takes to catch. By the host's numbers alone, not by the flames that are seen: the same
-// on every backend, and no pixel of it can change what burns.
+// Volumetric fires ignite burnable meshes that are within the flame for as long as their material
+// takes to catch. That depends on the host's numbers alone, not on the flames that are drawn: it is
+// the same on every backend.
 #include "fire/heat.h"
 #include "shared/exchange.h"
-#include "world/world.h"
+#include "world/burn_system.h"
+#include "world/flame_system.h"
+#include "world/wind_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,55 +72,23 @@ uint64_t ticksToCatch(const FwMaterialDef& m, float moisture, float pace, double
     return uint64_t(std::clamp(seconds, 0.0, 3600.0) * double(gpu::kTicksPerSecond));
 }
 
-// Before the steps of a frame are planned. A frame that fails leaves times of contact behind that
-// the next one finds, no more.
-void World::touchByFires(uint64_t end) {
-    const uint64_t first =
-        (clock_.tick + gpu::kExchangeTicks - 1) / gpu::kExchangeTicks * gpu::kExchangeTicks;
-    if (emitters_.live() > 0 && first < end) listFireColliders();
-    for (uint32_t i = 0; i < emitters_.slotCount() && first < end; ++i)
-        if (auto* emitter = emitters_.at(i); emitter && emitter->stream)
-            settlePatches(*emitter, uint32_t(first));
-    for (uint64_t now = first; now < end; now += gpu::kExchangeTicks) {
-        for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-            if (auto* fire = fires_.at(i); fire && ((*fire)->data.flags & FW_FIRE_IGNITES))
-                touchByFire(**fire, uint32_t(now));
-        for (uint32_t i = 0; i < emitters_.slotCount(); ++i)
-            if (auto* emitter = emitters_.at(i);
-                emitter && (emitter->def.flags & FW_EMITTER_IGNITES))
-                touchByJet(*emitter, uint32_t(now));
-        for (uint32_t i = 0; i < fields_.slotCount(); ++i)
-            if (auto* field = fields_.at(i)) touchByField(**field, uint32_t(now));
-    }
+void FlameSystem::forgetObject(FwBurnableMeshId id) noexcept {
+    for (auto [i, fire] : state_.fires.entries())
+        for (FireTouch& touch : fire.touches)
+            if (touch.object.index1 == id.index1) touch = {};
 }
 
-// Its place among those that fires, jets and sticking fuel are at is free at once.
-void World::forgetTouches(FwBurnableMeshId id) noexcept {
-    const auto forget = [&](auto& entries) {
-        for (auto& entry : entries)
-            if (entry.object.index1 == id.index1) entry = {};
-    };
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i)
-        if (auto* fire = fires_.at(i)) forget((*fire)->touches);
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        components::FireEmitter* emitter = emitters_.at(i);
-        if (!emitter) continue;
-        forget(emitter->touches);
-        if (!emitter->stream) continue;
-        forget(emitter->stream->patches);
-        forget(emitter->stream->before);
-        for (components::JetParcel& parcel : emitter->stream->parcels)
-            for (components::JetRay& ray : parcel.rays)
-                if (ray.hit.object.index1 == id.index1) ray.hit = {};
-    }
+void FlameSystem::igniteObjects(uint32_t now) {
+    for (auto [i, fire] : state_.fires.entries())
+        if (fire.data.flags & FW_FIRE_IGNITES) igniteObjects(fire, now);
 }
 
-void World::touchByFire(Fire& fire, uint32_t now) {
+void FlameSystem::igniteObjects(Fire& fire, uint32_t now) {
     for (FireTouch& touch : fire.touches) touch.seen = false;
     std::array<Ball, volume::kMaxControlPoints> balls;
     const uint32_t count =
         fire.data.power > 0
-            ? ballsOf(fire.data, def_.up, windAt(fire.data.position, now).data(), balls)
+            ? ballsOf(fire.data, context_.def.up, wind_.at(fire.data.position, now).data(), balls)
             : 0;
     float span = 0;  // from the first ball's middle, around all of them
     for (uint32_t k = 0; k < count; ++k) {
@@ -129,8 +99,8 @@ void World::touchByFire(Fire& fire, uint32_t now) {
         span = std::max(span, 1.001f * std::sqrt(sum) + balls[k].radius);
     }
     for (const uint32_t slot :
-         count > 0 ? objectsNear(balls[0].place, span) : std::span<const uint32_t>()) {
-        Object& object = **objects_.at(slot);
+         count > 0 ? scene_.objectsNear(balls[0].place, span) : std::span<const uint32_t>()) {
+        Object& object = scene_.objectAt(slot);
         if (object.texels == 0) continue;
         const components::Pose& pose = object.data.pose;
         const float shrink =
@@ -141,10 +111,10 @@ void World::touchByFire(Fire& fire, uint32_t now) {
             float point[3];
             components::toObject(pose, balls[k].place, point);
             radius = balls[k].radius;
-            texel = nearTexel(object, point, radius / shrink);
+            texel = scene_.nearTexel(object, point, radius / shrink);
         }
         if (texel == mesh::kNone) continue;
-        const uint32_t material = texelMaterial(object, texel);
+        const uint32_t material = scene_.texelMaterial(object, texel);
         if (!components::burns(object.data, material)) continue;
         FireTouch* touch = nullptr;
         for (FireTouch& t : fire.touches)
@@ -167,7 +137,7 @@ void World::touchByFire(Fire& fire, uint32_t now) {
         }
         const FwMaterialDef& of = object.data.materials[material];
         uint64_t wait =
-            ticksToCatch(of, of.moisture + object.data.moisture, def_.paceFactor, kFlux);
+            ticksToCatch(of, of.moisture + object.data.moisture, context_.def.paceFactor, kFlux);
         if (touch->lit) wait = std::max(wait, kAgain);
         if (now - touch->since < wait) continue;
         FwIgnitionDef def{};
@@ -175,7 +145,7 @@ void World::touchByFire(Fire& fire, uint32_t now) {
         for (uint32_t k = 0; k < count; ++k) {
             std::copy_n(balls[k].place, 3, def.position);
             def.radius = balls[k].radius;
-            (void)igniteObject(object, def, now);
+            (void)burn_.igniteObject(object, def, now);
         }
         touch->lit = true;
         touch->since = now;

@@ -1,5 +1,7 @@
 #include "world/governor.h"
 
+#include "components/pose.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -28,7 +30,7 @@ void follow(T to, uint32_t seen, T& value) noexcept {
     value += T(std::max(kSmooth, 1.0f / float(seen + 1))) * (to - value);
 }
 
-// What the levels between two saved each, as it turned out.
+// Saving of each level between two, as measured.
 void learn(float share, Governor& g) noexcept {
     const uint32_t high = std::min(g.level, g.levelBefore), low = std::max(g.level, g.levelBefore);
     g.levelBefore = g.level;
@@ -103,6 +105,38 @@ void govern(const FrameCost& limit, const FrameCost& spent, Governor& g) noexcep
         predicted *= savesAt(g, level--);
     g.room = level < g.level ? g.room + 1 : 0;
     if (g.room >= kDetailRoomFrames) turnTo(level, share, g);
+}
+
+void BudgetSystem::set(const FwBudgetDef& def) {
+    components::checkValue(def.gpuMilliseconds, "FwBudgetDef::gpuMilliseconds", 0.0f, 1000.0f);
+    components::checkValue(def.cpuMilliseconds, "FwBudgetDef::cpuMilliseconds", 0.0f, 1000.0f);
+    components::checkValue(def.measuredMilliseconds, "FwBudgetDef::measuredMilliseconds", -1e5f,
+                           1e5f);
+    budget_ = {def.gpuMilliseconds, def.cpuMilliseconds, double(def.bytes)};
+    measured_ = def.measuredMilliseconds >= 0;
+    if (measured_) spent_.gpu = def.measuredMilliseconds;
+}
+
+void BudgetSystem::fillState(FwBudgetState& state) const noexcept {
+    const gpu::Detail detail = detailOf(governor_.level);
+    state.level = governor_.level;
+    state.levels = kDetailLevels;
+    state.marchedFires = detail.marched;
+    state.volumeSteps = std::min(detail.volumeSteps, context_.def.volumeSteps);
+    state.refinedTriangles = uint32_t(detail.triangles * float(context_.def.maxRefinedTriangles));
+    state.gpuMilliseconds = governor_.cost.gpu;
+    state.cpuMilliseconds = governor_.cost.cpu;
+    state.quads = detail.quads;
+    state.lights = gpu::lightsOf(detail, context_.def.maxLights);
+    state.bytes = context_.backend.detailBytes();
+}
+
+void BudgetSystem::plan(gpu::FramePlan& plan) noexcept {
+    spent_.bytes = double(context_.backend.detailBytes());
+    govern(budget_, spent_, governor_);
+    spent_.cpu = 0;
+    plan.detail = detailOf(governor_.level);
+    if (!(budget_.bytes > 0)) plan.detail.memory = 1;
 }
 
 }  // namespace fw::world

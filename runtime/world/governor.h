@@ -3,6 +3,7 @@
 // saves is learned as it is left, for as long as the load stays what it was.
 #pragma once
 #include "gpu/backend.h"
+#include "world/context.h"
 
 #include <array>
 #include <cstdint>
@@ -22,7 +23,6 @@ constexpr uint32_t kDetailWait = 20;        // frames until a change shows in wh
 constexpr float kDetailGuess = 1.25f;  // what a level saves, before anything is learned
 constexpr float kDetailRoom = 0.9f;    // of the budget, that a higher level is thought to keep to
 
-// What a level has.
 [[nodiscard]] gpu::Detail detailOf(uint32_t level) noexcept;
 
 struct Governor {
@@ -41,5 +41,27 @@ struct Governor {
 
 // One frame of which `spent` was measured. Without a limit all detail comes back.
 void govern(const FrameCost& limit, const FrameCost& spent, Governor& governor) noexcept;
+
+// The host's budget, and what a world's frames cost of it.
+class BudgetSystem {
+ public:
+    explicit BudgetSystem(const WorldContext& context) : context_(context) {}
+
+    void set(const FwBudgetDef& def);
+    void fillState(FwBudgetState& state) const noexcept;
+    // ms that the host's thread was in a call of the frame that is about to be, or is.
+    void spend(float milliseconds) noexcept { spent_.cpu += milliseconds; }
+
+    void plan(gpu::FramePlan& plan) noexcept;
+    void onReadback(const gpu::Readback& readback) noexcept {
+        if (readback.milliseconds >= 0 && !measured_) spent_.gpu = readback.milliseconds;
+    }
+
+ private:
+    const WorldContext& context_;
+    FrameCost budget_, spent_;  // gpu: as of the last readback
+    Governor governor_;
+    bool measured_ = false;  // the host reports spent_.gpu
+};
 
 }  // namespace fw::world

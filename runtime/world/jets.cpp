@@ -1,10 +1,15 @@
-// What the jets of fire emitters strike: rays swept from the holder's side of the nozzle through
-// colliders, blockers, cells of the host's shield and burnable meshes. What they strike first is
-// heated and nothing behind it, when the stream has flown there. By the host's numbers alone:
-// events, the same on every backend. Particles see the same hits.
+// Jets of fire emitters: rays swept from the holder's side of the nozzle through colliders,
+// blockers, cells of the host's shield and burnable meshes. The first hit is heated when the stream
+// has flown there, nothing behind it. Jets depend on the host's numbers alone and become events,
+// the same on every backend. Particles use the same hits.
 #include "mesh/bake.h"
 #include "shared/exchange.h"
-#include "world/world.h"
+#include "world/burn_system.h"
+#include "world/emitter_system.h"
+#include "world/exchange_system.h"
+#include "world/flame_system.h"
+#include "world/persistence.h"
+#include "world/query_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -142,12 +147,12 @@ float mostScale(const components::Pose& pose) noexcept {
 }  // namespace
 
 // The objects that rays from there may meet, for the sweeps that follow.
-void World::listJetTargets(const float from[3], float reach) noexcept {
-    jetSlots_.clear();  // room was found with each object
-    for (const uint32_t slot : objectsNear(from, reach + kFarStep)) {
-        const Object& object = **objects_.at(slot);
+void EmitterSystem::listJetTargets(const float from[3], float reach) noexcept {
+    jetSlots_.clear();  // capacity was reserved with each object
+    for (const uint32_t slot : scene_.objectsNear(from, reach + kFarStep)) {
+        const Object& object = scene_.objectAt(slot);
         const components::Pose& pose = object.data.pose;
-        const mesh::BurnDomain& domain = domainOf(object);
+        const mesh::BurnDomain& domain = scene_.domainOf(object);
         float middle[3], at[3], away = 0, wide = 0;
         for (int i = 0; i < 3; ++i) {
             middle[i] = 0.5f * (domain.boundsLow[i] + domain.boundsHigh[i]);
@@ -164,12 +169,13 @@ void World::listJetTargets(const float from[3], float reach) noexcept {
 
 // m to the nearest of jetSlots_ and colliders in the way of a ray, or `most`. passed: a texel that
 // it went through, with what lies around it on the same side.
-float World::sweepJet(const float start[3], const float way[3], float most, JetHit& hit,
-                      const JetGate* passed) noexcept {
+float EmitterSystem::sweepJet(const float start[3], const float way[3], float most, JetHit& hit,
+                              const JetGate* passed) noexcept {
     const vec3 from = volume::vecOf(start), along = volume::vecOf(way);
     vec3 normal(-along);
-    float nearest = sweepShapes(walls(), from, along, most, normal);
-    if (const float cell = components::sweepShield(shield_.grid, start, way, nearest);
+    float nearest = sweepShapes(flames_.walls(), from, along, most, normal);
+    if (const float cell =
+            components::sweepShield(exchange_.state().shield.grid, start, way, nearest);
         cell < nearest) {
         nearest = cell;
         normal = -along;
@@ -177,9 +183,9 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
     hit = {};
     hit.met = nearest < most;
     for (const uint32_t slot : jetSlots_) {
-        const Object& object = **objects_.at(slot);
+        const Object& object = scene_.objectAt(slot);
         const components::Pose& pose = object.data.pose;
-        const mesh::BurnDomain& domain = domainOf(object);
+        const mesh::BurnDomain& domain = scene_.domainOf(object);
         const float least = leastScale(pose);
         const float most_ = mostScale(pose);
         // Closer than half a link between texels and it is struck; a stretched mesh's are longer
@@ -202,12 +208,12 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
             float point[3], local[3], texel[3];
             for (int k = 0; k < 3; ++k) point[k] = start[k] + way[k] * at;
             components::toObject(pose, point, local);
-            const uint32_t found = nearTexel(object, local, kFarStep / least);
+            const uint32_t found = scene_.nearTexel(object, local, kFarStep / least);
             if (found == mesh::kNone) {
                 at += 0.9f * kFarStep;
                 continue;
             }
-            texelPosition(object, found, texel);
+            scene_.texelPosition(object, found, texel);
             float sum = 0;
             for (int k = 0; k < 3; ++k) sum += (texel[k] - point[k]) * (texel[k] - point[k]);
             const float distance = std::sqrt(sum);
@@ -248,7 +254,7 @@ float World::sweepJet(const float start[3], const float way[3], float most, JetH
 
 // All rays of a jet, the holder's side first: what stands between the two stops all of them.
 // Once a frame: what a jet heats and what its particles meet are the same hits.
-void World::sweepJets(FireEmitter& emitter) noexcept {
+void EmitterSystem::sweepJets(FireEmitter& emitter) noexcept {
     if (emitter.swept == sweeps_) return;
     emitter.swept = sweeps_;
     listJetTargets(emitter.position, std::max(emitter.def.behind, kPastReach * emitter.look.reach));
@@ -267,8 +273,8 @@ void World::sweepJets(FireEmitter& emitter) noexcept {
         (void)sweepJet(emitter.position, ways[i], kPastReach * emitter.look.reach, emitter.hits[i]);
 }
 
-// For the particles of a frame, and for what is told of it.
-void World::shieldJet(FireEmitter& emitter, double now) noexcept {
+// For the particles of a frame, and for the emitter's state.
+void EmitterSystem::shieldJet(FireEmitter& emitter, double now) noexcept {
     sweepJets(emitter);
     emitter.struck = 0;
     emitter.freeWay = kPastReach * emitter.look.reach;
@@ -289,21 +295,29 @@ void World::shieldJet(FireEmitter& emitter, double now) noexcept {
     }
 }
 
-void World::forgetGates(uint32_t slot) noexcept {
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        FireEmitter* emitter = emitters_.at(i);
-        if (!emitter || !emitter->stream) continue;
-        for (JetParcel& parcel : emitter->stream->parcels)
-            for (JetRay& ray : parcel.rays)
+void EmitterSystem::forgetObject(FwBurnableMeshId id, uint32_t slot) noexcept {
+    const auto forget = [&](auto& entries) {
+        for (auto& entry : entries)
+            if (entry.object.index1 == id.index1) entry = {};
+    };
+    for (auto [i, emitter] : state_.emitters.entries()) {
+        forget(emitter.touches);
+        if (!emitter.stream) continue;
+        forget(emitter.stream->patches);
+        forget(emitter.stream->before);
+        for (JetParcel& parcel : emitter.stream->parcels)
+            for (JetRay& ray : parcel.rays) {
+                if (ray.hit.object.index1 == id.index1) ray.hit = {};
                 for (uint32_t g = 0; g < ray.gateCount; ++g)
                     if (ray.gates[g].object == slot) ray.gateCount = 0;
+            }
     }
 }
 
-// What a ray comes to beyond a hole: for what is seen. (Its heat asks the backend.)
-void World::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
+// Continues a ray beyond a hole, for particles. (For heat, the backend decides.)
+void EmitterSystem::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
     JetGate gate;
-    gate.object = (*objects_.find(hit.object))->slot;
+    gate.object = (*scene_.objects.find(hit.object))->slot;
     gate.texel = hit.texel;
     const float passed = hit.distance;
     float start[3], way[3];
@@ -316,30 +330,33 @@ void World::passHole(const FireEmitter& emitter, JetHit& hit) noexcept {
 }
 
 // Asks what stands where jets strike: 2 to 3 frames later their particles may pass.
-void World::probeJets(ProbeFrame& known) {
-    for (uint32_t slot = 0; slot < emitters_.slotCount(); ++slot) {
-        FireEmitter* emitter = emitters_.at(slot);
-        if (!emitter || !components::isSwept(emitter->def) || !(emitter->def.power > 0)) continue;
+void EmitterSystem::probeJets() {
+    for (auto [slot, emitter] : state_.emitters.entries()) {
+        if (!components::isSwept(emitter.def) || !(emitter.def.power > 0)) continue;
         for (uint32_t i = 0; i < kRays; ++i) {
-            const JetHit& hit = emitter->hits[i];
-            if (!hit.met || !objects_.find(hit.object)) continue;
-            const uint32_t holeTicks = gateTicks(hit, uint32_t(clock_.tick) + 1);
+            const JetHit& hit = emitter.hits[i];
+            if (!hit.met || !scene_.objects.find(hit.object)) continue;
+            const uint32_t holeTicks = gateTicks(hit, uint32_t(context_.clock.tick) + 1);
             if (holeTicks == 0) continue;
-            frame_.probes.push_back({hit.object.index1 - 1, hit.texel});
-            ProbeRef ref;
-            ref.object = hit.object;
-            ref.texel = hit.texel;
-            ref.jet = slot + 1;
-            ref.ray = i;
-            ref.holeTicks = holeTicks;
-            known.refs.push_back(ref);
+            queries_.addJetProbe(hit, slot, i, holeTicks);
         }
     }
 }
 
 // At an exchange, before the steps of a frame are planned: what left the nozzle at earlier ones
 // flies on, and another parcel leaves. A frame that failed may come again: then so does all of it.
-void World::touchByJet(FireEmitter& emitter, uint32_t now) {
+void EmitterSystem::beginExchanges(uint32_t first) noexcept {
+    if (state_.emitters.live() > 0) flames_.listShapes();
+    for (auto [i, emitter] : state_.emitters.entries())
+        if (emitter.stream) settlePatches(emitter, first);
+}
+
+void EmitterSystem::heatObjects(uint32_t now) {
+    for (auto [i, emitter] : state_.emitters.entries())
+        if (emitter.def.flags & FW_EMITTER_IGNITES) heatObjects(emitter, now);
+}
+
+void EmitterSystem::heatObjects(FireEmitter& emitter, uint32_t now) {
     emitter.heated = 0;
     for (components::JetTouch& touch : emitter.touches) touch.seen = false;
     burnPatches(emitter, now);
@@ -356,7 +373,8 @@ void World::touchByJet(FireEmitter& emitter, uint32_t now) {
         if (!touch.seen) touch.object = {};
 }
 
-void World::launchJet(const FireEmitter& emitter, JetParcel& parcel, uint32_t now) const noexcept {
+void EmitterSystem::launchJet(const FireEmitter& emitter, JetParcel& parcel,
+                              uint32_t now) const noexcept {
     parcel.launched = now;
     const double watts = 1000.0 * double(emitter.def.power) * double(emitter.def.heat);
     parcel.power = uint64_t(watts / kRays * double(kNano));
@@ -371,29 +389,31 @@ void World::launchJet(const FireEmitter& emitter, JetParcel& parcel, uint32_t no
         JetRay& ray = parcel.rays[i];
         std::copy_n(ways[i], 3, ray.way);
         ray.hit = emitter.hits[i];
-        ray.version = geometry_;
+        ray.version = scene_.geometryVersion;
         ray.spent = components::kJetNever;
         ray.gateCount = 0;
     }
 }
 
 // Ticks until a texel that was struck gives way; 0: it never does, or no fire can have been there.
-uint32_t World::gateTicks(const JetHit& hit, uint32_t tick) noexcept {
+uint32_t EmitterSystem::gateTicks(const JetHit& hit, uint32_t tick) noexcept {
     if (hit.object.index1 == 0) return 0;
-    const Object& object = **objects_.find(hit.object);
-    if (!components::hasHeat(object.data) || (object.firstEvent >= tick && !remoteOn())) return 0;
-    return components::holeTicks(object.data, texelMaterial(object, hit.texel), def_.paceFactor);
+    const Object& object = **scene_.objects.find(hit.object);
+    if (!components::hasHeat(object.data) || (object.firstEvent >= tick && !exchange_.isOn()))
+        return 0;
+    return components::holeTicks(object.data, scene_.texelMaterial(object, hit.texel),
+                                 context_.def.paceFactor);
 }
 
 // Is what was struck there for sure? No fire can have been on it long enough to burn through.
-bool World::stands(const JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept {
+bool EmitterSystem::stands(const JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept {
     if (holeTicks == 0) return true;
-    const Object& object = **objects_.find(hit.object);
-    return !remoteOn() && tick - std::min(object.firstEvent, tick) < holeTicks;
+    const Object& object = **scene_.objects.find(hit.object);
+    return !exchange_.isOn() && tick - std::min(object.firstEvent, tick) < holeTicks;
 }
 
 // On by one exchange. What was in the way as it left is, unless something moved since.
-void World::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
+void EmitterSystem::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
     const uint32_t exchange = (now - parcel.launched) / gpu::kExchangeTicks;
     const uint32_t from = parcel.flight[exchange];
     const uint32_t to = std::min(parcel.flight[exchange + 1], parcel.most);
@@ -409,10 +429,10 @@ void World::flyJet(FireEmitter& emitter, JetParcel& parcel, uint32_t now) {
 }
 
 // To what it meets before `to`, mm. True: it may pass there, and flies on.
-bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, uint32_t from,
-                   uint32_t to, uint32_t now, bool& listed) {
+bool EmitterSystem::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray,
+                           uint32_t from, uint32_t to, uint32_t now, bool& listed) {
     JetHit hit = ray.hit;
-    if (ray.version != geometry_ || ray.gateCount > 0) {
+    if (ray.version != scene_.geometryVersion || ray.gateCount > 0) {
         if (!listed) listJetTargets(parcel.from, float(to) / 1000);
         listed = true;
         const JetGate* passed = ray.gateCount > 0 ? &ray.gates[ray.gateCount - 1] : nullptr;
@@ -434,7 +454,7 @@ bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, u
     if (parcel.sticks > 0 && ray.gateCount == 0 && stands(hit, gate.holeTicks, tick))
         power -= parcel.sticks - stickFuel(emitter, hit, parcel.sticks);
     if (hit.object.index1 != 0) {
-        gate.object = (*objects_.find(hit.object))->slot;
+        gate.object = (*scene_.objects.find(hit.object))->slot;
         heatByJet(emitter, parcel, ray, hit, gate, tick, power);
     }
     if (gate.holeTicks == 0) {
@@ -447,18 +467,18 @@ bool World::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay& ray, u
 }
 
 // Texels around a hit that face what came, or both ways where the one that was struck does.
-void World::findFootprint(const Object& object, const JetHit& hit, float radius) {
+void EmitterSystem::findFootprint(const Object& object, const JetHit& hit, float radius) {
     const components::Pose& pose = object.data.pose;
-    const mesh::BurnDomain& domain = domainOf(object);
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
     float point[3];
     if (object.skinMoved)  // what was near at rest still is
         restPlace(domain, hit.texel, point);
     else
         components::toObject(pose, hit.place, point);
     const float least = leastScale(pose);
-    found_.clear();
-    mesh::texelsNear(domain, point, radius / least, found_);
-    std::erase_if(found_, [&](uint32_t texel) {
+    scene_.found.clear();
+    mesh::texelsNear(domain, point, radius / least, scene_.found);
+    std::erase_if(scene_.found, [&](uint32_t texel) {
         if (!alike(domain, texel, hit.texel)) return true;
         float place[3], sum = 0;
         restPlace(domain, texel, place);
@@ -468,14 +488,15 @@ void World::findFootprint(const Object& object, const JetHit& hit, float radius)
         }
         return sum > radius * radius;
     });
-    if (found_.empty()) found_.push_back(hit.texel);
+    if (scene_.found.empty()) scene_.found.push_back(hit.texel);
 }
 
 // All that a ray brings goes into the texels that it covers: where it is more than any fire gives,
 // it spreads over more of them.
-void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRay& ray,
-                      const JetHit& hit, const JetGate& gate, uint32_t tick, uint64_t brought) {
-    Object& object = **objects_.find(hit.object);
+void EmitterSystem::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRay& ray,
+                              const JetHit& hit, const JetGate& gate, uint32_t tick,
+                              uint64_t brought) {
+    Object& object = **scene_.objects.find(hit.object);
     if (object.texels == 0) return;
     const float watts = float(brought) / kNano;
     const float radius = footprintRadius(0.10f + 0.35f * hit.distance * parcel.wide, watts);
@@ -502,9 +523,10 @@ void World::heatByJet(FireEmitter& emitter, const JetParcel& parcel, const JetRa
 }
 
 // True: they took all that they can. `like`: where the events come from. left: nW that did not go.
-bool World::heatFootprint(Object& object, const JetHit& hit, float radius, uint64_t power,
-                          uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left) {
-    const mesh::BurnDomain& domain = domainOf(object);
+bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radius, uint64_t power,
+                                  uint32_t tick, size_t most, const PendingTexel& like,
+                                  uint64_t& left) {
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
     const float square = object.data.pose.scale * object.data.pose.scale;
     const auto areaOf = [&](uint32_t texel) {
         return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
@@ -513,34 +535,33 @@ bool World::heatFootprint(Object& object, const JetHit& hit, float radius, uint6
     for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {
         findFootprint(object, hit, radius);
         covered = 0;
-        for (const uint32_t texel : found_) covered += areaOf(texel);
+        for (const uint32_t texel : scene_.found) covered += areaOf(texel);
         radius *= 1.4f;
     }
     // Of very many a part at each exchange, in turn; as few as can take all of it.
     const size_t parts =
-        std::min((found_.size() + most - 1) / most,
+        std::min((scene_.found.size() + most - 1) / most,
                  size_t(covered * gpu::kFluxMost / std::max(power * 5 / 4, uint64_t(1))));
     if (parts > 1) {
         size_t kept = 0;
-        for (size_t i = tick / gpu::kExchangeTicks % parts; i < found_.size(); i += parts)
-            found_[kept++] = found_[i];
-        found_.resize(kept);
+        for (size_t i = tick / gpu::kExchangeTicks % parts; i < scene_.found.size(); i += parts)
+            scene_.found[kept++] = scene_.found[i];
+        scene_.found.resize(kept);
     }
     jetAreas_.clear();
-    for (const uint32_t texel : found_) jetAreas_.push_back(areaOf(texel));
-    jetFlux_.resize(found_.size());
-    findPendingRoom(found_.size());
+    for (const uint32_t texel : scene_.found) jetAreas_.push_back(areaOf(texel));
+    jetFlux_.resize(scene_.found.size());
+    burn_.reservePending(scene_.found.size());
     left = components::shareJet(power, jetAreas_, jetFlux_);
     object.firstEvent = std::min(object.firstEvent, tick);
     PendingTexel event = like;
     event.object = object.slot;
     event.kind = gpu::kEventHeat;
     event.tick = tick;
-    for (size_t i = 0; i < found_.size(); ++i) {
-        event.texel = found_[i];
+    for (size_t i = 0; i < scene_.found.size(); ++i) {
+        event.texel = scene_.found[i];
         event.water = jetFlux_[i];
-        event.order = order_++;
-        pending_.push_back(event);
+        burn_.addPending(event);
     }
     return jetFlux_[0] >= gpu::kFluxMost;
 }
@@ -548,7 +569,7 @@ bool World::heatFootprint(Object& object, const JetHit& hit, float radius, uint6
 // ---- fuel that sticks -------------------------------------------------------------------------
 
 // Where it struck, to what sticks near there already if there is any. What has no place comes back.
-uint64_t World::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel) noexcept {
+uint64_t EmitterSystem::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel) noexcept {
     JetPatch* nearest = nullptr;
     JetPatch* free = nullptr;
     float least = kNearPatch * kNearPatch;
@@ -582,7 +603,7 @@ uint64_t World::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel
 }
 
 // Before the exchanges of a frame, the first of them at tick `first`.
-void World::settlePatches(FireEmitter& emitter, uint32_t first) noexcept {
+void EmitterSystem::settlePatches(FireEmitter& emitter, uint32_t first) noexcept {
     components::JetStream& stream = *emitter.stream;
     if (stream.patchedAt >= first && first > 0)
         stream.patches = stream.before;
@@ -590,7 +611,7 @@ void World::settlePatches(FireEmitter& emitter, uint32_t first) noexcept {
         stream.before = stream.patches;
 }
 
-void World::burnPatches(FireEmitter& emitter, uint32_t now) {
+void EmitterSystem::burnPatches(FireEmitter& emitter, uint32_t now) {
     components::JetStream& stream = *emitter.stream;
     stream.patchedAt = now;
     for (JetPatch& patch : stream.patches) {
@@ -598,7 +619,7 @@ void World::burnPatches(FireEmitter& emitter, uint32_t now) {
             patch.power = 0;
             continue;
         }
-        auto* owned = objects_.find(patch.object);
+        auto* owned = scene_.objects.find(patch.object);
         if (patch.object.index1 != 0 && (!owned || (*owned)->texels == 0)) {
             patch = {};
             continue;
@@ -611,7 +632,7 @@ void World::burnPatches(FireEmitter& emitter, uint32_t now) {
         hit.object = patch.object;
         hit.texel = patch.texel;
         float local[3];
-        texelPlace(object, patch.texel, local);
+        scene_.texelPlace(object, patch.texel, local);
         components::toWorld(object.data.pose, local, patch.place);
         std::copy_n(patch.place, 3, hit.place);
         std::copy_n(patch.normal, 3, hit.normal);
@@ -624,18 +645,17 @@ void World::burnPatches(FireEmitter& emitter, uint32_t now) {
         }
         uint64_t left = 0;
         (void)heatFootprint(object, hit, radius, power, now, kMostPoints / 2, {}, left);
-        // What no texel was small enough for is given with the next, while there is one.
+        // The next exchange gives what no texel could take, if there is one.
         if (patch.left > 0) patch.fuel += left;
         emitter.heated += float(power - left) / kNano;
     }
 }
 
 // Water that falls on an object falls on what sticks to it.
-void World::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
-                       uint32_t tick) noexcept {
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        FireEmitter* emitter = emitters_.at(i);
-        if (!emitter || !emitter->stream) continue;
+void EmitterSystem::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
+                               uint32_t tick) noexcept {
+    for (auto [i, emitter] : state_.emitters.entries()) {
+        if (!emitter.stream) continue;
         const auto isHit = [&](const JetPatch& patch) {
             float apart = 0;
             for (int k = 0; k < 3; ++k)
@@ -645,20 +665,20 @@ void World::wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t 
                    patch.object.generation == object.id.generation && apart < far * far;
         };
         for (uint32_t k = 0; k < components::kJetPatches; ++k) {
-            JetPatch& patch = emitter->stream->patches[k];
-            JetPatch& before = emitter->stream->before[k];
+            JetPatch& patch = emitter.stream->patches[k];
+            JetPatch& before = emitter.stream->before[k];
             if (isHit(before)) components::wetPatch(before, grams, tick);
             if (!isHit(patch)) continue;
             components::wetPatch(patch, grams, tick);
-            record(WetPatch{i, k, grams, tick});
+            context_.recorder.record(WetPatch{i, k, grams, tick});
         }
     }
 }
 
-// What has no heat of its own catches after as long as its material takes.
-void World::heatLite(FireEmitter& emitter, Object& object, const JetHit& hit, float radius,
-                     float flux, uint32_t now) {
-    const uint32_t material = texelMaterial(object, hit.texel);
+// An object without heat catches after the time that its material takes.
+void EmitterSystem::heatLite(FireEmitter& emitter, Object& object, const JetHit& hit, float radius,
+                             float flux, uint32_t now) {
+    const uint32_t material = scene_.texelMaterial(object, hit.texel);
     if (!components::burns(object.data, material)) return;
     components::JetTouch* touch = nullptr;
     for (components::JetTouch& one : emitter.touches)
@@ -675,13 +695,13 @@ void World::heatLite(FireEmitter& emitter, Object& object, const JetHit& hit, fl
     touch->seen = true;
     const FwMaterialDef& of = object.data.materials[material];
     if (now - touch->since <
-        ticksToCatch(of, of.moisture + object.data.moisture, def_.paceFactor, double(flux)))
+        ticksToCatch(of, of.moisture + object.data.moisture, context_.def.paceFactor, double(flux)))
         return;
     FwIgnitionDef def{};
     def.kind = FW_IGNITE;
     std::copy_n(hit.place, 3, def.position);
     def.radius = radius;
-    (void)igniteObject(object, def, now);
+    (void)burn_.igniteObject(object, def, now);
 }
 
 }  // namespace fw::world

@@ -1,33 +1,35 @@
-// Wind and gravity on their way to a front: filtered every step, latched at most four times a
-// second, for objects that an event has touched. The others get fresh records at their first event.
-#include "world/world.h"
+// Wind and gravity of fronts: filtered every step and latched at most four times a second, for
+// objects that an event has touched. Others get fresh records at their first event.
+#include "world/burn_system.h"
+#include "world/exchange_system.h"
+#include "world/wind_system.h"
 
 #include <algorithm>
 
 namespace fw::world {
 
-void World::addLatch(Object& object, const components::Latch& latch, bool due) noexcept {
-    object.planStamp = planStamp_;
+void BurnSystem::addLatch(Object& object, const components::Latch& latch, bool due) noexcept {
+    object.planStamp = state_.planStamp;
     object.latchIndex = frame_.latches.size();
-    frame_.latches.push_back({&object, latch, due});  // room was found at its creation
+    frame_.latches.push_back({&object, latch, due});  // capacity was reserved at its creation
 }
 
-// May other records change anything of an object that no event addresses? A readback may be late,
-// so who is surely at rest by one of them must need none for as long as another may still be on its
-// way: beyond the window nothing is corrected, and what is warm or wet goes by its records, too.
-bool World::needsRecords(const Object& object, uint32_t now) const noexcept {
+// Whether other records change anything of an object that no event addresses. A readback may be
+// late: an object at rest by one readback needs no records until the next can have come. Beyond the
+// window nothing is corrected. Warm and wet texels use the records, too.
+bool BurnSystem::needsRecords(const Object& object, uint32_t now) const noexcept {
     if (isActive(object)) return true;
-    if (hotTiles_ != 0 && components::hasHeat(object.data)) return true;
+    if (state_.counts.hot != 0 && components::hasHeat(object.data)) return true;
     const uint64_t last =
         std::max<uint64_t>(object.counters.lastIgnition, object.story.lastStimulus);
     return last != 0 && now <= last + 2 * (uint64_t(object.latch.window) + gpu::kStepTicks);
 }
 
-void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
+void BurnSystem::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     const auto sendRecords = [&](Object& object, const components::DriveInput& drive,
                                  components::Latch& latch) {
         const components::Records records =
-            components::makeRecords(object.data, domainOf(object), drive, latch);
+            components::makeRecords(object.data, scene_.domainOf(object), drive, latch);
         gpu::MaterialUpdate update;
         update.object = object.slot;
         std::copy(records.materials.begin(), records.materials.end(), update.materials);
@@ -40,43 +42,78 @@ void World::planLatches(uint32_t now, size_t firstEvent, bool placed) {
     for (size_t i = firstEvent; i < frame_.events.size(); ++i) {
         const uint32_t slot = frame_.events[i].object;
         if (i > firstEvent && frame_.events[i - 1].object == slot) continue;
-        Object& object = **objects_.at(slot);
-        if (object.planStamp == planStamp_) {
+        Object& object = scene_.objectAt(slot);
+        if (object.planStamp == state_.planStamp) {
             Frame::LatchOf& known = frame_.latches[object.latchIndex];
             known.due = true;
-            if (!known.latch.sent) sendRecords(object, driveInput(object, now), known.latch);
+            if (!known.latch.sent) sendRecords(object, wind_.driveInput(object, now), known.latch);
             continue;
         }
         components::Latch latch = object.latch;
-        const components::DriveInput drive = driveInput(object, now);
+        const components::DriveInput drive = wind_.driveInput(object, now);
         components::resetLatch(object.data, drive, latch);
         latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
         if (!latch.sent) sendRecords(object, drive, latch);
         addLatch(object, latch, true);
     }
     const bool fresh = firstEvent < frame_.events.size();
-    remote_.spreadKnown &= remoteOn() || !fresh;
-    if (remoteOn()) {
+    if (fresh && !exchange_.isOn()) exchange_.forgetSpread();
+    if (exchange_.isOn()) {
         if (fresh || placed) touchNear(now);
         // Nobody knows which of them the fire reaches first.
         if (fresh || placed)
             for (Frame::LatchOf& entry : frame_.latches)
                 if (!entry.latch.sent)
-                    sendRecords(*entry.object, driveInput(*entry.object, now), entry.latch);
+                    sendRecords(*entry.object, wind_.driveInput(*entry.object, now), entry.latch);
     }
     // While anything burns or is hot, any of them may be next.
-    const bool anyActive = remoteOn() && (fresh || !idle_);
+    const bool anyActive = exchange_.isOn() && (fresh || !state_.idle);
     const bool latchNow = now % fire::kWindLatchTicks == 0;
     for (Frame::LatchOf& entry : frame_.latches) {
         Object& object = *entry.object;
-        const components::DriveInput drive = driveInput(object, now);
-        components::filterLatch(object.data, domainOf(object), drive, entry.latch);
+        const components::DriveInput drive = wind_.driveInput(object, now);
+        components::filterLatch(object.data, scene_.domainOf(object), drive, entry.latch);
         if (!latchNow || !components::latchDrive(object.data, entry.latch)) continue;
         entry.latch.sent = false;
         turnPlay(object);
         if (needsRecords(object, now) || entry.due || anyActive)
             sendRecords(object, drive, entry.latch);
     }
+}
+
+// Objects that fire may reach from touched ones must have the same wind on every backend, whether
+// the readback that shows it is late or not.
+void BurnSystem::touchNear(uint32_t now) {
+    const auto add = [&](uint32_t slot) {
+        auto* owned = scene_.objects.at(slot);
+        if (!owned || (*owned)->planStamp == state_.planStamp || (*owned)->touched) return;
+        Object& object = **owned;
+        components::Latch latch = object.latch;
+        components::resetLatch(object.data, wind_.driveInput(object, now), latch);
+        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
+        addLatch(object, latch, true);
+    };
+    if (exchange_.state().book.flags & FW_WORLD_EMBERS) {
+        for (const uint32_t slot : exchange_.state().book.waiting) add(slot);
+        frame_.waitersTouched = true;
+        return;
+    }
+    const auto addNear = [&](const Object& object) {
+        for (const uint32_t entry : exchange_.state().book.neighbours.of(object.slot))
+            add(entry & Neighbours::kSlot);
+    };
+    // Once all neighbours of touched objects are touched, only other lists and other objects can
+    // bring more.
+    if (!exchange_.state().book.spreadKnown)
+        for (const Object* object : scene_.touched) addNear(*object);
+    else
+        for (const uint32_t slot : exchange_.state().book.neighbours.changed())
+            if (const auto* owned = scene_.objects.at(slot);
+                owned && ((*owned)->touched || (*owned)->planStamp == state_.planStamp))
+                addNear(**owned);
+    for (; frame_.spreadFrom < frame_.latches.size(); ++frame_.spreadFrom)
+        addNear(*frame_.latches[frame_.spreadFrom].object);
+    frame_.spreadFound = true;
 }
 
 }  // namespace fw::world

@@ -4,6 +4,9 @@
 #include "core/hash.h"
 #include "core/stream.h"
 #include "save/plane.h"
+#include "world/burn_system.h"
+#include "world/persistence.h"
+#include "world/query_system.h"
 #include "world/save.h"
 
 #include <algorithm>
@@ -100,50 +103,50 @@ void readBurn(std::span<const std::byte> bytes, Burn& burn) {
     });
 }
 
-// ---- World --------------------------------------------------------------------------------------
+// ---- the system ---------------------------------------------------------------------------------
 
-const std::pmr::vector<std::byte>* World::fetchBurn(FwBurnableMeshId id) {
-    const BurnMapCopy* map = fetchBurnMap(id);
+const std::pmr::vector<std::byte>* BurnSystem::fetchBurn(FwBurnableMeshId id) {
+    const BurnMapCopy* map = queries_.fetchBurnMap(id);
     if (!map) return nullptr;
-    Object& object = *objects_.get(id);
-    const mesh::BurnDomain& domain = domainOf(object);
+    Object& object = *scene_.objects.get(id);
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
     if (std::none_of(map->ticks.begin(), map->ticks.end(), gpu::isSource))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "Nothing of burnable mesh %u has burnt.", id.index1);
-    writeBurn(map->ticks, meshHash(object), domain.width, domain.height, burnBytes_);
+    writeBurn(map->ticks, scene_.meshHash(object), domain.width, domain.height, burnBytes_);
     return &burnBytes_;
 }
 
-FwBurnId World::createBurn(std::span<const std::byte> bytes) {
-    auto burn = core::Owned<Burn>::make(memory_, memory_);
+FwBurnId BurnSystem::createBurn(std::span<const std::byte> bytes) {
+    auto burn = core::Owned<Burn>::make(context_.memory, context_.memory);
     readBurn(bytes, *burn);
-    return burns_.create(std::move(burn));
+    return state_.burns.create(std::move(burn));
 }
 
-void World::destroyBurn(FwBurnId id) {
-    (void)burns_.get(id);
-    for (const Object* object : playing_)
+void BurnSystem::destroyBurn(FwBurnId id) {
+    (void)state_.burns.get(id);
+    for (const Object* object : scene_.playing)
         if (object->play.burn1 == id.index1)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "Baked burn %u is played by burnable mesh %u.",
                        id.index1, object->id.index1);
-    burns_.destroy(id);
+    state_.burns.destroy(id);
 }
 
-void World::playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed) {
-    mayChange();
+void BurnSystem::playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed) {
+    context_.recorder.mayChange();
     components::checkValue(delay, "delay", 0.0f, 3600.0f);
     playBurnAt(id, burn, eventTick(delay), speed);
 }
 
-void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, float speed) {
-    Object& object = *objects_.get(id);
-    const Burn& burn = *burns_.get(burnId);
+void BurnSystem::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, float speed) {
+    Object& object = *scene_.objects.get(id);
+    const Burn& burn = *state_.burns.get(burnId);
     components::checkValue(speed, "speed", kSlowestPlay, kFastestPlay);
     if (object.data.flags & FW_BURNABLE_PUBLISHED)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; it plays no baked burn.",
                    id.index1);
-    const uint64_t mesh = meshHash(object);
-    if (burn.mesh != mesh || burn.ticks.size() != domainOf(object).texelCount())
+    const uint64_t mesh = scene_.meshHash(object);
+    if (burn.mesh != mesh || burn.ticks.size() != scene_.domainOf(object).texelCount())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Baked burn %u is of a mesh of hash %016llx; burnable mesh %u has one of "
                    "%016llx.",
@@ -152,69 +155,69 @@ void World::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick, floa
     Play play;
     play.burn1 = burnId.index1;
     // Its first texel catches in the step after the one that starts it in the backend.
-    play.first = std::max(tick, uint32_t(clock_.tick) + gpu::kStepTicks);
+    play.first = std::max(tick, uint32_t(context_.clock.tick) + gpu::kStepTicks);
     play.rate = playRate(speed);
-    play.most = mostAtOnce(burn, play, def_.maxStepsPerFrame);
-    core::growTo(playing_, playing_.size() + 1);
+    play.most = mostAtOnce(burn, play, context_.def.maxStepsPerFrame);
+    core::growTo(scene_.playing, scene_.playing.size() + 1);
     reservePlays(play.most);
     if (object.play.burn1 == 0) startPlay(object);
     object.play = play;
     object.firstEvent = std::min(object.firstEvent, play.first);
     ++object.changes;
-    record(PlayBurn{object.slot, burnId.index1, tick, speed});
+    context_.recorder.record(PlayBurn{object.slot, burnId.index1, tick, speed});
 }
 
-void World::stopBurn(FwBurnableMeshId id) {
-    mayChange();
-    Object& object = *objects_.get(id);
+void BurnSystem::stopBurn(FwBurnableMeshId id) {
+    context_.recorder.mayChange();
+    Object& object = *scene_.objects.get(id);
     object.play.ends = object.play.burn1 != 0;
-    record(StopBurn{object.slot});
+    context_.recorder.record(StopBurn{object.slot});
 }
 
 // ---- a frame ------------------------------------------------------------------------------------
 
 // Reserves the most events that all that play make in a frame, and `more`.
-void World::reservePlays(size_t more) {
-    core::growTo(frame_.plays, playing_.size() + 1);
-    size_t events = pending_.size() + more;
-    for (const Object* object : playing_) events += object->play.most;
-    core::growTo(frame_.events, events + 2 * (playing_.size() + 1));
+void BurnSystem::reservePlays(size_t more) {
+    core::growTo(frame_.plays, scene_.playing.size() + 1);
+    size_t events = state_.pending.size() + more;
+    for (const Object* object : scene_.playing) events += object->play.most;
+    core::growTo(frame_.events, events + 2 * (scene_.playing.size() + 1));
 }
 
-void World::startPlay(Object& object) noexcept {  // there is room
-    playing_.insert(
-        std::lower_bound(playing_.begin(), playing_.end(), &object,
+void BurnSystem::startPlay(Object& object) noexcept {  // there is room
+    scene_.playing.insert(
+        std::lower_bound(scene_.playing.begin(), scene_.playing.end(), &object,
                          [](const Object* a, const Object* b) { return a->slot < b->slot; }),
         &object);
 }
 
-void World::endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept {
+void BurnSystem::endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept {
     object.play = {};
     ++object.changes;
-    std::erase(playing_, &object);
+    std::erase(scene_.playing, &object);
     float place[3];
     for (int i = 0; i < 3; ++i) place[i] = float(object.data.pose.translation[i]);
-    raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, place,
-          float(double(tick) / gpu::kTicksPerSecond));
+    context_.raise(FW_EVENT_WENT_LIVE, &object, 0, frameIndex, place,
+                   float(double(tick) / gpu::kTicksPerSecond));
 }
 
 // Lists the objects that play. Returns the most events that they make up to a tick.
-size_t World::beginPlays(uint64_t end) {
+size_t BurnSystem::beginPlays(uint64_t end) {
     frame_.plays.clear();
     size_t events = 0;
-    for (Object* object : playing_) {
+    for (Object* object : scene_.playing) {
         const Play& play = object->play;
         frame_.plays.push_back({object, play});
-        const Burn& burn = **burns_.at(play.burn1 - 1);
+        const Burn& burn = **state_.burns.at(play.burn1 - 1);
         const auto last = catchFrom(burn, play, end);
-        events += size_t(last - catchFrom(burn, play, clock_.tick));
+        events += size_t(last - catchFrom(burn, play, context_.clock.tick));
         if (play.began == 0 || play.ends || last == burn.order.end()) events += 2;
     }
     return events;
 }
 
 // Adds the events of a step. `due`: all other events of that step, by object.
-void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
+void BurnSystem::planPlays(uint32_t now, std::span<const Frame::Due> due) {
     const uint32_t end = now + gpu::kStepTicks;
     for (Frame::PlayOf& entry : frame_.plays) {
         Play& play = entry.play;
@@ -232,7 +235,7 @@ void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
             push(gpu::kNoneTexel, gpu::kEventPlays, gpu::kNever);
             play.began = end;
         } else if (play.began != 0) {
-            const Burn& burn = **burns_.at(play.burn1 - 1);
+            const Burn& burn = **state_.burns.at(play.burn1 - 1);
             const auto next = catchFrom(burn, play, end);
             // Where others have an event, too, none of ours is beside it: a texel's are in order.
             if (!disturbed)
@@ -250,20 +253,20 @@ void World::planPlays(uint32_t now, std::span<const Frame::Due> due) {
 }
 
 // Its wind or pose turned in a step: it plays in the next, and is live from then on.
-void World::turnPlay(const Object& object) noexcept {
+void BurnSystem::turnPlay(const Object& object) noexcept {
     for (Frame::PlayOf& entry : frame_.plays)
         if (entry.object == &object && entry.play.began != 0) entry.play.ends = true;
 }
 
-void World::settlePlays(Snapshot& saved) {
+void BurnSystem::settlePlays(Snapshot& saved) {
     size_t events = saved.pending.size(), count = 0;
     for (ObjectSnapshot& object : saved.objects) {
         Play& play = object.play;
         if (play.burn1 == 0) continue;
         const core::Owned<Burn>* burn =
-            play.burn1 <= burns_.slotCount() ? burns_.at(play.burn1 - 1) : nullptr;
+            play.burn1 <= state_.burns.slotCount() ? state_.burns.at(play.burn1 - 1) : nullptr;
         if (!burn || (*burn)->hash != object.burnHash ||
-            (*burn)->mesh != meshHash(**objects_.at(object.slot)))
+            (*burn)->mesh != scene_.meshHash(scene_.objectAt(object.slot)))
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u of the save plays baked burn %u, which is none or another "
                        "one here.",
@@ -273,7 +276,7 @@ void World::settlePlays(Snapshot& saved) {
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u of the save plays a baked burn as none can be.",
                        object.slot + 1);
-        play.most = mostAtOnce(**burn, play, def_.maxStepsPerFrame);
+        play.most = mostAtOnce(**burn, play, context_.def.maxStepsPerFrame);
         events += play.most + 2;
         ++count;
     }
@@ -281,7 +284,7 @@ void World::settlePlays(Snapshot& saved) {
     frame_.events.reserve(events);
 }
 
-void World::commitPlays(uint64_t frameIndex) noexcept {
+void BurnSystem::commitPlays(uint64_t frameIndex) noexcept {
     for (const Frame::PlayOf& entry : frame_.plays) {
         Object& object = *entry.object;
         if (object.play.began == 0 && entry.play.began != 0) {
@@ -290,9 +293,9 @@ void World::commitPlays(uint64_t frameIndex) noexcept {
             stimulus.latest = std::max<uint64_t>(stimulus.latest, entry.play.began);
         }
         if (entry.lit != mesh::kNone) {
-            const Burn& burn = **burns_.at(object.play.burn1 - 1);
-            noteIgnition(object, stimulusOf(object, frameIndex), entry.lit,
-                         uint32_t(object.play.tickOf(burn.ticks[entry.lit])));
+            const Burn& burn = **state_.burns.at(object.play.burn1 - 1);
+            recordIgnition(object, stimulusOf(object, frameIndex), entry.lit,
+                           uint32_t(object.play.tickOf(burn.ticks[entry.lit])));
         }
         object.play = entry.play;
         if (object.play.burn1 == 0) endPlay(object, frameIndex, entry.ended);

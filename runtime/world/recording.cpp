@@ -69,94 +69,96 @@ uint64_t hashState(std::span<const uint32_t> ticks, std::span<const gpu::uvec2> 
     return hash;
 }
 
-Recording& World::startRecording(bool follows) {
-    recording_ = core::Owned<Recording>::make(memory_, memory_);
+Recording& PersistenceSystem::startRecording(bool follows) {
+    recording_ = core::Owned<Recording>::make(world_.context_.memory, world_.context_.memory);
     recording_->follows = follows;
-    recording_->until = clock_.tick;
+    recording_->until = world_.context_.clock.tick;
     return *recording_;
 }
 
-void World::mayChange() const {
+void PersistenceSystem::mayChange() const {
     if (recording_ && recording_->follows && !recording_->applies)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The world follows a server's: what burns in it is changed there.");
 }
 
-void World::record(const Command& command) noexcept {
-    if (commandLog_) commandLog_->push({clock_.tick, false, command});
+void PersistenceSystem::record(const Command& command) noexcept {
+    if (commandLog_) commandLog_->push({world_.context_.clock.tick, false, command});
     recordInTimeline(command);
     if (!recording_ || recording_->follows) return;
     try {
-        recording_->commands.push_back({clock_.tick, command});
+        recording_->commands.push_back({world_.context_.clock.tick, command});
     } catch (...) {  // the world has changed: every client needs its whole state again
         recording_->lost = true;
     }
 }
 
-void World::recordSave() noexcept {
-    if (commandLog_) commandLog_->push({clock_.tick, true, {}});
+void PersistenceSystem::recordSave() noexcept {
+    if (commandLog_) commandLog_->push({world_.context_.clock.tick, true, {}});
 }
 
-void World::applyLoad(std::span<const std::byte> bytes) {
+void PersistenceSystem::applyLoad(std::span<const std::byte> bytes) {
     const Applying applying(recording_.get());
     load(bytes);
 }
 
-void World::checkCommandTick(uint32_t tick) const {
-    if (tick < clock_.tick || tick > Clock::kLastTick)
+void BurnSystem::checkCommandTick(uint32_t tick) const {
+    if (tick < context_.clock.tick || tick > Clock::kLastTick)
         core::fail(FW_ERROR_BAD_DATA, "A command takes effect at tick %u; it is now %llu.", tick,
-                   static_cast<unsigned long long>(clock_.tick));
+                   static_cast<unsigned long long>(context_.clock.tick));
 }
 
 // The texel events from `first` on, as commands.
-void World::recordTexels(size_t first) noexcept {
-    if (!records()) return;
-    for (size_t i = first; i < pending_.size();) {
-        const PendingTexel& event = pending_[i];
+void BurnSystem::recordTexels(size_t first) noexcept {
+    if (!context_.recorder.records()) return;
+    for (size_t i = first; i < state_.pending.size();) {
+        const PendingTexel& event = state_.pending[i];
         const TexelChange change{event.kind, event.tick, event.water};
         if (event.texel == kAllTexels) {
             IgniteObjects command{change, {}};
-            while (i < pending_.size() && pending_[i].texel == kAllTexels &&
-                   command.slots.add(pending_[i].object))
+            while (i < state_.pending.size() && state_.pending[i].texel == kAllTexels &&
+                   command.slots.add(state_.pending[i].object))
                 ++i;
-            record(command);
+            context_.recorder.record(command);
             continue;
         }
         IgniteTexels command{event.object, change, {}};
-        while (i < pending_.size() && pending_[i].object == command.slot &&
-               pending_[i].texel != kAllTexels && command.texels.add(pending_[i].texel))
+        while (i < state_.pending.size() && state_.pending[i].object == command.slot &&
+               state_.pending[i].texel != kAllTexels && command.texels.add(state_.pending[i].texel))
             ++i;
-        record(command);
+        context_.recorder.record(command);
     }
 }
 
-void World::igniteTexels(const IgniteTexels& command) {
-    Object& object = *objects_.get(idAt(objects_, command.slot));
-    const mesh::BurnDomain& domain = domainOf(object);
-    found_.clear();
+void BurnSystem::igniteTexels(const IgniteTexels& command) {
+    Object& object = *scene_.objects.get(idAt(scene_.objects, command.slot));
+    const mesh::BurnDomain& domain = scene_.domainOf(object);
+    scene_.found.clear();
     command.texels.each([&](uint32_t texel) {
         if (texel >= domain.texelCount() || !domain.real(texel))
             core::fail(FW_ERROR_BAD_DATA, "A command changes texel %u of burnable mesh %u.", texel,
                        command.slot + 1);
-        found_.push_back(texel);
+        scene_.found.push_back(texel);
     });
-    addChange(object, command.change, found_);
-    record(command);
+    addChange(object, command.change, scene_.found);
+    context_.recorder.record(command);
 }
 
-void World::igniteObjects(const IgniteObjects& command) {
+void BurnSystem::igniteObjects(const IgniteObjects& command) {
     constexpr uint32_t all[] = {kAllTexels};
     size_t count = 0;
     command.slots.each([&](uint32_t slot) {
-        (void)objects_.get(idAt(objects_, slot));
+        (void)scene_.objects.get(idAt(scene_.objects, slot));
         ++count;
     });
-    findPendingRoom(count);
-    command.slots.each([&](uint32_t slot) { addChange(**objects_.at(slot), command.change, all); });
-    record(command);
+    reservePending(count);
+    command.slots.each(
+        [&](uint32_t slot) { addChange(scene_.objectAt(slot), command.change, all); });
+    context_.recorder.record(command);
 }
 
-void World::addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels) {
+void BurnSystem::addChange(Object& object, const TexelChange& change,
+                           std::span<const uint32_t> texels) {
     checkCommandTick(change.tick);
     if (change.kind > FW_EXTINGUISH || change.water > gpu::kFilmMost)
         core::fail(FW_ERROR_BAD_DATA,
@@ -165,15 +167,16 @@ void World::addChange(Object& object, const TexelChange& change, std::span<const
     if (!texels.empty()) addPending(object, change.kind, change.tick, change.water, texels);
 }
 
-void World::apply(const Command& command) {
+void PersistenceSystem::apply(const Command& command) {
     const Applying applying(recording_.get());
     const Overloaded call{
-        [&](const SetWind& c) { setWind(c.wind); },
-        [&](const SetFlags& c) { setFlags(c.flags); },
-        [&](const IgniteTexels& c) { igniteTexels(c); },
-        [&](const IgniteObjects& c) { igniteObjects(c); },
+        [&](const SetWind& c) { world_.wind_.set(c.wind); },
+        [&](const SetFlags& c) { world_.exchange_.setFlags(c.flags); },
+        [&](const IgniteTexels& c) { world_.burn_.igniteTexels(c); },
+        [&](const IgniteObjects& c) { world_.burn_.igniteObjects(c); },
         [&](const WetPatch& c) {
-            components::FireEmitter& emitter = emitters_.get(idAt(emitters_, c.emitter));
+            components::FireEmitter& emitter = world_.emitters_.state_.emitters.get(
+                idAt(world_.emitters_.state_.emitters, c.emitter));
             if (!emitter.stream || c.patch >= components::kJetPatches)
                 core::fail(FW_ERROR_BAD_DATA, "A command wets patch %u of fire emitter %u.",
                            c.patch, c.emitter + 1);
@@ -182,64 +185,89 @@ void World::apply(const Command& command) {
             record(c);
         },
         [&](const SetPose& c) {
-            setTransform(idAt(objects_, c.slot), c.transform.matrix().data());
+            world_.setTransform(idAt(world_.scene_.objects, c.slot), c.transform.matrix().data());
         },
         [&](const MoveBlocker& c) {
-            moveBlocker(idAt(blockers_, c.slot), c.transform.matrix().data());
+            world_.exchange_.moveBlocker(idAt(world_.exchange_.state_.blockers, c.slot),
+                                         c.transform.matrix().data());
         },
-        [&](const MoveFire& c) { moveVolumetricFire(idAt(fires_, c.slot), c.position); },
-        [&](const SetFirePower& c) { setVolumetricFirePower(idAt(fires_, c.slot), c.power); },
+        [&](const MoveFire& c) {
+            world_.flames_.move(idAt(world_.flames_.state_.fires, c.slot), c.position);
+        },
+        [&](const SetFirePower& c) {
+            world_.flames_.setPower(idAt(world_.flames_.state_.fires, c.slot), c.power);
+        },
         [&](const MoveEmitter& c) {
-            moveFireEmitter(idAt(emitters_, c.slot), c.position, c.turns ? c.direction : nullptr);
+            world_.emitters_.move(idAt(world_.emitters_.state_.emitters, c.slot), c.position,
+                                  c.turns ? c.direction : nullptr);
         },
-        [&](const SetEmitterPower& c) { setFireEmitterPower(idAt(emitters_, c.slot), c.power); },
+        [&](const SetEmitterPower& c) {
+            world_.emitters_.setPower(idAt(world_.emitters_.state_.emitters, c.slot), c.power);
+        },
         [&](const MoveField& c) {
-            moveParticleField(idAt(fields_, c.slot), c.position, c.turns ? c.rotation : nullptr);
+            world_.fields_.move(idAt(world_.fields_.state_.fields, c.slot), c.position,
+                                c.turns ? c.rotation : nullptr);
         },
-        [&](const SetFieldAmount& c) { setParticleFieldAmount(idAt(fields_, c.slot), c.amount); },
-        [&](const SetWindZone& c) { setWindZone(idAt(windPool_, c.slot), c.zone); },
-        [&](const SetRoom& c) { setRoom(idAt(rooms_, c.slot), c.room, c.refills); },
+        [&](const SetFieldAmount& c) {
+            world_.fields_.setAmount(idAt(world_.fields_.state_.fields, c.slot), c.amount);
+        },
+        [&](const SetWindZone& c) {
+            world_.wind_.setZone(idAt(world_.wind_.state_.zones, c.slot), c.zone);
+        },
+        [&](const SetRoom& c) {
+            world_.rooms_.set(idAt(world_.rooms_.state_.rooms, c.slot), c.room, c.refills);
+        },
         [&](const PlayBurn& c) {
-            checkCommandTick(c.tick);
-            playBurnAt(idAt(objects_, c.slot), idAt(burns_, c.burn1 - 1), c.tick, c.speed);
+            world_.burn_.checkCommandTick(c.tick);
+            world_.burn_.playBurnAt(idAt(world_.scene_.objects, c.slot),
+                                    idAt(world_.burn_.state_.burns, c.burn1 - 1), c.tick, c.speed);
         },
-        [&](const StopBurn& c) { stopBurn(idAt(objects_, c.slot)); },
-        [&](const SetWindGrid& c) { applyWindGrid(c); },
-        [&](const SetWindPoints& c) { applyWindPoints(c); },
-        [&](const SetGusts& c) { applyGusts(c); },
-        [&](const SetHeatShield& c) { applyShield(c); },
-        [&](const SetShieldCells& c) { applyShieldCells(c); },
-        [&](const AddShieldObject& c) { applyShieldObject(c); },
+        [&](const StopBurn& c) { world_.burn_.stopBurn(idAt(world_.scene_.objects, c.slot)); },
+        [&](const SetWindGrid& c) { world_.wind_.applyGrid(c); },
+        [&](const SetWindPoints& c) { world_.wind_.applyPoints(c); },
+        [&](const SetGusts& c) { world_.wind_.applyGusts(c); },
+        [&](const SetHeatShield& c) { world_.exchange_.applyShield(c); },
+        [&](const SetShieldCells& c) { world_.exchange_.applyShieldCells(c); },
+        [&](const AddShieldObject& c) { world_.exchange_.applyShieldObject(c); },
         [&](const ShiftOrigin& c) {
             const float offset[] = {float(c.metres[0]), float(c.metres[1]), float(c.metres[2])};
-            shiftOrigin(offset, nullptr);
+            world_.shiftOrigin(offset, nullptr);
         },
-        [&](const TransferBurn& c) { transferBurn(idAt(objects_, c.from), idAt(objects_, c.to)); },
+        [&](const TransferBurn& c) {
+            world_.burn_.transferBurn(idAt(world_.scene_.objects, c.from),
+                                      idAt(world_.scene_.objects, c.to));
+        },
     };
     std::visit(call, command);
 }
 
-double World::seconds() const noexcept {
-    return double(clock_.tick) / gpu::kTicksPerSecond +
-           double(clock_.fraction) / double(uint64_t(1) << Clock::kFractionBits);
+double PersistenceSystem::seconds() const noexcept {
+    return double(world_.context_.clock.tick) / gpu::kTicksPerSecond +
+           double(world_.context_.clock.fraction) / double(uint64_t(1) << Clock::kFractionBits);
 }
 
-double World::secondsTo(uint64_t tick) const noexcept {
+double PersistenceSystem::secondsTo(uint64_t tick) const noexcept {
     constexpr double kUnit = 1.0 / double(uint64_t(1) << Clock::kFractionBits);
-    if (tick <= clock_.tick) return 0;
-    const uint64_t steps = (tick - clock_.tick) / gpu::kStepTicks;
-    return double(steps * Clock::kStepUnits - clock_.fraction) * kUnit;
+    if (tick <= world_.context_.clock.tick) return 0;
+    const uint64_t steps = (tick - world_.context_.clock.tick) / gpu::kStepTicks;
+    return double(steps * Clock::kStepUnits - world_.context_.clock.fraction) * kUnit;
 }
 
-uint64_t World::identity() noexcept {
+uint64_t PersistenceSystem::identity() noexcept {
     save::Hasher hasher;
-    serializeRules(hasher, def_);
-    const uint32_t counts[] = {kSaveVersion,     objects_.live(),  blockers_.live(),
-                               fires_.live(),    emitters_.live(), fields_.live(),
-                               windPool_.live(), rooms_.live(),    burns_.live()};
+    serializeRules(hasher, world_.context_.def);
+    const uint32_t counts[] = {kSaveVersion,
+                               world_.scene_.objects.live(),
+                               world_.exchange_.state_.blockers.live(),
+                               world_.flames_.state_.fires.live(),
+                               world_.emitters_.state_.emitters.live(),
+                               world_.fields_.state_.fields.live(),
+                               world_.wind_.state_.zones.live(),
+                               world_.rooms_.state_.rooms.live(),
+                               world_.burn_.state_.burns.live()};
     hasher(counts);
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (const auto* object = objects_.at(i)) {
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
+        if (const auto* object = world_.scene_.objects.at(i)) {
             const uint64_t asset = assetOf(**object);
             hasher(i, asset);
         }
@@ -247,19 +275,20 @@ uint64_t World::identity() noexcept {
 }
 
 // The objects whose turn it is are read back with a frame that ends there.
-void World::planHashes(const ClockAdvance& time) {
+void PersistenceSystem::planHashes(const ClockAdvance& time) {
     const uint64_t end = time.after.tick;
     if (time.steps == 0 || end % kHashTicks != 0) return;
-    const uint32_t slots = objects_.slotCount(), rounds = hashRounds(slots);
+    const uint32_t slots = world_.scene_.objects.slotCount(), rounds = hashRounds(slots);
     for (auto slot = uint32_t(end / kHashTicks % rounds); slot < slots; slot += rounds)
-        if (objects_.at(slot) && std::find(frame_.burnMaps.begin(), frame_.burnMaps.end(), slot) ==
-                                     frame_.burnMaps.end())
-            frame_.burnMaps.push_back(slot);
+        if (world_.scene_.objects.at(slot) &&
+            std::find(world_.queries_.burnMaps_.begin(), world_.queries_.burnMaps_.end(), slot) ==
+                world_.queries_.burnMaps_.end())
+            world_.queries_.burnMaps_.push_back(slot);
 }
 
-void World::recordHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
+void PersistenceSystem::recordHash(const gpu::BurnMap& map, const gpu::Readback& readback) {
     const uint64_t end = readback.endTick;
-    const uint32_t rounds = hashRounds(objects_.slotCount());
+    const uint32_t rounds = hashRounds(world_.scene_.objects.slotCount());
     if (end % kHashTicks != 0 || map.object % rounds != end / kHashTicks % rounds) return;
     // Once, however many frames end there.
     const auto before = std::find_if(

@@ -95,14 +95,12 @@ bool startsSave(const core::Owned<Save>& save) noexcept {
     return save && save->requested && !save->pending;
 }
 
-}  // namespace
-
 // Refuses values out of range and references to what this world does not have. Ids become this
 // world's.
-class World::SnapshotChecker : public save::Archive<SnapshotChecker> {
+class SnapshotChecker : public save::Archive<SnapshotChecker> {
  public:
     static constexpr bool kReads = false;
-    explicit SnapshotChecker(const World& world) : world_(world) {}
+    explicit SnapshotChecker(const Scene& scene) : scene_(scene) {}
 
     template <class T>
     void number(const T&) noexcept {}
@@ -119,18 +117,18 @@ class World::SnapshotChecker : public save::Archive<SnapshotChecker> {
         if (value) (*this)(*value);
     }
     void object(const char* name, uint32_t slot) const {
-        if (slot >= world_.objects_.slotCount() || !world_.objects_.at(slot))
+        if (slot >= scene_.objects.slotCount() || !scene_.objects.at(slot))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s of burnable mesh %u, which is not there.", name, slot + 1);
     }
     void object(const char* name, FwBurnableMeshId& id) const {
         if (id.index1 == 0) return;
         object(name, id.index1 - 1);
-        id = world_.objects_.idOf(id.index1 - 1);
+        id = scene_.objects.idOf(id.index1 - 1);
     }
     void texel(const char* name, uint32_t slot, uint32_t texel) const {
         object(name, slot);
-        const mesh::BurnDomain& domain = world_.domainOf(**world_.objects_.at(slot));
+        const mesh::BurnDomain& domain = scene_.domainOf(scene_.objectAt(slot));
         if (texel >= domain.texelCount() || !domain.real(texel))
             core::fail(FW_ERROR_BAD_DATA,
                        "The save has %s at texel %u of burnable mesh %u, which is not there.", name,
@@ -155,17 +153,19 @@ class World::SnapshotChecker : public save::Archive<SnapshotChecker> {
     }
 
  private:
-    const World& world_;
+    const Scene& scene_;
 };
 
-uint64_t World::meshHash(const Object& object) noexcept {
-    MeshEntry& mesh = *meshes_.at(object.data.meshSlot);
+}  // namespace
+
+uint64_t Scene::meshHash(const Object& object) noexcept {
+    MeshEntry& mesh = *meshes.at(object.data.meshSlot);
     if (mesh.hash == 0) mesh.hash = hashOf(*mesh.domain) | 1;
     return mesh.hash;
 }
 
-uint64_t World::assetOf(const Object& object) noexcept {
-    uint64_t hash = meshHash(object);
+uint64_t PersistenceSystem::assetOf(const Object& object) noexcept {
+    uint64_t hash = world_.scene_.meshHash(object);
     const components::BurnableMesh& data = object.data;
     const uint32_t flags = data.flags & ~uint32_t(FW_BURNABLE_HIDDEN);
     hashMore(hash, &flags, sizeof flags);
@@ -182,38 +182,39 @@ uint64_t World::assetOf(const Object& object) noexcept {
 }
 
 // Ticks after which the time of a tile's last change does not matter.
-uint32_t World::windowOf(const Object& object) noexcept {
+uint32_t PersistenceSystem::windowOf(const Object& object) noexcept {
     components::Latch latch = object.latch;
-    const components::Records records = components::makeRecords(
-        object.data, domainOf(object), driveInput(object, clock_.tick), latch);
+    const components::Records records =
+        components::makeRecords(object.data, world_.scene_.domainOf(object),
+                                world_.wind_.driveInput(object, world_.context_.clock.tick), latch);
     uint32_t window = records.timing.window;
     for (const gpu::BurnMaterial& material : records.materials)
         window = std::max(window, material.windowMax);
     return std::min(window, 1u << 24) + 2 * gpu::kStepTicks;
 }
 
-uint32_t World::unsavable() noexcept {
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (auto* object = objects_.at(i);
+uint32_t PersistenceSystem::unsavable() noexcept {
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
+        if (auto* object = world_.scene_.objects.at(i);
             object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
             return i + 1;
     return 0;
 }
 
-void World::requestSave(SaveFor who) {
+void PersistenceSystem::requestSave(SaveFor who) {
     if (const uint32_t object1 = unsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
                    object1);
     core::Owned<Save>& save = saves_[size_t(who)];
-    if (!save) save = core::Owned<Save>::make(memory_, memory_);
+    if (!save) save = core::Owned<Save>::make(world_.context_.memory, world_.context_.memory);
     save->requested = true;
     save->ready = false;
 }
 
-void World::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
+void PersistenceSystem::cancelSave() noexcept { saves_[size_t(SaveFor::host)] = {}; }
 
-const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
+const std::pmr::vector<std::byte>* PersistenceSystem::fetchSave(SaveFor who) {
     const core::Owned<Save>& save = saves_[size_t(who)];
     if (!save || (!save->requested && !save->pending && !save->ready))
         core::fail(FW_ERROR_INVALID_ARGUMENT, "No save was asked for; request it first.");
@@ -225,20 +226,21 @@ const std::pmr::vector<std::byte>* World::fetchSave(SaveFor who) {
 }
 
 // Before a frame is planned: lists the objects whose images a save needs.
-void World::planSave() {
-    frame_.images.clear();
+void PersistenceSystem::planSave() {
+    images_.clear();
     if (std::none_of(saves_.begin(), saves_.end(), startsSave)) return;
-    frame_.images.reserve(objects_.slotCount());
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i) {
-        auto* owned = objects_.at(i);
+    images_.reserve(world_.scene_.objects.slotCount());
+    for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i) {
+        auto* owned = world_.scene_.objects.at(i);
         if (!owned) continue;
         // All objects that an event of the frame addresses are among its latches.
-        if ((*owned)->touched || (*owned)->planStamp == planStamp_) frame_.images.push_back(i);
+        if ((*owned)->touched || (*owned)->planStamp == world_.burn_.state_.planStamp)
+            images_.push_back(i);
     }
 }
 
 // After it was committed.
-void World::commitSave(uint64_t frameIndex) noexcept {
+void PersistenceSystem::commitSave(uint64_t frameIndex) noexcept {
     for (size_t who = 0; who < saves_.size(); ++who) {
         if (!startsSave(saves_[who])) continue;
         Save& save = *saves_[who];
@@ -248,7 +250,8 @@ void World::commitSave(uint64_t frameIndex) noexcept {
             save.pending = true;
             save.frameIndex = frameIndex;
             // A network's saves have no events: they are not of the receiver's past.
-            save.eventsFrom = who == size_t(SaveFor::net) ? kNoEvents : events_.next();
+            save.eventsFrom =
+                who == size_t(SaveFor::net) ? kNoEvents : world_.context_.events.next();
         } catch (...) {
             save.failed = true;
         }
@@ -256,83 +259,88 @@ void World::commitSave(uint64_t frameIndex) noexcept {
         if (who == size_t(SaveFor::timeline) && timeline_) timeline_->captured = timeline_->applied;
         if (who != size_t(SaveFor::net) || !recording_) continue;
         recording_->captured = true;
-        recording_->capturedAt = clock_.tick;
+        recording_->capturedAt = world_.context_.clock.tick;
         recording_->capturedBehind = recording_->commands.size();
     }
 }
 
-void World::capture(Snapshot& to) {
-    to.rules = def_;
-    to.clock = clock_;
-    to.droppedSteps = droppedSteps_;
-    to.order = order_;
-    std::copy_n(wind_, 3, to.wind);
-    to.windGrid = windGrid_;
-    to.heatShield = shield_.grid;
-    to.gusts = gusts_;
-    std::copy_n(origin_, 3, to.origin);
-    to.flags = remote_.flags | remote_.objectFlags;
-    to.warms = remote_.warms;
-    to.blockersDue = remote_.blockersDue;
-    to.fades = remote_.fades;
-    to.gustsShown = gustsShown_;
-    captureEach(objects_, to.objects,
+void PersistenceSystem::capture(Snapshot& to) {
+    to.rules = world_.context_.def;
+    to.clock = world_.context_.clock;
+    to.droppedSteps = world_.burn_.state_.droppedSteps;
+    to.order = world_.burn_.state_.order;
+    std::copy_n(world_.wind_.state_.wind, 3, to.wind);
+    to.windGrid = world_.wind_.state_.grid;
+    to.heatShield = world_.exchange_.state_.shield.grid;
+    to.gusts = world_.wind_.state_.gusts;
+    std::copy_n(world_.context_.origin.moved, 3, to.origin);
+    to.flags = world_.exchange_.state_.book.flags | world_.exchange_.state_.book.objectFlags;
+    to.warms = world_.exchange_.state_.book.warms;
+    to.blockersDue = world_.exchange_.state_.book.blockersDue;
+    to.fades = world_.exchange_.state_.book.fades;
+    to.gustsShown = world_.wind_.state_.gustsShown;
+    captureEach(world_.scene_.objects, to.objects,
                 [&](auto& object, ObjectSnapshot& made) { captureObject(*object, made); });
-    to.pending = pending_;
-    to.tags = tags_;
+    to.pending = world_.burn_.state_.pending;
+    to.tags = world_.queries_.state_.tags;
     to.pairs.clear();
-    std::copy_if(remote_.pairs.begin(), remote_.pairs.end(), std::back_inserter(to.pairs),
+    std::copy_if(world_.exchange_.state_.book.pairs.begin(),
+                 world_.exchange_.state_.book.pairs.end(), std::back_inserter(to.pairs),
                  [](const PairContacts& pair) { return pair.touches; });
     std::sort(to.pairs.begin(), to.pairs.end(), [](const PairContacts& a, const PairContacts& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     });
     to.seen.clear();
-    noteSeen(to.seen);
-    to.latchedBlockers = remote_.blockers;
+    world_.exchange_.recordSeen(to.seen);
+    to.latchedBlockers = world_.exchange_.state_.book.blockers;
     const auto copy = [](const auto& from, auto& made) {
         static_cast<std::remove_cvref_t<decltype(from)>&>(made) = from;
     };
-    captureEach(blockers_, to.blockers, copy);
-    captureEach(windPool_, to.windZones, copy);
-    captureEach(rooms_, to.rooms, copy);
-    captureEach(fires_, to.fires, [&](const auto& fire, FireSnapshot& made) {
+    captureEach(world_.exchange_.state_.blockers, to.blockers, copy);
+    captureEach(world_.wind_.state_.zones, to.windZones, copy);
+    captureEach(world_.rooms_.state_.rooms, to.rooms, copy);
+    captureEach(world_.flames_.state_.fires, to.fires, [&](const auto& fire, FireSnapshot& made) {
         static_cast<components::FireControls&>(made) = fire->data;
         made.flags = fire->data.flags & FW_FIRE_IGNITES;
         made.touches = fire->touches;
     });
-    captureEach(
-        emitters_, to.emitters, [&](const components::FireEmitter& emitter, EmitterSnapshot& made) {
-            made.flags = emitter.def.flags & kEmitterKind;
-            std::copy_n(emitter.position, 3, made.position);
-            std::copy_n(emitter.direction, 3, made.direction);
-            made.power = emitter.def.power;
-            made.touches = emitter.touches;
-            if (!emitter.stream) return;
-            made.stream = core::Owned<components::JetStream>::make(memory_, *emitter.stream);
-            for (components::JetParcel& parcel : made.stream->parcels)
-                for (components::JetRay& ray : parcel.rays) {
-                    ray.version = ray.version == geometry_ ? 1 : 0;
-                    if (ray.version == 0) ray.hit = {};  // it may be of what is gone
-                }
-        });
-    captureEach(fields_, to.fields, [&](const auto& field, FieldSnapshot& made) {
-        made.width = field->data.def.width;
-        made.height = field->data.def.height;
-        made.began = field->began;
-        std::copy_n(field->data.position, 3, made.position);
-        std::copy_n(field->data.rotation, 4, made.rotation);
-        made.amount = field->data.def.look.amount;
-        if (!field->cells) return;
-        made.cells = core::Owned<field::FieldCells>::make(memory_, memory_);
-        *made.cells = *field->cells;
-    });
+    captureEach(world_.emitters_.state_.emitters, to.emitters,
+                [&](const components::FireEmitter& emitter, EmitterSnapshot& made) {
+                    made.flags = emitter.def.flags & kEmitterKind;
+                    std::copy_n(emitter.position, 3, made.position);
+                    std::copy_n(emitter.direction, 3, made.direction);
+                    made.power = emitter.def.power;
+                    made.touches = emitter.touches;
+                    if (!emitter.stream) return;
+                    made.stream = core::Owned<components::JetStream>::make(world_.context_.memory,
+                                                                           *emitter.stream);
+                    for (components::JetParcel& parcel : made.stream->parcels)
+                        for (components::JetRay& ray : parcel.rays) {
+                            ray.version = ray.version == world_.scene_.geometryVersion ? 1 : 0;
+                            if (ray.version == 0) ray.hit = {};  // it may be of what is gone
+                        }
+                });
+    captureEach(world_.fields_.state_.fields, to.fields,
+                [&](const auto& field, FieldSnapshot& made) {
+                    made.width = field->data.def.width;
+                    made.height = field->data.def.height;
+                    made.began = field->began;
+                    std::copy_n(field->data.position, 3, made.position);
+                    std::copy_n(field->data.rotation, 4, made.rotation);
+                    made.amount = field->data.def.look.amount;
+                    if (!field->cells) return;
+                    made.cells = core::Owned<field::FieldCells>::make(world_.context_.memory,
+                                                                      world_.context_.memory);
+                    *made.cells = *field->cells;
+                });
 }
 
-void World::captureObject(Object& object, ObjectSnapshot& to) noexcept {
+void PersistenceSystem::captureObject(Object& object, ObjectSnapshot& to) noexcept {
     static_cast<ObjectState&>(to) = object;
     to.asset = assetOf(object);
     to.pose = object.data.pose;
-    if (object.play.burn1 != 0) to.burnHash = (*burns_.at(object.play.burn1 - 1))->hash;
+    if (object.play.burn1 != 0)
+        to.burnHash = (*world_.burn_.state_.burns.at(object.play.burn1 - 1))->hash;
     to.placed = object.remoteVersion != 0;
     to.remote.neighbourFirst = to.remote.neighbourCount = 0;
     to.filters = object.latch.filters;
@@ -340,7 +348,7 @@ void World::captureObject(Object& object, ObjectSnapshot& to) noexcept {
 }
 
 // With a readback, after the counters were taken.
-void World::takeSaves(const gpu::Readback& readback) noexcept {
+void PersistenceSystem::takeSaves(const gpu::Readback& readback) noexcept {
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending || readback.frameIndex < save->frameIndex) continue;
         save->pending = false;
@@ -353,13 +361,15 @@ void World::takeSaves(const gpu::Readback& readback) noexcept {
     keepKeyframe();
 }
 
-void World::takeSave(Save& save, const gpu::Readback& readback) {
+void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
     Snapshot& saved = save.snapshot;
     size_t touched = 0;
     bool whole = readback.frameIndex == save.frameIndex;
     for (const ObjectSnapshot& object : saved.objects) {
         touched += object.touched ? 1 : 0;
-        const auto* now = object.slot < objects_.slotCount() ? objects_.at(object.slot) : nullptr;
+        const auto* now = object.slot < world_.scene_.objects.slotCount()
+                              ? world_.scene_.objects.at(object.slot)
+                              : nullptr;
         whole = whole && now && (*now)->firstFrame <= save.frameIndex;
     }
     // Objects were destroyed since the capture: the next frame tries again.
@@ -371,16 +381,17 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     struct Ends {
         size_t image = 0, all = 0;
     };
-    std::pmr::vector<Ends> ends(memory_);
-    std::pmr::vector<uint32_t> lost(memory_);
+    std::pmr::vector<Ends> ends(world_.context_.memory);
+    std::pmr::vector<uint32_t> lost(world_.context_.memory);
     for (const gpu::ObjectImage& image : readback.images) {
-        const Object& object = **objects_.at(image.object);
-        writeImage(image, domainOf(object), readback.endTick, windowOf(object), save.planes);
+        const Object& object = world_.scene_.objectAt(image.object);
+        writeImage(image, world_.scene_.domainOf(object), readback.endTick, windowOf(object),
+                   save.planes);
         Ends& end = ends.emplace_back();
         end.image = save.planes.size();
         if (object.breaks) {
             lost.assign(object.breaks->lost.begin(), object.breaks->lost.end());
-            save::writePlane(lost, domainOf(object).width, {}, save.planes);
+            save::writePlane(lost, world_.scene_.domainOf(object).width, {}, save.planes);
         }
         end.all = save.planes.size();
     }
@@ -398,7 +409,7 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
             return;
         }
         const Ends& end = ends[next++];
-        const Object& live = **objects_.at(object.slot);
+        const Object& live = world_.scene_.objectAt(object.slot);
         object.planes = std::span(save.planes).subspan(from, end.image - from);
         object.findsBreaks = bool(live.breaks);
         if (live.breaks) object.breaks = *live.breaks;
@@ -416,17 +427,19 @@ void World::takeSave(Save& save, const gpu::Readback& readback) {
     for (Slotted<RoomEntry>& room : saved.rooms)  // its air goes on from what the frame left
         if (room.slot < readback.rooms.size() && readback.rooms[room.slot].epoch == room.air.epoch)
             room.air = readback.rooms[room.slot];
-    saved.steps = steps_;
-    saved.idle = seenIdle_;
-    saved.lastStimulus = seenStimulus_;
-    saved.roomsStirred = seenRoomsStirred_;
-    saved.stats = {frontTiles_, burningTiles_, hotTiles_, receivers_, lateClamps_};
+    saved.steps = world_.burn_.state_.steps;
+    saved.idle = world_.burn_.state_.seenIdle;
+    saved.lastStimulus = world_.burn_.state_.seenStimulus;
+    saved.roomsStirred = world_.rooms_.state_.seenStirred;
+    saved.stats = {world_.burn_.state_.counts.front, world_.burn_.state_.counts.burning,
+                   world_.burn_.state_.counts.hot, world_.burn_.state_.counts.receivers,
+                   world_.burn_.state_.counts.lateClamps};
     writeSnapshot(saved, save.bytes);
     save.ready = true;
 }
 
 // Of a tag that was reached by the save's frame the save has the event alone.
-void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
+void PersistenceSystem::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept {
     if (frameIndex > save.frameIndex) return;
     std::pmr::vector<Tag>& tags = save.snapshot.tags;
     const auto same = std::find_if(tags.begin(), tags.end(), [&](const Tag& one) {
@@ -437,47 +450,49 @@ void World::forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept 
 }
 
 // Events that the host had not polled at the save's frame, and later ones of that frame.
-void World::captureEvents(Save& save) {
+void PersistenceSystem::captureEvents(Save& save) {
     std::pmr::vector<SavedEvent>& to = save.snapshot.events;
     to.clear();
-    std::pmr::vector<std::pair<uint64_t, uint64_t>> found(memory_);  // frame and number
-    for (uint64_t i = std::max(save.eventsFrom, events_.oldest()); i < events_.end(); ++i) {
-        const FwEvent& event = events_.at(i);
+    std::pmr::vector<std::pair<uint64_t, uint64_t>> found(
+        world_.context_.memory);  // frame and number
+    for (uint64_t i = std::max(save.eventsFrom, world_.context_.events.oldest());
+         i < world_.context_.events.end(); ++i) {
+        const FwEvent& event = world_.context_.events.at(i);
         if (event.frameIndex > save.frameIndex) continue;
-        if (event.object.index1 != 0 && !objects_.find(event.object)) continue;
+        if (event.object.index1 != 0 && !world_.scene_.objects.find(event.object)) continue;
         found.emplace_back(event.frameIndex, i);
     }
     std::sort(found.begin(),
               found.end());  // readbacks of a device come later than the world's own events
     for (size_t k = found.size() - std::min<size_t>(found.size(), kMostSavedEvents);
          k < found.size(); ++k) {
-        const FwEvent& event = events_.at(found[k].second);
+        const FwEvent& event = world_.context_.events.at(found[k].second);
         SavedEvent& saved = to.emplace_back();
         static_cast<FwEvent&>(saved) = event;
-        if (!objects_.find(event.other)) saved.other = {};
+        if (!world_.scene_.objects.find(event.other)) saved.other = {};
         for (int i = 0; event.type != FW_EVENT_TIME_DROPPED && i < 3; ++i)  // moved since
-            saved.position[i] =
-                float(double(saved.position[i]) + save.snapshot.origin[i] - origin_[i]);
+            saved.position[i] = float(double(saved.position[i]) + save.snapshot.origin[i] -
+                                      world_.context_.origin.moved[i]);
     }
 }
 
-void World::checkSnapshot(Snapshot& saved) {
+void PersistenceSystem::checkSnapshot(Snapshot& saved) {
     const FwWorldDef& rules = saved.rules;
-    checkRule(rules.paceFactor, def_.paceFactor, "paceFactor");
-    for (int i = 0; i < 3; ++i) checkRule(rules.up[i], def_.up[i], "up");
-    checkRule(rules.spreadChance, def_.spreadChance, "spreadChance");
-    checkRule(rules.timeToLive, def_.timeToLive, "timeToLive");
-    checkRule(rules.seed, def_.seed, "seed");
-    checkRule(rules.maxHops, def_.maxHops, "maxHops");
-    checkRule(rules.maxBurningTiles, def_.maxBurningTiles, "maxBurningTiles");
-    checkSlots(saved.objects, objects_, "burnable mesh", "burnable meshes");
-    checkSlots(saved.blockers, blockers_, "blocker", "blockers");
-    checkSlots(saved.windZones, windPool_, "wind zone", "wind zones");
-    checkSlots(saved.rooms, rooms_, "room", "rooms");
-    checkSlots(saved.fires, fires_, "volumetric fire", "volumetric fires");
-    checkSlots(saved.emitters, emitters_, "fire emitter", "fire emitters");
-    checkSlots(saved.fields, fields_, "particle field", "particle fields");
-    SnapshotChecker check(*this);
+    checkRule(rules.paceFactor, world_.context_.def.paceFactor, "paceFactor");
+    for (int i = 0; i < 3; ++i) checkRule(rules.up[i], world_.context_.def.up[i], "up");
+    checkRule(rules.spreadChance, world_.context_.def.spreadChance, "spreadChance");
+    checkRule(rules.timeToLive, world_.context_.def.timeToLive, "timeToLive");
+    checkRule(rules.seed, world_.context_.def.seed, "seed");
+    checkRule(rules.maxHops, world_.context_.def.maxHops, "maxHops");
+    checkRule(rules.maxBurningTiles, world_.context_.def.maxBurningTiles, "maxBurningTiles");
+    checkSlots(saved.objects, world_.scene_.objects, "burnable mesh", "burnable meshes");
+    checkSlots(saved.blockers, world_.exchange_.state_.blockers, "blocker", "blockers");
+    checkSlots(saved.windZones, world_.wind_.state_.zones, "wind zone", "wind zones");
+    checkSlots(saved.rooms, world_.rooms_.state_.rooms, "room", "rooms");
+    checkSlots(saved.fires, world_.flames_.state_.fires, "volumetric fire", "volumetric fires");
+    checkSlots(saved.emitters, world_.emitters_.state_.emitters, "fire emitter", "fire emitters");
+    checkSlots(saved.fields, world_.fields_.state_.fields, "particle field", "particle fields");
+    SnapshotChecker check(world_.scene_);
     check(saved);
     for (const double metres : saved.origin)
         check.require(metres == std::floor(metres), "origin, which moves by whole metres,");
@@ -485,7 +500,7 @@ void World::checkSnapshot(Snapshot& saved) {
         core::fail(FW_ERROR_BAD_DATA, "The save's flags are 0x%x; the known flags are 0x%x.",
                    saved.flags, kWorldFlags);
     for (const ObjectSnapshot& object : saved.objects) {
-        const uint64_t mine = assetOf(**objects_.at(object.slot));
+        const uint64_t mine = assetOf(world_.scene_.objectAt(object.slot));
         if (object.asset != mine)
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u is not the save's: mesh, materials and def hash to "
@@ -493,18 +508,18 @@ void World::checkSnapshot(Snapshot& saved) {
                        object.slot + 1, static_cast<unsigned long long>(mine),
                        static_cast<unsigned long long>(object.asset));
     }
-    checkLimit(saved.pending.size(), kMaxPending, "events that wait");
+    checkLimit(saved.pending.size(), BurnSystem::kMaxPending, "events that wait");
     for (const PendingTexel& event : saved.pending) {
         if (event.texel == kAllTexels && event.kind <= gpu::kEventExtinguish)
             check.object("an event", event.object);
         else
             check.texel("an event", event.object, event.texel);
         if (gpu::eventKind(event.kind) == gpu::kEventCarry)
-            checkCarry(event, saved.clock);
+            world_.burn_.checkCarry(event, saved.clock);
         else
             check.range("kind of an event", event.kind, 0, gpu::kEventHeat);
     }
-    checkLimit(saved.tags.size(), kMaxTags, "tags");
+    checkLimit(saved.tags.size(), QuerySystem::kMaxTags, "tags");
     checkLimit(saved.events.size(), kMostSavedEvents, "events");
     checkLimit(saved.latchedBlockers.size(), gpu::kMaxBlockers, "latched blockers");
     uint64_t before = 0;
@@ -517,10 +532,11 @@ void World::checkSnapshot(Snapshot& saved) {
     for (const components::ShieldCell& cell : saved.heatShield.baked)
         check.texel("a cell of the shield", cell.what & gpu::kShieldSlot, cell.texel);
     for (const Slotted<FireSnapshot>& fire : saved.fires)
-        checkSame(((*fires_.at(fire.slot))->data.flags & FW_FIRE_IGNITES) == fire.flags,
+        checkSame(((*world_.flames_.state_.fires.at(fire.slot))->data.flags & FW_FIRE_IGNITES) ==
+                      fire.flags,
                   "volumetric fire", fire.slot);
     for (const Slotted<EmitterSnapshot>& emitter : saved.emitters) {
-        const components::FireEmitter& mine = *emitters_.at(emitter.slot);
+        const components::FireEmitter& mine = *world_.emitters_.state_.emitters.at(emitter.slot);
         bool same = (mine.def.flags & kEmitterKind) == emitter.flags &&
                     bool(mine.stream) == bool(emitter.stream);
         if (emitter.stream)
@@ -530,7 +546,7 @@ void World::checkSnapshot(Snapshot& saved) {
         checkSame(same, "fire emitter", emitter.slot);
     }
     for (const Slotted<FieldSnapshot>& field : saved.fields) {
-        const Field& mine = **fields_.at(field.slot);
+        const Field& mine = **world_.fields_.state_.fields.at(field.slot);
         checkSame(bool(mine.cells) == bool(field.cells) && mine.data.def.width == field.width &&
                       mine.data.def.height == field.height && field.began <= saved.clock.tick &&
                       (!field.cells ||
@@ -539,14 +555,14 @@ void World::checkSnapshot(Snapshot& saved) {
     }
 }
 
-BurnRecords World::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
-                             components::Latch& latch) {
-    const Object& object = **objects_.at(from.slot);
-    const mesh::BurnDomain& domain = domainOf(object);
-    components::DriveInput drive = driveInput(object, clock_.tick);
-    drive.wind =
-        windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones, def_.seed},
-               windPlaceOf(from.pose, domain), saved.clock.tick);
+BurnRecords PersistenceSystem::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
+                                         components::Latch& latch) {
+    const Object& object = world_.scene_.objectAt(from.slot);
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
+    components::DriveInput drive = world_.wind_.driveInput(object, world_.context_.clock.tick);
+    drive.wind = windOf({fire::windUnits(saved.wind), saved.windGrid, saved.gusts, saved.zones,
+                         world_.context_.def.seed},
+                        windPlaceOf(from.pose, domain), saved.clock.tick);
     components::BurnableMesh posed = object.data;
     posed.pose = from.pose;
     components::resetLatch(posed, drive, latch);
@@ -558,7 +574,8 @@ BurnRecords World::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
     latch.pose = from.latched;
     made.records = components::makeRecords(posed, domain, drive, latch);
     made.heated = components::hasHeat(object.data);
-    if (made.heated) made.heat = components::makeHeatMaterials(posed, domain, def_.paceFactor);
+    if (made.heated)
+        made.heat = components::makeHeatMaterials(posed, domain, world_.context_.def.paceFactor);
     uint32_t window = made.records.timing.window;
     for (const gpu::BurnMaterial& material : made.records.materials)
         window = std::max(window, material.windowMax);
@@ -566,16 +583,16 @@ BurnRecords World::recordsOf(const Snapshot& saved, const ObjectSnapshot& from,
     return made;
 }
 
-void World::load(std::span<const std::byte> bytes) {
+void PersistenceSystem::load(std::span<const std::byte> bytes) {
     mayChange();
-    Snapshot saved(memory_);
+    Snapshot saved(world_.context_.memory);
     readSnapshot(bytes, saved);
     checkSnapshot(saved);
-    settlePlays(saved);
+    world_.burn_.settlePlays(saved);
     // The latches come first: the backend's records follow from them.
-    std::pmr::vector<components::Latch> latches(memory_);
-    std::pmr::vector<ImageStore> stores(memory_);
-    std::pmr::vector<gpu::RestoredObject> restored(memory_);
+    std::pmr::vector<components::Latch> latches(world_.context_.memory);
+    std::pmr::vector<ImageStore> stores(world_.context_.memory);
+    std::pmr::vector<gpu::RestoredObject> restored(world_.context_.memory);
     latches.reserve(saved.objects.size());
     stores.reserve(saved.objects.size());
     restored.reserve(saved.objects.size());
@@ -588,11 +605,12 @@ void World::load(std::span<const std::byte> bytes) {
             one.rests = true;
         }
         if (!from.touched) continue;
-        ImageStore& store = stores.emplace_back(memory_);
-        readImage(from.planes, domainOf(**objects_.at(from.slot)), uint32_t(saved.clock.tick),
-                  made.window, made.heatSpan(), store);
-        if (from.findsBreaks && (*objects_.at(from.slot))->breaks) {
-            const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
+        ImageStore& store = stores.emplace_back(world_.context_.memory);
+        readImage(from.planes, world_.scene_.domainOf(world_.scene_.objectAt(from.slot)),
+                  uint32_t(saved.clock.tick), made.window, made.heatSpan(), store);
+        if (from.findsBreaks && (*world_.scene_.objects.at(from.slot))->breaks) {
+            const mesh::BurnDomain& domain =
+                world_.scene_.domainOf(world_.scene_.objectAt(from.slot));
             store.lost.resize(domain.texelCount());
             if (!save::readPlane(from.lost, domain.width, {}, store.lost))
                 core::fail(FW_ERROR_BAD_DATA,
@@ -606,86 +624,91 @@ void World::load(std::span<const std::byte> bytes) {
         one.window = made.records.timing.window;
         one.substepShift = made.records.timing.substepShift;
     }
-    remote_.pairs.reserve(saved.pairs.size());
-    remote_.loadedSeen.reserve(saved.seen.size());
-    touched_.reserve(objects_.slotCount());
-    playing_.reserve(objects_.slotCount());
-    remote_.due.reserve(objects_.slotCount());
-    remote_.blockers.reserve(saved.latchedBlockers.size());
+    world_.exchange_.state_.book.pairs.reserve(saved.pairs.size());
+    world_.exchange_.state_.book.loadedSeen.reserve(saved.seen.size());
+    world_.scene_.touched.reserve(world_.scene_.objects.slotCount());
+    world_.scene_.playing.reserve(world_.scene_.objects.slotCount());
+    world_.exchange_.state_.book.due.reserve(world_.scene_.objects.slotCount());
+    world_.exchange_.state_.book.blockers.reserve(saved.latchedBlockers.size());
     uint32_t flames = 0;
     for (const Slotted<FireSnapshot>& from : saved.fires)
-        flames += components::mostParts(from.power, (*fires_.at(from.slot))->data.diameter);
-    findFireRoom(flames);
-    places_.reserveMoves(objects_.live());
-    backend_.restore(restored, uint32_t(saved.clock.tick));
+        flames += components::mostParts(
+            from.power, (*world_.flames_.state_.fires.at(from.slot))->data.diameter);
+    world_.flames_.reserve(flames);
+    world_.scene_.places.reserveMoves(world_.scene_.objects.live());
+    world_.context_.backend.restore(restored, uint32_t(saved.clock.tick));
 
     // From here on nothing fails.
     double by[3];  // the origin's move, for everything that no save has
-    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - origin_[i];
-    shiftBy(by);
-    shiftCount_ = 0;
-    loadedFront_ = saved.stats.frontTiles;
-    loadedHot_ = saved.stats.hotTiles;
+    for (int i = 0; i < 3; ++i) by[i] = saved.origin[i] - world_.context_.origin.moved[i];
+    world_.shiftBy(by);
+    world_.context_.origin.count = 0;
+    world_.burn_.state_.loaded.front = saved.stats.frontTiles;
+    world_.burn_.state_.loaded.hot = saved.stats.hotTiles;
     for (const ImageStore& store : stores)
         for (const gpu::TileState& tile : store.tiles) {
-            loadedFront_ -= (tile.flag & gpu::kTileListed) != 0 && loadedFront_ > 0 ? 1u : 0u;
-            loadedHot_ -= (tile.flag & gpu::kTileHot) != 0 && loadedHot_ > 0 ? 1u : 0u;
+            world_.burn_.state_.loaded.front -=
+                (tile.flag & gpu::kTileListed) != 0 && world_.burn_.state_.loaded.front > 0 ? 1u
+                                                                                            : 0u;
+            world_.burn_.state_.loaded.hot -=
+                (tile.flag & gpu::kTileHot) != 0 && world_.burn_.state_.loaded.hot > 0 ? 1u : 0u;
         }
-    windGrid_.shape = saved.windGrid.shape;
-    windGrid_.points.swap(saved.windGrid.points);
-    shield_.grid.shape = saved.heatShield.shape;
-    shield_.grid.solid.swap(saved.heatShield.solid);
-    shield_.grid.baked.swap(saved.heatShield.baked);
-    shield_.told.clear();
-    shield_.unsent = shield_.unpacked = true;
+    world_.wind_.state_.grid.shape = saved.windGrid.shape;
+    world_.wind_.state_.grid.points.swap(saved.windGrid.points);
+    world_.exchange_.state_.shield.grid.shape = saved.heatShield.shape;
+    world_.exchange_.state_.shield.grid.solid.swap(saved.heatShield.solid);
+    world_.exchange_.state_.shield.grid.baked.swap(saved.heatShield.baked);
+    world_.exchange_.state_.shield.commandSlots.clear();
+    world_.exchange_.state_.shield.unsent = world_.exchange_.state_.shield.unpacked = true;
     apply(saved, latches);
     size_t next = 0;
     for (const ObjectSnapshot& from : saved.objects) {
         if (!from.touched) continue;
         const ImageStore& store = stores[next++];
-        if (Object& object = **objects_.at(from.slot); object.breaks)
-            restoreBreaks(object, from.findsBreaks ? &from.breaks : nullptr, store,
-                          uint32_t(clock_.tick));
+        if (Object& object = world_.scene_.objectAt(from.slot); object.breaks)
+            world_.burn_.restoreBreaks(object, from.findsBreaks ? &from.breaks : nullptr, store,
+                                       uint32_t(world_.context_.clock.tick));
     }
-    tags_.swap(saved.tags);
-    pending_.swap(saved.pending);
-    settlePending();
+    world_.queries_.state_.tags.swap(saved.tags);
+    world_.burn_.state_.pending.swap(saved.pending);
+    world_.burn_.settlePending();
     for (Slotted<FieldSnapshot>& field : saved.fields)
         if (field.cells)
-            static_cast<field::FieldCells&>(*(*fields_.at(field.slot))->cells) =
-                std::move(*field.cells);
+            static_cast<field::FieldCells&>(
+                *(*world_.fields_.state_.fields.at(field.slot))->cells) = std::move(*field.cells);
 }
 
-void World::apply(const Snapshot& saved, std::span<const components::Latch> latches) noexcept {
-    clock_ = saved.clock;
-    steps_ = saved.steps;
-    droppedSteps_ = saved.droppedSteps;
-    order_ = saved.order;
-    std::copy_n(saved.wind, 3, wind_);
-    gusts_ = saved.gusts;
-    for (const auto& zone : saved.windZones) *windPool_.at(zone.slot) = zone;
-    listWindZones();
-    windKept_ = true;  // objects find theirs below, one by one
-    windTurns();
-    gustsShown_ = saved.gustsShown;
-    roomsMet_ = !saved.rooms.empty();
+void PersistenceSystem::apply(const Snapshot& saved,
+                              std::span<const components::Latch> latches) noexcept {
+    world_.context_.clock = saved.clock;
+    world_.burn_.state_.steps = saved.steps;
+    world_.burn_.state_.droppedSteps = saved.droppedSteps;
+    world_.burn_.state_.order = saved.order;
+    std::copy_n(saved.wind, 3, world_.wind_.state_.wind);
+    world_.wind_.state_.gusts = saved.gusts;
+    for (const auto& zone : saved.windZones) *world_.wind_.state_.zones.at(zone.slot) = zone;
+    world_.wind_.sortZones();
+    world_.wind_.state_.kept = true;  // objects find theirs below, one by one
+    world_.wind_.updateObjects();
+    world_.wind_.state_.gustsShown = saved.gustsShown;
+    world_.rooms_.state_.met = !saved.rooms.empty();
     for (const Slotted<RoomEntry>& from : saved.rooms) {
-        RoomEntry& entry = *rooms_.at(from.slot);
+        RoomEntry& entry = *world_.rooms_.state_.rooms.at(from.slot);
         entry.room = from.room;
-        fillRoom(entry, from.air.oxygen, from.air.power, from.air.flash);
+        world_.rooms_.fill(entry, from.air.oxygen, from.air.power, from.air.flash);
         entry.air.drawn = from.air.drawn;
         entry.air.stirs = from.air.stirs;
-        sendRoom(from.slot);
+        world_.rooms_.send(from.slot);
     }
-    roomsStirred_ = seenRoomsStirred_ = saved.roomsStirred;
-    remote_.flags = saved.flags & kWaysOfFire;
-    remote_.objectFlags = saved.flags & ~kWaysOfFire;
-    remote_.warms = saved.warms;
-    remote_.fades = saved.fades;
-    ++driveChanges_;
-    ++geometry_;
-    loadedFrame_ = lastFrame_;
-    loadedTick_ = clock_.tick;
+    world_.rooms_.state_.stirred = world_.rooms_.state_.seenStirred = saved.roomsStirred;
+    world_.exchange_.state_.book.flags = saved.flags & kHeatTransferModes;
+    world_.exchange_.state_.book.objectFlags = saved.flags & ~kHeatTransferModes;
+    world_.exchange_.state_.book.warms = saved.warms;
+    world_.exchange_.state_.book.fades = saved.fades;
+    ++world_.wind_.state_.changes;
+    ++world_.scene_.geometryVersion;
+    world_.context_.loadedFrame = world_.context_.lastFrame;
+    world_.context_.loadedTick = world_.context_.clock.tick;
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending) continue;
         save->pending = false;  // of the world before the load
@@ -693,7 +716,7 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
     }
     if (timeline_) {
         const bool restarts = !timeline_->seeks;  // it begins here, or is in its own past
-        if (restarts) timeline_->restart(clock_.tick);
+        if (restarts) timeline_->restart(world_.context_.clock.tick);
         saves_[size_t(SaveFor::timeline)]->requested = restarts;
     }
     if (recording_) {
@@ -703,56 +726,63 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
         recording_->hashes.clear();
     }
     // Requests to earlier frames are made again.
-    for (ProbeFrame& frame : probeFrames_) frame.frameIndex = 0;
-    for (uint32_t i = 0; i < queries_.slotCount(); ++i)
-        if (Query* query = queries_.at(i); query && !query->ready) query->asked = false;
-    events_.clear();
+    for (QuerySystem::ProbeFrame& frame : world_.queries_.probeFrames_) frame.frameIndex = 0;
+    for (uint32_t i = 0; i < world_.queries_.state_.queries.slotCount(); ++i)
+        if (Query* query = world_.queries_.state_.queries.at(i); query && !query->ready)
+            query->asked = false;
+    world_.context_.events.clear();
     for (const FwEvent& event : saved.events)
-        raise(event.type,
-              event.object.index1 != 0 ? objects_.at(event.object.index1 - 1)->get() : nullptr,
-              event.tag, lastFrame_, event.position, event.value, event.other);
-    readbackTick_ = clock_.tick;
+        world_.context_.raise(
+            event.type,
+            event.object.index1 != 0 ? world_.scene_.objects.at(event.object.index1 - 1)->get()
+                                     : nullptr,
+            event.tag, world_.context_.lastFrame, event.position, event.value, event.other);
+    world_.context_.readbackTick = world_.context_.clock.tick;
     // An awake world would filter the wind from here on, not from its first ignition.
-    idle_ = seenIdle_ = saved.idle;
-    lastStimulus_ = seenStimulus_ = saved.lastStimulus;
-    stimuli_.clear();
-    frameNotes_.clear();
-    frontTiles_ = saved.stats.frontTiles;
-    runTiles_ = 0;
-    burningTiles_ = loadedBurning_ = saved.stats.burningTiles;
-    hotTiles_ = saved.stats.hotTiles;
-    receivers_ = loadedReceivers_ = saved.stats.receivers;
-    lateClamps_ = saved.stats.lateClamps;
-    remote_.unsent = true;
-    remote_.blockersDue = saved.blockersDue;
-    remote_.blockers.assign(saved.latchedBlockers.begin(), saved.latchedBlockers.end());
-    remote_.rebuild = true;
-    remote_.due.clear();
-    for (const auto& blocker : saved.blockers) *blockers_.at(blocker.slot) = blocker;
-    touched_.clear();
-    playing_.clear();
+    world_.burn_.state_.idle = world_.burn_.state_.seenIdle = saved.idle;
+    world_.burn_.state_.lastStimulus = world_.burn_.state_.seenStimulus = saved.lastStimulus;
+    world_.burn_.state_.stimuli.clear();
+    world_.burn_.state_.frameNotes.clear();
+    world_.burn_.state_.counts.front = saved.stats.frontTiles;
+    world_.burn_.state_.counts.run = 0;
+    world_.burn_.state_.counts.burning = world_.burn_.state_.loaded.burning =
+        saved.stats.burningTiles;
+    world_.burn_.state_.counts.hot = saved.stats.hotTiles;
+    world_.burn_.state_.counts.receivers = world_.burn_.state_.loaded.receivers =
+        saved.stats.receivers;
+    world_.burn_.state_.counts.lateClamps = saved.stats.lateClamps;
+    world_.exchange_.state_.book.unsent = true;
+    world_.exchange_.state_.book.blockersDue = saved.blockersDue;
+    world_.exchange_.state_.book.blockers.assign(saved.latchedBlockers.begin(),
+                                                 saved.latchedBlockers.end());
+    world_.exchange_.state_.book.rebuild = true;
+    world_.exchange_.state_.book.due.clear();
+    for (const auto& blocker : saved.blockers)
+        *world_.exchange_.state_.blockers.at(blocker.slot) = blocker;
+    world_.scene_.touched.clear();
+    world_.scene_.playing.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
-        applyObject(saved.objects[i], latches[i], **objects_.at(saved.objects[i].slot));
-    showSavedLights();
-    remote_.pairs.clear();
+        applyObject(saved.objects[i], latches[i], world_.scene_.objectAt(saved.objects[i].slot));
+    world_.lights_.showSaved();
+    world_.exchange_.state_.book.pairs.clear();
     for (PairContacts pair : saved.pairs) {
-        for (int k = 0; k < 2; ++k) pair.ids[k] = objects_.idOf(pair.slots[k]);
+        for (int k = 0; k < 2; ++k) pair.ids[k] = world_.scene_.objects.idOf(pair.slots[k]);
         pair.versions[0] = pair.versions[1] = 0;  // its links are found again
         pair.stamp = 0;
         pair.touches = true;
-        remote_.pairs.push_back(pair);
+        world_.exchange_.state_.book.pairs.push_back(pair);
     }
-    remote_.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
+    world_.exchange_.state_.book.loadedSeen.assign(saved.seen.begin(), saved.seen.end());
     for (const Slotted<FireSnapshot>& from : saved.fires) {
-        Fire& fire = **fires_.at(from.slot);
+        Fire& fire = **world_.flames_.state_.fires.at(from.slot);
         if (!(from == fire.data)) {  // as if it had always burnt so
-            burning_.drop(fire.data);
+            world_.flames_.burning_.drop(fire.data);
             fire.data.state = {};
             fire.data.points = from.points;
             fire.data.pointCount = from.pointCount;
             components::setFirePosition(fire.data, from.position);
             components::setFirePower(fire.data, from.power);
-            foresee(fire.data);
+            world_.flames_.foresee(fire.data);
         }
         for (size_t k = 0; k < from.touches.size(); ++k) {
             const bool seen = fire.touches[k].seen;
@@ -760,16 +790,18 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
             fire.touches[k].seen = seen;
         }
     }
-    emitterTime_ = double(clock_.tick) / double(gpu::kTicksPerSecond);
+    world_.emitters_.state_.time =
+        double(world_.context_.clock.tick) / double(gpu::kTicksPerSecond);
     for (const Slotted<EmitterSnapshot>& from : saved.emitters) {
-        components::FireEmitter& emitter = emitters_.get(emitters_.idOf(from.slot));
+        components::FireEmitter& emitter =
+            world_.emitters_.state_.emitters.get(world_.emitters_.state_.emitters.idOf(from.slot));
         std::copy_n(from.position, 3, emitter.position);
         std::copy_n(from.direction, 3, emitter.direction);
         if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
         emitter.births = {};  // particles in flight belong to another time
         emitter.births.warms = true;
         emitter.lastShields = {};
-        components::settleSparks(emitter, emitterTime_);
+        components::settleSparks(emitter, world_.emitters_.state_.time);
         emitter.swept = 0;
         emitter.touches = from.touches;
         if (!emitter.stream) continue;
@@ -777,47 +809,47 @@ void World::apply(const Snapshot& saved, std::span<const components::Latch> latc
         emitter.stream->before = emitter.stream->patches;
         for (components::JetParcel& parcel : emitter.stream->parcels)
             for (components::JetRay& ray : parcel.rays)
-                ray.version = ray.version != 0 ? geometry_ : 0;
+                ray.version = ray.version != 0 ? world_.scene_.geometryVersion : 0;
     }
     for (const Slotted<FieldSnapshot>& from : saved.fields) {
-        Field& field = **fields_.at(from.slot);
+        Field& field = **world_.fields_.state_.fields.at(from.slot);
         // The backend counts its own steps, and continues from them.
         const uint32_t ran = field.steps - field.shownBase;
         field.began = from.began;
         std::copy_n(from.position, 3, field.data.position);
         std::copy_n(from.rotation, 4, field.data.rotation);
         field.data.def.look.amount = from.amount;
-        field.steps = components::fieldSteps(field.data, clock_.tick - field.began);
+        field.steps = components::fieldSteps(field.data, world_.context_.clock.tick - field.began);
         field.shownBase = field.steps - ran;
     }
-    sendFieldRules();
+    world_.fields_.sendRules();
 }
 
-void World::applyObject(const ObjectSnapshot& from, const components::Latch& latch,
-                        Object& object) noexcept {
+void PersistenceSystem::applyObject(const ObjectSnapshot& from, const components::Latch& latch,
+                                    Object& object) noexcept {
     static_cast<ObjectState&>(object) = from;
     object.data.pose = from.pose;
-    backend_.setObjectWind(object.slot, object.zoneWind);
-    placeNow(object);
+    world_.context_.backend.setObjectWind(object.slot, object.zoneWind);
+    world_.scene_.placeNow(object);
     object.restsUnder = 0;
-    object.room1 = roomOf(object);
-    roomsMet_ |= from.counters.air != 0;
-    sendPose(object);
+    object.room1 = world_.rooms_.roomOf(object);
+    world_.rooms_.state_.met |= from.counters.air != 0;
+    world_.scene_.sendPose(object);
     object.latch = latch;
-    if (object.play.burn1 != 0) startPlay(object);
-    object.firstFrame = lastFrame_ + 1;
+    if (object.play.burn1 != 0) world_.burn_.startPlay(object);
+    object.firstFrame = world_.context_.lastFrame + 1;
     ++object.changes;
-    // Requests whose readback is lost are made again.
+    // Readbacks on their way are lost: they are requested again.
     const auto again = [&](bool& requested, bool& pending) {
         if (!pending) return;
         pending = false;
-        if (!requested) ++mapsWished_;
+        if (!requested) ++world_.queries_.mapsRequested_;
         requested = true;
     };
-    again(object.map.wished, object.map.pending);
+    again(object.map.requested, object.map.pending);
     if (object.forecast) {
-        again(object.forecast->wished, object.forecast->pending);
-        object.forecast->told = false;
+        again(object.forecast->requested, object.forecast->pending);
+        object.forecast->began = false;
     }
     if (object.breaks) {  // it has not burnt, or is restored next
         object.breaks->lookCount = 0;
@@ -826,10 +858,10 @@ void World::applyObject(const ObjectSnapshot& from, const components::Latch& lat
     }
     object.remote = {};
     object.remoteSent = false;
-    object.remoteVersion = from.placed ? ++remote_.version : 0;
-    if (from.remoteDue) remote_.due.push_back(object.slot);
+    object.remoteVersion = from.placed ? ++world_.exchange_.state_.book.version : 0;
+    if (from.remoteDue) world_.exchange_.state_.book.due.push_back(object.slot);
     if (from.placed) {
-        const mesh::BurnDomain& domain = domainOf(object);
+        const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
         if (from.remoteDue) {
             object.remote = from.remote;
         } else {
@@ -838,8 +870,8 @@ void World::applyObject(const ObjectSnapshot& from, const components::Latch& lat
             if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
             object.remote.high.w = from.remote.high.w;
         }
-        object.reach = components::remoteReach(object.data, domain,
-                                               meshes_.at(object.data.meshSlot)->texelsOf);
+        object.reach = components::remoteReach(
+            object.data, domain, world_.scene_.meshes.at(object.data.meshSlot)->texelsOf);
     }
     object.carryEnd = 0;  // what the save carries is settled with its events
     object.stimuli = 0;
@@ -848,10 +880,10 @@ void World::applyObject(const ObjectSnapshot& from, const components::Latch& lat
         object.counters = {};
         return;
     }
-    touched_.push_back(&object);
+    world_.scene_.touched.push_back(&object);
     if (object.story.ignitionKnown)
-        backend_.startBoundary(object.slot, object.story.ignitionPoint,
-                               uint32_t(object.story.firstIgnition));
+        world_.context_.backend.startBoundary(object.slot, object.story.ignitionPoint,
+                                              uint32_t(object.story.firstIgnition));
 }
 
 }  // namespace fw::world

@@ -149,7 +149,7 @@ struct Snapshot {
     components::WindGrid windGrid;
     components::HeatShield heatShield;
     components::Gusts gusts;
-    double origin[3] = {};  // m, see World::origin_
+    double origin[3] = {};  // m, see OriginShifts::moved
     uint32_t flags = 0;
     bool warms = false, blockersDue = false;
     uint64_t fades = 0;

@@ -111,70 +111,75 @@ std::pmr::vector<uint32_t> hashesOf(const ImageStore& store, const mesh::BurnDom
 }  // namespace
 
 // Reads an object's planes; false: it has none in this save.
-bool World::readObject(std::span<const std::byte> save, uint32_t slot, Snapshot& saved,
-                       ImageStore& store) {
+bool PersistenceSystem::readObject(std::span<const std::byte> save, uint32_t slot, Snapshot& saved,
+                                   ImageStore& store) {
     readSnapshot(save, saved);
     checkSnapshot(saved);
     const ObjectSnapshot* object = findObject(saved, slot);
     if (!object || !object->touched) return false;
     components::Latch latch;
     const BurnRecords records = recordsOf(saved, *object, latch);
-    readImage(object->planes, domainOf(**objects_.at(slot)), uint32_t(saved.clock.tick),
-              records.window, records.heatSpan(), store);
+    readImage(object->planes, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
+              uint32_t(saved.clock.tick), records.window, records.heatSpan(), store);
     return true;
 }
 
-std::pmr::vector<uint32_t> World::hashBlocks(std::span<const std::byte> save, uint32_t slot) {
-    Snapshot saved(memory_);
-    ImageStore store(memory_);
-    if (!readObject(save, slot, saved, store)) return std::pmr::vector<uint32_t>(memory_);
-    return hashesOf(store, domainOf(**objects_.at(slot)), memory_);
+std::pmr::vector<uint32_t> PersistenceSystem::hashBlocks(std::span<const std::byte> save,
+                                                         uint32_t slot) {
+    Snapshot saved(world_.context_.memory);
+    ImageStore store(world_.context_.memory);
+    if (!readObject(save, slot, saved, store))
+        return std::pmr::vector<uint32_t>(world_.context_.memory);
+    return hashesOf(store, world_.scene_.domainOf(world_.scene_.objectAt(slot)),
+                    world_.context_.memory);
 }
 
-bool World::writeBlocks(std::span<const std::byte> save, uint32_t slot,
-                        std::span<const uint32_t> theirs, std::pmr::vector<std::byte>& out) {
-    Snapshot saved(memory_);
-    ImageStore store(memory_);
+bool PersistenceSystem::writeBlocks(std::span<const std::byte> save, uint32_t slot,
+                                    std::span<const uint32_t> theirs,
+                                    std::pmr::vector<std::byte>& out) {
+    Snapshot saved(world_.context_.memory);
+    ImageStore store(world_.context_.memory);
     if (!readObject(save, slot, saved, store)) return false;
-    const mesh::BurnDomain& domain = domainOf(**objects_.at(slot));
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(slot));
     const BlockGrid grid = gridOf(domain);
-    const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, memory_);
+    const std::pmr::vector<uint32_t> ours = hashesOf(store, domain, world_.context_.memory);
     if (theirs.size() != ours.size()) return false;
-    std::pmr::vector<uint32_t> blocks(memory_);
+    std::pmr::vector<uint32_t> blocks(world_.context_.memory);
     for (uint32_t i = 0; i < ours.size(); ++i)
         if (ours[i] != theirs[i]) blocks.push_back(i);
-    Snapshot part(memory_);
+    Snapshot part(world_.context_.memory);
     part.clock = saved.clock;
     ObjectSnapshot& object = part.objects.emplace_back(*findObject(saved, slot));
     components::Latch latch;
     const uint32_t window = recordsOf(saved, object, latch).window;
-    std::pmr::vector<std::byte> planes(memory_);
+    std::pmr::vector<std::byte> planes(world_.context_.memory);
     core::Writer writer(planes);
     writer.number(uint32_t(blocks.size()));
     for (const uint32_t block : blocks) writer.number(block);
-    const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, memory_);
-    const ImageStore taken = takeBlocks(store, domain, grid, blocks, memory_);
+    const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, world_.context_.memory);
+    const ImageStore taken = takeBlocks(store, domain, grid, blocks, world_.context_.memory);
     writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, planes);
     object.planes = planes;
     writeSnapshot(part, out);
     return true;
 }
 
-void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::byte> theirs,
-                        std::pmr::vector<std::byte>& out) {
-    Snapshot part(memory_), saved(memory_);
+void PersistenceSystem::mergeBlocks(std::span<const std::byte> save,
+                                    std::span<const std::byte> theirs,
+                                    std::pmr::vector<std::byte>& out) {
+    Snapshot part(world_.context_.memory), saved(world_.context_.memory);
     readSnapshot(theirs, part);
-    ImageStore store(memory_), taken(memory_);
+    ImageStore store(world_.context_.memory), taken(world_.context_.memory);
     if (part.objects.size() != 1 || !readObject(save, part.objects[0].slot, saved, store) ||
         part.clock.tick != saved.clock.tick || !part.objects[0].touched)
         core::fail(FW_ERROR_BAD_DATA, "The tiles are of tick %llu and another state.",
                    static_cast<unsigned long long>(part.clock.tick));
     const ObjectSnapshot& from = part.objects[0];
-    const mesh::BurnDomain& domain = domainOf(**objects_.at(from.slot));
+    const mesh::BurnDomain& domain = world_.scene_.domainOf(world_.scene_.objectAt(from.slot));
     const BlockGrid grid = gridOf(domain);
     core::Reader reader(from.planes, "state");
     const uint32_t count = reader.count("blocks of tiles", sizeof(uint32_t));
-    std::pmr::vector<uint32_t> blocks(memory_);
+    std::pmr::vector<uint32_t> blocks(world_.context_.memory);
     for (uint32_t i = 0; i < count; ++i) {
         reader.number(blocks.emplace_back());
         if (blocks[i] >= grid.count() || (i > 0 && blocks[i] <= blocks[i - 1]))
@@ -187,8 +192,8 @@ void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::by
     components::Latch latch;
     const BurnRecords records = recordsOf(saved, object, latch);
     const auto tick = uint32_t(saved.clock.tick);
-    readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, memory_), tick,
-              records.window, records.heatSpan(), taken);
+    readImage(reader.take(reader.left()), stripeOf(domain, grid, blocks, world_.context_.memory),
+              tick, records.window, records.heatSpan(), taken);
     eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t at, size_t to) {
         store.ticks[to] = taken.ticks[at];
         if (!store.heat.empty()) store.heat[to] = taken.heat[at];
@@ -197,7 +202,7 @@ void World::mergeBlocks(std::span<const std::byte> save, std::span<const std::by
         store.tiles[to] = taken.tiles[at];
         store.tileHeat[to] = taken.tileHeat[at];
     });
-    std::pmr::vector<std::byte> planes(memory_);
+    std::pmr::vector<std::byte> planes(world_.context_.memory);
     writeImage(imageOf(store, object), domain, tick, records.window, planes);
     object.planes = planes;
     writeSnapshot(saved, out);

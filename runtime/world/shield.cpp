@@ -1,9 +1,8 @@
-// The shield between fires and what they would warm: given anew by the host, with what objects fill
-// of it as they stand then. Whether such a cell is still there is the backends' to find, so that no
-// call has to come in time.
-#include "components/heat_shield.h"
-#include "components/wind_zone.h"
-#include "world/world.h"
+// The heat-occlusion grid: the host gives all of it at once, with the cells that objects fill as
+// they stand then. Backends find out whether such a cell is still there, so that no call has to
+// come in time.
+#include "world/exchange_system.h"
+#include "world/persistence.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,11 +23,11 @@ mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
 
 }  // namespace
 
-components::ShieldObject World::shieldObjectOf(uint32_t slot) noexcept {
-    const Object& object = **objects_.at(slot);
+components::ShieldObject ExchangeSystem::shieldObjectOf(uint32_t slot) noexcept {
+    const Object& object = scene_.objectAt(slot);
     components::ShieldObject made;
     made.slot = slot;
-    made.domain = &domainOf(object);
+    made.domain = &scene_.domainOf(object);
     components::placeRemote(object.data.pose, *made.domain, made.place);
     double longest = 0;
     for (const float s : object.data.pose.stretch) longest = std::max(longest, std::abs(double(s)));
@@ -36,32 +35,34 @@ components::ShieldObject World::shieldObjectOf(uint32_t slot) noexcept {
         std::clamp(double(made.domain->texelSide) * double(object.data.pose.scale) * longest * 1000,
                    0.0, 1e6));
     for (uint32_t i = 0; i < components::kMaterials; ++i)
-        if (components::holeTicks(object.data, i, def_.paceFactor) == 0) made.stays |= 1u << i;
+        if (components::holeTicks(object.data, i, context_.def.paceFactor) == 0)
+            made.stays |= 1u << i;
     return made;
 }
 
-void World::bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
-                           std::pmr::vector<components::ShieldCell>& baked) {
+void ExchangeSystem::bakeHeatShield(const components::ShieldShape& shape,
+                                    std::pmr::vector<uint32_t>& slots,
+                                    std::pmr::vector<components::ShieldCell>& baked) {
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    std::pmr::vector<components::ShieldObject> objects(memory_);
+    std::pmr::vector<components::ShieldObject> objects(context_.memory);
     for (const uint32_t slot : slots) objects.push_back(shieldObjectOf(slot));
     components::bakeShield(shape, objects, baked);
 }
 
-void World::setHeatShield(const FwHeatShieldDef& def) {
-    mayChange();
-    components::HeatShield made(memory_);
-    std::pmr::vector<uint32_t> slots(memory_);
+void ExchangeSystem::setHeatShield(const FwHeatShieldDef& def) {
+    context_.recorder.mayChange();
+    components::HeatShield made(context_.memory);
+    std::pmr::vector<uint32_t> slots(context_.memory);
     if (def.structSize != 0) {
         made.shape = components::makeShieldShape(def);
         if (def.objectCount != 0 && !def.objects)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwHeatShieldDef::objects is null, and objectCount is %u.", def.objectCount);
         for (uint32_t i = 0; i < def.objectCount; ++i)
-            slots.push_back((*objects_.get(def.objects[i])).slot);
+            slots.push_back((*scene_.objects.get(def.objects[i])).slot);
         if (def.flags & FW_HEAT_SHIELD_ALL_OBJECTS) {
-            const std::span<const uint32_t> near = objectsNear(boxOf(made.shape), 0);
+            const std::span<const uint32_t> near = scene_.objectsNear(boxOf(made.shape), 0);
             slots.insert(slots.end(), near.begin(), near.end());
         }
         components::readShieldCells(def, made.shape, made.solid);
@@ -71,54 +72,55 @@ void World::setHeatShield(const FwHeatShieldDef& def) {
     adoptShield(made);
 }
 
-void World::adoptShield(components::HeatShield& made) noexcept {
-    shield_.grid.shape = made.shape;
-    shield_.grid.solid.swap(made.solid);
-    shield_.grid.baked.swap(made.baked);
+void ExchangeSystem::adoptShield(components::HeatShield& made) noexcept {
+    state_.shield.grid.shape = made.shape;
+    state_.shield.grid.solid.swap(made.solid);
+    state_.shield.grid.baked.swap(made.baked);
     shieldChanged();
 }
 
-// The host's cells are others: jets end there, too.
-void World::shieldChanged() noexcept {
-    shield_.unsent = shield_.unpacked = true;
-    ++geometry_;
+// Jets end at the host's cells, too.
+void ExchangeSystem::shieldChanged() noexcept {
+    state_.shield.unsent = state_.shield.unpacked = true;
+    ++scene_.geometryVersion;
 }
 
-// The grid's shape if it is another, then the words of the host's cells that differ, then all
+// The grid's shape, if it changed; then the words of the host's cells that changed; then all
 // objects.
-void World::recordShield(const components::HeatShield& made,
-                         std::span<const uint32_t> slots) noexcept {
-    if (!records()) return;
-    const bool stays = made.shape == shield_.grid.shape;
-    if (!stays) record(SetHeatShield{made.shape});
+void ExchangeSystem::recordShield(const components::HeatShield& made,
+                                  std::span<const uint32_t> slots) noexcept {
+    if (!context_.recorder.records()) return;
+    const bool stays = made.shape == state_.shield.grid.shape;
+    if (!stays) context_.recorder.record(SetHeatShield{made.shape});
     const auto words = uint32_t(made.solid.size());
     for (uint32_t first = 0; first < words; first += SetShieldCells::kWords) {
         SetShieldCells command{first};
         bool differs = false;
         for (uint32_t k = 0; k < command.kWords && first + k < words; ++k) {
             command.words[k] = made.solid[first + k];
-            differs |= command.words[k] != (stays ? shield_.grid.solid[first + k] : 0);
+            differs |= command.words[k] != (stays ? state_.shield.grid.solid[first + k] : 0);
         }
-        if (differs) record(command);
+        if (differs) context_.recorder.record(command);
     }
     for (size_t i = 0; i < slots.size(); ++i)
-        record(AddShieldObject{slots[i] + 1, i + 1 == slots.size()});
-    if (slots.empty() && stays && !shield_.grid.baked.empty()) record(AddShieldObject{0, true});
+        context_.recorder.record(AddShieldObject{slots[i] + 1, i + 1 == slots.size()});
+    if (slots.empty() && stays && !state_.shield.grid.baked.empty())
+        context_.recorder.record(AddShieldObject{0, true});
 }
 
-void World::applyShield(const SetHeatShield& command) {
-    mayChange();
-    components::HeatShield made(memory_);
+void ExchangeSystem::applyShield(const SetHeatShield& command) {
+    context_.recorder.mayChange();
+    components::HeatShield made(context_.memory);
     made.shape = command.shape;
     made.solid.assign(made.shape.words(), 0);
     adoptShield(made);
-    shield_.told.clear();
-    record(command);
+    state_.shield.commandSlots.clear();
+    context_.recorder.record(command);
 }
 
-void World::applyShieldCells(const SetShieldCells& command) {
-    mayChange();
-    components::HeatShield& grid = shield_.grid;
+void ExchangeSystem::applyShieldCells(const SetShieldCells& command) {
+    context_.recorder.mayChange();
+    components::HeatShield& grid = state_.shield.grid;
     if (command.first >= grid.solid.size())
         core::fail(FW_ERROR_BAD_DATA, "A command is of word %u of the shield, which has %zu.",
                    command.first, grid.solid.size());
@@ -128,73 +130,73 @@ void World::applyShieldCells(const SetShieldCells& command) {
     if (const uint32_t over = grid.shape.cells() % 32; over != 0)
         grid.solid.back() &= (1u << over) - 1;
     shieldChanged();
-    record(command);
+    context_.recorder.record(command);
 }
 
-void World::applyShieldObject(const AddShieldObject& command) {
-    mayChange();
+void ExchangeSystem::applyShieldObject(const AddShieldObject& command) {
+    context_.recorder.mayChange();
     if (command.object1 != 0) {
-        if (command.object1 > objects_.slotCount() || !objects_.at(command.object1 - 1))
+        if (command.object1 > scene_.objects.slotCount() || !scene_.objects.at(command.object1 - 1))
             core::fail(FW_ERROR_BAD_DATA, "A command shields by object %u, which is not there.",
                        command.object1);
-        if (shield_.told.size() >= objects_.live())
+        if (state_.shield.commandSlots.size() >= scene_.objects.live())
             core::fail(FW_ERROR_BAD_DATA,
                        "Commands name more objects for one shield than the %u that there are.",
-                       objects_.live());
-        shield_.told.push_back(command.object1 - 1);
+                       scene_.objects.live());
+        state_.shield.commandSlots.push_back(command.object1 - 1);
     }
     if (command.last) {
-        std::pmr::vector<uint32_t> slots(memory_);
-        slots.swap(shield_.told);
-        bakeHeatShield(shield_.grid.shape, slots, shield_.grid.baked);
-        shield_.unsent = shield_.unpacked = true;
+        std::pmr::vector<uint32_t> slots(context_.memory);
+        slots.swap(state_.shield.commandSlots);
+        bakeHeatShield(state_.shield.grid.shape, slots, state_.shield.grid.baked);
+        state_.shield.unsent = state_.shield.unpacked = true;
     }
-    record(command);
+    context_.recorder.record(command);
 }
 
-// Who is destroyed stands in nobody's way, and its slot may be another's.
-void World::dropFromShield(uint32_t slot) noexcept {
-    std::erase(shield_.told, slot);
-    const size_t gone = std::erase_if(shield_.grid.baked, [&](const components::ShieldCell& cell) {
-        return (cell.what & gpu::kShieldSlot) == slot;
-    });
-    if (gone != 0) shield_.unsent = shield_.unpacked = true;
+// The slot of a destroyed object may become another's.
+void ExchangeSystem::removeFromShield(uint32_t slot) noexcept {
+    std::erase(state_.shield.commandSlots, slot);
+    const size_t gone = std::erase_if(
+        state_.shield.grid.baked,
+        [&](const components::ShieldCell& cell) { return (cell.what & gpu::kShieldSlot) == slot; });
+    if (gone != 0) state_.shield.unsent = state_.shield.unpacked = true;
 }
 
-void World::packHeatShield() {
-    if (shield_.unpacked) components::packShield(shield_.grid, shield_.words);
-    shield_.unpacked = false;
+void ExchangeSystem::packHeatShield() {
+    if (state_.shield.unpacked) components::packShield(state_.shield.grid, state_.shield.words);
+    state_.shield.unpacked = false;
 }
 
-// For who is asked at once, and hears of texels some frames later: an object's cells are there
-// until half of it has burnt.
-components::ShieldView World::shieldView() {
+// For queries, which are answered at once while texels come some frames later: an object's cells
+// are there until half of it has burnt.
+components::ShieldView ExchangeSystem::shieldView() {
     components::ShieldView view;
     packHeatShield();
-    if (shield_.grid.shape.cells() == 0) return view;
-    shield_.fallen.assign(objects_.slotCount(), 0);
-    for (const Object* object : touched_) {  // nothing of the others has burnt
+    if (state_.shield.grid.shape.cells() == 0) return view;
+    state_.shield.fallen.assign(scene_.objects.slotCount(), 0);
+    for (const Object* object : scene_.touched) {  // nothing of the others has burnt
         const gpu::ObjectCounters& now = object->counters;
         const uint32_t burnt = now.ignited - std::min(now.ignited, now.burning);
         const bool holes = !(object->data.flags & FW_BURNABLE_NO_HOLES);
-        shield_.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
+        state_.shield.fallen[object->slot] = holes && 2 * uint64_t{burnt} > object->texels ? 1 : 0;
     }
-    view.shape = shield_.grid.shape;
-    view.words = shield_.words;
-    view.fallen = shield_.fallen;
+    view.shape = state_.shield.grid.shape;
+    view.words = state_.shield.words;
+    view.fallen = state_.shield.fallen;
     return view;
 }
 
 // awake: the step will run.
-void World::planShield(gpu::StepPlan& step, bool awake) {
-    if (!awake || !shield_.unsent || frame_.shieldSent) return;
+void ExchangeSystem::planShield(gpu::StepPlan& step, bool awake) {
+    if (!awake || !state_.shield.unsent || frame_.shieldSent) return;
     packHeatShield();
-    const components::ShieldShape& shape = shield_.grid.shape;
-    shield_.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
-    shield_.update.cell = shape.cell;
-    shield_.update.counts = components::countsOf(shape);
-    shield_.update.words = shield_.words;
-    step.shield = &shield_.update;
+    const components::ShieldShape& shape = state_.shield.grid.shape;
+    state_.shield.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
+    state_.shield.update.cell = shape.cell;
+    state_.shield.update.counts = components::countsOf(shape);
+    state_.shield.update.words = state_.shield.words;
+    step.shield = &state_.shield.update;
     frame_.shieldSent = true;
 }
 

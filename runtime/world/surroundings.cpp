@@ -1,9 +1,14 @@
-// What a game's characters ask: how hot, how smoky, how far from fire. Volumetric fires answer for
-// themselves, what burns on meshes and streams are fires at the places of their lights.
+// Surroundings of a point: how hot, how smoky, how far from fire. Volumetric fires answer for
+// themselves; burning meshes and streams count as fires at the places of their lights.
 #include "components/surroundings.h"
 #include "components/pose.h"
 #include "fire/heat.h"
-#include "world/world.h"
+#include "world/emitter_system.h"
+#include "world/exchange_system.h"
+#include "world/flame_system.h"
+#include "world/light_system.h"
+#include "world/query_system.h"
+#include "world/wind_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -15,14 +20,14 @@ constexpr uint32_t kMostMaskSide = 4096;
 
 }  // namespace
 
-components::SurroundingAir World::listSources() {
+components::SurroundingAir QuerySystem::listSources() {
     components::SurroundingAir air;
-    air.up = volume::vecOf(def_.up);
-    air.wind = volume::vecOf(wind_);
-    fireShapes_.reserve(kMaxFireShapes);
-    listFireColliders();  // as they stand now
-    air.walls = walls();
-    air.shield = shieldView();
+    air.up = volume::vecOf(context_.def.up);
+    air.wind = volume::vecOf(wind_.state().wind);
+    flames_.reserve(0);
+    flames_.listShapes();  // as they stand now
+    air.walls = flames_.walls();
+    air.shield = exchange_.shieldView();
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {
@@ -31,41 +36,38 @@ components::SurroundingAir World::listSources() {
         source.base = source.base - air.up * (0.25f * source.height);
         sources_.push_back(source);
     };
-    for (const FwLight& light : shownLights_) add(light);
-    for (uint32_t i = 0; i < fires_.slotCount(); ++i) {
-        const auto* entry = fires_.at(i);
-        if (!entry || (*entry)->data.state.flames == 0) continue;
-        const components::VolumetricFire& fire = (*entry)->data;
+    for (const FwLight& light : lights_.shown()) add(light);
+    for (auto [i, entry] : flames_.state().fires.entries()) {
+        if (entry.data.state.flames == 0) continue;
+        const components::VolumetricFire& fire = entry.data;
         components::FireSource source = components::fireSource(
             volume::vecOf(fire.position), 0.5f * fire.diameter, fire.state.power, 0x80000000u | i);
         source.exact = true;
         sources_.push_back(source);
     }
-    for (uint32_t i = 0; i < emitters_.slotCount(); ++i) {
-        const components::FireEmitter* emitter = emitters_.at(i);
-        if (!emitter || emitter->births.filled == 0 || emitter->def.shape == FW_EMITTER_MESH)
-            continue;
-        add(components::emitterLight(*emitter, emitterAir(*emitter, 0), 0x40000000u | i,
-                                     lastFrame_));
+    for (auto [i, emitter] : emitters_.state().emitters.entries()) {
+        if (emitter.births.filled == 0 || emitter.def.shape == FW_EMITTER_MESH) continue;
+        add(components::emitterLight(emitter, emitters_.airOf(emitter, 0), 0x40000000u | i,
+                                     context_.lastFrame));
     }
     return air;
 }
 
-components::Surroundings World::surroundingsAt(const components::SurroundingAir& air,
-                                               components::vec3 point) const noexcept {
+components::Surroundings QuerySystem::surroundingsAt(const components::SurroundingAir& air,
+                                                     components::vec3 point) const noexcept {
     components::SurroundingAir here = air;
     const float place[3] = {point.x, point.y, point.z};
-    here.wind = volume::vecOf(windAt(place, clock_.tick).data());
+    here.wind = volume::vecOf(wind_.at(place, context_.clock.tick).data());
     components::Surroundings at = components::surroundingsOf(sources_, here, point);
-    if (burning_.now().empty()) return at;
+    if (flames_.burning().now().empty()) return at;
     const components::FireAnswer fires =
-        components::askFires(burning_.now(), profiles_, air.walls, point);
+        components::askFires(flames_.burning().now(), flames_.profiles(), air.walls, point);
     at.excess = std::max(at.excess, fires.air.kelvin - fire::kAmbient);
     at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, components::kMostHeatFlux);
     return at;
 }
 
-void World::askSurroundings(const float point[3], FwSurroundings& out) {
+void QuerySystem::askSurroundings(const float point[3], FwSurroundings& out) {
     components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     const components::Surroundings at = surroundingsAt(listSources(), volume::vecOf(point));
     out.heatFlux = at.heatFlux;
@@ -79,15 +81,16 @@ void World::askSurroundings(const float point[3], FwSurroundings& out) {
     out.nearestLight = at.source->id;
 }
 
-float World::askSight(const float from[3], const float to[3]) {
+float QuerySystem::askSight(const float from[3], const float to[3]) {
     components::checkLengths(from, 3, "from", -1e6f, 1e6f);
     components::checkLengths(to, 3, "to", -1e6f, 1e6f);
     const components::SurroundingAir air = listSources();
     return components::sightThrough(sources_, air, volume::vecOf(from), volume::vecOf(to));
 }
 
-void World::makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
-                           uint32_t columns, uint32_t rows, uint8_t* mask) {
+void QuerySystem::makeSafetyMask(const float corner[3], const float columnStep[3],
+                                 const float rowStep[3], uint32_t columns, uint32_t rows,
+                                 uint8_t* mask) {
     components::checkLengths(corner, 3, "corner", -1e6f, 1e6f);
     components::checkLengths(columnStep, 3, "columnStep", -1e4f, 1e4f);
     components::checkLengths(rowStep, 3, "rowStep", -1e4f, 1e4f);

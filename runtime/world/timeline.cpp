@@ -72,7 +72,7 @@ void Timeline::restart(uint64_t now) noexcept {
     end = granted = now;
 }
 
-void World::startTimeline(const FwTimelineDef& def) {
+void PersistenceSystem::startTimeline(const FwTimelineDef& def) {
     components::checkValue(def.interval, "FwTimelineDef::interval", kShortest, kLongest);
     components::checkValue(def.longest, "FwTimelineDef::longest", kShortest, kLongest);
     if (def.reserved != 0 || def.longest < def.interval)
@@ -84,23 +84,23 @@ void World::startTimeline(const FwTimelineDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwTimelineDef::bytes is %llu; at least %llu.",
                    static_cast<unsigned long long>(def.bytes),
                    static_cast<unsigned long long>(kLeastTimeline));
-    auto timeline = core::Owned<Timeline>::make(memory_, memory_);
+    auto timeline = core::Owned<Timeline>::make(world_.context_.memory, world_.context_.memory);
     timeline->apart = ticksOf(def.interval);
     timeline->farthest = std::max(ticksOf(def.longest), timeline->apart);
     timeline->most = def.bytes;
-    timeline->restart(clock_.tick);
+    timeline->restart(world_.context_.clock.tick);
     requestSave(SaveFor::timeline);
     saves_[size_t(SaveFor::timeline)]->pending = false;  // of one that was kept before
     timeline_ = std::move(timeline);
 }
 
-void World::stopTimeline() noexcept {
+void PersistenceSystem::stopTimeline() noexcept {
     timeline_ = {};
     saves_[size_t(SaveFor::timeline)] = {};
 }
 
 // Before a frame's plan. Nothing is kept of what burnt before.
-void World::planTimeline(uint64_t after) noexcept {
+void PersistenceSystem::planTimeline(uint64_t after) noexcept {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     const core::Owned<Save>& save = saves_[size_t(SaveFor::timeline)];
@@ -113,15 +113,16 @@ void World::planTimeline(uint64_t after) noexcept {
 }
 
 // After a frame from `before` to the present.
-void World::commitTimeline(uint64_t before) noexcept {
+void PersistenceSystem::commitTimeline(uint64_t before) noexcept {
     if (!timeline_) return;
     Timeline& timeline = *timeline_;
-    if (clock_.tick == before) return;
-    if (before < timeline.end && clock_.tick > timeline.granted) timeline.forget(before);
-    timeline.end = std::max(timeline.end, clock_.tick);
+    if (world_.context_.clock.tick == before) return;
+    if (before < timeline.end && world_.context_.clock.tick > timeline.granted)
+        timeline.forget(before);
+    timeline.end = std::max(timeline.end, world_.context_.clock.tick);
 }
 
-void World::keepKeyframe() noexcept {
+void PersistenceSystem::keepKeyframe() noexcept {
     if (!timeline_ || !saves_[size_t(SaveFor::timeline)]->ready) return;
     Save& save = *saves_[size_t(SaveFor::timeline)];
     save.ready = false;
@@ -129,7 +130,8 @@ void World::keepKeyframe() noexcept {
     try {
         timeline.keyframes.push_back(
             {save.snapshot.clock.tick, timeline.captured,
-             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(), memory_)});
+             std::pmr::vector<std::byte>(save.bytes.begin(), save.bytes.end(),
+                                         world_.context_.memory)});
     } catch (...) {  // a later keyframe does
         return;
     }
@@ -137,16 +139,16 @@ void World::keepKeyframe() noexcept {
 }
 
 // A command in the past makes another future.
-void World::recordInTimeline(const Command& command) noexcept {
+void PersistenceSystem::recordInTimeline(const Command& command) noexcept {
     if (!timeline_ || timeline_->seeks) return;
     Timeline& timeline = *timeline_;
-    if (clock_.tick < timeline.end) timeline.forget(clock_.tick);
-    timeline.commands.push({clock_.tick, false, command});
+    if (world_.context_.clock.tick < timeline.end) timeline.forget(world_.context_.clock.tick);
+    timeline.commands.push({world_.context_.clock.tick, false, command});
     timeline.applied = timeline.commands.entries.size();
     timeline.fit();
 }
 
-bool World::seek(uint64_t untilTick, float& seconds) {
+bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     seconds = 0;
     if (!timeline_)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -161,7 +163,8 @@ bool World::seek(uint64_t untilTick, float& seconds) {
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the timeline was kept; it has a gap.");
     const uint64_t until = untilTick - untilTick % gpu::kStepTicks;
-    if (timeline.keyframes.empty() && until <= timeline.end) return until == clock_.tick;
+    if (timeline.keyframes.empty() && until <= timeline.end)
+        return until == world_.context_.clock.tick;
     if (timeline.keyframes.empty() || until < timeline.keyframes.front().tick ||
         until > timeline.end)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "untilTick is %llu; the timeline has %llu to %llu.",
@@ -173,32 +176,35 @@ bool World::seek(uint64_t untilTick, float& seconds) {
     auto from = std::upper_bound(timeline.keyframes.begin(), timeline.keyframes.end(), until,
                                  [](uint64_t tick, const Keyframe& m) { return tick < m.tick; });
     --from;
-    if (until < clock_.tick || from->tick > clock_.tick) {
+    if (until < world_.context_.clock.tick || from->tick > world_.context_.clock.tick) {
         load(from->save);
         timeline.applied = from->commands;
     }
     const auto& entries = timeline.commands.entries;
-    const bool present = clock_.tick == timeline.end;
-    if (clock_.tick < until || present) {
-        for (; timeline.applied < entries.size() && entries[timeline.applied].tick <= clock_.tick;
+    const bool present = world_.context_.clock.tick == timeline.end;
+    if (world_.context_.clock.tick < until || present) {
+        for (; timeline.applied < entries.size() &&
+               entries[timeline.applied].tick <= world_.context_.clock.tick;
              ++timeline.applied) {
             try {
                 apply(entries[timeline.applied].command);
             } catch (const core::Error& error) {
-                log_.write(FW_LOG_WARNING, "A command of the timeline at tick %llu is refused: %s",
-                           static_cast<unsigned long long>(clock_.tick), error.message);
+                world_.context_.log.write(
+                    FW_LOG_WARNING, "A command of the timeline at tick %llu is refused: %s",
+                    static_cast<unsigned long long>(world_.context_.clock.tick), error.message);
             }
         }
     }
-    if (clock_.tick >= until) return true;
-    uint64_t next = std::min(until, clock_.tick + uint64_t(mostSteps()) * gpu::kStepTicks);
+    if (world_.context_.clock.tick >= until) return true;
+    uint64_t next = std::min(
+        until, world_.context_.clock.tick + uint64_t(world_.mostSteps()) * gpu::kStepTicks);
     if (timeline.applied < entries.size()) next = std::min(next, entries[timeline.applied].tick);
     timeline.granted = next;
     seconds = secondsUpTo(next);
     return true;
 }
 
-void World::timelineState(FwTimelineState& state) {
+void PersistenceSystem::timelineState(FwTimelineState& state) {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
     state.moments = uint32_t(timeline.keyframes.size());

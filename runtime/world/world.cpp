@@ -1,40 +1,24 @@
-// Ids and what stands behind them: materials, images, meshes, objects; ball events to texels.
 #include "world/world.h"
 
 #include "components/deform.h"
 #include "components/lights.h"
-#include "components/look_table.h"
 #include "core/growth.h"
-#include "mesh/bake.h"
-#include "mesh/shaped.h"
-#include "shared/spark.h"
+#include "flamewright/flamewright_debug.h"
+#include "world/checks.h"
 #include "world/material.h"
-#include "world/mesh_input.h"
-#include "world/save.h"
+#include "world/shift.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 namespace fw::world {
 namespace {
 
-using components::checkLength;
 using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
 
-void checkFlags(uint32_t flags, uint32_t known, const char* field) {
-    if (flags & ~known)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is 0x%x; the known flags are 0x%x.", field, flags,
-                   known);
-}
-
-void checkLimit(uint32_t value, const char* field, uint32_t low, uint32_t high) {
-    if (value < low || value > high)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", field, value,
-                   low, high);
-}
+constexpr double kFarthestOrigin = 1e9;  // m that all places may move in all
 
 FwWorldDef checkedDef(const FwWorldDef& given) {
     FwWorldDef def = given;
@@ -67,288 +51,44 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     return def;
 }
 
-constexpr double kFarthest = 2.0e9;  // mm
-
-// Whole mm around points of the world, where the same place may come out otherwise in another sum.
-mesh::Box boxAround(const double (&low)[3], const double (&high)[3]) noexcept {
-    mesh::Box box;
-    for (int i = 0; i < 3; ++i) {
-        const double loose = 2 + 1e-6 * std::max(std::abs(low[i]), std::abs(high[i]));
-        box.low[i] = int(std::clamp(std::floor(low[i] - loose), -kFarthest, kFarthest));
-        box.high[i] = int(std::clamp(std::ceil(high[i] + loose), -kFarthest, kFarthest));
-    }
-    return box;
-}
-
-// Whether a ball holds the whole of a box; all in object space, radius along the stretched axes.
-bool ballHolds(const float point[3], float radius, const components::Pose& pose,
-               const mesh::BurnDomain& domain) noexcept {
-    double sum = 0;
-    for (int i = 0; i < 3; ++i) {
-        const double far = std::max(std::abs(double(domain.boundsLow[i]) - double(point[i])),
-                                    std::abs(double(domain.boundsHigh[i]) - double(point[i])));
-        sum += far * far * double(pose.stretch[i]) * double(pose.stretch[i]);
-    }
-    return sum <= double(radius) * double(radius);
-}
-
-bool nearBounds(const float point[3], const mesh::BurnDomain& domain, float reach) {
-    // Squared distance to the bounds, so that far objects cost nothing.
-    float sum = 0;
-    for (int i = 0; i < 3; ++i) {
-        const float below = domain.boundsLow[i] - point[i];
-        const float above = point[i] - domain.boundsHigh[i];
-        const float outside = std::max(0.0f, std::max(below, above));
-        sum += outside * outside;
-    }
-    return sum <= reach * reach;
-}
-
 }  // namespace
 
 void checkWorldDef(const FwWorldDef& def) { (void)checkedDef(def); }
 
+// The records that the backend needs to create an object. It points into them.
+struct World::ObjectRecords {
+    gpu::ObjectInit init;
+    components::Records records;
+    std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
+    gpu::DeformObject deform{};
+};
+
 World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
              std::pmr::memory_resource* memory)
-    : memory_(memory),
-      backend_(backend),
-      log_(log),
-      def_(checkedDef(def)),
-      materials_("Material", memory),
-      images_("Image", memory),
-      meshes_("Mesh", memory),
-      objects_("Burnable mesh", memory),
-      queries_("Query", memory),
-      blockers_("Blocker", memory),
-      windPool_("Wind zone", memory),
-      burns_("Baked burn", memory),
-      windZones_(memory),
-      windGrid_(memory),
-      shield_(memory),
-      rooms_("Room", memory),
-      fires_("Volumetric fire", memory),
-      fields_("Particle field", memory),
-      fireProfiles_("Fire profile", memory),
-      flipbooks_("Flipbook", memory),
-      fireColliders_("Fire collider", memory),
-      profiles_(memory),
-      fireShapes_(memory),
-      burning_(memory),
-      fireFlames_(memory),
-      emitters_("Fire emitter", memory),
-      emitterRecords_(memory),
-      emitterGroups_(memory),
-      emitterRings_(memory),
-      sparkSources_(memory),
-      remote_(memory),
-      places_(memory),
-      nearSlots_(memory),
-      imageUsers_(memory),
-      touched_(memory),
-      playing_(memory),
-      burnBytes_(memory),
-      forecasts_(memory),
-      tags_(memory),
-      pending_(memory),
-      found_(memory),
-      holds_(memory),
-      jetAreas_(memory),
-      jetFlux_(memory),
-      jetSlots_(memory),
-      events_(memory),
-      probeFrames_(memory),
-      frame_(memory),
-      stimuli_(memory),
-      frameNotes_(memory),
-      lights_(memory),
-      lightsBefore_(memory),
-      shownLights_(memory),
-      keptLights_(memory),
-      lightSources_(memory),
-      lightTaken_(memory),
-      sources_(memory) {
-    std::copy_n(def_.wind, 3, wind_);
-    setFlags(def_.flags);
-    remote_.governance = {def_.spreadChance, def_.maxHops, def_.maxBurningTiles, def_.timeToLive};
-    remote_.capped = components::caps(remote_.governance);
-    remote_.governed = components::governs(remote_.governance);
-    frame_.steps.reserve(kMaxSteps);
-    lights_.reserve(components::kMostLights);
-    lightsBefore_.reserve(components::kMostLights);
-    shownLights_.reserve(2 * components::kMostLights);
-    keptLights_.reserve(components::kMostLights);
-    // Of meshes, of fires, of emitters.
-    lightSources_.reserve(2 * components::kMostLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
-    lightTaken_.reserve(lightSources_.capacity());
-    sources_.reserve(lightSources_.capacity());
-    probeFrames_.reserve(kFramesInFlight);
-    for (uint32_t i = 0; i < kFramesInFlight; ++i) probeFrames_.emplace_back(memory);
-}
-
-World::~World() {
-    // The backend still holds what the ids stand for; it goes in the order objects, meshes, images.
-    for (uint32_t i = 0; i < objects_.slotCount(); ++i)
-        if (objects_.at(i)) backend_.destroyObject(i);
-    for (uint32_t i = 0; i < meshes_.slotCount(); ++i)
-        if (meshes_.at(i)) backend_.destroyMesh(i);
-    for (uint32_t i = 0; i < images_.slotCount(); ++i)
-        if (const ImageEntry* image = images_.at(i)) backend_.destroyImage(image->slot);
-}
-
-void World::setWind(const float wind[3]) {
-    mayChange();
-    checkLengths(wind, 3, "wind", -fire::kMostWind, fire::kMostWind);
-    if (!std::equal(wind_, wind_ + 3, wind)) ++driveChanges_;
-    components::windChanges(gusts_, fire::windUnits(wind_), clock_.tick);
-    std::copy_n(wind, 3, wind_);
-    windTurns();
-    record(SetWind{{wind[0], wind[1], wind[2]}});
-}
-
-// ---- materials and images ---------------------------------------------------------------------
-
-FwMaterialId World::createMaterial(const FwMaterialDef& def) {
-    fire::checkMaterial(def);
-    return materials_.create(def);
-}
-
-FwImageId World::createImage(const FwImageDef& def) {
-    checkFlags(def.flags, 0, "FwImageDef::flags");
-    checkLimit(def.width, "FwImageDef::width", 1, 8192);
-    checkLimit(def.height, "FwImageDef::height", 1, 8192);
-    if (!def.pixels) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwImageDef::pixels is null.");
-    checkValue(def.alphaCutoff, "FwImageDef::alphaCutoff", 0.0f, 1.0f);
-    checkValue(def.reserved, "FwImageDef::reserved", 0.0f, 0.0f);
-    uint32_t slot = 0;
-    while (slot < imageUsers_.size() && imageUsers_[slot] != 0) ++slot;
-    if (slot == imageUsers_.size()) imageUsers_.push_back(0);
-    const size_t bytes = size_t(def.width) * def.height * 4;
-    ImageEntry entry{slot, components::makeCutOut(def, memory_)};
-    backend_.createImage(slot, def.width, def.height,
-                         {static_cast<const std::byte*>(def.pixels), bytes}, def.alphaCutoff);
-    try {
-        const FwImageId id = images_.create(std::move(entry));
-        imageUsers_[slot] = 1;
-        return id;
-    } catch (...) {
-        backend_.destroyImage(slot);
-        throw;
-    }
-}
-
-bool World::showsImage(FwImageId id) { return imageUsers_[images_.get(id).slot] > 1; }
-
-void World::destroyImage(FwImageId id) {
-    const uint32_t slot = images_.get(id).slot;
-    backend_.destroyImage(slot);
-    images_.destroy(id);
-    --imageUsers_[slot];  // not given out again while an object still names it
-}
-
-void World::countImages(const components::BurnableMesh& object, bool more) noexcept {
-    for (const uint32_t plus1 : object.imagesPlus1)
-        if (plus1 != 0) imageUsers_[plus1 - 1] += more ? 1u : ~0u;
-}
-
-void World::countFuel(const Object& object, bool more) noexcept {
-    if (!components::keepsBook(object.data)) return;
-    ledgers_ += more ? 1u : ~0u;
-    fuel_ += more ? object.fuel.energy : 0 - object.fuel.energy;
-}
-
-// ---- meshes -----------------------------------------------------------------------------------
-
-FwMeshId World::createMesh(const FwMeshDef& def) {
-    return createEntry(makeEntry(makeDomain(def, memory_)));
-}
-
-MeshEntry World::makeEntry(core::Owned<mesh::BurnDomain> domain) const {
-    MeshEntry entry;
-    entry.domain = std::move(domain);
-    for (const mesh::TexelPosition& texel : entry.domain->texels)
-        if (texel.materialFlags & mesh::kTexelReal)
-            ++entry.texelsOf[texel.materialFlags & 0xFF & (gpu::kMaterialsPerObject - 1)];
-    return entry;
-}
-
-FwMeshId World::createEntry(MeshEntry entry) {
-    const mesh::BurnDomain& domain = *entry.domain;
-    const FwMeshId id = meshes_.create(std::move(entry));
-    try {
-        backend_.createMesh(id.index1 - 1, domain);
-    } catch (...) {
-        meshes_.destroy(id);
-        throw;
-    }
-    return id;
-}
-
-uint32_t World::shapedSlot(uint32_t slot, const float shape[3]) {
-    if (shape[0] == 1 && shape[1] == 1 && shape[2] == 1) return slot;
-    for (uint32_t i = 0; i < meshes_.slotCount(); ++i) {
-        const MeshEntry* entry = meshes_.at(i);
-        if (!entry || entry->parentPlus1 != slot + 1) continue;
-        float most = 0;
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::abs(entry->shape[k] / shape[k] - 1));
-        if (most <= 1e-4f) return i;
-    }
-    MeshEntry entry = makeEntry(core::Owned<mesh::BurnDomain>::make(
-        memory_, mesh::shaped(*meshes_.at(slot)->domain, shape, memory_)));
-    entry.parentPlus1 = slot + 1;
-    std::copy_n(shape, 3, entry.shape);
-    const uint32_t made = createEntry(std::move(entry)).index1 - 1;
-    ++meshes_.at(slot)->users;
-    ++shapes_;
-    return made;
-}
-
-// What no object uses goes; a mesh of the host's stays.
-void World::releaseShape(uint32_t slot) noexcept {
-    const MeshEntry& entry = *meshes_.at(slot);
-    if (entry.users > 0 || entry.parentPlus1 == 0) return;
-    --meshes_.at(entry.parentPlus1 - 1)->users;
-    --shapes_;
-    backend_.destroyMesh(slot);
-    meshes_.destroy(meshes_.idOf(slot));
-}
-
-void World::destroyMesh(FwMeshId id) {
-    MeshEntry& entry = meshes_.get(id);
-    if (entry.users > 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Mesh %u (generation %u) is used by %u burnable mesh(es); destroy them first.",
-                   id.index1, id.generation, entry.users);
-    backend_.destroyMesh(id.index1 - 1);
-    meshes_.destroy(id);
-}
-
-void World::meshInfo(FwMeshId id, FwMeshInfo& info) {
-    const mesh::BurnDomain& domain = *meshes_.get(id).domain;
-    const mesh::BakeReport& report = domain.report;
-    info.mapWidth = domain.width;
-    info.mapHeight = domain.height;
-    info.texels = report.realTexels;
-    info.charts = report.charts;
-    info.vertices = uint32_t(domain.vertices.size());
-    info.triangles = uint32_t(domain.indices.size() / 3);
-    info.degenerateTriangles = report.degenerate;
-    info.openEdges = report.openEdges;
-    info.nonManifoldEdges = report.nonManifoldEdges;
-    info.usedOwnUvs = report.usedOwnUv;
-    info.area = float(report.meshArea);
-    info.texelArea = float(report.texelArea);
-    std::copy_n(domain.boundsLow, 3, info.boundsLow);
-    std::copy_n(domain.boundsHigh, 3, info.boundsHigh);
-    info.texelsPerMetre = domain.texelSide > 0 ? 1.0f / domain.texelSide : 0.0f;
-    info.bakeMilliseconds = float(report.milliseconds);
+    : events_(memory),
+      context_{memory, backend, log, checkedDef(def), events_, persistence_, {}, {}},
+      scene_(context_),
+      wind_(context_, scene_, exchange_, fields_),
+      rooms_(context_, scene_),
+      fields_(context_, scene_, wind_, burn_),
+      flames_(context_, scene_, wind_, exchange_, burn_),
+      emitters_(context_, scene_, wind_, exchange_, flames_, queries_, burn_),
+      lights_(context_, scene_, flames_, emitters_),
+      exchange_(context_, scene_, wind_),
+      burn_(context_, scene_, wind_, rooms_, exchange_, emitters_, queries_),
+      queries_(context_, scene_, wind_, exchange_, flames_, emitters_, lights_, burn_),
+      budget_(context_),
+      persistence_(*this) {
+    exchange_.setFlags(context_.def.flags);
 }
 
 // ---- burnable meshes --------------------------------------------------------------------------
 
 FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
-    (void)meshes_.get(given.mesh);
-    const FwBurnableMeshDef def = components::underSwitches(given, remote_.objectFlags);
-    core::Owned<Object> owned = core::Owned<Object>::make(memory_, memory_);
+    (void)scene_.meshes.get(given.mesh);
+    const FwBurnableMeshDef def =
+        components::underSwitches(given, exchange_.state().book.objectFlags);
+    core::Owned<Object> owned = core::Owned<Object>::make(context_.memory, context_.memory);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
     components::checkDeform(def);
@@ -358,311 +98,175 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
         if (!named)
             components::setMaterial(object.data, i, presetDef(FW_MATERIAL_PINE));
         else if (def.materials[i].index1 != 0)
-            components::setMaterial(object.data, i, materials_.get(def.materials[i]));
+            components::setMaterial(object.data, i, scene_.materials.get(def.materials[i]));
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;
-        if (image.index1 != 0) object.data.imagesPlus1[i] = images_.get(image).slot + 1;
+        if (image.index1 != 0) object.data.imagesPlus1[i] = scene_.images.get(image).slot + 1;
     }
 
-    const uint32_t meshSlot = shapedSlot(def.mesh.index1 - 1, object.data.shape);
+    const uint32_t meshSlot = scene_.shapedSlot(def.mesh.index1 - 1, object.data.shape);
     try {
         return createOn(meshSlot, def, std::move(owned));
     } catch (...) {
-        releaseShape(meshSlot);
+        scene_.releaseShape(meshSlot);
         throw;
     }
 }
 
-std::span<const uint8_t> World::goneOf(const FwBurnableMeshDef& def, MeshEntry& mesh) {
-    std::array<const components::CutOut*, gpu::kMaterialsPerObject> pictures{};
-    std::array<FwImageId, gpu::kMaterialsPerObject> images{};
-    bool any = false;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
-        const FwImageId image = def.baseColors[i].index1 ? def.baseColors[i] : def.baseColor;
-        if (image.index1 == 0) continue;
-        const components::CutOut& cutOut = images_.get(image).cutOut;
-        if (cutOut.width == 0) continue;
-        pictures[i] = &cutOut;
-        images[i] = image;
-        any = true;
-    }
-    if (!any) return {};
-    const auto same = [](const FwImageId& a, const FwImageId& b) {
-        return a.index1 == b.index1 && a.generation == b.generation;
-    };
-    if (!mesh.gone || !std::equal(images.begin(), images.end(), mesh.gone->images.begin(), same)) {
-        auto gone = core::Owned<GoneTexels>::make(memory_, memory_);
-        gone->images = images;
-        gone->texels = components::makeGone(*mesh.domain, pictures, memory_);
-        mesh.gone = std::move(gone);
-    }
-    return mesh.gone->texels;
+// `gone`: texels that pictures cut out.
+void World::countObjectFuel(Object& object, const MeshEntry& mesh,
+                            std::span<const uint8_t> gone) const {
+    if (!components::keepsBook(object.data)) return;
+    const mesh::BurnDomain& domain = *mesh.domain;
+    std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf = mesh.texelsOf;
+    for (uint32_t i = 0; i < gone.size(); ++i)
+        if (gone[i]) --texelsOf[domain.texels[i].materialFlags & (gpu::kMaterialsPerObject - 1)];
+    object.fuel = components::fuelOf(object.data, domain, texelsOf, context_.def.paceFactor);
 }
 
-FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
-                                 core::Owned<Object> owned) {
-    ++geometry_;
-    Object& object = *owned;
-    MeshEntry& mesh = *meshes_.at(meshSlot);
-    object.data.meshSlot = meshSlot;
+// The records of a new object, as they are under the wind and in the room where it stands.
+void World::makeRecords(Object& object, MeshEntry& mesh, const FwBurnableMeshDef& def,
+                        ObjectRecords& made) {
     const mesh::BurnDomain& domain = *mesh.domain;
-    const std::span<const uint8_t> gone = goneOf(def, mesh);
-    object.slowness = components::makeSlowness(def, domain, gone, memory_);
-    for (uint32_t i = 0; i < domain.texelCount(); ++i)
-        object.texels += canBurn(object, i) ? 1u : 0u;
-
-    const components::DriveInput drive = driveInput(object, clock_.tick);
+    const components::DriveInput drive = wind_.driveInput(object, context_.clock.tick);
     components::resetLatch(object.data, drive, object.latch);
-    const components::Records records =
-        components::makeRecords(object.data, domain, drive, object.latch);
-    gpu::ObjectInit init;
+    made.records = components::makeRecords(object.data, domain, drive, object.latch);
+    const components::Records& records = made.records;
+    gpu::ObjectInit& init = made.init;
     init.mesh = object.data.meshSlot;
-    object.zoneWind = zoneWindOf(object, clock_.tick);
+    object.zoneWind = wind_.localWindOf(object, context_.clock.tick);
     init.record = components::makeObject(object.data, domain, records);
     init.record.zoneWind = object.zoneWind;
-    object.room1 = roomOf(object);
+    object.room1 = rooms_.roomOf(object);
     init.record.flags |= object.room1 << gpu::kObjectRoomShift;
     init.materials = records.materials;
     init.slowness = object.slowness;
     std::copy(object.data.imagesPlus1.begin(), object.data.imagesPlus1.end(), init.images);
-    std::array<gpu::HeatMaterial, gpu::kMaterialsPerObject> heat;
-    if (components::keepsBook(object.data)) {
-        std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf = mesh.texelsOf;
-        for (uint32_t i = 0; i < gone.size(); ++i)
-            if (gone[i])
-                --texelsOf[domain.texels[i].materialFlags & (gpu::kMaterialsPerObject - 1)];
-        object.fuel = components::fuelOf(object.data, domain, texelsOf, def_.paceFactor);
-    }
     if (components::hasHeat(object.data)) {
-        heat = components::makeHeatMaterials(object.data, domain, def_.paceFactor);
-        init.heat = heat;
+        made.heat = components::makeHeatMaterials(object.data, domain, context_.def.paceFactor);
+        init.heat = made.heat;
     }
     std::copy_n(object.data.shape, 3, init.shape);
     if (def.flags & (FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED)) {
-        refineMesh(mesh, init.mesh, def, object.data);
+        scene_.refineMesh(mesh, init.mesh, def, object.data);
         init.refine = true;
         init.refineDepth = def.refineDepth;
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
         if (def.flags & FW_BURNABLE_REFINE_PUBLISHED) {
             init.arpModel = mesh.arps[def.refineDepth].get();
-            init.arp = arpSettings(def, *init.arpModel, object.data);
+            init.arp = scene_.arpSettings(def, *init.arpModel, object.data);
         }
     }
-    init.inner = innerSkin(mesh, init.mesh, object.data);
-    gpu::DeformObject deform{};
+    init.inner = scene_.innerSkin(mesh, init.mesh, object.data);
     if (components::deforms(object.data) || (object.data.flags & FW_BURNABLE_SKINNED)) {
         if (!mesh.deform) {
-            auto model = core::Owned<mesh::DeformModel>::make(memory_, memory_);
-            *model = mesh::makeDeformModel(domain, memory_);
+            auto model = core::Owned<mesh::DeformModel>::make(context_.memory, context_.memory);
+            *model = mesh::makeDeformModel(domain, context_.memory);
             mesh.deform = std::move(model);
         }
-        deform = components::makeDeform(def, object.data, records);
-        if (init.inner) deform.wall = mesh.innerWall;
+        made.deform = components::makeDeform(def, object.data, records);
+        if (init.inner) made.deform.wall = mesh.innerWall;
         init.deformModel = mesh.deform.get();
-        init.deform = &deform;
+        init.deform = &made.deform;
     }
+}
+
+FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def,
+                                 core::Owned<Object> owned) {
+    ++scene_.geometryVersion;
+    Object& object = *owned;
+    MeshEntry& mesh = *scene_.meshes.at(meshSlot);
+    object.data.meshSlot = meshSlot;
+    const std::span<const uint8_t> gone = scene_.goneOf(def, mesh);
+    object.slowness = components::makeSlowness(def, *mesh.domain, gone, context_.memory);
+    for (uint32_t i = 0; i < mesh.domain->texelCount(); ++i)
+        object.texels += scene_.canBurn(object, i) ? 1u : 0u;
+    countObjectFuel(object, mesh, gone);
+    const uint32_t burnable = object.texels;
+    ObjectRecords made;
+    makeRecords(object, mesh, def, made);
 
     checkValue(def.spreadChance, "FwBurnableMeshDef::spreadChance", 0.0f, 1.0f);
     checkValue(def.timeToLive, "FwBurnableMeshDef::timeToLive", 0.0f, 1e6f);
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
     object.remoteDue = true;
-    object.firstFrame = lastFrame_ + 1;
-    object.breaks = makeBreaks(def, mesh, gone);
-    const uint32_t burnable = object.texels;
-    const FwBurnableMeshId id = objects_.create(std::move(owned));
+    object.firstFrame = context_.lastFrame + 1;
+    object.breaks = burn_.makeBreaks(def, mesh, gone);
+    const FwBurnableMeshId id = scene_.objects.create(std::move(owned));
     object.id = id;
     object.slot = id.index1 - 1;
     try {
-        // So that a warmed-up frame finds its room: one latch and update per object.
-        const size_t slots = objects_.slotCount();
-        core::growTo(frame_.latches, slots);
-        core::growTo(frame_.updates, slots);
-        core::growTo(touched_, slots);
-        for (auto* perObject :
-             {&frame_.burnMaps, &frame_.breaks, &jetSlots_, &nearSlots_, &remote_.due,
-              &remote_.unsentSlots, &remote_.waiting, &remote_.contactsDue, &remote_.seenDue})
-            core::growTo(*perObject, slots);
-        placeNow(object);
-        backend_.createObject(object.slot, init);
+        scene_.reserveSlots();
+        burn_.reserveSlots();
+        queries_.reserveSlots();
+        exchange_.reserveSlots();
+        emitters_.reserveSlots(scene_.objects.slotCount());
+        scene_.placeNow(object);
+        context_.backend.createObject(object.slot, made.init);
     } catch (...) {
-        places_.remove(object.slot);
-        objects_.destroy(id);
+        scene_.places.remove(object.slot);
+        scene_.objects.destroy(id);
         throw;
     }
     object.latch.sent = true;  // it was created with these records
     ++mesh.users;
-    remote_.due.push_back(object.slot);  // room was found above
-    countGoverned(object, true);
-    texels_ += burnable;
-    countFuel(object, true);
+    exchange_.addObject(object);
+    wind_.addObject(object);
+    scene_.texels += burnable;
+    scene_.countFuel(object, true);
+    scene_.countImages(object.data, true);
     object.memoryBytes = sizeof(Object) + object.slowness.capacity() * sizeof(uint16_t) +
                          (object.skin.capacity() + object.skinNormals.capacity()) * sizeof(float);
     memoryCounts_.objects += object.memoryBytes;
     countMemory();
-    windKept_ |= object.zoneWind != 0;
-    countImages(object.data, true);
     return id;
 }
 
-// Once per mesh and depth. The walls and their holes are those of the materials of the first who
-// asks.
-void World::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
-                       const components::BurnableMesh& object) {
-    const bool published = (def.flags & FW_BURNABLE_REFINE_PUBLISHED) != 0;
-    const uint32_t bit = 1u << (def.refineDepth + (published ? 16 : 0));
-    if (mesh.refinements & bit) return;
-    mesh::RefineOptions options;
-    if (published) options = mesh::arpOptions(def.refineDepth);
-    options.depth = def.refineDepth;
-    float wall = 0;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        if (components::burns(object, i)) wall = std::max(wall, object.materials[i].thickness);
-    if (wall > 0) options.wall = std::clamp(wall, 1e-4f, 0.5f);
-    std::array<mesh::RefineHoles, gpu::kMaterialsPerObject> holes;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-        if (components::burns(object, i))
-            holes[i] = components::holesOf(components::materialLook(object.materials[i].look));
-    const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, memory_);
-    core::Owned<mesh::ArpModel> arp;
-    if (published) {
-        arp = core::Owned<mesh::ArpModel>::make(memory_, memory_);
-        *arp = mesh::makeArpModel(*mesh.domain, model, def.refineDepth, memory_);
-    }
-    backend_.createRefinement(slot, def.refineDepth, published, *mesh.domain, model, holes);
-    if (published) mesh.arps[def.refineDepth] = std::move(arp);
-    mesh.refinements |= bit;
-}
-
-// Whether an object is drawn on its mesh's inner skin from inside, which is made for the first who
-// is: as thick as its walls. What is cut has places of its own, so has what moves its vertices but
-// for what recedes, and what never opens has nothing to look through.
-bool World::innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object) {
-    constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
-                                 FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
-                                 FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
-    const bool moves = components::deforms(object) && (object.flags & FW_BURNABLE_RECEDE) == 0;
-    if ((object.flags & kOthers) != 0 || moves || !backend_.draws()) return false;
-    if (mesh.innerSkin == InnerSkin::unknown) {
-        float wall = 0;
-        for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
-            if (components::burns(object, i) &&
-                components::materialLook(object.materials[i].look).holeTime > 0)
-                wall = std::max(wall, object.materials[i].thickness);
-        if (!(wall > 0)) return false;
-        wall = std::clamp(wall, 1e-4f, 0.5f);
-        const std::pmr::vector<glm::vec3> places = mesh::innerSkin(*mesh.domain, wall, memory_);
-        mesh.innerWall = wall;
-        if (!places.empty()) backend_.createInnerSkin(slot, *mesh.domain, places);
-        mesh.innerSkin = places.empty() ? InnerSkin::none : InnerSkin::there;
-    }
-    return mesh.innerSkin == InnerSkin::there;
-}
-
-// The boundary keeps up with the head of a fire that climbs.
-mesh::ArpSettings World::arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,
-                                     const components::BurnableMesh& object) const {
-    float speed = 0;
-    for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
-        if (!components::burns(object, i)) continue;
-        const FwMaterialDef& m = object.materials[i];
-        speed = std::max(speed, m.spreadRate * (1 + m.headGain * std::min(m.upGain, m.driveMax)));
-    }
-    return mesh::arpSettings(model, def.heatPsi, def.heatStep,
-                             speed * def_.paceFactor / object.pose.scale);
-}
-
 void World::destroyBurnableMesh(FwBurnableMeshId id) {
-    Object& object = *objects_.get(id);
-    if (gives(object.slot))
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
-            "Burnable mesh %u gives its burn to another one with the next step; destroy it after "
-            "that.",
-            id.index1);
-    keepGiven(object);
-    ++geometry_;
+    Object& object = *scene_.objects.get(id);
+    burn_.checkGone(object);
+    burn_.keepGiven(object);
+    ++scene_.geometryVersion;
     const uint32_t slot = object.slot;
-    countImages(object.data, false);
     const uint32_t meshSlot = object.data.meshSlot;
-    --meshes_.at(meshSlot)->users;
-    std::erase_if(pending_, [&](const PendingTexel& p) {
-        bool there = p.object == slot;
-        for (uint32_t g = 0; g < p.gateCount; ++g) there |= p.gates[g].object == slot;
-        return there;
-    });
-    forgetGates(slot);
-    std::erase_if(tags_, [&](const Tag& tag) { return tag.object.index1 == id.index1; });
-    for (uint32_t i = 0; i < queries_.slotCount(); ++i)
-        if (const Query* query = queries_.at(i); query && query->object.index1 == id.index1)
-            queries_.destroy(queries_.idOf(i));
-    std::erase(touched_, &object);
-    std::erase(playing_, &object);
-    std::erase(forecasts_, slot);
-    places_.remove(slot);
-    forgetRemote(object);
-    std::erase_if(stimuli_, [&](const Stimulus& one) { return one.slot == slot; });
-    forgetTouches(id);
-    countGoverned(object, false);
-    dropFromShield(slot);
-    texels_ -= object.texels;
-    countFuel(object, false);
+    burn_.forgetObject(object);
+    emitters_.forgetObject(id, slot);
+    queries_.forgetObject(object);
+    exchange_.forgetObject(object);
+    flames_.forgetObject(id);
+    scene_.forgetObject(object);
     memoryCounts_.objects -= object.memoryBytes;
-    if (object.map.wished) --mapsWished_;
-    if (object.forecast && object.forecast->wished) --mapsWished_;
-    backend_.destroyObject(slot);
-    objects_.destroy(id);
-    releaseShape(meshSlot);
-}
-
-void World::sendPose(const Object& object) noexcept {
-    gpu::vec4 rows[3];
-    components::poseRows(object.data.pose, rows);
-    backend_.setObjectPose(object.slot, rows, components::objectTint(object.data, domainOf(object)),
-                           components::objectFlags(object.data, domainOf(object)) |
-                               object.room1 << gpu::kObjectRoomShift);
+    context_.backend.destroyObject(slot);
+    scene_.objects.destroy(id);
+    scene_.releaseShape(meshSlot);
 }
 
 void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
-    mayChange();
-    Object& object = *objects_.get(id);
-    places_.reserveMoves(1);
+    persistence_.mayChange();
+    Object& object = *scene_.objects.get(id);
+    scene_.places.reserveMoves(1);
     const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
-    placeNow(object);
+    scene_.placeNow(object);
     object.restsUnder = 0;
     if (!(object.data.pose == before)) {
-        ++geometry_;
+        ++scene_.geometryVersion;
         ++object.changes;
     }
-    if (!object.remoteDue) {  // at most once each: room was found at its creation
-        object.remoteDue = true;
-        remote_.due.push_back(object.slot);
-    }
-    takeZoneWind(object);
-    if (const uint32_t room1 = roomOf(object); room1 != object.room1) {
+    exchange_.markMoved(object);
+    wind_.updateObject(object);
+    if (const uint32_t room1 = rooms_.roomOf(object); room1 != object.room1) {
         object.room1 = room1;
-        stirRooms();
+        rooms_.stir();
     }
-    sendPose(object);
-    record(SetPose{object.slot, Transform(transform)});
-}
-
-uint32_t World::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
-    const Object& object = *objects_.get(id);
-    if (!(object.data.flags & FW_BURNABLE_SKINNED))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u was created without FW_BURNABLE_SKINNED.", id.index1);
-    const uint32_t vertices = domainOf(object).report.vertices;
-    if (vertexCount != vertices)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "vertexCount is %u; the mesh has %u vertices.",
-                   vertexCount, vertices);
-    return object.slot;
+    scene_.sendPose(object);
+    persistence_.record(SetPose{object.slot, Transform(transform)});
 }
 
 void World::setVertexPositions(FwBurnableMeshId id, const float* positions, const float* normals,
                                uint32_t count) {
-    ++geometry_;
-    Object& object = **objects_.at(skinnedSlot(id, count));
+    ++scene_.geometryVersion;
+    Object& object = scene_.objectAt(scene_.skinnedSlot(id, count));
     const unsigned values = count * 3;
     checkLengths(positions, values, "positions", -1e6f, 1e6f);
     if (normals) checkValues(normals, values, "normals", -1e6f, 1e6f);
@@ -679,32 +283,147 @@ void World::setVertexPositions(FwBurnableMeshId id, const float* positions, cons
         const float scale = sum > 0 ? 1 / std::sqrt(sum) : 0;
         for (unsigned k = 0; k < 3; ++k) object.skinNormals[i + k] *= scale;
     }
-    places_.reserveMoves(1);
+    scene_.places.reserveMoves(1);
     object.skinMoved = true;
-    placeNow(object);
-    backend_.setVertices(object.slot, object.skin, object.skinNormals);
+    scene_.placeNow(object);
+    context_.backend.setVertices(object.slot, object.skin, object.skinNormals);
 }
 
-void World::setHidden(FwBurnableMeshId id, bool hidden) {
-    Object& object = *objects_.get(id);
-    object.data.flags = (object.data.flags & ~uint32_t(FW_BURNABLE_HIDDEN)) |
-                        (hidden ? uint32_t(FW_BURNABLE_HIDDEN) : 0u);
-    sendPose(object);
+// ---- frames -----------------------------------------------------------------------------------
+
+void World::checkFrame(uint64_t frameIndex, float deltaTime) const {
+    components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
+    if (frameIndex <= context_.lastFrame)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "frameIndex is %llu and the last frame was %llu; it grows.",
+                   static_cast<unsigned long long>(frameIndex),
+                   static_cast<unsigned long long>(context_.lastFrame));
+    if (deltaTime > 0 && context_.clock.tick >= Clock::kLastTick)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The world has simulated %llu s, which is the limit; create a new one. With "
+                   "deltaTime 0 it can still be drawn and asked.",
+                   static_cast<unsigned long long>(Clock::kLastTick / 4096));
+    persistence_.checkFrame(deltaTime);
 }
+
+void World::advance(uint64_t frameIndex, float deltaTime) {
+    checkFrame(frameIndex, deltaTime);
+    collectReadbacks();
+    wind_.prepare();
+    const ClockAdvance time =
+        fw::world::advance(context_.clock, deltaTime, context_.def.maxStepsPerFrame);
+    gpu::FramePlan plan;
+    plan.frameIndex = frameIndex;
+    this->plan(time, deltaTime, plan);
+    context_.backend.run(plan);
+    commit(frameIndex, time, deltaTime);
+    collect();
+    queries_.runForecasts();
+}
+
+// If it throws, the world is as it was.
+void World::plan(const ClockAdvance& time, float deltaTime, gpu::FramePlan& plan) {
+    const uint64_t end = time.after.tick;
+    const size_t waiting = burn_.pendingCount();
+    emitters_.beginFrame();
+    try {
+        actOnObjects(end);
+        burn_.plan(time);
+        queries_.plan();
+        persistence_.plan(time);
+        burn_.planBreaks(end);
+        burn_.reserveStimuli();
+    } catch (...) {
+        burn_.dropPending(waiting);
+        throw;
+    }
+    flames_.plan(deltaTime, plan);
+    emitters_.plan(deltaTime, plan);
+    fields_.plan(time, plan);
+    burn_.fillPlan(plan);
+    queries_.fillPlan(plan);
+    persistence_.fillPlan(plan);
+    budget_.plan(plan);
+    plan.switches = context_.switches;
+    plan.endTick = uint32_t(end);
+    plan.tickFraction = float(double(time.after.fraction) / double(Clock::kStepUnits));
+    std::copy_n(wind_.state().wind, 3, plan.wind);
+}
+
+// A frame that fails leaves times of contact behind that the next one finds, no more.
+void World::actOnObjects(uint64_t end) {
+    const uint64_t first =
+        (context_.clock.tick + gpu::kExchangeTicks - 1) / gpu::kExchangeTicks * gpu::kExchangeTicks;
+    if (first < end) emitters_.beginExchanges(uint32_t(first));
+    for (uint64_t now = first; now < end; now += gpu::kExchangeTicks) {
+        flames_.igniteObjects(uint32_t(now));
+        emitters_.heatObjects(uint32_t(now));
+        fields_.wetObjects(uint32_t(now));
+    }
+}
+
+void World::commit(uint64_t frameIndex, const ClockAdvance& time, float deltaTime) {
+    burn_.commit(frameIndex, time);
+    queries_.commit(frameIndex);
+    flames_.commit();
+    fields_.commit(time.after.tick);
+    const uint64_t before = context_.clock.tick;
+    if (before < Clock::kWarnTick && time.after.tick >= Clock::kWarnTick)
+        context_.log.write(FW_LOG_WARNING, "A world has a day left: it simulates at most %llu s.",
+                           static_cast<unsigned long long>(Clock::kLastTick / 4096));
+    context_.clock = time.after;
+    context_.lastFrame = frameIndex;
+    ++context_.frames;
+    persistence_.commitTimeline(before);
+    countMemory();
+    emitters_.commit(deltaTime);
+    lights_.commit(deltaTime);
+    persistence_.commitSave(frameIndex);
+}
+
+void World::collect() noexcept {
+    try {
+        collectReadbacks();
+    } catch (...) {  // the next frame tries again, and may say so
+    }
+}
+
+void World::collectReadbacks() {
+    while (const gpu::Readback* readback = context_.backend.nextReadback())
+        if (readback->frameIndex > context_.loadedFrame) applyReadback(*readback);
+}
+
+void World::applyReadback(const gpu::Readback& readback) {
+    burn_.onFrameDone(readback.frameIndex);
+    context_.readbackFrame = readback.frameIndex;
+    context_.origin.forgetBefore(readback.frameIndex);
+    context_.readbackTick = readback.endTick;
+    budget_.onReadback(readback);
+    burn_.onReadback(readback);
+    queries_.onReadback(readback);
+    lights_.onReadback(readback);
+    fields_.onReadback(readback);
+    const BurnCounts& counts = burn_.state().counts;
+    rooms_.onReadback(readback, counts.hot != 0 || counts.burning != 0);
+    for (const gpu::BurnMap& map : readback.burnMaps) {
+        if (map.object >= scene_.objects.slotCount()) continue;
+        auto* owned = scene_.objects.at(map.object);
+        if (!owned || (*owned)->firstFrame > readback.frameIndex) continue;
+        persistence_.onBurnMap(map, readback);
+        burn_.onBurnMap(**owned, map, readback);
+        queries_.onBurnMap(**owned, map, readback);
+    }
+    burn_.settle(readback);
+    persistence_.takeSaves(readback);
+}
+
+// ---- figures ----------------------------------------------------------------------------------
 
 void World::countMemory() noexcept {
-    memoryCounts_.frames = frame_.latches.capacity() * sizeof(Frame::LatchOf) +
-                           frame_.updates.capacity() * sizeof(gpu::MaterialUpdate) +
-                           frame_.due.capacity() * sizeof(Frame::Due) +
-                           frame_.events.capacity() * sizeof(gpu::TexelEvent) +
-                           pending_.capacity() * sizeof(PendingTexel);
-    uint64_t near = remote_.neighbours.bytes() + places_.bytes();
-    for (const auto& tables : frame_.remote)
-        near += tables->objects.capacity() * sizeof(gpu::RemoteUpdate::Placed) +
-                tables->neighbours.capacity() * sizeof(uint32_t);
-    memoryCounts_.neighbours = near;
-    memoryCounts_.contacts = remote_.links.bytes() + remote_.close.bytes() +
-                             remote_.pairs.capacity() * sizeof(PairContacts);
+    memoryCounts_.frames = burn_.bytes();
+    const ExchangeSystem::Memory exchange = exchange_.memory();
+    memoryCounts_.neighbours = exchange.neighbours + scene_.places.bytes();
+    memoryCounts_.contacts = exchange.contacts;
 }
 
 void World::memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const {
@@ -715,182 +434,85 @@ void World::memoryRows(std::pmr::vector<gpu::MemoryRow>& out) const {
     row("world contacts", memoryCounts_.contacts);
 }
 
-// ---- ball events -> texels --------------------------------------------------------------------
-
-uint32_t World::eventTick(float delay) const {
-    const uint64_t tick =
-        clock_.hostTick() + uint64_t(std::lround(double(delay) * gpu::kTicksPerSecond));
-    return uint32_t(std::min<uint64_t>(tick, Clock::kLastTick));
-}
-
-void World::findPendingRoom(size_t more) {
-    if (pending_.size() + more > kMaxPending)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%zu texel events wait and %zu more come; the limit is %zu.", pending_.size(),
-                   more, kMaxPending);
-    core::growTo(pending_, pending_.size() + more);
-}
-
-void World::placeNow(const Object& object) {
-    const mesh::BurnDomain& domain = domainOf(object);
-    const components::Pose& pose = object.data.pose;
-    double low[3], high[3];
-    // The host has moved its vertices: they may be anywhere.
-    for (int i = 0; i < 3; ++i) low[i] = -(high[i] = object.skinMoved ? kFarthest : -kFarthest);
-    float longest = 0, shortest = components::kMostStretch;
-    for (const float stretch : pose.stretch) {
-        longest = std::max(longest, std::abs(stretch));
-        shortest = std::min(shortest, std::abs(stretch));
+void World::stats(FwWorldStats& stats) noexcept {
+    const BurnState& burn = burn_.state();
+    stats.steps = burn.steps;
+    stats.tick = context_.clock.tick;
+    stats.readbackFrame = context_.readbackFrame;
+    stats.objects = scene_.objects.live();
+    stats.meshes = scene_.meshes.live() - scene_.shapes;
+    stats.materials = scene_.materials.live();
+    stats.frontTiles = burn.counts.front;
+    stats.runTiles = burn.counts.run;
+    stats.burningTiles = burn.counts.burning;
+    stats.hotTiles = burn.counts.hot;
+    stats.flames = context_.backend.quadsShown();
+    stats.lateClamps = burn.counts.lateClamps;
+    stats.droppedSteps = uint32_t(burn.droppedSteps);
+    for (const Object* object : scene_.touched) {
+        stats.burningObjects += object->counters.burning > 0 ? 1u : 0u;
+        stats.refinedTriangles += object->counters.refined;
     }
-    // Beyond the box: as far as a ball reaches at least that touches none of its texels.
-    const double around = 1000.0 * double(pose.scale) * double(longest) *
-                          std::max(4.0 * double(domain.texelSide), double(domain.linkMax));
-    for (uint32_t corner = 0; corner < 8 && !object.skinMoved; ++corner) {
-        float point[3], at[3];
-        for (uint32_t i = 0; i < 3; ++i)
-            point[i] = (corner >> i & 1 ? domain.boundsHigh : domain.boundsLow)[i];
-        components::toWorld(pose, point, at);
-        for (int i = 0; i < 3; ++i) {
-            low[i] = std::min(low[i], 1000.0 * double(at[i]) - around);
-            high[i] = std::max(high[i], 1000.0 * double(at[i]) + around);
-        }
+    stats.texels = scene_.texels;
+}
+
+void World::setSwitches(uint32_t switches) {
+    constexpr uint32_t kKnown = FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE | FW_DEBUG_NO_SEAM_WAKE |
+                                FW_DEBUG_WRONG_READERS | FW_DEBUG_NO_WIND_WAKE |
+                                FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL | FW_DEBUG_CROSSING |
+                                FW_DEBUG_NO_Z_PASS;
+    if (switches & ~kKnown)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
+                   switches, kKnown);
+    context_.switches = switches;
+}
+
+// ---- the origin -------------------------------------------------------------------------------
+
+void World::shiftOrigin(const float offset[3], float applied[3]) {
+    persistence_.mayChange();
+    checkLengths(offset, 3, "offset", -2e6f, 2e6f);
+    double by[3];
+    for (int i = 0; i < 3; ++i) {
+        by[i] = std::round(double(offset[i]));
+        if (!(std::abs(context_.origin.moved[i] + by[i]) <= kFarthestOrigin))
+            core::fail(FW_ERROR_INVALID_ARGUMENT,
+                       "offset[%d] is " FW_LENGTH " " FW_LENGTH_UNIT
+                       " and all places have moved by " FW_LENGTH " " FW_LENGTH_UNIT
+                       " already; the limit is +-" FW_LENGTH " " FW_LENGTH_UNIT " in all.",
+                       i, by[i], context_.origin.moved[i], kFarthestOrigin);
     }
-    // Balls are as wide as along the shortest axis, in object space. Rare: a scale per axis that an
-    // object was made with is its shape's.
-    if (longest > 1.001f * shortest)
-        for (int i = 0; i < 3; ++i) low[i] = -(high[i] = kFarthest);
-    places_.place(object.slot, boxAround(low, high), 0);
+    float whole[3];
+    for (int i = 0; i < 3; ++i) whole[i] = float(by[i]);
+    scene_.checkShift(by);
+    exchange_.checkShift(by);
+    flames_.checkShift(by);
+    emitters_.checkShift(by);
+    fields_.checkShift(by);
+    wind_.checkShift(by);
+    rooms_.checkShift(by);
+    scene_.places.reserveMoves(scene_.objects.live());
+    std::pmr::vector<Seen> seen = exchange_.recordedSeen();
+    shiftBy(by);
+    exchange_.restoreSeen(seen);
+    if (applied) std::copy_n(whole, 3, applied);
+    persistence_.record(ShiftOrigin{{int32_t(by[0]), int32_t(by[1]), int32_t(by[2])}});
 }
 
-std::span<const uint32_t> World::objectsNear(const mesh::Box& box, float margin) noexcept {
-    nearSlots_.clear();  // room was found with each object
-    const double most = std::ceil(1000.0 * std::max(double(margin), 0.0)) + 2;
-    places_.each(box, uint32_t(std::min(most, 2 * kFarthest)),
-                 [&](uint32_t slot) { nearSlots_.push_back(slot); });
-    std::sort(nearSlots_.begin(), nearSlots_.end());
-    return nearSlots_;
-}
-
-std::span<const uint32_t> World::objectsNear(const float point[3], float margin) noexcept {
-    double at[3];
-    for (int i = 0; i < 3; ++i) at[i] = 1000.0 * double(point[i]);
-    return objectsNear(boxAround(at, at), margin);
-}
-
-void World::addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
-                       std::span<const uint32_t> texels) {
-    findPendingRoom(texels.size());
-    object.firstEvent = std::min(object.firstEvent, tick);
-    if (kind == FW_WET) wetUntil_ = std::max<uint64_t>(wetUntil_, tick + gpu::kStepTicks);
-    for (uint32_t texel : texels)
-        pending_.push_back({object.slot, texel, kind, tick, water, order_++});
-}
-
-uint32_t World::nearTexel(const Object& object, const float point[3], float reach) const noexcept {
-    if (!object.skinMoved && !nearBounds(point, domainOf(object), reach)) return mesh::kNone;
-    return nearestTexel(object, point, reach);
-}
-
-bool World::canBurn(const Object& object, uint32_t texel) const noexcept {
-    const mesh::BurnDomain& domain = domainOf(object);
-    return (object.slowness.empty() ? domain.slowness : object.slowness)[texel] != 0 &&
-           components::burns(object.data, texelMaterial(object, texel));
-}
-
-uint32_t World::igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick) {
-    const mesh::BurnDomain& domain = domainOf(object);
-    float point[3];
-    components::toObject(object.data.pose, def.position, point);
-    const components::Pose& pose = object.data.pose;
-    const float stretched = std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
-    float radius = def.radius / (pose.scale * stretched);
-    // A doused band holds only when it is thicker than the longest link across it.
-    if (def.kind != FW_IGNITE && def.radius > 0)
-        radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
-    const uint32_t water =
-        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
-    const auto wet = [&] {
-        if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
-            wetPatches(object, def, def.kind == FW_WET ? water : components::kPatchDrowned, tick);
-    };
-    // As one operation, whatever it has of texels.
-    if (!object.skinMoved && ballHolds(point, radius * stretched, pose, domain)) {
-        const uint32_t all[] = {kAllTexels};
-        addPending(object, def.kind, tick, water, all);
-        wet();
-        return domain.report.realTexels;
-    }
-    const float reach = std::max(radius, domain.texelSide);
-    const uint32_t nearest = nearTexel(object, point, reach);
-    if (nearest == mesh::kNone) return 0;
-    found_.clear();
-    if (!object.skinMoved)
-        mesh::texelsNear(domain, point, radius, found_);
-    else
-        for (uint32_t i = 0; i < domain.texelCount(); ++i)
-            if (domain.real(i)) found_.push_back(i);
-    // The ball itself decides: a centre off the surface reaches a smaller disc.
-    std::erase_if(found_, [&](uint32_t texel) {
-        float d[3];
-        texelPlace(object, texel, d);
-        for (int i = 0; i < 3; ++i) d[i] = (d[i] - point[i]) * pose.stretch[i];
-        const float reached = radius * stretched;
-        return d[0] * d[0] + d[1] * d[1] + d[2] * d[2] > reached * reached;
-    });
-    if (found_.empty()) found_.push_back(nearest);
-    addPending(object, def.kind, tick, water, found_);
-    wet();
-    return uint32_t(found_.size());
-}
-
-uint32_t World::ignite(const FwIgnitionDef& def, bool* acts) {
-    mayChange();
-    checkValue(def.delay, "FwIgnitionDef::delay", 0.0f, 3600.0f);
-    const size_t before = pending_.size();
-    const uint32_t texels = igniteAt(def, eventTick(def.delay));
-    if (acts) *acts = texels > 0 && (def.kind != FW_IGNITE || lightsSomething(before));
-    return texels;
-}
-
-uint32_t World::igniteAt(const FwIgnitionDef& def, uint32_t tick) {
-    checkLimit(def.kind, "FwIgnitionDef::kind", 0, FW_EXTINGUISH);
-    checkLengths(def.position, 3, "FwIgnitionDef::position", -1e6f, 1e6f);
-    checkLength(def.radius, "FwIgnitionDef::radius", 0.0f, 1e6f);
-    checkValue(def.water, "FwIgnitionDef::water", 0.0f, def.kind == FW_WET ? 1023.0f : 0.0f);
-    for (uint32_t i = 0; i < 2; ++i)
-        if (def.reserved[i] != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwIgnitionDef::reserved[%u] is %u; it is zero.",
-                       i, def.reserved[i]);
-    const size_t before = pending_.size();
-    try {
-        uint32_t texels = 0;
-        if (def.object.index1 != 0)
-            texels = igniteObject(*objects_.get(def.object), def, tick);
-        else
-            for (const uint32_t slot : objectsNear(def.position, def.radius))
-                texels += igniteObject(**objects_.at(slot), def, tick);
-        recordTexels(before);
-        return texels;
-    } catch (...) {
-        pending_.resize(before);
-        throw;
-    }
-}
-
-void World::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels) {
-    Object& object = *objects_.get(id);
-    checkLimit(kind, "kind", 0, FW_EXTINGUISH);
-    const mesh::BurnDomain& domain = domainOf(object);
-    const uint32_t count = domain.texelCount();
-    for (size_t i = 0; i < texels.size(); ++i)
-        if (texels[i] >= count)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "texels[%zu] is %u; the map has %u texels.", i,
-                       texels[i], count);
-    // Heat steps never look at a texel that no triangle covers: an event would change it for good.
-    found_.clear();
-    for (const uint32_t texel : texels)
-        if (domain.real(texel)) found_.push_back(texel);
-    addPending(object, kind, uint32_t(clock_.tick), gpu::kFilmMost, found_);
+void World::shiftBy(const double (&by)[3]) noexcept {
+    if (by[0] == 0 && by[1] == 0 && by[2] == 0) return;
+    context_.origin.add(by, context_.lastFrame);
+    context_.backend.moveWorld(by);
+    scene_.shiftOrigin(by);
+    exchange_.shiftOrigin(by);
+    rooms_.shiftOrigin(by);
+    wind_.shiftOrigin(by);
+    flames_.shiftOrigin(by);
+    emitters_.shiftOrigin(by);
+    fields_.shiftOrigin(by);
+    lights_.shiftOrigin(by);
+    queries_.shiftOrigin(by);
+    events_.move(by);
 }
 
 }  // namespace fw::world

@@ -75,6 +75,23 @@ check_tree() {
             sed 's/$/   <- names Vulkan outside gpu\/vk, gpu\/passes and the edge/' || true
     done
 
+    # Systems of a world see each other through const views and calls: no header of one includes
+    # another's or the world's, and none has a friend but the system that saves and loads them.
+    for file in "$tree"/runtime/world/*_system.h; do
+        [[ -f $file ]] || continue
+        grep -H -n -E '#include "world/([a-z_]+_system|world)\.h"' "$file" |
+            sed 's/$/   <- declare the other system instead/' || true
+        grep -H -n 'friend ' "$file" | grep -v 'friend class PersistenceSystem;' |
+            sed 's/$/   <- only PersistenceSystem is a friend/' || true
+    done
+    # A file of a system does not know the world.
+    for file in "$tree"/runtime/world/*.cpp; do
+        [[ -f $file ]] || continue
+        grep -H -n '#include "world/world\.h"' "$file" | grep -v -F -f <(
+            grep -l -E '^[^/]*\b(World|PersistenceSystem)::' "$tree"/runtime/world/*.cpp) |
+            sed 's/$/   <- a system does not know the world/' || true
+    done
+
     # No mutable globals: the library may be loaded several times in one process.
     for room in runtime plugin/src; do
         sources "$tree/$room" | code_lines | grep -E '\bthread_local\b|\bdynamic_cast\b|\btypeid\b' |
@@ -115,7 +132,10 @@ echo '#include "../../runtime/core/hash.h"' >"$broken/editor/import/a.cpp"
 echo 'thread_local int x;' >"$broken/runtime/world/c.cpp"
 printf '%s\n' '#include "core/e.h"' 'std::vector<int> x = std::array<int, 1>();' >"$broken/runtime/core/d.cpp"
 echo '#include <vector>' >"$broken/runtime/core/e.h"
-expected=17
+echo '#include "world/b_system.h"' >"$broken/runtime/world/a_system.h"
+echo 'friend class BurnSystem;' >"$broken/runtime/world/b_system.h"
+echo '#include "world/world.h"' >"$broken/runtime/world/a_system.cpp"
+expected=20
 noticed=$(check_tree "$broken" | wc -l)
 if [[ $noticed -ne $expected ]]; then
     check_tree "$broken"

@@ -30,9 +30,10 @@ class WorldBench {
     // Flat boards of 0.5 m in rows 1.5 m apart; the first ten stand apart and burn slowly.
     void fill(uint32_t burning, uint32_t idle) {
         const Mesh board = makePlane(0.5, 0.5);
-        FwBurnableMeshDef def = plainBurnableDef(world.createMesh(plainMeshDef(board, 192)));
+        FwBurnableMeshDef def =
+            plainBurnableDef(world.scene().createMesh(plainMeshDef(board, 192)));
         FwMaterialDef wood = fire::presetDef(FW_MATERIAL_PLYWOOD);
-        def.materials[0] = world.createMaterial(wood);
+        def.materials[0] = world.scene().createMaterial(wood);
         for (const int i : {0, 5, 10, 15}) def.transform[i] = 1;
         for (uint32_t i = 0; i < burning + idle; ++i) {
             const bool lit = i < burning;
@@ -48,7 +49,7 @@ class WorldBench {
             ball.position[1] = 0.25f;
             ball.position[2] = def.transform[14];
             ball.radius = 0.05f;
-            (void)world.ignite(ball);
+            (void)world.burn().ignite(ball);
         }
     }
     void frame() {

@@ -31,19 +31,19 @@ struct Burnt {
         mesh.mapSize = 1024;
         mesh.noiseAmplitude = 0.15f;  // as the default has it
         mesh.noiseFeature = 0.012f;
-        FwBurnableMeshDef object = plainBurnableDef(world->createMesh(mesh));
+        FwBurnableMeshDef object = plainBurnableDef(world->scene().createMesh(mesh));
         for (const int i : {0, 5, 10, 15}) object.transform[i] = 1;
-        object.materials[0] = world->createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
+        object.materials[0] = world->scene().createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
         id = world->createBurnableMesh(object);
         if (!burns) return;
         FwIgnitionDef match{};
         match.position[0] = match.position[1] = 0.45f;
         match.radius = 0.05f;
-        (void)world->ignite(match);
+        (void)world->burn().ignite(match);
         FwObjectState state{};
         do {
             world->advance(++frame, 0.5f);
-            world->objectState(id, state);
+            world->queries().objectState(id, state);
         } while (frame < 20 || (state.burning > 0 && frame < 4000));
         FwWorldStats stats{};
         do {  // until it is cold
@@ -52,7 +52,7 @@ struct Burnt {
         } while (stats.hotTiles > 0 && frame < 8000);
     }
     void save() {
-        world->requestSave();
+        world->persistence().requestSave();
         world->advance(++frame, 0);
     }
 };
@@ -65,18 +65,18 @@ Burnt& burnt() {
 void saves(benchmark::State& state) {
     Burnt& one = burnt();
     for (auto _ : state) one.save();
-    state.counters["bytes"] = double(one.world->fetchSave()->size());
+    state.counters["bytes"] = double(one.world->persistence().fetchSave()->size());
     FwObjectState object{};
-    one.world->objectState(one.id, object);
+    one.world->queries().objectState(one.id, object);
     state.counters["burnt"] = double(object.ignited) / double(object.texels);
     state.counters["texels"] = double(object.texels);
 }
 
 void loads(benchmark::State& state) {
     burnt().save();
-    const std::pmr::vector<std::byte> bytes = *burnt().world->fetchSave();
+    const std::pmr::vector<std::byte> bytes = *burnt().world->persistence().fetchSave();
     static Burnt other(false);
-    for (auto _ : state) other.world->load(bytes);
+    for (auto _ : state) other.world->persistence().load(bytes);
     state.counters["bytes"] = double(bytes.size());
 }
 

@@ -59,10 +59,10 @@ class ExchangeEquality : public GpuTest {
             each([&](world::World& w) {
                 FwMeshDef def = plainMeshDef(mesh, 48);
                 def.noiseAmplitude = 0.15f;
-                FwBurnableMeshDef object = plainBurnableDef(w.createMesh(def));
+                FwBurnableMeshDef object = plainBurnableDef(w.scene().createMesh(def));
                 object.flags = flags;
                 FwMaterialDef material = fire::presetDef(preset);
-                object.materials[0] = w.createMaterial(material);
+                object.materials[0] = w.scene().createMaterial(material);
                 moved(object.transform, x, y, z, turn);
                 object.moisture = moisture;
                 object.spreadChance = governance.chance;
@@ -84,12 +84,12 @@ class ExchangeEquality : public GpuTest {
         // Compares the maps of all objects, fetched at the end of the next frame.
         void compare(const std::string& when) {
             each([&](world::World& w) {
-                for (const FwBurnableMeshId id : ids) w.requestBurnMap(id);
+                for (const FwBurnableMeshId id : ids) w.queries().requestBurnMap(id);
             });
             for (int i = 0; i < 8; ++i) step(0);
             for (size_t i = 0; i < ids.size(); ++i) {
-                const world::BurnMapCopy* a = vk.fetchBurnMap(ids[i]);
-                const world::BurnMapCopy* b = cpu.fetchBurnMap(ids[i]);
+                const world::BurnMapCopy* a = vk.queries().fetchBurnMap(ids[i]);
+                const world::BurnMapCopy* b = cpu.queries().fetchBurnMap(ids[i]);
                 ASSERT_TRUE(a && b) << when;
                 ASSERT_EQ(a->tick, b->tick) << when;
                 size_t differ = 0, first = 0;
@@ -105,8 +105,8 @@ class ExchangeEquality : public GpuTest {
                 }
                 heats += a->heat.empty() ? 0 : 1;
                 FwObjectState mine{}, theirs{};
-                vk.objectState(ids[i], mine);
-                cpu.objectState(ids[i], theirs);
+                vk.queries().objectState(ids[i], mine);
+                cpu.queries().objectState(ids[i], theirs);
                 ASSERT_EQ(theirs.ignited, mine.ignited) << when << ", object " << i;
                 ASSERT_EQ(theirs.energy, mine.energy) << when << ", object " << i;
             }
@@ -118,7 +118,7 @@ class ExchangeEquality : public GpuTest {
         uint32_t caught = 0;
         for (const FwBurnableMeshId id : both.ids) {
             FwObjectState state{};
-            both.cpu.objectState(id, state);
+            both.cpu.queries().objectState(id, state);
             caught += state.ignited > 0 ? 1 : 0;
         }
         return caught;
@@ -159,7 +159,7 @@ TEST_F(ExchangeEquality, BallsAroundWholeObjectsAgree) {
                 event.radius = radius;
                 event.delay = delay;
                 event.water = kind == FW_WET ? 40.0f : 0.0f;
-                (void)w.ignite(event);
+                (void)w.burn().ignite(event);
             });
         };
         const auto steps = [&](int frames) {
@@ -213,17 +213,17 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
         moved(wall.transform, 0.8f, 0.3f, 0.8f, 0.4f);
         wall.halfSize[0] = 0.02f;
         wall.halfSize[1] = wall.halfSize[2] = 0.3f;
-        (void)w.addBlocker(wall);
+        (void)w.exchange().addBlocker(wall);
     });
     const auto ignite = [&](size_t i, uint32_t kind, float radius) {
         both.each([&](world::World& w) {
-            const mesh::BurnDomain& domain = w.objectDomain(both.ids[i]);
+            const mesh::BurnDomain& domain = w.scene().objectDomain(both.ids[i]);
             std::vector<uint32_t> texels;
             uint32_t centre = uint32_t(i * 7919) % domain.texelCount();
             for (uint32_t t = 0; t < domain.texelCount(); ++t)
                 if (domain.real(t) && (radius > 1 || (t >= centre && texels.size() < 12)))
                     texels.push_back(t);
-            w.pushTexels(both.ids[i], kind, texels);
+            w.burn().pushTexels(both.ids[i], kind, texels);
         });
     };
     // The cpu shuffles its lists each step; the order must not matter.
@@ -252,11 +252,11 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
             shield.objects = walls;
             shield.objectCount = frame % 80 == 10 ? 4 : 2;
             if (frame % 160 == 130) shield = {};
-            both.each([&](world::World& w) { w.setHeatShield(shield); });
+            both.each([&](world::World& w) { w.exchange().setHeatShield(shield); });
         }
         if (random() % 15 == 0) {
             const float wind[3] = {one(6) - 3, 0, one(6) - 3};
-            both.each([&](world::World& w) { w.setWind(wind); });
+            both.each([&](world::World& w) { w.wind().set(wind); });
         }
         if (random() % 60 == 0) {
             const size_t i = random() % both.ids.size();
@@ -267,7 +267,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
         if (random() % 15 == 0) ignite(random() % both.ids.size(), FW_IGNITE, 0);
         if (random() % 60 == 0) {
             const uint32_t flags = random() % 3 == 0 ? uint32_t(random() % 16) : 15u;
-            both.each([&](world::World& w) { w.setFlags(flags); });
+            both.each([&](world::World& w) { w.exchange().setFlags(flags); });
         }
         both.step(float(count) / 32);
         if (HasFatalFailure()) return;
@@ -307,10 +307,10 @@ TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     }
     const auto light = [&](size_t i) {
         both.each([&](world::World& w) {
-            const mesh::BurnDomain& domain = w.objectDomain(both.ids[i]);
+            const mesh::BurnDomain& domain = w.scene().objectDomain(both.ids[i]);
             for (uint32_t t = domain.texelCount() / 2; t < domain.texelCount(); ++t)
                 if (domain.real(t)) {
-                    w.pushTexels(both.ids[i], FW_IGNITE, {&t, 1});
+                    w.burn().pushTexels(both.ids[i], FW_IGNITE, {&t, 1});
                     return;
                 }
         });
@@ -330,7 +330,7 @@ TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
         jet.position[2] = 3.6f;
         jet.direction[1] = 0;
         jet.direction[2] = -1;
-        (void)w.createFireEmitter(jet);
+        (void)w.emitters().create(jet);
     });
     both.cpu.setSwitches(FW_DEBUG_SHUFFLE);
     uint32_t most = 0, full = 0, mostOfOne = 0;
@@ -357,7 +357,7 @@ TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     EXPECT_EQ(kOfWorld, most);
     EXPECT_EQ(kOfOne, mostOfOne);
     FwObjectState blown{};
-    both.cpu.objectState(both.ids.back(), blown);
+    both.cpu.queries().objectState(both.ids.back(), blown);
     EXPECT_GT(blown.ignited, 0u);
     EXPECT_GT(full, 30u);  // often enough at the limit
     EXPECT_GT(burning(both), 5u);
@@ -374,8 +374,8 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
     def.maxBurningTiles = 500;
     world::World world(def, rig.backend, log, &rig.memory);
     const Mesh board = makePlane(0.5, 0.3);
-    FwBurnableMeshDef object = plainBurnableDef(world.createMesh(plainMeshDef(board, 48)));
-    object.materials[0] = world.createMaterial(fire::presetDef(FW_MATERIAL_PLYWOOD));
+    FwBurnableMeshDef object = plainBurnableDef(world.scene().createMesh(plainMeshDef(board, 48)));
+    object.materials[0] = world.scene().createMaterial(fire::presetDef(FW_MATERIAL_PLYWOOD));
     std::vector<FwBurnableMeshId> ids;
     for (int i = 0; i < 8; ++i) {
         moved(object.transform, float(i) * 0.52f, 0, 0, 0);
@@ -385,7 +385,7 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
     wall.structSize = sizeof wall;
     moved(wall.transform, 1.5f, 0.5f, 0, 0);
     wall.halfSize[0] = wall.halfSize[1] = wall.halfSize[2] = 0.1f;
-    const FwBlockerId blocker = world.addBlocker(wall);
+    const FwBlockerId blocker = world.exchange().addBlocker(wall);
     for (const size_t i : {size_t(0), size_t(4)}) {
         FwIgnitionDef ball{};
         ball.structSize = sizeof ball;
@@ -394,7 +394,7 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
         ball.position[0] = float(i) * 0.52f + 0.2f;
         ball.position[1] = 0.1f;
         ball.radius = 0.05f;
-        ASSERT_LT(0u, world.ignite(ball));
+        ASSERT_LT(0u, world.burn().ignite(ball));
     }
     const auto frame = [&](int f) {
         float transform[16];
@@ -402,9 +402,9 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
         moved(transform, 7 * 0.52f + far, 0, 0, 0);
         world.setTransform(ids[7], transform);
         moved(transform, 1.5f, 0.5f + far, 0, 0);
-        world.moveBlocker(blocker, transform);
+        world.exchange().moveBlocker(blocker, transform);
         const float wind[3] = {far * 5, 0, 0};
-        world.setWind(wind);
+        world.wind().set(wind);
         const FwVulkanFrame begun = rig.frames.begin();
         ASSERT_TRUE(rig.backend.beginOutside(begun, rig.view));
         world.advance(begun.frameIndex, 1.0f / 32);

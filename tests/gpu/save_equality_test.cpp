@@ -42,9 +42,9 @@ class AWorld {
         for (uint32_t i = 0; i < 12; ++i) {
             FwMeshDef def = plainMeshDef(i % 3 ? board : box, 40);
             def.noiseAmplitude = 0.15f;
-            FwBurnableMeshDef object = plainBurnableDef(world_->createMesh(def));
+            FwBurnableMeshDef object = plainBurnableDef(world_->scene().createMesh(def));
             object.flags = i % 5 == 4 ? uint32_t(FW_BURNABLE_LITE) : 0u;
-            object.materials[0] = world_->createMaterial(fire::presetDef(presets[i % 5]));
+            object.materials[0] = world_->scene().createMaterial(fire::presetDef(presets[i % 5]));
             float(&at)[16] = object.transform;
             const float turn = 0.4f * float(i);
             at[0] = at[10] = std::cos(turn);
@@ -79,24 +79,24 @@ class AWorld {
     // What the host has heard, but for when.
     void poll() {
         FwEvent events[16];
-        while (const uint32_t count = world_->pollEvents(events))
+        while (const uint32_t count = world_->queries().pollEvents(events))
             for (const FwEvent& event : std::span(events, count))
                 heard.push_back({event.type, event.tag, event.object.index1, event.value});
     }
     // Of the world as it is after the next frame, of no time.
     Bytes save() {
-        world_->requestSave();
+        world_->persistence().requestSave();
         for (int i = 0; i < 8; ++i) step(0);
-        const Bytes* bytes = world_->fetchSave();
+        const Bytes* bytes = world_->persistence().fetchSave();
         EXPECT_TRUE(bytes);
         return bytes ? *bytes : Bytes();
     }
     uint64_t hash() {
-        for (const FwBurnableMeshId id : ids_) world_->requestBurnMap(id);
+        for (const FwBurnableMeshId id : ids_) world_->queries().requestBurnMap(id);
         for (int i = 0; i < 8; ++i) step(0);
         uint64_t hash = core::kFnvOffset;
         for (const FwBurnableMeshId id : ids_) {
-            const world::BurnMapCopy* map = world_->fetchBurnMap(id);
+            const world::BurnMapCopy* map = world_->queries().fetchBurnMap(id);
             EXPECT_TRUE(map);
             if (!map) return 0;
             hash = core::hashWords(map->ticks, hash);
@@ -105,14 +105,14 @@ class AWorld {
                 hash = core::hashWords(words, hash);
             }
             FwObjectState state{};
-            world_->objectState(id, state);
+            world_->queries().objectState(id, state);
             const uint32_t words[] = {state.ignited, state.burning};
             hash = core::hashWords(words, hash);
             burnt_ += state.ignited;
         }
         return hash;
     }
-    void load(const Bytes& bytes) { world_->load(bytes); }
+    void load(const Bytes& bytes) { world_->persistence().load(bytes); }
     [[nodiscard]] uint64_t burnt() const { return burnt_; }
     world::World& world() { return *world_; }
     struct Heard {
@@ -130,18 +130,18 @@ class AWorld {
             ball.position[2] = 0.3f;
             ball.radius = 0.4f;
             ball.delay = frame == 70 ? 0.4f : 0.0f;
-            world_->ignite(ball);
+            world_->burn().ignite(ball);
         }
         if (frame == 50) {
             ball.kind = FW_WET;
             ball.water = 60;
             ball.position[0] = 0.2f;
             ball.radius = 0.3f;
-            world_->ignite(ball);
+            world_->burn().ignite(ball);
         }
         if (frame % 20 == 9) {
             const float wind[3] = {2 * std::cos(float(frame)), 0, 2 * std::sin(float(frame))};
-            world_->setWind(wind);
+            world_->wind().set(wind);
         }
     }
 
@@ -190,10 +190,10 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     if (!device_) return;
     AWorld device(device_.get()), plain(nullptr);
     device.run(0, 40);
-    device.world().requestSave();
+    device.world().persistence().requestSave();
     const std::vector<AWorld::Heard> past = device.heard;  // by some frames less than the save's
     device.run(40, 60);
-    const Bytes* bytes = device.world().fetchSave();
+    const Bytes* bytes = device.world().persistence().fetchSave();
     ASSERT_TRUE(bytes);
     const Bytes kept = *bytes;
     plain.run(0, 41);
@@ -221,7 +221,7 @@ TEST_F(SaveEquality, GoesToAnyMomentOfItsTimeline) {
     AWorld device(device_.get()), plain(nullptr);
     FwTimelineDef def = fwDefaultTimelineDef();
     def.interval = 0.5f;
-    device.world().startTimeline(def);
+    device.world().persistence().startTimeline(def);
     struct Moment {
         uint64_t tick, hash;
     };
@@ -237,7 +237,7 @@ TEST_F(SaveEquality, GoesToAnyMomentOfItsTimeline) {
     for (const size_t wanted : {2u, 0u, 3u, 1u}) {
         float seconds = 0;
         for (int i = 0; i < 400; ++i) {
-            ASSERT_TRUE(device.world().seek(moments[wanted].tick, seconds));
+            ASSERT_TRUE(device.world().persistence().seek(moments[wanted].tick, seconds));
             if (seconds == 0) break;
             device.step(std::min(seconds, 0.1f));
         }

@@ -2148,13 +2148,13 @@ TEST_F(Volume, SteadyFramesAllocateNothing) {
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
         FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
         components::setFirePreset(def, i);
-        ids.push_back(world.createVolumetricFire(def));
+        ids.push_back(world.flames().create(def));
     }
     const auto frame = [&](int f) {
         const float place[3] = {0.01f * float(f % 50), 0, 0};
-        world.moveVolumetricFire(ids[0], place);
-        world.setVolumetricFirePower(ids[1], float(f % 3));
-        world.setVolumetricFireHidden(ids[2], f % 4 == 0);
+        world.flames().move(ids[0], place);
+        world.flames().setPower(ids[1], float(f % 3));
+        world.flames().setHidden(ids[2], f % 4 == 0);
         const FwVulkanFrame begun = rig.frames.begin();
         ASSERT_TRUE(rig.backend.beginOutside(begun, rig.view));
         world.advance(begun.frameIndex, 1.0f / 32);
@@ -2170,7 +2170,7 @@ TEST_F(Volume, SteadyFramesAllocateNothing) {
     EXPECT_EQ(counts.total(), 0u);
     EXPECT_EQ(rig.memory.allocations(), allocations);
     EXPECT_GT(counts.work, 100u);
-    for (const FwVolumetricFireId id : ids) world.destroyVolumetricFire(id);
+    for (const FwVolumetricFireId id : ids) world.flames().destroy(id);
     for (int f = 0; f < 2; ++f) {
         const FwVulkanFrame begun = rig.frames.begin();
         ASSERT_TRUE(rig.backend.beginOutside(begun, rig.view));

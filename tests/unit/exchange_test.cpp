@@ -505,7 +505,7 @@ class EmberRain {
         hot.burnTime = 600;
         hot.heatOfCombustion = 4e7f;
         hot.burningFlux = 0.1f;
-        const FwMaterialId material = world_->createMaterial(hot);
+        const FwMaterialId material = world_->scene().createMaterial(hot);
         const Mesh sheet = makePlane(0.4, 0.4), ground = makePlane(2, 2);
         for (int i = 0; i < 12; ++i)
             add(sheet, 24, material, 0.5f * float(i / 6), 0, 0.5f * float(i % 6 + 1));
@@ -515,7 +515,7 @@ class EmberRain {
         ball.position[0] = 0.4f;
         ball.position[2] = 1.5f;
         ball.radius = 2;
-        EXPECT_LT(0u, world_->ignite(ball));
+        EXPECT_LT(0u, world_->burn().ignite(ball));
     }
     void step() { world_->advance(++frame_, 1.0f / 32); }
 
@@ -524,7 +524,8 @@ class EmberRain {
 
  private:
     void add(const Mesh& mesh, float texels, FwMaterialId material, float x, float y, float z) {
-        FwBurnableMeshDef def = plainBurnableDef(world_->createMesh(plainMeshDef(mesh, texels)));
+        FwBurnableMeshDef def =
+            plainBurnableDef(world_->scene().createMesh(plainMeshDef(mesh, texels)));
         def.materials[0] = material;
         def.transform[0] = def.transform[9] = def.transform[15] = 1;  // lies face up
         def.transform[6] = -1;

@@ -153,8 +153,8 @@ struct Range {
         sheet.indices = {0, 1, 2, 0, 2, 3};
         FwMeshDef def = plainMeshDef(sheet, texelsPerMetre);
         def.mapSize = 1024;
-        mesh = world->createMesh(def);
-        material = world->createMaterial(fire::presetDef(FW_MATERIAL_PINE));
+        mesh = world->scene().createMesh(def);
+        material = world->scene().createMaterial(fire::presetDef(FW_MATERIAL_PINE));
     }
     FwBurnableMeshId wall(float x, float wide = 2, float high = 2) {
         FwBurnableMeshDef def = plainBurnableDef(mesh);
@@ -165,7 +165,7 @@ struct Range {
         // The mean of the axes is the scale; the rest is in the shape.
         const float scale = components::makePose(placed, "placed").scale;
         std::vector<uint64_t>& areas = book.areas[id.index1 - 1];
-        for (const float area : world->objectDomain(id).areas)
+        for (const float area : world->scene().objectDomain(id).areas)
             areas.push_back(
                 std::max<uint64_t>(uint64_t(std::llround(area * (scale * scale) * 1e9f)), 1));
         return id;
@@ -193,12 +193,12 @@ TEST(JetStream, ConservesPowerOnStretchedMeshes) {
         Range r(c.texels);
         const FwBurnableMeshId id = r.wall(c.x, c.wide, c.high);
         r.wall(c.x + 1);
-        const FwFireEmitterId jet = r.world->createFireEmitter(flamethrower());
+        const FwFireEmitterId jet = r.world->emitters().create(flamethrower());
         r.run(1.5, 1 / 32.0f);
         FwFireEmitterState state{};
-        r.world->fireEmitterState(jet, state);
+        r.world->emitters().fillState(jet, state);
         ASSERT_EQ(16u, state.struck) << c.x;
-        r.world->setFireEmitterPower(jet, 0);
+        r.world->emitters().setPower(jet, 0);
         r.run(2.5, 1 / 32.0f);  // the stream in flight arrives
         const uint64_t ray = uint64_t(2000000.0 * double(0.35f) / 16 * 1e9);
         const uint64_t all = ray * 16 * 12;  // exchanges in 1.5 s
@@ -216,7 +216,7 @@ TEST(JetStream, IsIndependentOfTheFrameRate) {
     for (const float dt : {1 / 128.0f, 1 / 32.0f, 1 / 8.0f, 0.5f}) {
         Range r;
         r.wall(3.0f);
-        r.world->createFireEmitter(flamethrower());
+        r.world->emitters().create(flamethrower());
         r.run(1.5, dt);
         EXPECT_EQ(first.value_or(r.book.list), r.book.list) << dt;
         first = r.book.list;
@@ -239,15 +239,15 @@ TEST(JetStream, HitsTheSceneAtArrivalTime) {
         door.halfSize[0] = 0.02f;
         door.transform[12] = 4.5f;
         FwBlockerId id{};
-        if (!comes) id = r.world->addBlocker(door);
-        const FwFireEmitterId jet = r.world->createFireEmitter(flamethrower());
+        if (!comes) id = r.world->exchange().addBlocker(door);
+        const FwFireEmitterId jet = r.world->emitters().create(flamethrower());
         r.run(0.125, 1 / 32.0f);
-        r.world->setFireEmitterPower(jet, 0);
+        r.world->emitters().setPower(jet, 0);
         r.run(0.125, 1 / 32.0f);  // it has travelled some 2.8 m
         if (comes)
-            r.world->addBlocker(door);
+            r.world->exchange().addBlocker(door);
         else
-            r.world->removeBlocker(id);
+            r.world->exchange().removeBlocker(id);
         r.run(1, 1 / 32.0f);
         EXPECT_EQ(comes, r.book.list.empty());
     }

@@ -126,19 +126,19 @@ TEST(SavedEvents, AreOfTexelsOfTheSurface) {
     world::World world(test::plainWorldDef(0), backend, log, memory);
     const test::Mesh plane = test::makePlane(0.5, 0.3);
     FwBurnableMeshDef object =
-        test::plainBurnableDef(world.createMesh(test::plainMeshDef(plane, 40)));
-    object.materials[0] = world.createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
+        test::plainBurnableDef(world.scene().createMesh(test::plainMeshDef(plane, 40)));
+    object.materials[0] = world.scene().createMaterial(fire::presetDef(FW_MATERIAL_PAPER));
     object.transform[0] = object.transform[5] = object.transform[10] = object.transform[15] = 1;
-    const mesh::BurnDomain& domain = world.objectDomain(world.createBurnableMesh(object));
+    const mesh::BurnDomain& domain = world.scene().objectDomain(world.createBurnableMesh(object));
     FwIgnitionDef ball{};
     ball.kind = FW_WET;
     ball.delay = 3;
-    EXPECT_LT(0u, world.ignite(ball));
-    world.requestSave();
+    EXPECT_LT(0u, world.burn().ignite(ball));
+    world.persistence().requestSave();
     world.advance(1, 0);
-    const Bytes* bytes = world.fetchSave();
+    const Bytes* bytes = world.persistence().fetchSave();
     ASSERT_TRUE(bytes);
-    EXPECT_NO_THROW(world.load(*bytes));
+    EXPECT_NO_THROW(world.persistence().load(*bytes));
     uint32_t beside = 0;
     while (beside < domain.texelCount() && domain.real(beside)) ++beside;
     ASSERT_LT(beside, domain.texelCount());
@@ -148,7 +148,7 @@ TEST(SavedEvents, AreOfTexelsOfTheSurface) {
     saved.pending[0].texel = beside;
     Bytes bent;
     world::writeSnapshot(saved, bent);
-    EXPECT_THROW(world.load(bent), core::Error);
+    EXPECT_THROW(world.persistence().load(bent), core::Error);
 }
 
 TEST(SaveFile, AKillLeavesAWholeFile) {

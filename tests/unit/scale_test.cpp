@@ -225,8 +225,8 @@ struct Square {  // a square of crates
         const Mesh crate = makeCube(0.4, 1);
         FwMeshDef mesh = plainMeshDef(crate, 20);
         mesh.mapSize = 64;
-        def = plainBurnableDef(world->createMesh(mesh));
-        def.materials[0] = world->createMaterial(fire::presetDef(preset));
+        def = plainBurnableDef(world->scene().createMesh(mesh));
+        def.materials[0] = world->scene().createMaterial(fire::presetDef(preset));
         for (const int i : {0, 5, 10, 15}) def.transform[i] = 1;
         while (side * side < count) ++side;
         for (uint32_t i = 0; i < count; ++i) {
@@ -251,7 +251,7 @@ struct Square {  // a square of crates
         ignition.position[0] = x, ignition.position[1] = y, ignition.position[2] = z;
         ignition.radius = radius;
         if (object1 != 0) ignition.object = ids[object1 - 1];
-        return world->ignite(ignition);
+        return world->burn().ignite(ignition);
     }
     void light() {
         ASSERT_GT(ball(FW_IGNITE, 0, 0.2f, 0, 0.1f, 1), 0u);
@@ -262,12 +262,12 @@ struct Square {  // a square of crates
 uint64_t pairsOfOneWalk(uint32_t count) {
     Square square(count);
     square.light();
-    const uint64_t before = square.world->pairsExamined();
+    const uint64_t before = square.world->exchange().pairsExamined();
     for (uint32_t i = 0; i < 8; ++i) {
         square.move(count / 2, 0.02f * float(i + 1));
         square.step(4);
     }
-    return square.world->pairsExamined() - before;
+    return square.world->exchange().pairsExamined() - before;
 }
 
 TEST(World, ComparesAMovingObjectWithItsNeighboursOnly) {
@@ -282,23 +282,23 @@ TEST(World, ComparesAMovingObjectWithItsNeighboursOnly) {
 TEST(World, ComparesNothingWhileNothingMoves) {
     Square square(100);
     square.light();
-    const uint64_t before = square.world->pairsExamined();
+    const uint64_t before = square.world->exchange().pairsExamined();
     square.step(32);
-    EXPECT_EQ(before, square.world->pairsExamined());
+    EXPECT_EQ(before, square.world->exchange().pairsExamined());
 }
 
 TEST(World, ExplainsAMissByNearbyCratesOnly) {
     Square square(1600);
-    const uint64_t before = square.world->placesExamined();
+    const uint64_t before = square.world->scene().places.examined();
     FwIgnitionDef match{};
     match.position[0] = 10 * square.apart + 0.35f;
     match.position[1] = 1.5f;
     match.position[2] = 10 * square.apart;
     match.radius = 0.1f;
     char text[256];
-    square.world->explainNothingThere(match, 0, text);
+    square.world->burn().explainNothingThere(match, 0, text);
     EXPECT_NE(std::string::npos, std::string(text).find("the nearest burnable mesh")) << text;
-    const uint64_t compared = square.world->placesExamined() - before;
+    const uint64_t compared = square.world->scene().places.examined() - before;
     std::printf("[   FIGURE ] %llu boxes of 1600 crates\n",
                 static_cast<unsigned long long>(compared));
     EXPECT_GT(compared, 0u);
@@ -336,7 +336,7 @@ TEST(World, ABallAroundAnObjectEqualsEventsOfItsTexels) {
         for (const uint32_t preset : {FW_MATERIAL_PINE, FW_MATERIAL_PAPER})
             for (const bool mixed : {false, true}) {
                 Square ball(1, 0, 1, preset), texels(1, 0, 1, preset);
-                const mesh::BurnDomain& domain = ball.world->objectDomain(ball.ids[0]);
+                const mesh::BurnDomain& domain = ball.world->scene().objectDomain(ball.ids[0]);
                 std::vector<uint32_t> all;
                 for (uint32_t i = 0; i < domain.texelCount(); ++i)
                     if (domain.real(i)) all.push_back(i);
@@ -347,7 +347,7 @@ TEST(World, ABallAroundAnObjectEqualsEventsOfItsTexels) {
                     one->step(2);
                 }
                 EXPECT_EQ(all.size(), ball.ball(kind, 0.5f, 0, 0, 100));
-                texels.world->pushTexels(texels.ids[0], kind, all);
+                texels.world->burn().pushTexels(texels.ids[0], kind, all);
                 for (Square* one : {&ball, &texels}) {
                     if (mixed) one->ball(FW_IGNITE, 0, 0.2f, 0, 0.1f, 1);
                     one->step(1);
@@ -371,7 +371,8 @@ TEST(World, ABallReachesObjectsFarFromItsCentre) {
     for (const uint32_t kind : {FW_IGNITE, FW_WET, FW_DRY, FW_EXTINGUISH})
         for (const float away : {1.0f, 17.0f, 25.0f, 400.0f, 30000.0f, 900000.0f}) {
             Square square(1, 0);
-            const uint32_t texels = square.world->objectDomain(square.ids[0]).report.realTexels;
+            const uint32_t texels =
+                square.world->scene().objectDomain(square.ids[0]).report.realTexels;
             EXPECT_EQ(texels, square.ball(kind, away, 0, 0, 1.1f * away + 1)) << kind << away;
             EXPECT_EQ(texels, square.ball(kind, away, 0, 0, 1.1f * away + 1, 1)) << kind << away;
             EXPECT_EQ(0u, square.ball(kind, away, 0, 0, 0.4f * away)) << kind << away;
@@ -382,7 +383,7 @@ TEST(World, ABallReachesObjectsFarFromItsCentre) {
 TEST(World, ADistantBallReachesOnlyTheTexelsInside) {
     for (const float away : {20.0f, 300.0f}) {
         Square square(1, 0);
-        const uint32_t all = square.world->objectDomain(square.ids[0]).report.realTexels;
+        const uint32_t all = square.world->scene().objectDomain(square.ids[0]).report.realTexels;
         const uint32_t some = square.ball(FW_WET, away, 0, 0, away);
         EXPECT_GT(some, all / 4) << away;
         EXPECT_LT(some, 3 * all / 4) << away;
@@ -393,18 +394,18 @@ TEST(World, PointQueryFindsTheNearestTexelOfAFarObject) {
     for (const float away : {20.0f, 5000.0f, 900000.0f}) {
         Square square(1, 0);
         const float point[3] = {away, 0.1f, 0};
-        EXPECT_NO_THROW(square.world->tagPoint(square.ids[0], point, 1)) << away;
-        const FwQueryId query = square.world->requestPoint(square.ids[0], point);
+        EXPECT_NO_THROW(square.world->queries().tagPoint(square.ids[0], point, 1)) << away;
+        const FwQueryId query = square.world->queries().requestPoint(square.ids[0], point);
         square.step(2);
         FwPointState state{};
-        ASSERT_TRUE(square.world->fetchPoint(query, state));
+        ASSERT_TRUE(square.world->queries().fetchPoint(query, state));
         EXPECT_NEAR(away - 0.2f, state.distance, 0.05f + 1e-6f * away);
     }
 }
 
 TEST(BurnDomain, NearestTexelIsFoundFromAnyDistance) {
     Square square(1, 0);
-    const mesh::BurnDomain& domain = square.world->objectDomain(square.ids[0]);
+    const mesh::BurnDomain& domain = square.world->scene().objectDomain(square.ids[0]);
     for (const float away : {3.0f, 50.0f, 1e4f, 1e6f, 1e9f}) {
         const float point[3] = {-away, 0.15f, 0.1f};
         const uint32_t texel = mesh::nearestTexel(domain, point, 1.01f * away);
@@ -438,12 +439,12 @@ TEST(World, IncrementalListsEqualThoseOfALoadedWorld) {
             }
         };
         play({&first}, 30);
-        first.world->requestSave();
+        first.world->persistence().requestSave();
         first.step();
-        const std::pmr::vector<std::byte>* save = first.world->fetchSave();
+        const std::pmr::vector<std::byte>* save = first.world->persistence().fetchSave();
         ASSERT_TRUE(save);
         second.step(uint32_t(first.frame));
-        second.world->load(*save);
+        second.world->persistence().load(*save);
         play({&first, &second}, 60);
         uint32_t caught = 0;
         for (uint32_t slot = 0; slot < kCount; ++slot) {
@@ -458,7 +459,7 @@ TEST(World, IncrementalListsEqualThoseOfALoadedWorld) {
 // 2^20 cells of 50 mm from the origin, where cell numbers gain a bit.
 TEST(Contacts, AreFoundAnywhereInTheWorld) {
     Square square(1, 0);
-    const mesh::BurnDomain& domain = square.world->objectDomain(square.ids[0]);
+    const mesh::BurnDomain& domain = square.world->scene().objectDomain(square.ids[0]);
     const auto count = [&](float at) {
         gpu::RemoteObject places[2] = {};
         for (int i = 0; i < 2; ++i) {
@@ -484,10 +485,10 @@ TEST(World, RefusesABlockerScaledTooLarge) {
     for (const int i : {0, 5, 10}) def.transform[i] = 4;
     def.transform[15] = 1;
     for (float& half : def.halfSize) half = 7;
-    const FwBlockerId id = square.world->addBlocker(def);  // 28 m
+    const FwBlockerId id = square.world->exchange().addBlocker(def);  // 28 m
     for (const int i : {0, 5, 10}) def.transform[i] = 5;
-    EXPECT_THROW((void)square.world->addBlocker(def), core::Error);
-    EXPECT_THROW(square.world->moveBlocker(id, def.transform), core::Error);
+    EXPECT_THROW((void)square.world->exchange().addBlocker(def), core::Error);
+    EXPECT_THROW(square.world->exchange().moveBlocker(id, def.transform), core::Error);
 }
 
 TEST(World, DestroyedNeighboursAreForgotten) {
@@ -502,9 +503,9 @@ TEST(World, DestroyedNeighboursAreForgotten) {
         square.ids[slot] = square.world->createBurnableMesh(square.def);
         square.step(3);
     }
-    square.world->requestSave();
+    square.world->persistence().requestSave();
     square.step();
-    EXPECT_TRUE(square.world->fetchSave());
+    EXPECT_TRUE(square.world->persistence().fetchSave());
     square.step(64);
 }
 

@@ -194,11 +194,11 @@ class PlannedWorld : public ::testing::Test {
         mesh.mapSize = 256;
         mesh.texelsPerMetre = 64;
         mesh.noiseFeature = 0.01f;
-        meshId = world->createMesh(mesh);
+        meshId = world->scene().createMesh(mesh);
         FwMaterialDef material = fire::presetDef(FW_MATERIAL_PAPER);
         object.structSize = sizeof object;
         object.mesh = meshId;
-        object.materials[0] = world->createMaterial(material);
+        object.materials[0] = world->scene().createMaterial(material);
         for (int i = 0; i < 4; ++i) object.transform[i * 5] = 1;
         object.tint[0] = object.tint[1] = object.tint[2] = 1;
         object.refinePixelsPerEdge = 8;
@@ -213,12 +213,12 @@ class PlannedWorld : public ::testing::Test {
         def.position[2] = 0.125f;
         def.radius = 0.03f;
         def.delay = delay;
-        return world->ignite(def);
+        return world->burn().ignite(def);
     }
     void step(float dt) { world->advance(world->lastFrame() + 1, dt); }
     std::vector<FwEvent> events() {
         std::vector<FwEvent> out(64);
-        out.resize(world->pollEvents(out));
+        out.resize(world->queries().pollEvents(out));
         return out;
     }
 
@@ -275,7 +275,7 @@ TEST_F(PlannedWorld, AFailedFrameChangesNothing) {
 
 TEST_F(PlannedWorld, WindIsLatchedFourTimesASecondForLitObjects) {
     const float wind[3] = {3, 0, 0};
-    world->setWind(wind);
+    world->wind().set(wind);
     for (int i = 0; i < 8; ++i) step(0.25f);
     for (const Recorder::Frame& frame : backend.frames)
         for (const auto& updates : frame.updates) EXPECT_TRUE(updates.empty());
@@ -286,7 +286,7 @@ TEST_F(PlannedWorld, WindIsLatchedFourTimesASecondForLitObjects) {
     ASSERT_EQ(1u, backend.frames[0].updates[0].size());
     EXPECT_NE(0, backend.frames[0].updates[0][0].materials[0].driveX);
     const float other[3] = {0, 0, 5};
-    world->setWind(other);
+    world->wind().set(other);
     backend.frames.clear();
     for (int i = 0; i < 16; ++i) step(0.25f);
     size_t updates = 0;
@@ -310,7 +310,7 @@ TEST_F(PlannedWorld, WindIsLatchedFourTimesASecondForLitObjects) {
     // A pose latches gravity too.
     float pose[16] = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
     const float calm[3] = {};
-    world->setWind(calm);
+    world->wind().set(calm);
     for (int i = 0; i < 400; ++i) step(0.25f);
     backend.frames.clear();
     for (int i = 0; i < 4; ++i) step(0.25f);
@@ -366,7 +366,7 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
         ignite(0.5f);
         const size_t first = backend.frames.size();
         step(1.0f / 32);
-        world->transferBurn(from, to);
+        world->burn().transferBurn(from, to);
         step(1.0f / 32);
         step(1.0f / 32);
         gpu::ObjectCounters burning{};
@@ -386,7 +386,7 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
         EXPECT_EQ(uint32_t(FW_EVENT_IGNITED), heard[0].type);
         EXPECT_EQ(from.index1, heard[0].object.index1);
         FwObjectState state{};
-        world->objectState(to, state);
+        world->queries().objectState(to, state);
         EXPECT_EQ(12u, state.burning);
         if (!destroys) world->destroyBurnableMesh(from);
         world->destroyBurnableMesh(to);
@@ -395,29 +395,29 @@ TEST_F(PlannedWorld, TransferredBurnsIgniteOnceForAnyReadbackDelay) {
 
 // For commands of a log or a server: one occluder list names each object once.
 TEST_F(PlannedWorld, OccluderCommandsNameEachObjectOnce) {
-    world->apply(world::AddShieldObject{id.index1, false});
-    EXPECT_THROW(world->apply(world::AddShieldObject{id.index1, false}), core::Error);
-    world->apply(world::AddShieldObject{0, true});
+    world->persistence().apply(world::AddShieldObject{id.index1, false});
+    EXPECT_THROW(world->persistence().apply(world::AddShieldObject{id.index1, false}), core::Error);
+    world->persistence().apply(world::AddShieldObject{0, true});
 }
 
 TEST_F(PlannedWorld, ProbesAnswerTagsAndQueriesOfTheirFrame) {
     const float point[3] = {0.7f, 0, 0.1f};
-    world->tagPoint(id, point, 5);
-    const FwQueryId query = world->requestPoint(id, point);
+    world->queries().tagPoint(id, point, 5);
+    const FwQueryId query = world->queries().requestPoint(id, point);
     step(1.0f / 32);
     step(1.0f / 32);
     ASSERT_EQ(2u, backend.frames[0].probes.size());
     ASSERT_EQ(1u, backend.frames[1].probes.size());  // only the tag: the query was asked already
     FwPointState state{};
-    EXPECT_FALSE(world->fetchPoint(query, state));
+    EXPECT_FALSE(world->queries().fetchPoint(query, state));
     // The object is lit in between; the older frame still says no.
     backend.answer(0, {}, 0, 0, gpu::kNever);
     backend.answer(1, {}, 0, 0, 64);
     step(1.0f / 32);
-    ASSERT_TRUE(world->fetchPoint(query, state));
+    ASSERT_TRUE(world->queries().fetchPoint(query, state));
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), state.kind);
     EXPECT_EQ(1u, state.frameIndex);
-    EXPECT_THROW((void)world->fetchPoint(query, state), core::Error);
+    EXPECT_THROW((void)world->queries().fetchPoint(query, state), core::Error);
     const std::vector<FwEvent> heard = events();
     ASSERT_EQ(1u, heard.size());
     EXPECT_EQ(uint32_t(FW_EVENT_TAG_REACHED), heard[0].type);
@@ -443,16 +443,16 @@ TEST_F(PlannedWorld, IgnoresReadbacksOfAnOlderObjectInTheSlot) {
     step(1.0f / 32);
     EXPECT_TRUE(events().empty());
     FwObjectState state{};
-    world->objectState(id, state);
+    world->queries().objectState(id, state);
     EXPECT_EQ(0u, state.ignited);
 }
 
 TEST_F(PlannedWorld, FreesEverything) {
     EXPECT_EQ(1, backend.objects);
     EXPECT_EQ(1, backend.meshes);
-    world->setHidden(id, true);
+    world->scene().setHidden(id, true);
     EXPECT_NE(0u, backend.lastFlags & gpu::kObjectHidden);
-    world->setHidden(id, false);
+    world->scene().setHidden(id, false);
     EXPECT_EQ(0u, backend.lastFlags & gpu::kObjectHidden);
     world.reset();
     EXPECT_EQ(0, backend.objects);

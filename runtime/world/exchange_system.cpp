@@ -1,11 +1,14 @@
-// Who is where, as others see it: poses become integers at fixed ticks, neighbours and contacts are
+// Objects as others see them: poses become integers at fixed ticks, neighbours and contacts are
 // found when something moved, and all of it goes to the backend with the step that begins there.
-// What fire does with it is the backend's.
+// The backend computes the heat.
+#include "world/exchange_system.h"
+
 #include "core/growth.h"
 #include "fire/heat.h"
 #include "mesh/remote_tiles.h"
-#include "world/save.h"
-#include "world/world.h"
+#include "world/persistence.h"
+#include "world/shift.h"
+#include "world/wind_system.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,6 +39,16 @@ mesh::Box boxOf(const gpu::RemoteObject& o) noexcept {
     return box;
 }
 
+void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
+    gpu::ivec4* rows[] = {&record.row0, &record.row1, &record.row2};
+    gpu::ivec4* lows[] = {&record.turn0, &record.turn1, &record.turn2};
+    for (int i = 0; i < 3; ++i) {
+        movePast(rows[i]->w, by[i]);
+        movePast(lows[i]->w, by[i]);
+        movePast(record.high[i], by[i]);
+    }
+}
+
 bool sameRecord(const gpu::RemoteObject& a, const gpu::RemoteObject& b) noexcept {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
@@ -47,21 +60,30 @@ bool before(const gpu::ContactLink& a, const gpu::ContactLink& b) noexcept {
 
 }  // namespace
 
-void World::setFlags(uint32_t given) {
-    mayChange();
+ExchangeSystem::ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind)
+    : context_(context), scene_(scene), wind_(wind) {
+    RemoteBook& book = state_.book;
+    const FwWorldDef& def = context.def;
+    book.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
+    book.capped = components::caps(book.governance);
+    book.governed = components::governs(book.governance);
+}
+
+void ExchangeSystem::setFlags(uint32_t given) {
+    context_.recorder.mayChange();
     if (given & ~kWorldFlags)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "flags is 0x%x; the known flags are 0x%x.", given,
                    kWorldFlags);
-    const uint32_t flags = given & kWaysOfFire;
-    remote_.objectFlags = given & ~kWaysOfFire;
-    remote_.unsent |= flags != 0 && flags != remote_.flags;
-    remote_.spreadKnown &= flags == remote_.flags;
+    const uint32_t flags = given & kHeatTransferModes;
+    state_.book.objectFlags = given & ~kHeatTransferModes;
+    state_.book.unsent |= flags != 0 && flags != state_.book.flags;
+    state_.book.spreadKnown &= flags == state_.book.flags;
     constexpr uint32_t kWarm = FW_WORLD_RADIATION | FW_WORLD_PLUME;
-    remote_.warms |= (flags & kWarm) != 0;
-    if (remote_.flags & ~flags & kWarm)
-        remote_.fades = clock_.tick + 2 * gpu::kExchangeTurns * gpu::kExchangeTicks;
-    remote_.flags = flags;
-    record(SetFlags{given});
+    state_.book.warms |= (flags & kWarm) != 0;
+    if (state_.book.flags & ~flags & kWarm)
+        state_.book.fades = context_.clock.tick + 2 * gpu::kExchangeTurns * gpu::kExchangeTicks;
+    state_.book.flags = flags;
+    context_.recorder.record(SetFlags{given});
 }
 
 namespace {
@@ -81,8 +103,8 @@ void checkBlocker(const components::Pose& pose, const float halfSize[3], const c
 
 }  // namespace
 
-FwBlockerId World::addBlocker(const FwBlockerDef& def) {
-    ++geometry_;
+FwBlockerId ExchangeSystem::addBlocker(const FwBlockerDef& def) {
+    ++scene_.geometryVersion;
     if (def.flags != 0 || def.reserved != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBlockerDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
@@ -92,135 +114,134 @@ FwBlockerId World::addBlocker(const FwBlockerDef& def) {
     checkLengths(def.halfSize, 3, "FwBlockerDef::halfSize", 0.0f, 30.0f);
     checkBlocker(entry.pose, def.halfSize, "FwBlockerDef::transform");
     std::copy_n(def.halfSize, 3, entry.halfSize);
-    if (blockers_.live() >= gpu::kMaxBlockers)
+    if (state_.blockers.live() >= gpu::kMaxBlockers)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u blockers are in place; the limit is %u.",
-                   blockers_.live(), gpu::kMaxBlockers);
-    const FwBlockerId id = blockers_.create(entry);
-    remote_.blockersDue = true;
+                   state_.blockers.live(), gpu::kMaxBlockers);
+    const FwBlockerId id = state_.blockers.create(entry);
+    state_.book.blockersDue = true;
     return id;
 }
 
-void World::moveBlocker(FwBlockerId id, const float transform[16]) {
-    mayChange();
-    ++geometry_;
-    BlockerEntry& entry = blockers_.get(id);
+void ExchangeSystem::moveBlocker(FwBlockerId id, const float transform[16]) {
+    context_.recorder.mayChange();
+    ++scene_.geometryVersion;
+    BlockerEntry& entry = state_.blockers.get(id);
     const components::Pose pose = components::makePose(transform, "transform");
     checkBlocker(pose, entry.halfSize, "transform");
     entry.pose = pose;
-    remote_.blockersDue = true;
-    record(MoveBlocker{id.index1 - 1, Transform(transform)});
+    state_.book.blockersDue = true;
+    context_.recorder.record(MoveBlocker{id.index1 - 1, Transform(transform)});
 }
 
-void World::removeBlocker(FwBlockerId id) {
-    ++geometry_;
-    blockers_.destroy(id);
-    remote_.blockersDue = true;
+void ExchangeSystem::removeBlocker(FwBlockerId id) {
+    ++scene_.geometryVersion;
+    state_.blockers.destroy(id);
+    state_.book.blockersDue = true;
 }
 
-gpu::ExchangePush World::exchangeRules() const noexcept {
+gpu::ExchangePush ExchangeSystem::rules() const noexcept {
     gpu::ExchangePush rules{};
-    rules.flags = remote_.flags;
-    rules.warms = remote_.warms ? 1 : 0;
-    const auto up = [&](int i) { return int(std::lround(double(def_.up[i]) * 4096)); };
+    rules.flags = state_.book.flags;
+    rules.warms = state_.book.warms ? 1 : 0;
+    const auto up = [&](int i) { return int(std::lround(double(context_.def.up[i]) * 4096)); };
     rules.upX = up(0);
     rules.upY = up(1);
     rules.upZ = up(2);
-    const fire::WindVector wind = fire::windUnits(wind_);
+    const fire::WindVector wind = fire::windUnits(wind_.state().wind);
     rules.windX = wind[0] * 1000 / 128;
     rules.windY = wind[1] * 1000 / 128;
     rules.windZ = wind[2] * 1000 / 128;
-    rules.chance = components::chanceOf(remote_.governance.chance);
-    rules.hopsMost = components::limitOf(remote_.governance.hopsMost);
-    rules.tilesMost = components::limitOf(remote_.governance.tilesMost);
-    rules.lifeTicks = components::lifeTicksOf(remote_.governance.life);
-    rules.seed = def_.seed;
+    rules.chance = components::chanceOf(state_.book.governance.chance);
+    rules.hopsMost = components::limitOf(state_.book.governance.hopsMost);
+    rules.tilesMost = components::limitOf(state_.book.governance.tilesMost);
+    rules.lifeTicks = components::lifeTicksOf(state_.book.governance.life);
+    rules.seed = context_.def.seed;
     rules.ambient = uint32_t(fire::kAmbient) * 16;  // 1/16 K
-    const double perExchange = kBrandsPerJoule * double(def_.paceFactor) *
+    const double perExchange = kBrandsPerJoule * double(context_.def.paceFactor) *
                                double(gpu::kExchangeTicks) / double(gpu::kTicksPerSecond);
     rules.brands = uint32_t(std::min(perExchange / 16 * 4294967296.0, 4e9));
     return rules;
 }
 
-// Whom another wind finds is where it was, and touches whom it did.
-void World::takeRemoteWind(Object& object, int wind) noexcept {
+// An object under another wind keeps its place and its contacts.
+void ExchangeSystem::updateWind(Object& object, int wind) noexcept {
     if (object.remoteVersion == 0 || wind == object.remote.high.w) return;
     object.remote.high.w = wind;
     markUnsent(object);
 }
 
-void World::markUnsent(Object& object) noexcept {
-    remote_.unsent = true;
+void ExchangeSystem::markUnsent(Object& object) noexcept {
+    state_.book.unsent = true;
     if (!object.remoteSent) return;
     object.remoteSent = false;
-    remote_.unsentSlots.push_back(object.slot);  // room was found at its creation
+    state_.book.unsentSlots.push_back(object.slot);  // capacity was reserved at its creation
 }
 
-// An update that the frame has planned points to lists that are about to change.
-void World::keepPlanned() {
-    if (frame_.remoteUsed == 0) return;
-    RemoteTables& tables = *frame_.remote[frame_.remoteUsed - 1];
-    if (tables.update.neighbours.data() == remote_.neighbours.pool().all().data()) {
+// Copies the lists that a planned update points to, before they change.
+void ExchangeSystem::keepPlanned() {
+    if (frame_.used == 0) return;
+    RemoteTables& tables = *frame_.tables[frame_.used - 1];
+    if (tables.update.neighbours.data() == state_.book.neighbours.pool().all().data()) {
         tables.neighbours.assign(tables.update.neighbours.begin(), tables.update.neighbours.end());
         tables.update.neighbours = tables.neighbours;
     }
-    if (tables.update.links.data() == remote_.links.all().data()) {
+    if (tables.update.links.data() == state_.book.links.all().data()) {
         tables.links.assign(tables.update.links.begin(), tables.update.links.end());
         tables.update.links = tables.links;
     }
 }
 
-// Poses and blockers as they are now.
-void World::latchRemote(uint32_t now) {
-    for (const uint32_t slot : remote_.due) {
-        Object& object = **objects_.at(slot);
-        const mesh::BurnDomain& domain = domainOf(object);
+void ExchangeSystem::latchPoses(uint32_t now) {
+    for (const uint32_t slot : state_.book.due) {
+        Object& object = scene_.objectAt(slot);
+        const mesh::BurnDomain& domain = scene_.domainOf(object);
         gpu::RemoteObject record{};
         components::placeRemote(object.data.pose, domain, record);
         components::fillRemote(object.data, domain, object.governance, record);
         if (object.texels == 0) record.flags &= ~gpu::kRemoteLive;
-        record.high.w = int(zoneWindOf(object, now));
+        record.high.w = int(wind_.localWindOf(object, now));
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
-        takeRemoteWind(object, record.high.w);
+        updateWind(object, record.high.w);
         if (object.remoteVersion != 0 && sameRecord(record, object.remote)) continue;
         keepPlanned();
         object.remote = record;
         object.reach = components::remoteReach(object.data, domain,
-                                               meshes_.at(object.data.meshSlot)->texelsOf);
-        // Room for these was found at its creation.
-        if (object.remoteVersion == 0 && !object.touched) remote_.waiting.push_back(slot);
-        object.remoteVersion = ++remote_.version;
+                                               scene_.meshes.at(object.data.meshSlot)->texelsOf);
+        // Capacity for these was reserved at its creation.
+        if (object.remoteVersion == 0 && !object.touched) state_.book.waiting.push_back(slot);
+        object.remoteVersion = ++state_.book.version;
         markUnsent(object);
         if (!(record.flags & gpu::kRemoteLive) || slot > Neighbours::kSlot) continue;
-        if (!object.contactsDue) remote_.contactsDue.push_back(slot);
+        if (!object.contactsDue) state_.book.contactsDue.push_back(slot);
         object.contactsDue = true;
-        if (def_.visibility && !object.seenDue) remote_.seenDue.push_back(slot);
-        object.seenDue = def_.visibility != nullptr;
+        if (context_.def.visibility && !object.seenDue) state_.book.seenDue.push_back(slot);
+        object.seenDue = context_.def.visibility != nullptr;
         try {
-            remote_.neighbours.place(slot, boxOf(record), object.reach);
+            state_.book.neighbours.place(slot, boxOf(record), object.reach);
         } catch (...) {
-            remote_.rebuild = true;
+            state_.book.rebuild = true;
             throw;
         }
     }
-    remote_.unsent |= !remote_.neighbours.changed().empty();
-    for (uint32_t slot = 0; gusty() && slot < objects_.slotCount(); ++slot)
-        if (auto* owned = objects_.at(slot)) takeRemoteWind(**owned, int(zoneWindOf(**owned, now)));
-    if (!remote_.blockersDue) return;
-    remote_.blockers.clear();
-    for (uint32_t i = 0; i < blockers_.slotCount(); ++i)
-        if (const BlockerEntry* entry = blockers_.at(i)) {
-            gpu::Blocker blocker{};
-            components::placeBlocker(entry->pose, entry->halfSize, blocker);
-            remote_.blockers.push_back(blocker);
-        }
-    remote_.unsent = true;
+    state_.book.unsent |= !state_.book.neighbours.changed().empty();
+    for (uint32_t slot = 0; wind_.hasGusts() && slot < scene_.objects.slotCount(); ++slot)
+        if (auto* owned = scene_.objects.at(slot))
+            updateWind(**owned, int(wind_.localWindOf(**owned, now)));
+    if (!state_.book.blockersDue) return;
+    state_.book.blockers.clear();
+    for (auto [i, entry] : state_.blockers.entries()) {
+        gpu::Blocker blocker{};
+        components::placeBlocker(entry.pose, entry.halfSize, blocker);
+        state_.book.blockers.push_back(blocker);
+    }
+    state_.book.unsent = true;
 }
 
 // All of it from the latched records and the pairs that are known: the lists are those of another
 // world, or memory ended while they changed.
-void World::rebuildRemote() {
-    RemoteBook& book = remote_;
+void ExchangeSystem::rebuild() {
+    RemoteBook& book = state_.book;
     keepPlanned();
     book.unsent = true;
     book.spreadKnown = false;
@@ -228,21 +249,18 @@ void World::rebuildRemote() {
     book.close.clear();
     book.links.clear();
     for (auto* lists : {&book.closeOf, &book.linksOf}) {
-        core::growTo(*lists, objects_.slotCount());
-        lists->assign(objects_.slotCount(), {});
+        core::growTo(*lists, scene_.objects.slotCount());
+        lists->assign(scene_.objects.slotCount(), {});
     }
     for (auto* slots : {&book.unsentSlots, &book.contactsDue, &book.seenDue, &book.waiting})
-        slots->clear();  // each keeps its room for all objects
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned) continue;
-        Object& object = **owned;
+        slots->clear();  // each keeps its capacity
+    for (auto [slot, object] : scene_.objects.entries()) {
         const bool placed = object.remoteVersion != 0;
         const bool meets =
             placed && object.remote.flags & gpu::kRemoteLive && slot <= Neighbours::kSlot;
         object.remoteSent = !placed;
         object.contactsDue = meets;
-        object.seenDue = meets && def_.visibility;
+        object.seenDue = meets && context_.def.visibility;
         if (placed) book.unsentSlots.push_back(slot);
         if (placed && !object.touched) book.waiting.push_back(slot);
         if (object.contactsDue) book.contactsDue.push_back(slot);
@@ -251,7 +269,7 @@ void World::rebuildRemote() {
     }
     std::erase_if(book.pairs, [&](const PairContacts& pair) {
         for (int k = 0; k < 2; ++k) {
-            const auto* owned = objects_.at(pair.slots[k]);
+            const auto* owned = scene_.objects.at(pair.slots[k]);
             if (!owned || (*owned)->id.generation != pair.ids[k].generation) return true;
         }
         return false;
@@ -262,14 +280,14 @@ void World::rebuildRemote() {
         pair.stamp = 0;
         for (int k = 0; k < 2; ++k) addClose(pair.slots[k], pair.slots[1 - k], i);
     }
-    seeAsLoaded();
+    restoreSeen();
     book.rebuild = false;
 }
 
 // The host's answers of saved pairs hold. An object without any was elsewhere since the host was
 // asked about it: it is asked when the world awakes, as it would have been.
-void World::seeAsLoaded() {
-    RemoteBook& book = remote_;
+void ExchangeSystem::restoreSeen() {
+    RemoteBook& book = state_.book;
     const auto before = [](const Seen& a, const Seen& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     };
@@ -285,51 +303,50 @@ void World::seeAsLoaded() {
             book.neighbours.see(slot, wanted.slots[1], known->part);
         }
         due &= !holds;
-        (*objects_.at(slot))->seenDue = due;
+        scene_.objectAt(slot).seenDue = due;
         return !due;
     });
     book.loadedSeen.clear();
 }
 
 // Pairs of which the host has been asked since one of them was elsewhere, by slots.
-void World::noteSeen(std::pmr::vector<Seen>& to) const {
-    const RemoteBook& book = remote_;
-    if (!def_.visibility) return;
+void ExchangeSystem::recordSeen(std::pmr::vector<Seen>& to) const {
+    const RemoteBook& book = state_.book;
+    if (!context_.def.visibility) return;
     if (book.rebuild) {
         for (const Seen& seen : book.loadedSeen)
-            if (objects_.at(seen.slots[0]) && objects_.at(seen.slots[1]))
+            if (scene_.objects.at(seen.slots[0]) && scene_.objects.at(seen.slots[1]))
                 to.push_back({{seen.slots[0], seen.slots[1]}, seen.part});
         return;
     }
-    for (uint32_t slot = 0; slot < objects_.slotCount(); ++slot) {
-        const auto* owned = objects_.at(slot);
-        if (!owned || (*owned)->seenDue) continue;
+    for (auto [slot, owned] : scene_.objects.entries()) {
+        if (owned.seenDue) continue;
         for (const uint32_t entry : book.neighbours.of(slot)) {
             const uint32_t other = entry & Neighbours::kSlot;
-            if (!(*objects_.at(other))->seenDue) to.push_back({{slot, other}, entry >> 24});
+            if (!scene_.objectAt(other).seenDue) to.push_back({{slot, other}, entry >> 24});
         }
     }
 }
 
-// What a fire of `from` sees of `to`, of 255.
-uint32_t World::seenPart(const Object& from, const Object& to) const {
-    const float answer = def_.visibility(def_.visibilityData, from.id, to.id);
+// How much of `to` a fire of `from` sees, of 255.
+uint32_t ExchangeSystem::seenPart(const Object& from, const Object& to) const {
+    const float answer = context_.def.visibility(context_.def.visibilityData, from.id, to.id);
     return answer > 0 ? uint32_t(std::lround(std::min(answer, 1.0f) * 255)) : 0u;
 }
 
-// Both ways between objects that are elsewhere and all their neighbours.
-void World::askVisibility() {
-    RemoteBook& book = remote_;
+// In both directions between objects that moved and all their neighbours.
+void ExchangeSystem::askVisibility() {
+    RemoteBook& book = state_.book;
     for (const uint32_t slot : book.seenDue) {
-        const Object& object = **objects_.at(slot);
+        const Object& object = scene_.objectAt(slot);
         for (const uint32_t entry : book.neighbours.of(slot)) {
-            const Object& other = **objects_.at(entry & Neighbours::kSlot);
+            const Object& other = scene_.objectAt(entry & Neighbours::kSlot);
             if (other.seenDue && other.slot < slot) continue;  // asked with that one
             book.neighbours.see(slot, other.slot, seenPart(other, object));
             book.neighbours.see(other.slot, slot, seenPart(object, other));
         }
     }
-    for (const uint32_t slot : book.seenDue) (*objects_.at(slot))->seenDue = false;
+    for (const uint32_t slot : book.seenDue) scene_.objectAt(slot).seenDue = false;
     book.seenDue.clear();
 }
 
@@ -344,18 +361,19 @@ uint32_t burnMask(const components::BurnableMesh& object) noexcept {
 
 }  // namespace
 
-// The links of one pair, one way.
-void World::linkPair(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
-                     uint32_t since, std::pmr::vector<gpu::ContactLink>& out) {
+// The links of one pair, in one direction.
+void ExchangeSystem::linkPair(const Object& to, const Object& from,
+                              std::span<const mesh::Contact> contacts, uint32_t since,
+                              std::pmr::vector<gpu::ContactLink>& out) {
     for (const mesh::Contact& contact : contacts) {
         const FwMaterialDef& def =
-            to.data.materials[domainOf(to).texels[contact.texel].materialFlags &
+            to.data.materials[scene_.domainOf(to).texels[contact.texel].materialFlags &
                               (gpu::kMaterialsPerObject - 1)];
-        // An ordinary link of that length, and the flame's way across.
+        // An ordinary link of that length, and the flame's time across.
         const double metres = contact.gap / 1000.0;
         const double seconds =
             (metres / std::max(double(def.spreadRate), 1e-6) + metres / kGapSpeed) /
-            double(def_.paceFactor);
+            double(context_.def.paceFactor);
         gpu::ContactLink link{};
         link.object = to.slot;
         link.texel = contact.texel;
@@ -368,29 +386,29 @@ void World::linkPair(const Object& to, const Object& from, std::span<const mesh:
 }
 
 // Of objects that were latched since the last time. What memory refuses comes with the next call.
-void World::findLinks(uint32_t now) {
-    RemoteBook& book = remote_;
+void ExchangeSystem::findLinks(uint32_t now) {
+    RemoteBook& book = state_.book;
     if (!(book.flags & FW_WORLD_CONTACT)) return;
     for (auto* lists : {&book.closeOf, &book.linksOf})
-        if (lists->size() < objects_.slotCount()) {
-            core::growTo(*lists, objects_.slotCount());
-            lists->resize(objects_.slotCount());
+        if (lists->size() < scene_.objects.slotCount()) {
+            core::growTo(*lists, scene_.objects.slotCount());
+            lists->resize(scene_.objects.slotCount());
         }
-    for (const uint32_t slot : book.contactsDue) linkClose(**objects_.at(slot), now);
-    for (const uint32_t slot : book.contactsDue) (*objects_.at(slot))->contactsDue = false;
+    for (const uint32_t slot : book.contactsDue) linkClose(scene_.objectAt(slot), now);
+    for (const uint32_t slot : book.contactsDue) scene_.objectAt(slot).contactsDue = false;
     book.contactsDue.clear();
 }
 
 // The contacts of one object with all that are so near.
-void World::linkClose(Object& object, uint32_t now) {
-    RemoteBook& book = remote_;
+void ExchangeSystem::linkClose(Object& object, uint32_t now) {
+    RemoteBook& book = state_.book;
     const uint64_t stamp = ++book.contactStamp;
     const auto meet = [&](uint32_t other) {
-        if (mesh::gapOf(boxOf(object.remote), boxOf((*objects_.at(other))->remote)) >
+        if (mesh::gapOf(boxOf(object.remote), boxOf(scene_.objectAt(other).remote)) >
             int(gpu::kContactGap))
             return;
-        const Object& a = object.slot < other ? object : **objects_.at(other);
-        const Object& b = object.slot < other ? **objects_.at(other) : object;
+        const Object& a = object.slot < other ? object : scene_.objectAt(other);
+        const Object& b = object.slot < other ? scene_.objectAt(other) : object;
         PairContacts& pair = book.pairs[closePair(a.slot, b.slot)];
         pair.stamp = stamp;
         if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) return;
@@ -402,8 +420,8 @@ void World::linkClose(Object& object, uint32_t now) {
         dropLinks(a.slot, b.slot);
         dropLinks(b.slot, a.slot);
         const Object* const both[2] = {&a, &b};
-        mesh::findContacts({{&domainOf(a), &a.remote, burnMask(a.data)},
-                            {&domainOf(b), &b.remote, burnMask(b.data)}},
+        mesh::findContacts({{&scene_.domainOf(a), &a.remote, burnMask(a.data)},
+                            {&scene_.domainOf(b), &b.remote, burnMask(b.data)}},
                            book.contacts);
         for (int k = 0; k < 2; ++k) {
             book.pairLinks.clear();
@@ -420,10 +438,10 @@ void World::linkClose(Object& object, uint32_t now) {
     };
     // Where all objects are latched as they stand now, the few that are so near are found among
     // all; else among its neighbours, which are many.
-    if (book.due.empty() || frame_.remoteLatched) {
+    if (book.due.empty() || frame_.latched) {
         const mesh::Box box = boxOf(object.remote);
-        for (const uint32_t other : objectsNear(box, 0.001f * float(gpu::kContactGap))) {
-            const Object& o = **objects_.at(other);
+        for (const uint32_t other : scene_.objectsNear(box, 0.001f * float(gpu::kContactGap))) {
+            const Object& o = scene_.objectAt(other);
             if (other != object.slot && o.remoteVersion != 0 && o.remote.flags & gpu::kRemoteLive &&
                 other <= Neighbours::kSlot)
                 meet(other);
@@ -453,15 +471,15 @@ uint32_t closeIndex(std::span<const CloseObject> list, uint32_t slot) noexcept {
 
 }  // namespace
 
-void World::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
-    ListPlace& list = remote_.closeOf[slot];
-    remote_.close.reserve(list, list.count + 1);
-    remote_.close.insert(list, closeIndex(remote_.close.of(list), other), {other, pair});
+void ExchangeSystem::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
+    ListPlace& list = state_.book.closeOf[slot];
+    state_.book.close.reserve(list, list.count + 1);
+    state_.book.close.insert(list, closeIndex(state_.book.close.of(list), other), {other, pair});
 }
 
 // Their pair, which may be new.
-uint32_t World::closePair(uint32_t a, uint32_t b) {
-    RemoteBook& book = remote_;
+uint32_t ExchangeSystem::closePair(uint32_t a, uint32_t b) {
+    RemoteBook& book = state_.book;
     const std::span<const CloseObject> list = book.close.of(book.closeOf[a]);
     if (const uint32_t at = closeIndex(list, b); at < list.size() && list[at].slot == b)
         return list[at].pair;
@@ -474,9 +492,9 @@ uint32_t World::closePair(uint32_t a, uint32_t b) {
     return pair;
 }
 
-// They are apart, or one of them is gone.
-void World::dropPair(uint32_t pair) noexcept {
-    RemoteBook& book = remote_;
+// The two are apart, or one of them is gone.
+void ExchangeSystem::dropPair(uint32_t pair) noexcept {
+    RemoteBook& book = state_.book;
     const auto entryOf = [&](const PairContacts& of, int k) {
         return closeIndex(book.close.of(book.closeOf[of.slots[k]]), of.slots[1 - k]);
     };
@@ -493,21 +511,21 @@ void World::dropPair(uint32_t pair) noexcept {
     book.pairs.pop_back();
 }
 
-void World::dropLinks(uint32_t to, uint32_t from) noexcept {
-    ListPlace& place = remote_.linksOf[to];
-    const std::span<gpu::ContactLink> list = remote_.links.of(place);
+void ExchangeSystem::dropLinks(uint32_t to, uint32_t from) noexcept {
+    ListPlace& place = state_.book.linksOf[to];
+    const std::span<gpu::ContactLink> list = state_.book.links.of(place);
     const auto end = std::remove_if(list.begin(), list.end(), [&](const gpu::ContactLink& link) {
         return link.fromObject == from;
     });
     if (end == list.end()) return;
     std::fill(end, list.end(), RemoteBook::noLink());
-    remote_.links.mark(place.first, place.count);
+    state_.book.links.mark(place.first, place.count);
     place.count = uint32_t(end - list.begin());
 }
 
-void World::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
+void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     if (fresh.empty()) return;
-    RemoteBook& book = remote_;
+    RemoteBook& book = state_.book;
     ListPlace& place = book.linksOf[to];
     std::sort(fresh.begin(), fresh.end(), before);
     const std::span<const gpu::ContactLink> list = book.links.of(place);
@@ -518,10 +536,12 @@ void World::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     book.links.assign(place, book.mergedLinks);
 }
 
-// The next object in its slot has no part in its contacts, and the backend hears of that before
-// the next exchange.
-void World::forgetRemote(const Object& object) noexcept {
-    RemoteBook& book = remote_;
+// The next object in its slot does not inherit its contacts. The backend gets the change before the
+// next exchange.
+void ExchangeSystem::forgetObject(const Object& object) noexcept {
+    countGoverned(object, false);
+    removeFromShield(object.slot);
+    RemoteBook& book = state_.book;
     book.unsent |= object.remoteVersion != 0;
     const uint32_t slot = object.slot;
     const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
@@ -551,28 +571,28 @@ void World::forgetRemote(const Object& object) noexcept {
 }
 
 // awake: the step will run.
-void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
-    if (!remoteOn()) return;
-    if (remote_.rebuild) rebuildRemote();
-    step.rules = exchangeRules();
+void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
+    if (!isOn()) return;
+    if (state_.book.rebuild) rebuild();
+    step.rules = rules();
     step.exchange = step.reduce;
-    step.governed = remote_.governed;
-    step.capped = remote_.capped;
+    step.governed = state_.book.governed;
+    step.capped = state_.book.capped;
     if (now % gpu::kExchangeTicks == 0) {
-        latchRemote(now);
-        frame_.remoteLatched = true;
+        latchPoses(now);
+        frame_.latched = true;
     }
     planShield(step, awake);
-    if (!awake || !remote_.unsent) return;
-    if (frame_.remoteFlushed && now % gpu::kExchangeTicks != 0) return;
+    if (!awake || !state_.book.unsent) return;
+    if (frame_.flushed && now % gpu::kExchangeTicks != 0) return;
     keepPlanned();
     askVisibility();
     findLinks(now);
-    for (const uint32_t slot : remote_.neighbours.changed()) {
-        auto* owned = objects_.at(slot);
+    for (const uint32_t slot : state_.book.neighbours.changed()) {
+        auto* owned = scene_.objects.at(slot);
         if (!owned) continue;
         Object& object = **owned;
-        const ListPlace list = remote_.neighbours.listOf(slot);
+        const ListPlace list = state_.book.neighbours.listOf(slot);
         if (object.remote.neighbourFirst == list.first &&
             object.remote.neighbourCount == list.count)
             continue;
@@ -580,114 +600,145 @@ void World::planRemote(gpu::StepPlan& step, uint32_t now, bool awake) {
         object.remote.neighbourCount = list.count;
         if (object.remoteVersion != 0) markUnsent(object);
     }
-    if (frame_.remoteUsed == frame_.remote.size())
-        frame_.remote.push_back(core::Owned<RemoteTables>::make(memory_, memory_));
-    RemoteTables& tables = *frame_.remote[frame_.remoteUsed];
+    if (frame_.used == frame_.tables.size())
+        frame_.tables.push_back(core::Owned<RemoteTables>::make(context_.memory, context_.memory));
+    RemoteTables& tables = *frame_.tables[frame_.used];
     tables.objects.clear();
-    core::growTo(tables.objects, remote_.unsentSlots.size());
-    for (const uint32_t slot : remote_.unsentSlots)
-        tables.objects.push_back({slot, (*objects_.at(slot))->remote});
-    remote_.neighbours.pool().listChanges(tables.neighbourRanges);
-    remote_.links.listChanges(tables.linkRanges);
-    tables.blockers.assign(remote_.blockers.begin(), remote_.blockers.end());
-    tables.update = {tables.objects,         remote_.neighbours.pool().all(),
-                     tables.neighbourRanges, remote_.links.all(),
+    core::growTo(tables.objects, state_.book.unsentSlots.size());
+    for (const uint32_t slot : state_.book.unsentSlots)
+        tables.objects.push_back({slot, scene_.objectAt(slot).remote});
+    state_.book.neighbours.pool().listChanges(tables.neighbourRanges);
+    state_.book.links.listChanges(tables.linkRanges);
+    tables.blockers.assign(state_.book.blockers.begin(), state_.book.blockers.end());
+    tables.update = {tables.objects,         state_.book.neighbours.pool().all(),
+                     tables.neighbourRanges, state_.book.links.all(),
                      tables.linkRanges,      tables.blockers};
     step.remote = &tables.update;
-    ++frame_.remoteUsed;
-    frame_.remoteFlushed = true;
-}
-
-// Whom fire may reach from those that an event touched must see the same wind on every backend, be
-// the readback that tells of it late or not.
-void World::touchNear(uint32_t now) {
-    const auto add = [&](uint32_t slot) {
-        auto* owned = objects_.at(slot);
-        if (!owned || (*owned)->planStamp == planStamp_ || (*owned)->touched) return;
-        Object& object = **owned;
-        components::Latch latch = object.latch;
-        components::resetLatch(object.data, driveInput(object, now), latch);
-        latch.sent = object.latch.sent && components::sameDrive(object.data, latch, object.latch);
-        addLatch(object, latch, true);
-    };
-    if (remote_.flags & FW_WORLD_EMBERS) {
-        for (const uint32_t slot : remote_.waiting) add(slot);
-        frame_.waitersTouched = true;
-        return;
-    }
-    const auto addNear = [&](const Object& object) {
-        for (const uint32_t entry : remote_.neighbours.of(object.slot))
-            add(entry & Neighbours::kSlot);
-    };
-    // Once all neighbours of touched objects are touched, only other lists and other objects can
-    // bring more.
-    if (!remote_.spreadKnown)
-        for (const Object* object : touched_) addNear(*object);
-    else
-        for (const uint32_t slot : remote_.neighbours.changed())
-            if (const auto* owned = objects_.at(slot);
-                owned && ((*owned)->touched || (*owned)->planStamp == planStamp_))
-                addNear(**owned);
-    for (; frame_.spreadFrom < frame_.latches.size(); ++frame_.spreadFrom)
-        addNear(*frame_.latches[frame_.spreadFrom].object);
-    frame_.spreadFound = true;
+    ++frame_.used;
+    frame_.flushed = true;
 }
 
 // After all that the frame reached was touched.
-void World::commitRemote() noexcept {
-    if (frame_.shieldSent) shield_.unsent = false;
-    if (frame_.remoteLatched) {
-        for (const uint32_t slot : remote_.due) (*objects_.at(slot))->remoteDue = false;
-        remote_.due.clear();
-        remote_.blockersDue = false;
+void ExchangeSystem::commit(bool spreadFound, bool waitersTouched) noexcept {
+    if (frame_.shieldSent) state_.shield.unsent = false;
+    if (frame_.latched) {
+        for (const uint32_t slot : state_.book.due) scene_.objectAt(slot).remoteDue = false;
+        state_.book.due.clear();
+        state_.book.blockersDue = false;
     }
-    remote_.spreadKnown |= frame_.spreadFound;
-    if (frame_.waitersTouched)
-        std::erase_if(remote_.waiting,
-                      [&](uint32_t slot) { return (*objects_.at(slot))->touched; });
-    if (!frame_.remoteFlushed) return;
-    for (const uint32_t slot : remote_.unsentSlots) (*objects_.at(slot))->remoteSent = true;
-    remote_.unsentSlots.clear();
-    remote_.neighbours.settle();
-    remote_.links.settle();
-    remote_.unsent = false;
+    state_.book.spreadKnown |= spreadFound;
+    if (waitersTouched)
+        std::erase_if(state_.book.waiting,
+                      [&](uint32_t slot) { return scene_.objectAt(slot).touched; });
+    if (!frame_.flushed) return;
+    for (const uint32_t slot : state_.book.unsentSlots) scene_.objectAt(slot).remoteSent = true;
+    state_.book.unsentSlots.clear();
+    state_.book.neighbours.settle();
+    state_.book.links.settle();
+    state_.book.unsent = false;
 }
 
-// The world is governed while one who asks for it is there.
-void World::countGoverned(const Object& object, bool more) noexcept {
-    remote_.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
-    remote_.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
-    remote_.capped = remote_.cappedObjects != 0 || components::caps(remote_.governance);
-    remote_.governed = remote_.governedObjects != 0 || components::governs(remote_.governance);
+// The world is governed while an object or its def limits fire.
+void ExchangeSystem::countGoverned(const Object& object, bool more) noexcept {
+    state_.book.cappedObjects += components::caps(object.governance) ? (more ? 1u : ~0u) : 0u;
+    state_.book.governedObjects += components::governs(object.governance) ? (more ? 1u : ~0u) : 0u;
+    state_.book.capped = state_.book.cappedObjects != 0 || components::caps(state_.book.governance);
+    state_.book.governed =
+        state_.book.governedObjects != 0 || components::governs(state_.book.governance);
 }
 
-void World::tellSpread(Object& object, const gpu::Readback& readback) noexcept {
+void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) noexcept {
     const gpu::ObjectCounters& now = object.counters;
     if (now.litTick != object.story.litTold) {
         object.story.litTold = now.litTick;
         ++object.changes;
         const uint32_t giver = gpu::giverOf(now.litBy);
         // A slot may be another's since.
-        const auto* by = giver < objects_.slotCount() ? objects_.at(giver) : nullptr;
+        const auto* by = giver < scene_.objects.slotCount() ? scene_.objects.at(giver) : nullptr;
         if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
             const gpu::RemoteObject& box = object.remote;
             const int low[3] = {box.turn0.w, box.turn1.w, box.turn2.w};
             float middle[3];
             for (int i = 0; i < 3; ++i)
                 middle[i] = float(double(low[i]) + double(box.high[i])) / 2000.0f;
-            raise(FW_EVENT_SPREAD_TO, &object, gpu::hopsOf(now.litBy), readback.frameIndex, middle,
-                  float(double(now.litTick) / gpu::kTicksPerSecond), objects_.idOf(giver));
+            context_.raise(FW_EVENT_SPREAD_TO, &object, gpu::hopsOf(now.litBy), readback.frameIndex,
+                           middle, float(double(now.litTick) / gpu::kTicksPerSecond),
+                           scene_.objects.idOf(giver));
         }
     }
     if (now.spots != object.story.spotsTold) {
         float place[3];
         const uint32_t texel = now.spotTexel & ~gpu::kSpotFresh;
-        texelPosition(object, std::min(texel, domainOf(object).texelCount() - 1), place);
-        raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
-              float(now.spots - object.story.spotsTold));
+        scene_.texelPosition(object, std::min(texel, scene_.domainOf(object).texelCount() - 1),
+                             place);
+        context_.raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
+                       float(now.spots - object.story.spotsTold));
         object.story.spotsTold = now.spots;
         ++object.changes;
     }
+}
+
+void ExchangeSystem::beginFrame() noexcept {
+    frame_.used = 0;
+    frame_.latched = frame_.flushed = frame_.shieldSent = false;
+}
+
+void ExchangeSystem::markMoved(Object& object) noexcept {
+    if (object.remoteDue) return;  // at most once each: capacity was reserved at its creation
+    object.remoteDue = true;
+    state_.book.due.push_back(object.slot);
+}
+
+void ExchangeSystem::addObject(const Object& object) noexcept {
+    state_.book.due.push_back(object.slot);
+    countGoverned(object, true);
+}
+
+void ExchangeSystem::reserveSlots() {
+    RemoteBook& book = state_.book;
+    for (auto* slots :
+         {&book.due, &book.unsentSlots, &book.waiting, &book.contactsDue, &book.seenDue})
+        core::growTo(*slots, scene_.objects.slotCount());
+}
+
+void ExchangeSystem::checkShift(const double (&by)[3]) const {
+    for (auto [i, blocker] : state_.blockers.entries())
+        checkMoved(blocker.pose.translation, by, "blocker", i);
+    if (state_.shield.grid.shape.cells() != 0)
+        checkMillimetres(state_.shield.grid.shape.origin, by, "heat shield", 0);
+}
+
+std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
+    std::pmr::vector<Seen> seen(context_.memory);
+    recordSeen(seen);
+    return seen;
+}
+
+// The host's answers about sight hold; the lists of neighbours are built again.
+void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
+    for (auto [i, owned] : scene_.objects.entries())
+        if (owned.remoteVersion != 0) moveRecord(owned.remote, by);
+    RemoteBook& book = state_.book;
+    book.rebuild = book.unsent = true;  // its grid is of the places before
+    for (auto [i, blocker] : state_.blockers.entries()) moveBy(blocker.pose.translation, by);
+    for (gpu::Blocker& blocker : book.blockers) {
+        gpu::ivec4* turns[] = {&blocker.turn0, &blocker.turn1, &blocker.turn2};
+        for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
+    }
+    if (state_.shield.grid.shape.cells() == 0) return;
+    moveMillimetres(state_.shield.grid.shape.origin, by);
+    state_.shield.unsent = state_.shield.unpacked = true;
+}
+
+ExchangeSystem::Memory ExchangeSystem::memory() const noexcept {
+    Memory bytes;
+    bytes.neighbours = state_.book.neighbours.bytes();
+    for (const auto& tables : frame_.tables)
+        bytes.neighbours += tables->objects.capacity() * sizeof(gpu::RemoteUpdate::Placed) +
+                            tables->neighbours.capacity() * sizeof(uint32_t);
+    bytes.contacts = state_.book.links.bytes() + state_.book.close.bytes() +
+                     state_.book.pairs.capacity() * sizeof(PairContacts);
+    return bytes;
 }
 
 }  // namespace fw::world

@@ -1,5 +1,5 @@
-// Flipbooks: ids, who uses them, and their way to the backend. Looks alone.
-#include "world/world.h"
+// Flipbooks: ids, users, and the texture that the backend gets. Cosmetic.
+#include "world/flame_system.h"
 
 #include "book/own.h"
 #include "book/picture.h"
@@ -8,7 +8,7 @@
 namespace fw::world {
 
 // Of all that there are and `fresh` in `slot`; without what is there already where `fresh` is null.
-void World::showBooks(uint32_t slot, const book::Book* fresh) {
+void FlameSystem::sendFlipbooks(uint32_t slot, const book::Book* fresh) {
     const book::Book* all[gpu::kMaxBooks] = {};
     uint32_t count = 0;
     for (uint32_t i = 0; i < gpu::kMaxBooks; ++i) {
@@ -17,22 +17,22 @@ void World::showBooks(uint32_t slot, const book::Book* fresh) {
         count += all[i] != nullptr;
     }
     if (count == 0) {
-        backend_.setBooks(0, 0, {}, {});
+        context_.backend.setBooks(0, 0, {}, {});
         return;
     }
-    const book::Picture picture = book::layBooks(all, memory_);
-    backend_.setBooks(picture.width, picture.height, std::as_bytes(std::span(picture.texels)),
-                      picture.words);
+    const book::Picture picture = book::layBooks(all, context_.memory);
+    context_.backend.setBooks(picture.width, picture.height,
+                              std::as_bytes(std::span(picture.texels)), picture.words);
 }
 
-FwFlipbookId World::createFlipbook(const FwFlipbookDef& def) {
+FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
     if (flipbooks_.live() >= gpu::kMaxBooks)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u flipbooks are there; the limit is %u.",
                    flipbooks_.live(), gpu::kMaxBooks);
     components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
     components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
     components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);
-    auto book = core::Owned<book::Book>::make(memory_, memory_);
+    auto book = core::Owned<book::Book>::make(context_.memory, context_.memory);
     if (def.preset == FW_FLIPBOOK_CUSTOM) {
         if (!def.cooked)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -48,11 +48,11 @@ FwFlipbookId World::createFlipbook(const FwFlipbookDef& def) {
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
                        def.preset);
-        book::readBook(book::ownBook(def.preset, memory_), *book);
+        book::readBook(book::ownBook(def.preset, context_.memory), *book);
     }
     const FwFlipbookId id = flipbooks_.create();
     try {
-        showBooks(id.index1 - 1, book.get());
+        sendFlipbooks(id.index1 - 1, book.get());
     } catch (...) {
         flipbooks_.destroy(id);
         throw;
@@ -63,18 +63,18 @@ FwFlipbookId World::createFlipbook(const FwFlipbookDef& def) {
     return id;
 }
 
-void World::destroyFlipbook(FwFlipbookId id) {
+void FlameSystem::destroyFlipbook(FwFlipbookId id) {
     const uint32_t users = flipbooks_.get(id).users;
     if (users > 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Flipbook %u (generation %u) is used by %u emitter(s) and flames; destroy or "
                    "change them first.",
                    id.index1, id.generation, users);
-    showBooks(id.index1 - 1, nullptr);
+    sendFlipbooks(id.index1 - 1, nullptr);
     flipbooks_.destroy(id);
 }
 
-uint32_t World::bookByte(FwFlipbookId id, const char* name, book::Kind kind) {
+uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, book::Kind kind) {
     if (id.index1 == 0) return 0;
     const FlipbookEntry& entry = flipbooks_.get(id);
     static constexpr const char* kNames[] = {"fire", "smoke", "sparks"};
@@ -85,37 +85,37 @@ uint32_t World::bookByte(FwFlipbookId id, const char* name, book::Kind kind) {
     return id.index1;
 }
 
-void World::setFlameFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
-    const uint32_t bytes =
-        bookByte(fire, "fire", book::Kind::Fire) | bookByte(smoke, "smoke", book::Kind::Smoke) << 8;
+void FlameSystem::setFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
+    const uint32_t bytes = flipbookByte(fire, "fire", book::Kind::Fire) |
+                           flipbookByte(smoke, "smoke", book::Kind::Smoke) << 8;
     const FwFlipbookId now[2] = {fire, smoke};
     for (int i = 0; i < 2; ++i) {
         if (now[i].index1) ++flipbooks_.get(now[i]).users;
         if (flameBooks_[i].index1) --flipbooks_.get(flameBooks_[i]).users;
         flameBooks_[i] = now[i];
     }
-    backend_.setFlameBooks(bytes);
+    context_.backend.setFlameBooks(bytes);
 }
 
-components::EmitterBooks World::emitterBooks(const FwFireEmitterDef& def) {
+components::EmitterBooks FlameSystem::flipbooksOf(const FwFireEmitterDef& def) {
     components::EmitterBooks books;
     for (uint32_t i = 0, at = 0; i < 3; ++i)
         if (const uint32_t b =
-                bookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire)) {
+                flipbookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire)) {
             books.fireEmits =
                 (at == 0 || books.fireEmits) && flipbooks_.get(def.fireBooks[i]).emits;
             books.fire |= b << (8 * at++);
         }
     for (uint32_t i = 0, at = 0; i < 2; ++i)
         if (const uint32_t b =
-                bookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))
+                flipbookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))
             books.other |= b << (8 * at++);
-    books.spark = bookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark);
+    books.spark = flipbookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark);
     return books;
 }
 
 // `by` is 1 or -1.
-void World::countBookUsers(const FwFireEmitterDef& def, int by) noexcept {
+void FlameSystem::countFlipbookUsers(const FwFireEmitterDef& def, int by) noexcept {
     const auto count = [&](FwFlipbookId id) {
         if (id.index1) flipbooks_.at(id.index1 - 1)->users += uint32_t(by);
     };

@@ -1,0 +1,275 @@
+// The course of each object's fire: counters of readbacks become events and figures. Allocates
+// nothing itself.
+#include "world/burn_system.h"
+
+#include "core/growth.h"
+#include "world/exchange_system.h"
+#include "world/room_system.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+namespace fw::world {
+namespace {
+
+// Counters of `reduce` are at most 4 steps old; a fire is judged only well after its last event.
+constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
+constexpr uint64_t kWaterWorks = 2 * gpu::kTicksPerSecond;  // until it has put out what it hit
+constexpr uint32_t kClampsToTell = 32;
+
+// Fire may come to it, and none has: its counters have not changed.
+bool waitsForFire(const Object& object, const gpu::ObjectCounters& now) noexcept {
+    return now.ignited == 0 && now.burning == 0 && !object.story.active && !object.story.sawFire &&
+           object.play.began == 0 && object.story.power == 0 &&
+           std::memcmp(&now, &object.counters, sizeof now) == 0;
+}
+
+}  // namespace
+
+BurnSystem::BurnSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
+                       RoomSystem& rooms, ExchangeSystem& exchange, EmitterSystem& emitters,
+                       QuerySystem& queries)
+    : context_(context),
+      scene_(scene),
+      wind_(wind),
+      rooms_(rooms),
+      exchange_(exchange),
+      emitters_(emitters),
+      queries_(queries) {
+    frame_.steps.reserve(kMaxSteps);
+}
+
+// One for each object that the frame may address.
+void BurnSystem::reserveStimuli() {
+    const size_t most = std::min<size_t>(
+        frame_.due.size() + frame_.latches.size() + frame_.plays.size(), scene_.objects.live());
+    core::growTo(state_.stimuli, state_.stimuli.size() + most);
+    core::growTo(state_.frameNotes, state_.frameNotes.size() + 1);
+}
+
+Stimulus& BurnSystem::stimulusOf(Object& object, uint64_t frameIndex) noexcept {
+    if (object.stimulusAt == mesh::kNone) {
+        object.stimulusAt = uint32_t(state_.stimuli.size());
+        ++object.stimuli;
+        state_.stimuli.push_back({frameIndex, object.slot});  // capacity was reserved
+    }
+    return state_.stimuli[object.stimulusAt];
+}
+
+void BurnSystem::recordIgnition(Object& object, Stimulus& stimulus, uint32_t texel,
+                                uint32_t tick) noexcept {
+    if (stimulus.ignites) return;
+    stimulus.ignites = true;
+    stimulus.ignition = tick;
+    scene_.texelPlace(object, texel, stimulus.ignitionPoint);
+    if (!object.story.ignitionKnown && !object.story.sawFire && !object.ignites)
+        context_.backend.startBoundary(object.slot, stimulus.ignitionPoint, tick);
+    object.ignites = true;
+}
+
+void BurnSystem::commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept {
+    for (size_t i = state_.stimuli.size(); i-- > 0 && state_.stimuli[i].frameIndex == frameIndex;)
+        scene_.objectAt(state_.stimuli[i].slot).stimulusAt = mesh::kNone;
+    FrameNote note;
+    note.frameIndex = frameIndex;
+    note.end = time.after.tick;
+    note.roomsStirred = rooms_.state().stirred;
+    note.steps = time.steps;
+    note.stirs = !frame_.events.empty();
+    note.never = keepsAwake();
+    state_.frameNotes.push_back(note);  // capacity was reserved
+}
+
+// With the readback of a frame, before anything else of it.
+void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
+    size_t frames = 0;
+    for (const FrameNote& note : state_.frameNotes) {
+        if (note.frameIndex > frameIndex) break;
+        ++frames;
+        rooms_.onFrameDone(note.roomsStirred);
+        if (!state_.seenIdle || note.stirs || note.never ||
+            !rooms_.isSettled(rooms_.state().seenStirred))
+            state_.steps += note.steps;
+        if (!note.stirs) continue;
+        state_.seenIdle = false;
+        state_.seenStimulus = note.end;
+    }
+    state_.frameNotes.erase(state_.frameNotes.begin(),
+                            state_.frameNotes.begin() + std::ptrdiff_t(frames));
+    size_t taken = 0;
+    for (const Stimulus& one : state_.stimuli) {
+        if (one.frameIndex > frameIndex) break;
+        ++taken;
+        Object& object = scene_.objectAt(one.slot);
+        Story& story = object.story;
+        if (--object.stimuli == 0) object.ignites = false;
+        if (one.from1 != 0)
+            continueBurn(object, one.given ? *one.given : scene_.objectAt(one.from1 - 1).story);
+        if (one.first) story.heatSteps = one.heatSteps;
+        if (one.starts) {
+            story.active = true;
+            story.lastStimulus = std::max(story.lastStimulus, one.latest);
+        }
+        if (one.ignites && !story.ignitionKnown && !story.sawFire) {
+            story.ignitionKnown = true;
+            story.firstIgnition = one.ignition;
+            std::copy_n(one.ignitionPoint, 3, story.ignitionPoint);
+        }
+        if (one.douses) {
+            story.lastDouse = one.douse;
+            story.douseCause = one.douseCause;
+        }
+    }
+    state_.stimuli.erase(state_.stimuli.begin(), state_.stimuli.begin() + std::ptrdiff_t(taken));
+}
+
+void BurnSystem::onReadback(const gpu::Readback& readback) noexcept {
+    BurnCounts& counts = state_.counts;
+    BurnCounts& loaded = state_.loaded;
+    const uint64_t end = readback.endTick;
+    // Of a save it is known how many there were, until they are counted again.
+    const bool counted = context_.loadedTick == ~0ull || lastReduced(end) > context_.loadedTick;
+    if (counted) loaded.receivers = loaded.burning = 0;
+    if (end > context_.loadedTick) loaded.front = 0;
+    if (heatStepsBefore(end) > heatStepsBefore(context_.loadedTick)) loaded.hot = 0;
+    counts.run = readback.runTiles;
+    counts.front = readback.frontTiles + loaded.front;
+    counts.hot = readback.hotTiles + loaded.hot;
+    counts.burning = counted ? readback.burningTiles : loaded.burning;
+    counts.receivers = std::max(readback.receivers, loaded.receivers);
+    applyCounters(readback);
+}
+
+void BurnSystem::settle(const gpu::Readback& readback) noexcept {
+    const BurnCounts& counts = state_.counts;
+    const bool rests =
+        counts.front == 0 && counts.burning == 0 && counts.hot == 0 && counts.receivers == 0;
+    state_.seenIdle |= rests && readback.endTick >= state_.seenStimulus + kSettleTicks;
+    if (rests && readback.endTick >= state_.lastStimulus + kSettleTicks) state_.idle = true;
+}
+
+void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
+    uint32_t clamps = 0;
+    for (Object* touched : scene_.touched) {
+        Object& object = *touched;
+        const uint32_t slot = object.slot;
+        if (slot >= readback.objects.size() || object.firstFrame > readback.frameIndex) continue;
+        const gpu::ObjectCounters& now = readback.objects[slot];
+        if (waitsForFire(object, now)) {
+            object.countersFrame = readback.frameIndex;
+            if (components::hasHeat(object.data))
+                object.story.heatSteps = heatStepsBefore(readback.endTick);
+            clamps += now.lateClamps;
+            continue;
+        }
+        const gpu::ObjectCounters before = object.counters;
+        object.counters = now;
+        object.countersFrame = readback.frameIndex;
+        object.story.mostIgnited = std::max(object.story.mostIgnited, now.ignited);
+        clamps += now.lateClamps;
+        if (object.play.began != 0 && readback.endTick >= object.play.began &&
+            !gpu::playsAt(now.playsUntil, readback.endTick))
+            endPlay(object, readback.frameIndex, now.playsUntil);  // others' fire came
+        applyEnergy(object, readback.endTick);
+        exchange_.onCounters(object, readback);
+        float place[3];
+        if (now.burning > 0) object.story.lastBurning = readback.endTick;
+        countFlames(object, before, readback.endTick);
+
+        const bool freshFire = now.ignited > before.ignited || now.burning > 0;
+        if (!object.story.sawFire && now.ignited > 0 && freshFire) {
+            object.story.sawFire = true;
+            object.story.active = true;
+            const uint64_t tick =
+                object.story.ignitionKnown ? object.story.firstIgnition : now.lastIgnition;
+            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+            context_.raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
+                           float(double(tick) / gpu::kTicksPerSecond));
+        }
+        // A few late arrivals come with any change of the wind; only many of them are a limit.
+        const uint32_t limit = std::max(kClampsToTell, now.ignited / 50);
+        if (now.lateClamps >= object.story.clampsTold + limit) {
+            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+            context_.raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
+                           float(now.lateClamps - object.story.clampsTold));
+            object.story.clampsTold = now.lateClamps;
+        }
+        const bool settled = now.burning == 0 && now.frontTiles == 0 &&
+                             readback.endTick >= object.story.lastStimulus + kSettleTicks &&
+                             readback.endTick >= uint64_t(now.lastIgnition) + kSettleTicks;
+        if (settled && object.story.active) {
+            object.story.active = false;
+            if (object.story.sawFire) {
+                const float fraction =
+                    object.texels ? float(object.story.mostIgnited) / float(object.texels) : 0.0f;
+                components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+                // At least half of its last flames left fuel behind.
+                const Story& end = object.story;
+                const bool out = end.wentOut > 0 && end.wentOut >= end.flames - end.wentOut;
+                context_.raise(out ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object,
+                               out ? end.outCause : 0u, readback.frameIndex, place, fraction);
+            }
+            object.story.sawFire = false;
+            object.story.ignitionKnown = false;
+            object.story.flames = object.story.wentOut = object.story.outCause = 0;
+        }
+    }
+    state_.counts.lateClamps = clamps;
+}
+
+// A texel that burnt out is a source for good; one that went out is none any more.
+void BurnSystem::countFlames(Object& object, const gpu::ObjectCounters& before,
+                             uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    Story& story = object.story;
+    const uint32_t out = before.ignited - std::min(before.ignited, now.ignited);
+    if (now.burning == 0 && before.burning == 0 && out == 0) return;
+    const uint64_t seconds = endTick / gpu::kTicksPerSecond -
+                             std::min<uint64_t>(endTick, story.halvedUntil) / gpu::kTicksPerSecond;
+    const uint64_t halvings = std::min<uint64_t>(seconds, 31);
+    story.halvedUntil = endTick;
+    story.wentOut = (story.wentOut >> halvings) + out;
+    story.flames = std::max({story.flames >> halvings, now.burning, story.wentOut});
+    if (out == 0) return;
+    const bool air =
+        std::min(gpu::airStrength(now.air), gpu::airStrength(before.air)) < gpu::kAirFull;
+    if (story.lastDouse != 0 && endTick <= story.lastDouse + kWaterWorks)
+        story.outCause = story.douseCause;
+    else
+        story.outCause = air ? FW_EXTINGUISHED_BY_AIR : FW_EXTINGUISHED_BY_COLD;
+}
+
+// Without fuel per texel, a texel has all of its own until it has burnt out. A texel that caught
+// since flames were counted last would count as burnt out: the next count adds it.
+void BurnSystem::applyBurntFuel(Object& object, uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    const components::Fuel& fuel = object.fuel;
+    if (fuel.texels == 0 || now.lastIgnition > lastReduced(endTick)) return;
+    const uint64_t burnt = std::min(now.ignited - std::min(now.ignited, now.burning), fuel.texels);
+    // In parts, as the product is too large.
+    object.story.energy =
+        fuel.energy / fuel.texels * burnt + fuel.energy % fuel.texels * burnt / fuel.texels;
+}
+
+void BurnSystem::applyEnergy(Object& object, uint32_t endTick) noexcept {
+    const gpu::ObjectCounters& now = object.counters;
+    if (!components::hasHeat(object.data)) {
+        applyBurntFuel(object, endTick);
+        return;
+    }
+    const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
+    const uint64_t steps = heatStepsBefore(endTick);
+    if (steps == object.story.heatSteps) return;
+    const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
+    if (!std::exchange(object.carried, false))
+        object.story.power = now.burning == 0
+                                 ? 0.0f
+                                 : float(double(energy - object.story.energy) / 1048576 / seconds /
+                                         double(context_.def.paceFactor));
+    object.story.energy = energy;
+    object.story.heatSteps = steps;
+}
+
+}  // namespace fw::world

@@ -1,0 +1,202 @@
+// The burn: events of texels on their way to their steps, the steps of a frame, records under
+// wind and gravity, baked burns, and the course of each object's fire as readbacks tell it.
+#pragma once
+#include "world/command.h"
+#include "world/pending.h"
+#include "world/scene.h"
+
+namespace fw::world {
+
+class EmitterSystem;
+class ExchangeSystem;
+class QuerySystem;
+class RoomSystem;
+class WindSystem;
+struct ImageStore;
+struct Snapshot;
+
+struct BurnCounts {  // of tiles, as of the last readback
+    uint32_t front = 0, run = 0, burning = 0, hot = 0;
+    uint32_t receivers = 0, lateClamps = 0;
+};
+
+struct BurnState {
+    explicit BurnState(std::pmr::memory_resource* memory)
+        : burns("Baked burn", memory), pending(memory), stimuli(memory), frameNotes(memory) {}
+    core::HandlePool<FwBurnId, core::Owned<Burn>> burns;
+    std::pmr::vector<PendingTexel> pending;
+    uint64_t order = 0;         // of the next of `pending`
+    uint64_t carriesUntil = 0;  // tick: until then burns are carried
+    uint64_t wetUntil = 0;      // tick: from then on no FW_WET event waits
+    uint64_t steps = 0, droppedSteps = 0;
+    uint64_t lastStimulus = 0;  // tick
+    bool idle = true;
+    std::pmr::vector<Stimulus> stimuli;  // of frames whose readback is on its way
+    std::pmr::vector<FrameNote> frameNotes;
+    uint64_t planStamp = 0;
+    // As of the last readback.
+    uint64_t seenStimulus = 0;
+    bool seenIdle = true;
+    BurnCounts counts;
+    BurnCounts loaded;  // of a save; until the next count
+};
+
+class BurnSystem {
+ public:
+    BurnSystem(const WorldContext& context, Scene& scene, const WindSystem& wind, RoomSystem& rooms,
+               ExchangeSystem& exchange, EmitterSystem& emitters, QuerySystem& queries);
+
+    // Texels addressed. `acts`: one of them, or of a match one that can burn.
+    uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
+    // Why a match that addressed so many texels lights nothing, for people.
+    void explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
+                             std::span<char> text) noexcept;
+    void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
+    void pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels);
+    // A baked burn is made of what requestBurnMap brings.
+    const std::pmr::vector<std::byte>* fetchBurn(FwBurnableMeshId id);  // null: not ready
+    FwBurnId createBurn(std::span<const std::byte> bytes);
+    void destroyBurn(FwBurnId id);
+    void playBurn(FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
+    void stopBurn(FwBurnableMeshId id);
+
+    void plan(const ClockAdvance& time);  // throws std::bad_alloc
+    void planBreaks(uint64_t end) noexcept;
+    void reserveStimuli();  // throws std::bad_alloc
+    void fillPlan(gpu::FramePlan& plan) const noexcept;
+    void commit(uint64_t frameIndex, const ClockAdvance& time) noexcept;
+    void onFrameDone(uint64_t frameIndex) noexcept;  // before anything else of its readback
+    void onReadback(const gpu::Readback& readback) noexcept;
+    void onBurnMap(Object& object, const gpu::BurnMap& map, const gpu::Readback& readback) noexcept;
+    void settle(const gpu::Readback& readback) noexcept;  // after all else of it
+    void checkGone(const Object& object) const;           // throws unless it may be destroyed
+    void keepGiven(const Object& from);                   // before it is destroyed; throws
+    void forgetObject(const Object& object) noexcept;
+    core::Owned<Breaks> makeBreaks(const FwBurnableMeshDef& def, MeshEntry& entry,
+                                   std::span<const uint8_t> gone);
+    void reserveSlots();  // for an object more; throws std::bad_alloc
+
+    [[nodiscard]] const BurnState& state() const noexcept { return state_; }
+    // As of the last readback, or by what came since.
+    [[nodiscard]] static bool isActive(const Object& object) noexcept {
+        return object.story.active || object.stimuli > 0;
+    }
+    [[nodiscard]] uint64_t bytes() const noexcept;  // of memory that frames use
+    uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
+    // Events that wait for their step.
+    void reservePending(size_t more);  // throws
+    void addPending(PendingTexel event) noexcept;
+    [[nodiscard]] size_t pendingCount() const noexcept { return state_.pending.size(); }
+    void dropPending(size_t first) noexcept { state_.pending.resize(first); }
+
+ private:
+    friend class PersistenceSystem;
+    static constexpr uint32_t kMaxSteps = 64;
+    static_assert(kMaxSteps == gpu::kMaxFieldRounds);
+    static constexpr size_t kMaxPending = size_t(1) << 22;  // texel events that wait
+
+    struct Frame {  // scratch of one frame; keeps its room between frames
+        explicit Frame(std::pmr::memory_resource* given) : memory(given) {}
+        std::pmr::memory_resource* memory;
+        struct Due {
+            PendingTexel event;
+            uint32_t step = 0;
+        };
+        struct LatchOf {
+            Object* object = nullptr;
+            components::Latch latch;
+            bool due = false;  // an event of this frame addresses it
+        };
+        struct PlayOf {
+            Object* object = nullptr;
+            Play play;                   // as it is at the frame's end
+            uint32_t lit = mesh::kNone;  // the first texel that catches by it
+            uint32_t ended = 0;          // tick at which it went live
+        };
+        std::pmr::vector<gpu::StepPlan> steps{memory};
+        std::pmr::vector<Due> due{memory};
+        std::pmr::vector<gpu::TexelEvent> events{memory};
+        std::pmr::vector<gpu::MaterialUpdate> updates{memory};
+        std::pmr::vector<LatchOf> latches{
+            memory};                  // of touched objects, as they are at the frame's end
+        size_t spreadFrom = 0;        // of those, the first whose neighbours are not touched
+        bool spreadFound = false;     // touchNear ran, and went through neighbours
+        bool waitersTouched = false;  // or through all that waited
+        std::pmr::vector<PlayOf> plays{memory};     // of those that play a baked burn
+        std::pmr::vector<uint32_t> breaks{memory};  // slots of those looked at for breaks
+    };
+
+    // ignite.cpp
+    uint32_t eventTick(float delay) const;
+    uint32_t igniteAt(const FwIgnitionDef& def, uint32_t tick);
+    void addPending(Object& object, uint32_t kind, uint32_t tick, uint32_t water,
+                    std::span<const uint32_t> texels);
+    [[nodiscard]] bool lightsSomething(size_t first) const noexcept;
+    // recording.cpp
+    void recordTexels(size_t first) noexcept;
+    void checkCommandTick(uint32_t tick) const;
+    void igniteTexels(const IgniteTexels& command);
+    void igniteObjects(const IgniteObjects& command);
+    void addChange(Object& object, const TexelChange& change, std::span<const uint32_t> texels);
+    // step.cpp
+    void listDue(uint64_t end);
+    void listLatches() noexcept;
+    gpu::StepPlan planStep(uint32_t step, size_t& nextDue, bool awake);
+    [[nodiscard]] uint32_t substepShift() const noexcept;  // of a frame
+    void sortDue();
+    void planGates(std::span<const Frame::Due> due, size_t firstEvent);
+    [[nodiscard]] bool keepsAwake() const noexcept;  // a switch does
+    void touchLatched(uint64_t frameIndex) noexcept;
+    void stimulateDue(uint64_t frameIndex) noexcept;
+    // latch.cpp
+    void addLatch(Object& object, const components::Latch& latch, bool due) noexcept;
+    [[nodiscard]] bool needsRecords(const Object& object, uint32_t now) const noexcept;
+    void planLatches(uint32_t now, size_t firstEvent, bool placed);
+    void touchNear(uint32_t now);
+    // burn_system.cpp
+    Stimulus& stimulusOf(Object& object, uint64_t frameIndex) noexcept;
+    void recordIgnition(Object& object, Stimulus& stimulus, uint32_t texel, uint32_t tick) noexcept;
+    void commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept;
+    void applyCounters(const gpu::Readback& readback) noexcept;
+    void applyEnergy(Object& object, uint32_t endTick) noexcept;
+    void countFlames(Object& object, const gpu::ObjectCounters& before, uint32_t endTick) noexcept;
+    void applyBurntFuel(Object& object, uint32_t endTick) noexcept;
+    // carry.cpp
+    void waitForCarries() noexcept;
+    void continueBurn(Object& to, const Story& from) noexcept;
+    [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
+    void checkCarry(const PendingTexel& event, const Clock& clock);  // of a save; throws
+    void settlePending() noexcept;                                   // after a load
+    // breaks.cpp
+    [[nodiscard]] const mesh::Pieces& piecesOf(const Object& object) noexcept;  // it has breaks
+    void commitBreaks(uint64_t frameIndex) noexcept;
+    void markBearers(const Object& object) noexcept;
+    void findBreaks(Object& object, std::span<const uint32_t> ticks,
+                    std::span<const gpu::uvec2> heat, uint32_t now, const uint64_t* tells) noexcept;
+    void restoreBreaks(Object& object, const BreakState* saved, const ImageStore& store,
+                       uint32_t now) noexcept;
+    // played.cpp
+    void playBurnAt(FwBurnableMeshId id, FwBurnId burn, uint32_t tick, float speed);
+    void reservePlays(size_t more);
+    void startPlay(Object& object) noexcept;
+    void endPlay(Object& object, uint64_t frameIndex, uint32_t tick) noexcept;
+    size_t beginPlays(uint64_t end);
+    void planPlays(uint32_t now, std::span<const Frame::Due> due);
+    void turnPlay(const Object& object) noexcept;
+    void settlePlays(Snapshot& saved);  // of a save: throws where this world has other burns
+    void commitPlays(uint64_t frameIndex) noexcept;
+
+    const WorldContext& context_;
+    Scene& scene_;
+    const WindSystem& wind_;
+    RoomSystem& rooms_;
+    ExchangeSystem& exchange_;
+    EmitterSystem& emitters_;
+    QuerySystem& queries_;
+    BurnState state_{context_.memory};
+    Frame frame_{context_.memory};
+    std::pmr::vector<std::byte> burnBytes_{context_.memory};  // of the last fetchBurn
+    mesh::HoldScratch holds_{context_.memory};  // room for the largest that asks what breaks
+};
+
+}  // namespace fw::world

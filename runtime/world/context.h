@@ -1,0 +1,57 @@
+// The world as every system may read it: rules, clock, frame and origin. The world alone writes it.
+#pragma once
+#include "core/log.h"
+#include "gpu/backend.h"
+#include "world/clock.h"
+#include "world/event_queue.h"
+
+#include <array>
+#include <memory_resource>
+
+namespace fw::world {
+
+class PersistenceSystem;
+struct Object;
+
+// Moves of the world's origin. Readbacks of earlier frames speak of the places before a move.
+struct OriginShifts {
+    struct Shift {
+        uint64_t frame = 0;  // the last one before it
+        double by[3] = {};   // m
+    };
+    double moved[3] = {};            // m that all places moved since the world's beginning
+    std::array<Shift, 8> pending{};  // of which readbacks are still on their way, oldest first
+    uint32_t count = 0;              // of `pending`
+
+    void add(const double (&by)[3], uint64_t lastFrame) noexcept;
+    void forgetBefore(uint64_t readbackFrame) noexcept;
+    // From where the readback of a frame saw it to where it is now.
+    void movePlace(float (&place)[3], uint64_t frame) const noexcept;
+    [[nodiscard]] bool movedAfter(uint64_t frame) const noexcept {
+        return count > 0 && pending[count - 1].frame == frame;
+    }
+};
+
+struct WorldContext {
+    std::pmr::memory_resource* memory;
+    gpu::Backend& backend;
+    const core::Log& log;
+    FwWorldDef def;
+    EventQueue& events;
+    PersistenceSystem& recorder;  // of the host's commands
+
+    Clock clock;
+    OriginShifts origin;
+    uint64_t lastFrame = 0;
+    uint64_t frames = 0;                           // since the world's beginning
+    uint64_t readbackFrame = 0, readbackTick = 0;  // of the last readback
+    uint32_t switches = 0;                         // FwDebugSwitches
+    uint64_t loadedFrame = 0;                      // readbacks up to this frame are of another past
+    uint64_t loadedTick = ~0ull;                   // of the save that was loaded last
+
+    // Queues an event. `object` null: it is the world's own.
+    void raise(uint32_t type, const Object* object, uint32_t tag, uint64_t frameIndex,
+               const float position[3], float value, FwBurnableMeshId other = {}) const noexcept;
+};
+
+}  // namespace fw::world

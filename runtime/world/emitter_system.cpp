@@ -1,0 +1,275 @@
+// Fire emitters: their ranges among the world's particles, and their frames. Nothing here loops
+// over particles.
+#include "world/emitter_system.h"
+
+#include "components/sparks.h"
+#include "core/growth.h"
+#include "shared/spark.h"
+#include "world/burn_system.h"
+#include "world/flame_system.h"
+#include "world/persistence.h"
+#include "world/query_system.h"
+#include "world/shift.h"
+#include "world/wind_system.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace fw::world {
+
+using components::FireEmitter;
+
+namespace {
+
+void moveJet(components::JetStream& stream, const double (&by)[3]) noexcept {
+    for (components::JetPatches* patches : {&stream.patches, &stream.before})
+        for (components::JetPatch& patch : *patches) movePast(patch.place, by);
+    for (components::JetParcel& parcel : stream.parcels) {
+        movePast(parcel.from, by);
+        for (components::JetRay& ray : parcel.rays) movePast(ray.hit.place, by);
+    }
+}
+void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double along) noexcept {
+    moveBy(emitter.position, by);
+    emitter.def.ground += float(along);
+    for (components::JetHit& hit : emitter.hits) moveBy(hit.place, by);
+    for (auto* shields : {&emitter.shields, &emitter.lastShields})
+        for (components::JetShield& shield : *shields) moveBy(shield.place, by);
+    for (auto* births : {&emitter.births, &emitter.next}) {
+        moveBy(births->position, by);
+        for (auto& note : births->sparks.notes)
+            for (size_t i = 0; i < 3; ++i) note[i] = float(double(note[i]) + by[i]);
+    }
+    if (emitter.stream) moveJet(*emitter.stream, by);
+}
+
+}  // namespace
+
+EmitterSystem::EmitterSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
+                             const ExchangeSystem& exchange, FlameSystem& flames,
+                             QuerySystem& queries, BurnSystem& burn)
+    : context_(context),
+      scene_(scene),
+      wind_(wind),
+      exchange_(exchange),
+      flames_(flames),
+      queries_(queries),
+      burn_(burn) {}
+
+components::EmitterAir EmitterSystem::airOf(const FireEmitter& emitter,
+                                            float ahead) const noexcept {
+    components::EmitterAir air;
+    // That of a mesh is where its mesh is.
+    const core::Owned<Object>* object =
+        emitter.def.shape == FW_EMITTER_MESH ? scene_.objects.find(emitter.def.object) : nullptr;
+    float place[3];
+    std::copy_n(emitter.position, 3, place);
+    for (int i = 0; object && i < 3; ++i) place[i] = float((*object)->data.pose.translation[i]);
+    const std::array<float, 3> wind = wind_.at(place, context_.clock.tick);
+    std::copy_n(wind.data(), 3, air.wind);
+    std::copy_n(context_.def.up, 3, air.up);
+    air.now = state_.time + double(ahead);
+    return air;
+}
+
+// First room of so many particles between those of the others.
+uint32_t EmitterSystem::findRing(uint32_t particles) {
+    rings_.clear();
+    rings_.reserve(state_.emitters.live() + 1);
+    for (auto [i, one] : state_.emitters.entries()) rings_.push_back({one.first, one.ring});
+    std::sort(rings_.begin(), rings_.end());
+    uint32_t first = 0;
+    for (const auto& ring : rings_) {
+        if (ring.first - first >= particles) break;
+        first = ring.first + ring.second;
+    }
+    if (first > context_.def.maxParticles || particles > context_.def.maxParticles - first)
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "The emitter needs %u particles in a row; FwWorldDef::maxParticles is %u, and %u "
+            "of them are not free.",
+            particles, context_.def.maxParticles, std::min(first, context_.def.maxParticles));
+    return first;
+}
+
+FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
+    if (state_.emitters.live() >= gpu::kMaxEmitters)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire emitters are there; the limit is %u.",
+                   state_.emitters.live(), gpu::kMaxEmitters);
+    FireEmitter emitter;
+    components::makeFireEmitter(def, context_.def.seed * 0x9E3779B9u + 77u * (made_ + 1), emitter);
+    emitter.books = flames_.flipbooksOf(def);
+    if (def.shape == FW_EMITTER_MESH) (void)scene_.objects.get(def.object);
+    emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
+    emitter.first = findRing(emitter.ring);
+    const size_t groups = groups_.capacity();
+    size_t needed = (emitter.ring + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
+    for (const auto& ring : rings_)
+        needed += (ring.second + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
+    if (groups < needed) groups_.reserve(std::max(needed, 2 * groups));
+    const size_t records = records_.capacity(), live = state_.emitters.live() + 1;
+    if (records < live) {
+        records_.reserve(std::max(live, 2 * records));
+        sparks_.reserve(std::max(live, 2 * records));
+    }
+    flames_.reserve(0);  // of shapes that jets are swept through
+    if (components::isSwept(def))
+        queries_.reserveJetProbes((state_.emitters.live() + 1) * components::kJetRays);
+    if (def.flags & FW_EMITTER_IGNITES)
+        emitter.stream = core::Owned<components::JetStream>::make(context_.memory);
+    const FwFireEmitterId id = state_.emitters.create(std::move(emitter));
+    ++made_;
+    flames_.countFlipbookUsers(def, 1);
+    return id;
+}
+
+void EmitterSystem::destroy(FwFireEmitterId id) {
+    const FwFireEmitterDef def = state_.emitters.get(id).def;
+    queries_.forgetJet(id);
+    state_.emitters.destroy(id);
+    flames_.countFlipbookUsers(def, -1);
+}
+
+void EmitterSystem::move(FwFireEmitterId id, const float position[3], const float* direction) {
+    FireEmitter& emitter = state_.emitters.get(id);
+    const bool burns = bool(emitter.stream);
+    if (burns) context_.recorder.mayChange();
+    components::moveFireEmitter(emitter, position, direction);
+    if (!burns) return;
+    MoveEmitter command{id.index1 - 1, direction != nullptr};
+    std::copy_n(position, 3, command.position);
+    if (direction) std::copy_n(direction, 3, command.direction);
+    context_.recorder.record(command);
+}
+
+void EmitterSystem::setPower(FwFireEmitterId id, float power) {
+    FireEmitter& emitter = state_.emitters.get(id);
+    const bool burns = bool(emitter.stream);
+    if (burns) context_.recorder.mayChange();
+    components::setEmitterPower(emitter, power);
+    if (burns) context_.recorder.record(SetEmitterPower{id.index1 - 1, power});
+}
+
+void EmitterSystem::setHidden(FwFireEmitterId id, bool hidden) {
+    uint32_t& flags = state_.emitters.get(id).def.flags;
+    flags = (flags & ~uint32_t(FW_EMITTER_HIDDEN)) | (hidden ? uint32_t(FW_EMITTER_HIDDEN) : 0u);
+}
+
+void EmitterSystem::fillState(FwFireEmitterId id, FwFireEmitterState& state) {
+    FireEmitter& emitter = state_.emitters.get(id);
+    components::fillEmitterState(emitter, airOf(emitter, 0), state);
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+// Of a mesh emitter's power that its mesh has, as of the last readback.
+float EmitterSystem::burningShare(const FireEmitter& emitter) noexcept {
+    const core::Owned<Object>* object = scene_.objects.find(emitter.def.object);
+    if (!object || !(emitter.def.power > 0)) return 0;
+    return std::clamp(scene_.powerOf(**object) / (1000 * emitter.def.power), 0.0f, 1.0f);
+}
+
+// Of the host's height fields what lies about a source of sparks. In cells of the world: where it
+// stands in them changes nothing.
+void EmitterSystem::sampleGround(gpu::SparkSource& source) const noexcept {
+    constexpr float kSide = gpu::kSparkCellSide;
+    constexpr uint32_t kCells = gpu::kSparkCells, kCorners = kCells + 1;
+    float low[2];
+    for (int i = 0; i < 2; ++i)
+        low[i] = std::floor(source.keys[0][2 * i] / kSide + 0.5f) * kSide - 0.5f * kCells * kSide;
+    float heights[kCorners * kCorners] = {};
+    bool any = false;
+    flames_.eachHeightField([&](const volume::Collider& field) {
+        float height = 0;
+        if (!volume::heightOf(field, source.keys[0].x, source.keys[0].z, height)) return;
+        for (uint32_t i = 0; i < kCorners * kCorners; ++i) {
+            (void)volume::heightOf(field, low[0] + float(i % kCorners) * kSide,
+                                   low[1] + float(i / kCorners) * kSide, height);
+            heights[i] = any ? std::max(heights[i], height) : height;
+        }
+        any = true;
+    });
+    source.grid = {low[0], low[1], kSide, any ? 1.0f : 0.0f};
+    for (uint32_t i = 0; any && i < kCells * kCells; ++i) {
+        const float* corner = &heights[i / kCells * kCorners + i % kCells];
+        source.cells[i] = {corner[0], corner[1], corner[kCorners], corner[kCorners + 1]};
+    }
+}
+
+void EmitterSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
+    records_.clear();
+    groups_.clear();
+    sparks_.clear();
+    uint32_t end = 0, particles = 0, lights = 0, sparks = 0;
+    bool listed = false;
+    for (uint32_t i = 0; i < state_.emitters.slotCount(); ++i) {
+        FireEmitter* emitter = state_.emitters.at(i);
+        gpu::ParticleEmitter record;
+        if (emitter && emitter->def.shape == FW_EMITTER_MESH)
+            emitter->share = burningShare(*emitter);
+        if (emitter && components::isSwept(emitter->def)) {
+            if (!listed) flames_.listShapes();
+            listed = true;
+            shieldJet(*emitter, state_.time + double(seconds));
+        }
+        if (!emitter) continue;
+        const components::EmitterAir air = airOf(*emitter, seconds);
+        const bool shows = components::advanceEmitter(*emitter, air, seconds, record);
+        const auto eddies = [&](int k) {
+            return float(std::fmod(context_.origin.moved[k], gpu::kEddyField));
+        };
+        record.heat.w = eddies(0), record.stuck.z = eddies(1), record.stuck.w = eddies(2);
+        gpu::SparkSource source;
+        // Another object may have the slot of a mesh that is gone.
+        const bool gone =
+            emitter->def.shape == FW_EMITTER_MESH && !scene_.objects.find(emitter->def.object);
+        if (!gone && components::advanceSparks(*emitter, air, seconds, source)) {
+            if (!(emitter->def.flags & FW_EMITTER_NO_COLLISION)) sampleGround(source);
+            sparks_.push_back(source);
+            sparks += components::sparkQuads(source);
+        }
+        if (!shows) continue;
+        for (uint32_t first = 0; first < record.ring; first += gpu::kParticleGroup)
+            groups_.push_back({uint32_t(records_.size()), first});
+        records_.push_back(record);
+        end = std::max(end, record.first + record.ring);
+        const bool emits = (record.flags & gpu::kEmitterEmits) != 0;
+        if (emits) lights += record.ring;
+        if (!emits || record.life.w > 0) particles += record.ring;
+    }
+    update_.records = records_.data();
+    update_.count = uint32_t(records_.size());
+    update_.groups = groups_;
+    update_.particleEnd = end;
+    update_.particles = particles;
+    update_.lightParticles = lights;
+    update_.sparks = sparks_.data();
+    update_.sparkCount = uint32_t(sparks_.size());
+    update_.sparkQuads = sparks;
+    if (shows() || shown_) plan.emitters = &update_;
+}
+
+void EmitterSystem::commit(float seconds) noexcept {
+    shown_ = shows();
+    state_.time += double(seconds);
+    for (auto [i, emitter] : state_.emitters.entries()) components::commitEmitter(emitter);
+}
+
+void EmitterSystem::onHole(uint32_t slot, uint32_t ray, const components::JetHole& hole) noexcept {
+    if (FireEmitter* emitter = state_.emitters.at(slot)) emitter->holes[ray] = hole;
+}
+
+void EmitterSystem::reserveSlots(size_t objects) { core::growTo(jetSlots_, objects); }
+
+void EmitterSystem::checkShift(const double (&by)[3]) const {
+    for (auto [i, emitter] : state_.emitters.entries())
+        checkMoved(emitter.position, by, "fire emitter", i);
+}
+
+void EmitterSystem::shiftOrigin(const double (&by)[3]) noexcept {
+    double along = 0;  // m up
+    for (int i = 0; i < 3; ++i) along += by[i] * double(context_.def.up[i]);
+    for (auto [i, emitter] : state_.emitters.entries()) moveEmitter(emitter, by, along);
+}
+
+}  // namespace fw::world

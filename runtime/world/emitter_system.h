@@ -1,0 +1,118 @@
+// Fire emitters: their particles, sparks and jets. Particles are cosmetic; jets that ignite heat
+// what they strike, by the host's numbers alone: events, the same on every backend.
+#pragma once
+#include "components/fire_emitter.h"
+#include "shared/particle.h"
+#include "shared/spark.h"
+#include "world/pending.h"
+#include "world/scene.h"
+
+namespace fw::world {
+
+class BurnSystem;
+class ExchangeSystem;
+class FlameSystem;
+class QuerySystem;
+class WindSystem;
+
+struct EmitterState {
+    explicit EmitterState(std::pmr::memory_resource* memory) : emitters("Fire emitter", memory) {}
+    core::HandlePool<FwFireEmitterId, components::FireEmitter> emitters;
+    double time = 0;  // s
+};
+
+class EmitterSystem {
+ public:
+    EmitterSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
+                  const ExchangeSystem& exchange, FlameSystem& flames, QuerySystem& queries,
+                  BurnSystem& burn);
+
+    FwFireEmitterId create(const FwFireEmitterDef& def);
+    void destroy(FwFireEmitterId id);
+    void move(FwFireEmitterId id, const float position[3], const float* direction);
+    void setPower(FwFireEmitterId id, float power);
+    void setHidden(FwFireEmitterId id, bool hidden);
+    void fillState(FwFireEmitterId id, FwFireEmitterState& state);
+
+    void beginFrame() noexcept { ++sweeps_; }
+    // Before the exchanges of a frame, the first of them at tick `first`.
+    void beginExchanges(uint32_t first) noexcept;
+    void heatObjects(uint32_t now);  // at an exchange
+    void probeJets();                // throws
+    void plan(float seconds, gpu::FramePlan& plan) noexcept;
+    void commit(float seconds) noexcept;
+    // The answer to a probe of a jet's ray: the texel that it struck is burnt through, or stands.
+    void onHole(uint32_t slot, uint32_t ray, const components::JetHole& hole) noexcept;
+    void forgetObject(FwBurnableMeshId id, uint32_t slot) noexcept;  // that goes
+    // Water that falls on an object falls on fuel that sticks to it.
+    void wetPatches(const Object& object, const FwIgnitionDef& def, uint32_t grams,
+                    uint32_t tick) noexcept;
+    void reserveSlots(size_t objects);             // throws std::bad_alloc
+    void checkShift(const double (&by)[3]) const;  // throws
+    void shiftOrigin(const double (&by)[3]) noexcept;
+
+    [[nodiscard]] const EmitterState& state() const noexcept { return state_; }
+    [[nodiscard]] components::EmitterAir airOf(const components::FireEmitter& emitter,
+                                               float ahead) const noexcept;
+
+ private:
+    friend class PersistenceSystem;
+    [[nodiscard]] bool shows() const noexcept {  // in the planned frame
+        return !records_.empty() || !sparks_.empty();
+    }
+    [[nodiscard]] float burningShare(const components::FireEmitter& emitter) noexcept;
+    uint32_t findRing(uint32_t particles);
+    void sampleGround(gpu::SparkSource& source) const noexcept;
+    // jets.cpp
+    float sweepJet(const float start[3], const float way[3], float most, components::JetHit& hit,
+                   const components::JetGate* passed = nullptr) noexcept;
+    uint32_t gateTicks(const components::JetHit& hit, uint32_t tick) noexcept;
+    bool stands(const components::JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept;
+    void listJetTargets(const float from[3], float reach) noexcept;
+    void sweepJets(components::FireEmitter& emitter) noexcept;
+    void shieldJet(components::FireEmitter& emitter, double now) noexcept;
+    void heatObjects(components::FireEmitter& emitter, uint32_t now);
+    void passHole(const components::FireEmitter& emitter, components::JetHit& hit) noexcept;
+    void launchJet(const components::FireEmitter& emitter, components::JetParcel& parcel,
+                   uint32_t now) const noexcept;
+    void flyJet(components::FireEmitter& emitter, components::JetParcel& parcel, uint32_t now);
+    bool flyRay(components::FireEmitter& emitter, const components::JetParcel& parcel,
+                components::JetRay& ray, uint32_t from, uint32_t to, uint32_t now, bool& listed);
+    void heatByJet(components::FireEmitter& emitter, const components::JetParcel& parcel,
+                   const components::JetRay& ray, const components::JetHit& hit,
+                   const components::JetGate& gate, uint32_t tick, uint64_t brought);
+    bool heatFootprint(Object& object, const components::JetHit& hit, float radius, uint64_t power,
+                       uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left);
+    uint64_t stickFuel(components::FireEmitter& emitter, const components::JetHit& hit,
+                       uint64_t fuel) noexcept;
+    void settlePatches(components::FireEmitter& emitter, uint32_t first) noexcept;
+    void burnPatches(components::FireEmitter& emitter, uint32_t now);
+    void heatLite(components::FireEmitter& emitter, Object& object, const components::JetHit& hit,
+                  float radius, float flux, uint32_t now);
+    void findFootprint(const Object& object, const components::JetHit& hit, float radius);
+
+    const WorldContext& context_;
+    Scene& scene_;
+    const WindSystem& wind_;
+    const ExchangeSystem& exchange_;
+    FlameSystem& flames_;
+    QuerySystem& queries_;
+    BurnSystem& burn_;
+    EmitterState state_{context_.memory};
+    // Of a frame; room for all of it is reserved with each emitter.
+    std::pmr::vector<gpu::ParticleEmitter> records_{context_.memory};
+    std::pmr::vector<gpu::uvec2> groups_{context_.memory};
+    std::pmr::vector<std::pair<uint32_t, uint32_t>> rings_{
+        context_.memory};  // scratch: first, ring
+    std::pmr::vector<gpu::SparkSource> sparks_{context_.memory};
+    gpu::EmitterUpdate update_;
+    uint32_t made_ = 0;   // since ever
+    bool shown_ = false;  // the backend has some
+    // Scratch of a jet's ray: of the texels found, 1e-9 m^2 and W/m^2.
+    std::pmr::vector<uint64_t> jetAreas_{context_.memory};
+    std::pmr::vector<uint32_t> jetFlux_{context_.memory};
+    std::pmr::vector<uint32_t> jetSlots_{context_.memory};  // objects that a jet may meet
+    uint64_t sweeps_ = 0;  // frames begun: a jet is swept once in each
+};
+
+}  // namespace fw::world

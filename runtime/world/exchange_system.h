@@ -1,0 +1,237 @@
+// Heat between objects: poses become integers at fixed ticks, neighbours and contacts are found
+// where something moved, and the backend gets all of it with the step that begins there. Besides,
+// what stands between: blockers and the host's heat shield.
+#pragma once
+#include "components/heat_shield.h"
+#include "components/remote.h"
+#include "world/command.h"
+#include "world/neighbours.h"
+#include "world/scene.h"
+
+namespace fw::world {
+
+class WindSystem;
+
+constexpr uint32_t kHeatTransferModes =
+    FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
+constexpr uint32_t kWorldFlags =
+    kHeatTransferModes | FW_WORLD_NO_SPREAD | FW_WORLD_NO_DAMAGE | FW_WORLD_NO_HOLES;
+
+struct BlockerEntry {
+    components::Pose pose;
+    float halfSize[3] = {};
+
+    template <class A>
+    void serialize(A& a) {
+        a(pose, halfSize);
+        a.range("blocker's place", pose.translation, -1e6, 1e6);
+        a.range("blocker's half size", halfSize, 0, 30);
+    }
+};
+
+// Contacts of two objects as of the last search.
+struct PairContacts {
+    uint32_t slots[2] = {}, versions[2] = {};
+    FwBurnableMeshId ids[2] = {};
+    uint32_t since = 0;  // tick, while they touch
+    bool touches = false;
+    uint64_t stamp = 0;  // RemoteBook::contactStamp of the last search that found them near
+
+    template <class A>
+    void serialize(A& a) {
+        for (uint32_t& slot : slots) a.object("a contact", slot);
+        a(since);
+    }
+};
+
+// An object whose box is near enough to touch.
+struct CloseObject {
+    uint32_t slot = 0xFFFFFFFFu;
+    uint32_t pair = 0;  // of RemoteBook::pairs
+};
+
+// The host's answer: how much of slots[0] a fire of slots[1] sees.
+struct Seen {
+    uint32_t slots[2] = {};
+    uint32_t part = 255;  // of 255
+
+    template <class A>
+    void serialize(A& a) {
+        for (uint32_t& slot : slots) a.object("a line of sight", slot);
+        a(part);
+        a.range("visible share", part, 0, 255);
+    }
+};
+
+// Neighbours and contacts of latched objects. Kept across frames, so that a frame searches only for
+// what moved. A frame that fails leaves it stale at worst: the next one sends it again.
+struct RemoteBook {
+    explicit RemoteBook(std::pmr::memory_resource* given) : memory(given) {}
+    std::pmr::memory_resource* memory;
+    [[nodiscard]] static gpu::ContactLink noLink() noexcept {
+        gpu::ContactLink link{};
+        link.object = gpu::kNoneTexel;
+        return link;
+    }
+    uint32_t flags = 0;        // FwWorldFlags: heat-transfer modes
+    uint32_t objectFlags = 0;  // FwWorldFlags that objects are created under
+    components::Governance governance;
+    bool governed = false;  // some object or the world limits its fire
+    bool capped = false;    // and the number of burning tiles
+    uint32_t governedObjects = 0, cappedObjects = 0;
+    bool unsent = false;  // the backend does not know the latest
+    bool blockersDue = false;
+    bool warms = false;  // radiation or plumes were on at some time
+    uint64_t fades = 0;  // tick until which heat received from switched-off modes fades
+    std::pmr::vector<uint32_t> due{memory};          // slots to latch
+    std::pmr::vector<uint32_t> unsentSlots{memory};  // of records that the backend lacks
+    uint32_t version = 0;                            // of the last latched object
+    Neighbours neighbours{memory};                   // of latched boxes
+    std::pmr::vector<Seen> loadedSeen{memory};       // kept by slots until the lists are rebuilt
+    bool rebuild = false;                            // all but `pairs` is stale
+    // Placed objects that no event touched, and some that one did since.
+    std::pmr::vector<uint32_t> waiting{memory};
+    bool spreadKnown = false;  // all neighbours of touched objects are touched, but for changed()
+    // Objects latched since their contacts were found, and since the host was asked what they see.
+    std::pmr::vector<uint32_t> contactsDue{memory}, seenDue{memory};
+    ListPool<CloseObject> close{memory, {}};
+    std::pmr::vector<ListPlace> closeOf{memory};  // by slot: of `close`, by the other's slot
+    std::pmr::vector<PairContacts> pairs{memory};
+    ListPool<gpu::ContactLink> links{memory, noLink()};
+    std::pmr::vector<ListPlace> linksOf{memory};  // by target slot: of `links`, by texel
+    uint64_t contactStamp = 0;
+    mesh::Contacts contacts{memory};                                            // scratch
+    std::pmr::vector<gpu::ContactLink> pairLinks{memory}, mergedLinks{memory};  // scratch
+    std::pmr::vector<gpu::Blocker> blockers{memory};                            // latched
+};
+
+struct ShieldBook {
+    explicit ShieldBook(std::pmr::memory_resource* memory)
+        : grid(memory), commandSlots(memory), words(memory), fallen(memory) {}
+    components::HeatShield grid;
+    std::pmr::vector<uint32_t> commandSlots;  // that commands of one shield named so far
+    std::pmr::vector<uint32_t> words;         // as the backend gets it
+    std::pmr::vector<uint8_t> fallen;         // scratch
+    gpu::ShieldUpdate update;
+    bool unpacked = false;  // `words` are of another grid
+    bool unsent = false;    // the backend does not know the latest
+};
+
+// The arrays that a RemoteUpdate of a frame points to.
+struct RemoteTables {
+    explicit RemoteTables(std::pmr::memory_resource* given) : memory(given) {}
+    std::pmr::memory_resource* memory;
+    std::pmr::vector<gpu::RemoteUpdate::Placed> objects{memory};
+    std::pmr::vector<gpu::RemoteUpdate::Range> neighbourRanges{memory}, linkRanges{memory};
+    // Copies, where the lists change again in the same frame.
+    std::pmr::vector<uint32_t> neighbours{memory};
+    std::pmr::vector<gpu::ContactLink> links{memory};
+    std::pmr::vector<gpu::Blocker> blockers{memory};
+    gpu::RemoteUpdate update;
+};
+
+struct ExchangeState {
+    explicit ExchangeState(std::pmr::memory_resource* memory)
+        : blockers("Blocker", memory), book(memory), shield(memory) {}
+    core::HandlePool<FwBlockerId, BlockerEntry> blockers;
+    RemoteBook book;
+    ShieldBook shield;
+};
+
+class ExchangeSystem {
+ public:
+    ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind);
+
+    void setFlags(uint32_t given);
+    void setHeatShield(const FwHeatShieldDef& def);  // of structSize 0: removes it
+    FwBlockerId addBlocker(const FwBlockerDef& def);
+    void moveBlocker(FwBlockerId id, const float transform[16]);
+    void removeBlocker(FwBlockerId id);
+
+    void beginFrame() noexcept;
+    // awake: the step will run.
+    void plan(gpu::StepPlan& step, uint32_t now, bool awake);
+    // After the frame touched all objects that fire may reach. `spreadFound`: those next to touched
+    // ones; `waitersTouched`: all that waited.
+    void commit(bool spreadFound, bool waitersTouched) noexcept;
+    void onCounters(Object& object, const gpu::Readback& readback) noexcept;
+    void addObject(const Object& object) noexcept;     // capacity is reserved
+    void forgetObject(const Object& object) noexcept;  // that goes
+    void markMoved(Object& object) noexcept;
+    void forgetSpread() noexcept { state_.book.spreadKnown = false; }
+    void reserveSlots();                           // throws std::bad_alloc
+    void checkShift(const double (&by)[3]) const;  // throws
+    // Throws std::bad_alloc; then nothing has changed.
+    [[nodiscard]] std::pmr::vector<Seen> recordedSeen() const;
+    void shiftOrigin(const double (&by)[3]) noexcept;
+    // After a shift that had the lists of neighbours rebuilt.
+    void restoreSeen(std::pmr::vector<Seen>& seen) noexcept {
+        if (state_.book.rebuild) state_.book.loadedSeen.swap(seen);
+    }
+
+    [[nodiscard]] const ExchangeState& state() const noexcept { return state_; }
+    [[nodiscard]] bool isOn() const noexcept {
+        return state_.book.flags != 0 || state_.book.governed ||
+               context_.clock.tick < state_.book.fades;
+    }
+    [[nodiscard]] uint64_t pairsExamined() const noexcept {
+        return state_.book.neighbours.examined();
+    }
+    [[nodiscard]] components::ShieldView shieldView();
+    struct Memory {
+        uint64_t neighbours = 0, contacts = 0;  // bytes
+    };
+    [[nodiscard]] Memory memory() const noexcept;
+
+ private:
+    friend class PersistenceSystem;
+    // exchange_system.cpp
+    void latchPoses(uint32_t now);
+    void updateWind(Object& object, int wind) noexcept;
+    void markUnsent(Object& object) noexcept;  // its record
+    void rebuild();
+    void keepPlanned();
+    void askVisibility();
+    uint32_t seenPart(const Object& from, const Object& to) const;
+    void findLinks(uint32_t now);
+    void linkClose(Object& object, uint32_t now);
+    void addClose(uint32_t slot, uint32_t other, uint32_t pair);
+    uint32_t closePair(uint32_t a, uint32_t b);
+    void dropPair(uint32_t pair) noexcept;
+    void dropLinks(uint32_t to, uint32_t from) noexcept;
+    void addLinks(uint32_t to, std::span<gpu::ContactLink> fresh);
+    gpu::ExchangePush rules() const noexcept;
+    void linkPair(const Object& to, const Object& from, std::span<const mesh::Contact> contacts,
+                  uint32_t since, std::pmr::vector<gpu::ContactLink>& out);
+    void countGoverned(const Object& object, bool more) noexcept;
+    void recordSeen(std::pmr::vector<Seen>& to) const;
+    void restoreSeen();
+    // shield.cpp
+    components::ShieldObject shieldObjectOf(uint32_t slot) noexcept;
+    void bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
+                        std::pmr::vector<components::ShieldCell>& baked);
+    void recordShield(const components::HeatShield& made, std::span<const uint32_t> slots) noexcept;
+    void applyShield(const SetHeatShield& command);
+    void applyShieldCells(const SetShieldCells& command);
+    void applyShieldObject(const AddShieldObject& command);
+    void adoptShield(components::HeatShield& made) noexcept;  // takes its cells
+    void shieldChanged() noexcept;
+    void removeFromShield(uint32_t slot) noexcept;
+    void packHeatShield();
+    void planShield(gpu::StepPlan& step, bool awake);
+
+    const WorldContext& context_;
+    Scene& scene_;
+    const WindSystem& wind_;
+    ExchangeState state_{context_.memory};
+    // Of a frame: tables of its updates, of which `used` are planned.
+    struct Frame {
+        explicit Frame(std::pmr::memory_resource* memory) : tables(memory) {}
+        std::pmr::vector<core::Owned<RemoteTables>> tables;
+        size_t used = 0;
+        bool latched = false, flushed = false, shieldSent = false;
+    };
+    Frame frame_{context_.memory};
+};
+
+}  // namespace fw::world

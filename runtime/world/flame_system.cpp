@@ -1,0 +1,257 @@
+#include "world/flame_system.h"
+
+#include "world/burn_system.h"
+#include "world/exchange_system.h"
+#include "world/persistence.h"
+#include "world/shift.h"
+#include "world/wind_system.h"
+
+#include <algorithm>
+
+namespace fw::world {
+namespace {
+
+using components::VolumetricFire;
+
+void moveState(components::FireState& state, const double (&by)[3]) noexcept {
+    for (gpu::vec3* place :
+         {&state.bounds.low, &state.bounds.high, &state.tip, &state.light, &state.contact})
+        moveBy(*place, by);
+}
+
+}  // namespace
+
+FlameSystem::FlameSystem(const WorldContext& context, Scene& scene, const WindSystem& wind,
+                         const ExchangeSystem& exchange, BurnSystem& burn)
+    : context_(context), scene_(scene), wind_(wind), exchange_(exchange), burn_(burn) {}
+
+void FlameSystem::reserve(uint32_t more) {
+    size_t flames = more;
+    for (auto [i, fire] : state_.fires.entries()) flames += fire.data.partCount;
+    const size_t room = burning_.findRoom(flames);
+    if (flames_.size() < room) flames_.resize(room);
+    shapes_.reserve(kMaxShapes);
+}
+
+// Its state before its first frame: a host lights its scene with it in that frame, too.
+void FlameSystem::foresee(VolumetricFire& fire) noexcept {
+    if (fire.state.lit) return;
+    components::FireAir air;
+    std::copy_n(context_.def.up, 3, air.up);
+    fire.state = burning_.foresee(fire, air);
+}
+
+// The layer of its profile, with its texels on this side.
+uint32_t FlameSystem::profileLayer(const FwVolumetricFireDef& def) {
+    if (def.profile.index1 != 0) return profileIds_.get(def.profile).layer;
+    if (def.preset >= FW_FIRE_PRESET_COUNT) return 0;  // refused further on
+    if (profiles_.size() <= def.preset) profiles_.resize(gpu::kFirePresets);
+    if (!profiles_[def.preset]) {
+        auto profile = core::Owned<volume::Profile>::make(context_.memory);
+        volume::paintLook(volume::presetDef(volume::FlamePreset(def.preset)).look, *profile);
+        profiles_[def.preset] = std::move(profile);
+    }
+    return def.preset;
+}
+
+FwVolumetricFireId FlameSystem::create(const FwVolumetricFireDef& def) {
+    if (state_.fires.live() >= gpu::kMaxVolumeFlames)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u volumetric fires are there; the limit is %u.",
+                   state_.fires.live(), gpu::kMaxVolumeFlames);
+    const uint32_t ownSeed = context_.def.seed * 0x9E3779B9u + made_ + 1;
+    auto fire = core::Owned<Fire>::make(context_.memory, context_.memory);
+    const uint32_t layer = profileLayer(def);
+    components::makeVolumetricFire(def, ownSeed, fire->data);
+    fire->data.profile = layer;
+    foresee(fire->data);
+    const FwVolumetricFireId id = state_.fires.create(std::move(fire));
+    try {
+        reserve(0);
+    } catch (...) {
+        state_.fires.destroy(id);
+        throw;
+    }
+    if (def.profile.index1 != 0) ++profileIds_.get(def.profile).users;
+    ++made_;
+    return id;
+}
+
+void FlameSystem::destroy(FwVolumetricFireId id) {
+    const VolumetricFire& fire = state_.fires.get(id)->data;
+    if (fire.ownProfile.index1 != 0) --profileIds_.get(fire.ownProfile).users;
+    burning_.drop(fire);
+    state_.fires.destroy(id);
+}
+
+void FlameSystem::move(FwVolumetricFireId id, const float position[3]) {
+    VolumetricFire& fire = state_.fires.get(id)->data;
+    const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
+    if (burns) context_.recorder.mayChange();
+    components::setFirePosition(fire, position);
+    foresee(fire);
+    if (burns)
+        context_.recorder.record(MoveFire{id.index1 - 1, {position[0], position[1], position[2]}});
+}
+
+void FlameSystem::setPower(FwVolumetricFireId id, float power) {
+    VolumetricFire& fire = state_.fires.get(id)->data;
+    const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
+    if (burns) context_.recorder.mayChange();
+    reserve(components::mostParts(power, fire.diameter));
+    components::setFirePower(fire, power);
+    foresee(fire);
+    if (burns) context_.recorder.record(SetFirePower{id.index1 - 1, power});
+}
+
+void FlameSystem::setPoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count) {
+    VolumetricFire& fire = state_.fires.get(id)->data;
+    reserve(components::mostParts(fire.power, fire.diameter));
+    components::setFirePoints(fire, points, count, "points");
+    foresee(fire);
+}
+
+void FlameSystem::setTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
+    VolumetricFire& fire = state_.fires.get(id)->data;
+    reserve(components::mostParts(fire.power, fire.diameter));
+    components::setFireTrack(fire, def);
+    foresee(fire);
+}
+
+void FlameSystem::setHidden(FwVolumetricFireId id, bool hidden) {
+    uint32_t& flags = state_.fires.get(id)->data.flags;
+    flags = (flags & ~uint32_t(FW_FIRE_HIDDEN)) | (hidden ? uint32_t(FW_FIRE_HIDDEN) : 0u);
+}
+
+void FlameSystem::setTier(FwVolumetricFireId id, uint32_t tier) {
+    VolumetricFire& fire = state_.fires.get(id)->data;
+    components::setFireTier(fire, tier, "tier");
+}
+
+void FlameSystem::fillState(FwVolumetricFireId id, FwVolumetricFireState& state) {
+    components::fillFireState(state_.fires.get(id)->data, state);
+}
+
+// ---- profiles ---------------------------------------------------------------------------------
+
+FwFireProfileId FlameSystem::createProfile(const FwFireProfileDef& def) {
+    if (profileIds_.live() >= gpu::kMaxFireProfiles)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire profiles are there; the limit is %u.",
+                   profileIds_.live(), gpu::kMaxFireProfiles);
+    auto profile = core::Owned<volume::Profile>::make(context_.memory);
+    components::readFireProfile(def, context_.memory, *profile);
+    const FwFireProfileId id = profileIds_.create();
+    const uint32_t layer = gpu::kFirePresets + id.index1 - 1;
+    try {
+        if (profiles_.size() <= layer) profiles_.resize(layer + 1);
+        context_.backend.setFireProfile(id.index1 - 1, profile->texels);
+    } catch (...) {
+        profileIds_.destroy(id);
+        throw;
+    }
+    profiles_[layer] = std::move(profile);
+    profileIds_.get(id).layer = layer;
+    return id;
+}
+
+void FlameSystem::destroyProfile(FwFireProfileId id) {
+    const uint32_t users = profileIds_.get(id).users;
+    if (users > 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "Fire profile %u (generation %u) is used by %u fire(s); destroy them first.",
+                   id.index1, id.generation, users);
+    profileIds_.destroy(id);  // the texels stay until another one takes the layer
+}
+
+// ---- questions --------------------------------------------------------------------------------
+
+void FlameSystem::ask(const float point[3], FwFireAnswer& answer) {
+    components::checkLengths(point, 3, "point", -1e6f, 1e6f);
+    if (!burning_.now().empty()) listShapes();  // as they stand now
+    const components::FireAnswer found =
+        components::askFires(burning_.now(), profiles_, walls(), volume::vecOf(point));
+    answer.inside = found.air.inside ? 1 : 0;
+    answer.temperature = found.air.kelvin;
+    answer.heatFlux = found.air.heatFlux;
+    for (int i = 0; i < 3; ++i) answer.gas[i] = found.air.gas[i];
+    for (uint32_t i = 0; found.fire && i < state_.fires.slotCount(); ++i)
+        if (const auto* fire = state_.fires.at(i); fire && &(*fire)->data == found.fire)
+            answer.fire = state_.fires.idOf(i);
+}
+
+void FlameSystem::push(const float centre[3], float radius, FwFirePush& push) {
+    components::checkLengths(centre, 3, "centre", -1e6f, 1e6f);
+    components::checkLength(radius, "radius", 0.0f, 100.0f);
+    if (!burning_.now().empty()) listShapes();
+    const volume::FlamePush found =
+        components::pushOfFires(burning_.now(), profiles_, walls(), volume::vecOf(centre), radius);
+    for (int i = 0; i < 3; ++i) push.force[i] = found.force[i];
+    push.ignitionPower = found.ignition;
+}
+
+// ---- frames -----------------------------------------------------------------------------------
+
+void FlameSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
+    uint32_t count = 0;
+    if (state_.fires.live() > 0) {
+        listShapes();
+        components::FireAir air;
+        std::copy_n(context_.def.up, 3, air.up);
+        air.colliders = shapes_;
+        burning_.begin();
+        for (auto [i, fire] : state_.fires.entries()) {
+            const std::array<float, 3> wind = wind_.at(fire.data.position, context_.clock.tick);
+            std::copy_n(wind.data(), 3, fire.data.wind);
+            burning_.settle(fire.data, air);
+        }
+        burning_.advance(air, seconds);
+        count = burning_.write(flames_);
+        for (uint32_t i = 0; i < count; ++i) {
+            uint32_t& octaves = flames_[i].record.octaves;
+            octaves = std::min(octaves, context_.def.volumeOctaves);
+        }
+    }
+    update_ = {flames_.data(), count};
+    if (state_.fires.live() > 0 || shown_ > 0) plan.volumes = &update_;
+}
+
+void FlameSystem::commit() noexcept {
+    shown_ = update_.count;
+    if (state_.fires.live() == 0) return;
+    burning_.commit();
+    for (auto [i, fire] : state_.fires.entries()) fire.data.state = fire.data.nextState;
+}
+
+void FlameSystem::checkShift(const double (&by)[3]) const {
+    for (auto [i, fire] : state_.fires.entries()) {
+        checkMoved(fire.data.position, by, "volumetric fire", i);
+        for (uint32_t k = 0; k < fire.data.pointCount; ++k)
+            checkMoved(fire.data.points[k].position, by, "a point of volumetric fire", i);
+    }
+    for (auto [i, collider] : colliders_.entries()) {
+        checkMoved(collider.shape.place, by, "fire collider", i);
+        if (collider.shape.kind == volume::ColliderKind::Capsule)
+            checkMoved(collider.shape.extent, by, "fire collider", i);
+    }
+}
+
+void FlameSystem::shiftOrigin(const double (&by)[3]) noexcept {
+    for (auto [i, owned] : state_.fires.entries()) {
+        VolumetricFire& fire = owned.data;
+        moveBy(fire.position, by);
+        for (volume::ControlPoint& point : fire.points) moveBy(point.position, by);
+        moveState(fire.state, by);
+        moveState(fire.nextState, by);
+        for (FireTouch& touch : owned.touches) {
+            moveBy(touch.fireAt, by);
+            moveBy(touch.objectAt, by);
+        }
+    }
+    burning_.carry(gpu::vec3(float(by[0]), float(by[1]), float(by[2])));
+    for (auto [i, collider] : colliders_.entries()) {
+        moveBy(collider.shape.place, by);
+        if (collider.shape.kind == volume::ColliderKind::Capsule) moveBy(collider.shape.extent, by);
+        moveBy(collider.picture.eye, by);
+    }
+}
+
+}  // namespace fw::world

@@ -1,0 +1,99 @@
+// Which wind blows where: the world's own, the host's grid in its place or beside it, gusts on
+// both, and zones. All but the first count in integers, so that all machines agree.
+#pragma once
+#include "components/gusts.h"
+#include "components/wind_grid.h"
+#include "components/wind_zone.h"
+#include "world/command.h"
+#include "world/scene.h"
+
+#include <array>
+
+namespace fw::world {
+
+class ExchangeSystem;
+class FieldSystem;
+
+// All that blows.
+struct Winds {
+    fire::WindVector around{};  // everywhere
+    const components::WindGrid& grid;
+    const components::Gusts& gusts;
+    std::span<const components::WindZone> zones;  // in the order in which they count
+    uint32_t seed = 0;
+};
+[[nodiscard]] fire::WindVector windOf(const Winds& winds, const components::WindPlace& place,
+                                      uint64_t tick) noexcept;
+// The middle of an object's box, at rest.
+[[nodiscard]] components::WindPlace windPlaceOf(const components::Pose& pose,
+                                                const mesh::BurnDomain& domain) noexcept;
+
+struct WindState {
+    explicit WindState(std::pmr::memory_resource* memory)
+        : zones("Wind zone", memory), ordered(memory), grid(memory) {}
+    float wind[3] = {};  // m/s, everywhere
+    core::HandlePool<FwWindZoneId, components::WindZone> zones;
+    std::pmr::vector<components::WindZone> ordered;  // `zones` in the order in which they count
+    components::WindGrid grid;
+    components::Gusts gusts;
+    bool due = false;         // what objects keep of the wind is to be found again
+    bool kept = false;        // some may keep another than the world's own
+    uint64_t gustsShown = 0;  // tick of the gusts that objects keep
+    uint64_t changes = 0;
+};
+
+class WindSystem {
+ public:
+    WindSystem(const WorldContext& context, Scene& scene, ExchangeSystem& exchange,
+               FieldSystem& fields);
+
+    void set(const float wind[3]);
+    void setGrid(const FwWindGridDef& def);  // of structSize 0: removes the grid
+    void setGusts(const FwGustDef& def);
+    FwWindZoneId createZone(const FwWindZoneDef& def);
+    void setZone(FwWindZoneId id, const FwWindZoneDef& def) {
+        setZone(id, components::makeWindZone(def));
+    }
+    void setZone(FwWindZoneId id, const components::WindZone& zone);
+    void destroyZone(FwWindZoneId id);
+    void atPoint(const float point[3], float wind[3]) const;
+
+    // Before a frame is planned.
+    void prepare() noexcept;
+    void checkShift(const double (&by)[3]) const;  // throws
+    void shiftOrigin(const double (&by)[3]) noexcept;
+
+    [[nodiscard]] const WindState& state() const noexcept { return state_; }
+    [[nodiscard]] uint64_t changes() const noexcept { return state_.changes; }
+    [[nodiscard]] bool hasGusts() const noexcept { return state_.gusts.strength != 0; }
+    [[nodiscard]] fire::WindVector at(const components::WindPlace& place,
+                                      uint64_t tick) const noexcept;
+    [[nodiscard]] std::array<float, 3> at(const float place[3], uint64_t tick) const noexcept;
+    // m/s, as if there were no gusts.
+    [[nodiscard]] std::array<float, 3> steadyAt(const float place[3]) const noexcept;
+    [[nodiscard]] components::DriveInput driveInput(const Object& object,
+                                                    uint64_t tick) const noexcept;
+    // The wind where an object is, less the world's own, packed as in its records.
+    [[nodiscard]] uint32_t localWindOf(const Object& object, uint64_t tick) const noexcept;
+    void updateObject(Object& object) noexcept;  // that moved
+    void addObject(const Object& object) noexcept;
+
+ private:
+    friend class PersistenceSystem;
+    [[nodiscard]] Winds view() const noexcept;
+    [[nodiscard]] bool isUniform() const noexcept;  // the world's own wind blows everywhere
+    void sortZones() noexcept;
+    void applyGrid(const SetWindGrid& command);
+    void applyPoints(const SetWindPoints& command);
+    void applyGusts(const SetGusts& command);
+    void updateObjects() noexcept;
+    void updateObjectsIn(const components::WindZone& zone) noexcept;
+
+    const WorldContext& context_;
+    Scene& scene_;
+    ExchangeSystem& exchange_;
+    FieldSystem& fields_;
+    WindState state_{context_.memory};
+};
+
+}  // namespace fw::world
