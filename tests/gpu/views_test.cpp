@@ -399,8 +399,8 @@ TEST_F(Views, RefuseInvalidValues) {
         refuses(changed, 3, text);
     };
     with([](FwView& view) { view.viewId = 8; },
-         "views[1].viewId and views[2].viewId are both 8; give each view of a frame a number of "
-         "its own.");
+         "views[1].viewId and views[2].viewId are both 8; give each view of a frame its own "
+         "number.");
     with([](FwView& view) { view.projection[5] = NAN; }, "views[2].projection[5] is nan");
     with([](FwView& view) { view.structSize = uint32_t(sizeof(FwView)) - 4; },
          "views[2].structSize is");
