@@ -231,7 +231,7 @@ TEST(EditorLink, ReportsItsSceneAndEitherSideMayLeave) {
     ASSERT_TRUE(soon(comes));
     receiver = nullptr;
     yard.run("set settings wind 3 0 0\n");
-    EXPECT_THAT(yard.fails("link wait"), HasSubstr("gone"));
+    EXPECT_THAT(yard.fails("link wait"), HasSubstr("disconnected"));
     EXPECT_THAT(yard.fails("link " + port), HasSubstr("Nobody answers on port " + port));
     EXPECT_THAT(yard.fails("link 70000"), HasSubstr("no port from 1 to 65535"));
 }
