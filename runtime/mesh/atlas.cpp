@@ -29,9 +29,10 @@ bool badTexels(const Triangle& t, double meanArea) {
     return ratio > kDensityLimit || ratio < 1 / kDensityLimit;
 }
 
-// The highest density at which edges of `metres` in all pass no more texels than the limit.
+// The highest density at which edges of `metres` in all pass no more texels than the limit;
+// infinity for a mesh without edges.
 double edgeDensity(double metres, uint32_t maxSide) {
-    FW_ASSERT(metres > 0, "%g m", metres);
+    FW_ASSERT(metres >= 0, "%g m", metres);
     return std::max(kEdgesPerTexel * maxSide * maxSide, kEdgesAtLeast) / metres;
 }
 
