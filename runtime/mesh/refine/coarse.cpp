@@ -75,7 +75,7 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
     for (bool first = true; first || triangles > most; first = false, longest *= 2) {
         for (Split& s : splits)
             s.level = splitLevel(glm::length(base.points[s.low] - base.points[s.high]), longest);
-        FW_ASSERT(std::isfinite(longest) && longest > 0, "%g m", longest);
+        FW_ASSERT(longest > 0, "%g m", longest);
         triangles = 0;
         for (const auto& side : sides) triangles += gpu::refineCount(fitted(splits, side));
         if (triangles == base.triangles.size()) return base;
