@@ -68,7 +68,7 @@ struct VolumetricFire : FireControls {
     FwFireProfileId ownProfile{};  // the host's, or null
     float diameter = 0;            // m
     float windResponse = 1, blend = 0.3f;
-    float wind[3] = {};  // m/s, at its place
+    float wind[3] = {};   // m/s, at its place
     volume::Track track;  // no keys: none
     float trackWeight = 1;
     uint32_t trackVersion = 0;

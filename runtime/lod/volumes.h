@@ -96,7 +96,7 @@ struct VolumeCardShape {  // what is in a card's words
     float cell = 0;      // m
     uint32_t tilesX = 0, tilesY = 0, encoding = 0;
 };
-// What a flame's card shows goes over, pixel by pixel, from one march of it to the next.
+// A flame's billboard impostor fades, pixel by pixel, from one march to the next.
 struct VolumeCardPair {
     std::array<VolumeCardShape, 2> shapes;
     uint32_t newest = 0;  // of them

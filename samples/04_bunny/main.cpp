@@ -122,8 +122,7 @@ int run(const sample::Options& options, float seconds, float turn, bool compare)
             sample::Summary summary;
             summary.title = "Burning " + subject.name;
             summary.rows.emplace_back("device", host.properties.deviceName);
-            std::snprintf(line, sizeof line,
-                          "pine, %.0f times real speed; %.0f %% ignited",
+            std::snprintf(line, sizeof line, "pine, %.0f times real speed; %.0f %% ignited",
                           static_cast<double>(worldDef.paceFactor),
                           static_cast<double>(100.0f * state.burntFraction));
             summary.rows.emplace_back("fire", line);

@@ -1,6 +1,6 @@
-// The front kernel over the gathered rows, one thread per row: a ring moves along the row, so that a texel loads one
-// column. Writes arrivals to `pendingTick`, changed texels to masks, the earliest future arrival to the tile, and which
-// texels are settled. Jacobi: reads states, writes none.
+// The front kernel over the gathered rows, one thread per row: a ring moves along the row, so that
+// a texel loads one column. Writes arrivals to `pendingTick`, changed texels to masks, the earliest
+// future arrival to the tile, and which texels are settled. Jacobi: reads states, writes none.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -96,7 +96,8 @@ void arriveRow(uint work) {
             uint settledFrom = kNever;
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
                                           pending, settledFrom);
-            // Sources that just catch do so within one step before this texel's tick, at the earliest.
+            // Sources that just catch do so within one step before this texel's tick, at the
+            // earliest.
             uint own = min(t, candidate);
             if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u && candidate >= floorTick &&
                 (isReceptive(t) || t <= end))

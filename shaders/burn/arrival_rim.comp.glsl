@@ -1,5 +1,5 @@
-// `arrival` for rim texels: their ring is anywhere in the map and found through links. One thread per gathered texel;
-// runs after `arrival` and adds to its rows' words.
+// `arrival` for rim texels: their ring is anywhere in the map and found through links. One thread
+// per gathered texel; runs after `arrival` and adds to its rows' words.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,6 @@
-// Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals listed, and touches the tiles
-// that depend on a changed texel (one thread per due tile). The halves are independent: tiles are read, texels written.
+// Writes the new ticks (one thread per gathered row), keeps tiles with pending arrivals listed, and
+// touches the tiles that depend on a changed texel (one thread per due tile). The halves are
+// independent: tiles are read, texels written.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

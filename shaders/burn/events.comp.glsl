@@ -1,6 +1,6 @@
-// Applies a step's texel events, 64 per group: a texel's run of events by the thread of its first, in order.
-// FW_ALL_TEXELS: runs that address all texels of an object, one thread per texel. The front kernel reacts in the same
-// step.
+// Applies a step's texel events, 64 per group: a texel's run of events by the thread of its first,
+// in order. FW_ALL_TEXELS: runs that address all texels of an object, one thread per texel. The
+// front kernel reacts in the same step.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -108,7 +108,8 @@ void applyRun(uint first, uint texel) {
     texelChanged(object, texel, p, isSource(now));
 }
 
-// Fuel that burnt on the source mesh counts as a loss of the target; its room has already accounted for it.
+// Fuel that burnt on the source mesh counts as a loss of the target; its room has already accounted
+// for it.
 void recordCarriedEnergy(uint object, uint had, uint has, uint energy) {
     uint high, low;
     umulExtended(had > has ? had - has : has - had, energy, high, low);

@@ -1,7 +1,7 @@
-// Finds the texels of due tiles that may change and lists their rows densely for `arrival`: few rows of a tile have
-// any, and a software device pays for idle lanes. Rim texels go to `arrival_rim` unseen. A tile that woke for a known
-// arrival needs no kernel: its other arrivals are known too. Where texels just caught, settled texels are skipped. One
-// thread per row.
+// Finds the texels of due tiles that may change and lists their rows densely for `arrival`: few
+// rows of a tile have any, and a software device pays for idle lanes. Rim texels go to
+// `arrival_rim` unseen. A tile that woke for a known arrival needs no kernel: its other arrivals
+// are known too. Where texels just caught, settled texels are skipped. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -87,8 +87,8 @@ void gatherRow(uint slot, uint row) {
         uint diagonal = (u.sources & (openUp | openLeft)) | ((u.sources >> 2u) & (openUp | openRight)) |
                         (d.sources & (openDown | openLeft)) | ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
-        // A source from before this iteration was evaluated after an older source beside it caught, so its settled bit
-        // is valid.
+        // A source from before this iteration was evaluated after an older source beside it caught,
+        // so its settled bit is valid.
         uint settled = (tile.z & kRunLitBeside) != 0u ? settledRows[at >> 3u] : 0u;
         FW_UNROLL for (int i = 0; i < 8; ++i) {
             uint least = min(min(m.tick[i], m.tick[i + 2]), min(d.tick[i + 1], u.tick[i + 1]));

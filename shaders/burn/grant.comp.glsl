@@ -1,6 +1,6 @@
-// Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and of the world, in
-// hashed order (askOrder). They join the burn list, and only listed tiles are lit afterwards. With kSwitchAsks the
-// front's due tiles request here. One group.
+// Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and
+// of the world, in hashed order (askOrder). They join the burn list, and only listed tiles are lit
+// afterwards. With kSwitchAsks the front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

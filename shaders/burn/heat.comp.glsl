@@ -1,7 +1,8 @@
-// A heat step of the hot tiles: temperature, fuel and water of each texel, and its state in the front. Cooled tiles
-// leave the list. Most other tiles are only warm or wet and are due at intervals: a group scans the list until it has
-// 64 due tiles, runs them by eight with eight threads each, and finishes them with one thread each. A thread scans a
-// row for due texels, which are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended
+// A heat step of the hot tiles: temperature, fuel and water of each texel, and its state in the
+// front. Cooled tiles leave the list. Most other tiles are only warm or wet and are due at
+// intervals: a group scans the list until it has 64 due tiles, runs them by eight with eight
+// threads each, and finishes them with one thread each. A thread scans a row for due texels, which
+// are listed and shared out, as fire rarely fills a tile. Tiles that stay hot are appended
 // together, to reduce contention on the list's counter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -108,8 +109,8 @@ struct Changes {
     float watts;
 };
 
-// A thread's part of the list of tile `slot` of the block: every eighth item. held: the tile may not catch; texels that
-// would catch stay unchanged and are tried again.
+// A thread's part of the list of tile `slot` of the block: every eighth item. held: the tile may
+// not catch; texels that would catch stay unchanged and are tried again.
 Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) {
     Changes sum = Changes(0u, 0u, 0u, 0.0);
     uint count = 0u, first = (thread & ~7u) * 8u + (thread & 7u);
@@ -122,8 +123,8 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
     uint heatAt = objects[object].heatBase;
     uint ambient = heatQuads[object * kMaterialsPerObject * 6u + 1u].w;
     uint step = hash32(push.now), strength = airStrength(objectCounters[object].air);
-    // A material is many words, and most tiles have one: texels of each material in turn. Both loops have the same
-    // length for all threads of a tile.
+    // A material is many words, and most tiles have one: texels of each material in turn. Both
+    // loops have the same length for all threads of a tile.
     uint left = kinds[thread >> 3u];
     do {
         uint kind = uint(findLSB(left)), material = object * kMaterialsPerObject + kind;

@@ -1,5 +1,6 @@
-// Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's horizon. One thread
-// per gathered row, along which a ring moves as in `arrival`; predict_commit writes the times. Single hops, no pairs.
+// Predicted arrival ahead of the front, cosmetic: one ring further each frame, up to the object's
+// horizon. One thread per gathered row, along which a ring moves as in `arrival`; predict_commit
+// writes the times. Single hops, no pairs.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

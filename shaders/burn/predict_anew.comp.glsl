@@ -1,4 +1,5 @@
-// Adds the marked tiles of an object that a view shows again to the predict list. One thread per tile.
+// Adds the marked tiles of an object that a view shows again to the predict list. One thread per
+// tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

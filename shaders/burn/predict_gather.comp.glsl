@@ -1,6 +1,7 @@
-// Finds the texels of the predict list's tiles whose predicted arrival may change and lists their rows for `predict`,
-// rim texels for `predict_rim`; updates the fire's distance to wet texels. Known arrivals are revisited about every
-// eighth frame. Skips objects that no view shows. Writes only what the next round reads. One thread per row.
+// Finds the texels of the predict list's tiles whose predicted arrival may change and lists their
+// rows for `predict`, rim texels for `predict_rim`; updates the fire's distance to wet texels.
+// Known arrivals are revisited about every eighth frame. Skips objects that no view shows. Writes
+// only what the next round reads. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -31,7 +32,8 @@ uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {
     return times;
 }
 
-// Distance in texels from a wet texel to the fire, now or predicted; below 0: far. y: 1 while it approaches.
+// Distance in texels from a wet texel to the fire, now or predicted; below 0: far. y: 1 while it
+// approaches.
 const float kWetReach = 24.0;
 vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
     vec2 least = vec2(-1.0, 0.0);

@@ -1,6 +1,6 @@
-// Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict list's tiles. For an
-// object that no view shows, burning texels are copied, too; an object that a view shows again drops its predictions. A
-// thread writes its own row only.
+// Copies states that are no arrival (wet, put out, ...) to the predicted buffer of the predict
+// list's tiles. For an object that no view shows, burning texels are copied, too; an object that a
+// view shows again drops its predictions. A thread writes its own row only.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -42,8 +42,8 @@ void passRow(uint slot, uint row) {
             marks = marks || forgets;
             continue;
         }
-        // An extinguished texel keeps its age, stored as its gradient. A texel that was not shown burning gets 1; 0
-        // would mean unknown.
+        // An extinguished texel keeps its age, stored as its gradient. A texel that was not shown
+        // burning gets 1; 0 would mean unknown.
         if (code == kWet) gradient[i] = kAheadFar | (gradient[i] & 0xFFu);
         else if (time < kLiveEnd) gradient[i] = time < push.now ? push.now - time : 1u;
         else if (time == kNever || time == kWet) gradient[i] = 1u;

@@ -1,5 +1,6 @@
-// One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes a column of eights
-// row by row and keeps the five rows around it, as taps overlap and loads dominate on a software device.
+// One step of the reference's sixteen-tap kernel over a whole object, for comparison. A lane takes
+// a column of eights row by row and keeps the five rows around it, as taps overlap and loads
+// dominate on a software device.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -65,7 +66,8 @@ uvec4 crossings(vec4 q, vec4 next, vec4 d) {
     return floatBitsToUint(before) & ~floatBitsToUint(after);
 }
 
-// Lights the crossed texels of these eight, from the buffers: it is rare, and cached rows would cost all other steps.
+// Lights the crossed texels of these eight, from the buffers: it is rare, and cached rows would
+// cost all other steps.
 void lightRow(uint object, int x, int y, int from, int to, int spread) {
     uvec4 left = crossings(quads[from], quads[to], quads[spread]) >> 31u;
     uvec4 right = crossings(quads[from + 1], quads[to + 1], quads[spread + 1]) >> 31u;

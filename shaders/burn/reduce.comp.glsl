@@ -1,6 +1,6 @@
-// Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without burnt-out tiles. 64
-// list entries per group. kSwitchShows: BurnTiles only; after a load the first frame shows flames while counts stay
-// those of the save.
+// Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without
+// burnt-out tiles. 64 list entries per group. kSwitchShows: BurnTiles only; after a load the first
+// frame shows flames while counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,4 +1,5 @@
-// Tiles of a restored object: into the lists that contained them, which are stored in `wake`. One thread per tile.
+// Tiles of a restored object: into the lists that contained them, which are stored in `wake`. One
+// thread per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

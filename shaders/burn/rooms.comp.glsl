@@ -1,5 +1,5 @@
-// Rooms, before a heat step: oxygen consumption, ventilation, burning strength of each object, and flashover. One
-// group: sums per room use shared memory, in any order.
+// Rooms, before a heat step: oxygen consumption, ventilation, burning strength of each object, and
+// flashover. One group: sums per room use shared memory, in any order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;  // kMaxRooms

@@ -1,5 +1,5 @@
-// Sorts the front list into due tiles (run list) and waiting tiles (the other list); the rest leaves. With the dense
-// switch all tiles of the wake groups run instead.
+// Sorts the front list into due tiles (run list) and waiting tiles (the other list); the rest
+// leaves. With the dense switch all tiles of the wake groups run instead.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,7 +1,8 @@
-// Cosmetic collapse: a tile's distance, over standing tiles, to a support (unburnt texels or the ground). A piece
-// without a path to one falls to ash: its displayed age runs ahead. One thread per tile, in two phases: 0 computes from
-// the neighbours' last values what 1 writes, so the order of threads does not matter. Distances converge by one tile
-// per frame; cycles count up to the limit. Not part of the simulation, which has no gravity.
+// Cosmetic collapse: a tile's distance, over standing tiles, to a support (unburnt texels or the
+// ground). A piece without a path to one falls to ash: its displayed age runs ahead. One thread per
+// tile, in two phases: 0 computes from the neighbours' last values what 1 writes, so the order of
+// threads does not matter. Distances converge by one tile per frame; cycles count up to the limit.
+// Not part of the simulation, which has no gravity.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -25,7 +26,8 @@ const float kFallTime = 1.1;  // s from the first flake to the last
 
 uint distanceOf(uint flag) { return flag >> kTileDistanceShift; }
 
-// Sides 0..3: left, right, below, above. Texel i of the tile's side, or the one beside it in the next tile.
+// Sides 0..3: left, right, below, above. Texel i of the tile's side, or the one beside it in the
+// next tile.
 uint sideTexel(uint corner, uint width, uint side, uint i, bool beside) {
     uint off = beside ? 1u : 0u;
     if (side < 2u) return corner + i * width + (side == 0u ? 0u - off : 7u + off);

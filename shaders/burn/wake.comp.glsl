@@ -1,5 +1,5 @@
-// A wind or pose latch: touches the tiles that may change, which are listed or changed within the correction window.
-// One group per 64 tiles of an object.
+// A wind or pose latch: touches the tiles that may change, which are listed or changed within the
+// correction window. One group per 64 tiles of an object.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

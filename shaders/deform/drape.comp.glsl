@@ -1,5 +1,5 @@
-// Skin-to-mesh: drawn vertices follow their particles, and rest normals rotate with their triangles. kDeformGroup
-// vertices of one object per group.
+// Skin-to-mesh: drawn vertices follow their particles, and rest normals rotate with their
+// triangles. kDeformGroup vertices of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,6 +1,6 @@
-// Inner skin of receding meshes: drawn vertices seen from inside. It stays in place while the outer wall burns away,
-// and recedes when little of the wall is left. Holes open in both skins at once. kDeformGroup vertices of one object
-// per group.
+// Inner skin of receding meshes: drawn vertices seen from inside. It stays in place while the outer
+// wall burns away, and recedes when little of the wall is left. Holes open in both skins at once.
+// kDeformGroup vertices of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

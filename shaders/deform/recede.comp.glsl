@@ -55,7 +55,8 @@ void main() {
             kept = recession(burnt, depth, item.crosses ? 1e9 : out_.w);
             place += out_.xyz * kept;
         }
-        // The solver owns positions: this pass reports burnt shares to it, and the rest pose at first.
+        // The solver owns positions: this pass reports burnt shares to it, and the rest pose at
+        // first.
         if (moves) {
             uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
             uint placeAt = own + item.parity * sizes.y;
@@ -66,7 +67,8 @@ void main() {
                 for (uint i = 0u; i < bases.w; ++i) {
                     vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                     vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
-                    // Known from the start: otherwise a sheet would fall until its pins' distances have spread.
+                    // Known from the start: otherwise a sheet would fall until its pins' distances
+                    // have spread.
                     float away = length(place - pinPoint(place, from.xyz, to.xyz)) - from.w;
                     way = min(way, max(away, 0.0));
                 }

@@ -1,5 +1,5 @@
-// Copies the positions, and normals if given, of an object's vertices from the host's vertex buffer; otherwise
-// skin-to-mesh makes normals. 64 vertices per group.
+// Copies the positions, and normals if given, of an object's vertices from the host's vertex
+// buffer; otherwise skin-to-mesh makes normals. 64 vertices per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,6 +1,7 @@
-// One step of sheets: each particle moves by its links, bending constraints and pins, and on with the resulting
-// velocity. It applies its own bend correction now and those of its neighbours from the last step, since theirs are
-// only known after this step. kDeformGroup particles of one object per group.
+// One step of sheets: each particle moves by its links, bending constraints and pins, and on with
+// the resulting velocity. It applies its own bend correction now and those of its neighbours from
+// the last step, since theirs are only known after this step. kDeformGroup particles of one object
+// per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -94,7 +95,8 @@ void main() {
                              dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
                 sum += holds ? arm : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
-                // Corrections requested by the last step's set; particles without constraints request none.
+                // Corrections requested by the last step's set; particles without constraints
+                // request none.
                 uvec4 there = soft(seenAt + (echo[i] & kDeformLinkIndex));
                 uint share = item.parity == 0u ? there.z : there.w;
                 bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);

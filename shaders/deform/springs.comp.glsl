@@ -1,6 +1,6 @@
-// One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to the neighbours,
-// flexion springs across, and the force of decomposition. Semi-implicit Euler. kDeformGroup particles of one object per
-// group.
+// One step of the reference's mass-spring model, eqs. (3) to (8): structure and shear springs to
+// the neighbours, flexion springs across, and the force of decomposition. Semi-implicit Euler.
+// kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-// Buffers of flame quads, particles and their display. A shader defines FW_EMITTER_<NAME> as the access it needs before
-// it includes this.
+// Buffers of flame quads, particles and their display. A shader defines FW_EMITTER_<NAME> as the
+// access it needs before it includes this.
 #ifndef FW_EMITTER_BUFFERS_GLSL
 #define FW_EMITTER_BUFFERS_GLSL
 #include "shared/burn.h"
@@ -19,7 +19,8 @@ layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) FW_EMITTER_DRAW_ARGS buffer
 #include "shared/book.h"
 layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer FlipbooksBuffer { uint books[]; };
 
-// Makes a flipbook (`book` - 1; 0: none) show a quad. True: it loops. life, age, own: as flipbookTime's.
+// Makes a flipbook (`book` - 1; 0: none) show a quad. True: it loops. life, age, own: as
+// flipbookTime's.
 bool showByBook(inout FlameQuad quad, uint book, float life, float age, float own) {
     if (book == 0u) return false;
     uint at = (book - 1u) * kBookRecordWords;

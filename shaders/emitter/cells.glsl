@@ -1,5 +1,5 @@
-// Hash grid of heat-release clusters: two cell sizes per object, keyed by place. Slots depend on thread order, contents
-// do not. FW_CELLS: the access of the includer.
+// Hash grid of heat-release clusters: two cell sizes per object, keyed by place. Slots depend on
+// thread order, contents do not. FW_CELLS: the access of the includer.
 #include "shared/integer.h"
 layout(std430, set = 0, binding = FW_BIND_LIGHT_CELLS) FW_CELLS buffer CellsBuffer { uint cells[]; };
 
@@ -11,16 +11,16 @@ float lightCellSide(uint object) {
 // Side of the clusters within which flames merge, m.
 float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
 
-// A tile's cluster position: above the surface, as flames are. Light clusters are smaller, and lights stand further
-// off.
+// A tile's cluster position: above the surface, as flames are. Light clusters are smaller, and
+// lights stand further off.
 vec3 lightPlaceOf(BurnTile tile, float side) {
     return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
 }
 vec3 flamePlaceOf(BurnTile tile, float side) {
     return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
 }
-// Wood flames as long as it lasts, but most heat is released near the front. age: ticks since ignition; share: of the
-// duration.
+// Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
+// ignition; share: of the duration.
 float flameFade(BurnMaterial material, float age, float share) {
     float lasting = share * max(6.0 * looks[material.look].charTime, 8.0);
     return 0.04 + 0.96 * exp(-age * (1.0 / 4096.0) * material.timeScale / lasting);

@@ -1,6 +1,6 @@
-// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of ignition ticks:
-// nothing is stored, and nothing pops. Each of a tile's slots shows one short life after another, fixed by the state at
-// its birth.
+// Burning tiles to flame and smoke quads. A quad is a function of its world tile, of time and of
+// ignition ticks: nothing is stored, and nothing pops. Each of a tile's slots shows one short life
+// after another, fixed by the state at its birth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -37,9 +37,9 @@ vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
 }
 
-// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces the camera and its
-// wall does not, so one side would intersect the wall. Quads on walls facing away are offset behind them, or they would
-// show through thin walls. Sheets need none.
+// Offset towards the camera, in half widths, beyond that of every quad (flames.vert): a quad faces
+// the camera and its wall does not, so one side would intersect the wall. Quads on walls facing
+// away are offset behind them, or they would show through thin walls. Sheets need none.
 vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
     vec3 toEye = view.forward.w > 0.5 ? normalize(view.eye.xyz - place) : -view.forward.xyz;
     float facing = dot(normal, toEye);
@@ -61,8 +61,8 @@ struct Foot {
     bool found;
 };
 
-// A texel of the tile that flamed at a birth `ago` ticks back: the youngest of the first few found, so that fire stands
-// along the front. Later ignitions do not change the choice.
+// A texel of the tile that flamed at a birth `ago` ticks back: the youngest of the first few found,
+// so that fire stands along the front. Later ignitions do not change the choice.
 Foot footOf(BurnTile tile, uint seed, float ago) {
     BurnObject object = objects[tile.object];
     uint corner = (tile.tile / object.tilesX) * 8u * object.width + (tile.tile % object.tilesX) * 8u;
@@ -174,7 +174,8 @@ void main() {
                 float tall = len * (0.55 + 0.75 * r3 * r3) * grown * (0.35 + 0.65 * strength);
                 vec3 axis = normalize(up * rise + drift + normal * (0.16 * rise) +
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
-                // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their share.
+                // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their
+                // share.
                 float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
                                   (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
@@ -199,7 +200,8 @@ void main() {
                 quad.kelvin = 1.0 - a;
             }
             quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
-            // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame, its foot at 1/20.
+            // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
+            // its foot at 1/20.
             uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
             if (showByBook(quad, book, a, a * period, r4) && !smoke) {
                 quad.axisWidth.w *= 2.4;

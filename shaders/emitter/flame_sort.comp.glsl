@@ -1,6 +1,7 @@
-// Sorts the quads that hide what is behind them, farthest first, of burning tiles and particles together. One group:
-// few quads use a bitonic sort in shared memory, more a stable radix sort (a third of the work for 2,500 on a software
-// device). Emissive quads may come in any order: placeLights interleaves them.
+// Sorts the quads that hide what is behind them, farthest first, of burning tiles and particles
+// together. One group: few quads use a bitonic sort in shared memory, more a stable radix sort (a
+// third of the work for 2,500 on a software device). Emissive quads may come in any order:
+// placeLights interleaves them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -26,8 +27,8 @@ float depthOf(uint place) {
     return clamp(dot(d, view.forward.xyz), 0.0, 1e6);
 }
 
-// Is quad a drawn before b of the same depth? Buffer places depend on thread order and would change the picture from
-// run to run. Equal quads keep their order.
+// Is quad a drawn before b of the same depth? Buffer places depend on thread order and would change
+// the picture from run to run. Equal quads keep their order.
 bool before(uint a, uint b) {
     uint kindA = flameQuad[a].kind, kindB = flameQuad[b].kind;
     if (kindA != kindB) return kindA < kindB;
@@ -87,8 +88,8 @@ void sortFew(uint me, uint count, uint tiles) {
 #undef FW_PLACE
 }
 
-// 16 bits of the depth range, but at most 12 bits of mantissa, so that close quads do not swap from frame to frame.
-// Four bits per pass; each thread keeps a run in order.
+// 16 bits of the depth range, but at most 12 bits of mantissa, so that close quads do not swap from
+// frame to frame. Four bits per pass; each thread keeps a run in order.
 void sortMany(uint me, uint count, uint tiles) {
     uint other = half_(), each = (count + kThreads - 1u) / kThreads;
     uint begin = me * each, end = min(begin + each, count);
@@ -168,8 +169,9 @@ void sortMany(uint me, uint count, uint tiles) {
         drawArgs[kFlameOrder + i] = drawArgs[kFlameOrder + other + i];
 }
 
-// Places each emissive quad before all hiding quads that are not farther away: after those behind it, so that quads in
-// front attenuate it. With more than kMarks hiding quads, a run of them counts as one depth.
+// Places each emissive quad before all hiding quads that are not farther away: after those behind
+// it, so that quads in front attenuate it. With more than kMarks hiding quads, a run of them counts
+// as one depth.
 void placeLights(uint me, uint hiding, uint lights) {
     uint first = push.tiles + push.particles, work = kFlameOrder + half_();
     if (hiding == 0u) {
@@ -179,7 +181,8 @@ void placeLights(uint me, uint hiding, uint lights) {
     uint run = (hiding + kMarks - 1u) / kMarks, marks = (hiding + run - 1u) / run;
     memoryBarrierBuffer();
     barrier();
-    // keys: depths of the marks, farthest first, then the number of emissive quads before each mark and at the end.
+    // keys: depths of the marks, farthest first, then the number of emissive quads before each mark
+    // and at the end.
     for (uint g = me; g < marks; g += kThreads)
         keys[g] = floatBitsToUint(depthOf(drawArgs[kFlameOrder + g * run]));
     for (uint g = me; g <= marks; g += kThreads) keys[kMarks + g] = 0u;

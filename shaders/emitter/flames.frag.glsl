@@ -1,7 +1,8 @@
 #version 450
-// A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced height (zero-mean noise
-// that scrolls upwards and narrows with height); soot glows in thin sheets where the noise is zero. Fireball: noise
-// advected by two vortices, eroded with age. Output is premultiplied: colour, and coverage.
+// A tongue of flame, puff of smoke, fireball or spark. Tongue: a profile sampled at a displaced
+// height (zero-mean noise that scrolls upwards and narrows with height); soot glows in thin sheets
+// where the noise is zero. Fireball: noise advected by two vortices, eroded with age. Output is
+// premultiplied: colour, and coverage.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -18,7 +19,8 @@ layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 
 #ifdef FW_BOOKS
 #include "shared/book.h"
-// If flipbooks show all but sparks, the noise is compiled out: a software device would sample it for every quad.
+// If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
+// for every quad.
 layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
 layout(set = 1, binding = 0) uniform sampler2D bookPicture;
 layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of the frame after
@@ -58,8 +60,9 @@ const float kSunStep = 0.18;    // of a puff's radius, towards the light
 const float kSmokeRolls = 0.5;  // of a fireball's life: age of the roll in smoke
 const vec2 kAcross = vec2(0.6, 0.8);  // rotation between octaves: cosine, sine
 
-// A fireball's soot at a temperature: share that has not burnt away, and its coverage. Cooling soot burns or becomes
-// smoke, which has its own quads. Without this its rest would be dark red outlines on sunlit ground.
+// A fireball's soot at a temperature: share that has not burnt away, and its coverage. Cooling soot
+// burns or becomes smoke, which has its own quads. Without this its rest would be dark red outlines
+// on sunlit ground.
 float sootLeft(float kelvin) { return smoothstep(1120.0, 1400.0, kelvin); }
 float sootHides(float kelvin) { return 0.85 * smoothstep(1180.0, 1500.0, kelvin); }
 
@@ -94,8 +97,8 @@ void main() {
     vec2 c = vec2(x, 2.0 * y - 1.0);
     float r = length(c);
 
-    // Shared samples for all branches: software devices execute every branch. A fireball rolls up about two rising
-    // vortices; smoke keeps that shape.
+    // Shared samples for all branches: software devices execute every branch. A fireball rolls up
+    // about two rising vortices; smoke keeps that shape.
     float rolls = smoke ? kSmokeRolls : phase;
     Roll roll;
     roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
@@ -111,7 +114,8 @@ void main() {
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
     float lod = smoke ? 3.0 : tongue ? 1.0 : 2.0;
     vec4 n1 = vec4(0.5), n2 = vec4(0.5);
-    // Smoke also samples one step towards its light; differences between pixels would show texel grain.
+    // Smoke also samples one step towards its light; differences between pixels would show texel
+    // grain.
     vec2 ahead = kSunStep * inSun, scroll = vec2(0.0, slow * phase);
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
@@ -149,8 +153,8 @@ void main() {
                  110.0 * (n2.g - 0.45) - 60.0 * (1.0 - smoothstep(0.0, 0.2, y));
         hides = 0.75;
     } else {
-        // A ball breaks into rags with age, hot inside and dark in its folds. Old edges are soft and folds fade, or the
-        // remains would be lines.
+        // A ball breaks into rags with age, hot inside and dark in its folds. Old edges are soft
+        // and folds fade, or the remains would be lines.
         float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
@@ -207,8 +211,8 @@ void main() {
         alpha = 0.0;
     }
 #ifdef FW_SOFT
-    // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad, so thin objects do
-    // not cut it.
+    // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad,
+    // so thin objects do not cut it.
     float gap = gapToScene();
     float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap) : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
@@ -218,8 +222,9 @@ void main() {
     if (alpha < 0.002 && !emits) discard;
     color *= view.sunDirection.w;
     if (kEncoding != 0u) {
-        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
-        // not grey. Saturated light hides what is behind it, or overlapping flames would sum up to white.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a
+        // thin one must turn red, not grey. Saturated light hides what is behind it, or overlapping
+        // flames would sum up to white.
         float whole = smoke ? max(alpha, 1e-6) : 1.0;
         color = encodeOutput(color / whole, kEncoding) * whole;
         float brightest = max(max(color.r, color.g), color.b);

@@ -1,6 +1,7 @@
 #version 450
-// A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the camera (see billboard).
-// All quads are one draw of six vertices each: some devices pay per instance.
+// A quad of flame, smoke, fire or spark: stands along its axis and turns about it towards the
+// camera (see billboard). All quads are one draw of six vertices each: some devices pay per
+// instance.
 #extension GL_GOOGLE_include_directive : require
 #define FW_EMITTER_FLAMES readonly
 #define FW_EMITTER_DRAW_ARGS readonly
@@ -40,8 +41,8 @@ BookRecord bookOf(uint i) {
 }
 vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
 
-// Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame. pixels: width on the
-// screen.
+// Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame.
+// pixels: width on the screen.
 vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
     uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
     BookRecord b = bookOf(book);

@@ -1,5 +1,5 @@
-// Stored particles. A shader that moves them defines FW_MOVES. A software device reads two texels per particle faster
-// than eight words, and writes words faster than texels.
+// Stored particles. A shader that moves them defines FW_MOVES. A software device reads two texels
+// per particle faster than eight words, and writes words faster than texels.
 #ifdef FW_MOVES
 #define FW_KEPT_ACCESS coherent
 #define FW_KEPT_TEXELS coherent readonly

@@ -1,5 +1,5 @@
-// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power of all cells: no
-// watt is lost. One group; integer sums make the result independent of order.
+// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power
+// of all cells: no watt is lost. One group; integer sums make the result independent of order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;
@@ -170,8 +170,8 @@ void main() {
         barrier();
     }
 
-    // Each cell gives its power to the nearest light. The last light, which comes or goes, only gets a share; the rest
-    // goes to the next nearest.
+    // Each cell gives its power to the nearest light. The last light, which comes or goes, only
+    // gets a share; the rest goes to the next nearest.
     float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
@@ -213,7 +213,8 @@ void main() {
             float power = float(lightPower[light] + homeless);
             float len = flameLength(min(weight * 16.0, power), area);
             vec3 at = placeOfLight(light) + mean + view.up.xyz * (0.25 * len);
-            // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is steady.
+            // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is
+            // steady.
             float t = view.ambientSky.w, p = 6.2832 * unit(key);
             float flicker = 1.0 + min(weight * 16.0 / power, 1.0) *
                                       (0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +

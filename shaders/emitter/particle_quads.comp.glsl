@@ -87,7 +87,8 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
     smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
-    // Leaves walls and stays above the ground as it grows: inside them it would end in a straight line.
+    // Leaves walls and stays above the ground as it grows: inside them it would end in a straight
+    // line.
     place += p.hit.xyz * particleOffWall(p, e.up.xyz, size, a);
     float sunk = kPuffReach * size - (dot(place, e.up.xyz) - e.carried.w);
     place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, sunk) : 0.0);

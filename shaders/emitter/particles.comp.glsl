@@ -1,6 +1,6 @@
-// Births and one frame of motion of all emitters' particles. A group handles a part of one emitter's ring. A software
-// device executes an `if` body for every particle, so births and collisions have loops of their own over the few
-// iterations that have any.
+// Births and one frame of motion of all emitters' particles. A group handles a part of one
+// emitter's ring. A software device executes an `if` body for every particle, so births and
+// collisions have loops of their own over the few iterations that have any.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -19,8 +19,8 @@ layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer Groups
 #include "emitter/kept.glsl"
 layout(push_constant) uniform Push { ParticlePush push; };
 
-// Loads the emitter data that every particle needs; the rest is loaded where it is used. A software device loads each
-// word for each lane.
+// Loads the emitter data that every particle needs; the rest is loaded where it is used. A software
+// device loads each word for each lane.
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
     e.from.w = emitters[i].from.w;
@@ -49,7 +49,8 @@ ParticleEmitter emitterOf(uint i) {
     return e;
 }
 
-// Birth on a flaming tile of the emitter's mesh, chosen by power among a few samples. Without a sample it is invisible.
+// Birth on a flaming tile of the emitter's mesh, chosen by power among a few samples. Without a
+// sample it is invisible.
 Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
     uint count = push.burnRow == kNoBurnRow ? 0u : counters[push.burnRow].runCount;
     uint met = 0u;
@@ -177,8 +178,8 @@ void main() {
     uvec2 group = groups[gl_WorkGroupID.x];
     ParticleEmitter e = emitterOf(group.x);
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    // Births occupy a range that ends before the ring's head and may wrap around. A thread spawns the particles that it
-    // then moves.
+    // Births occupy a range that ends before the ring's head and may wrap around. A thread spawns
+    // the particles that it then moves.
     uint end = group.y + turns * 64u;
     uint low = max(e.head - min(e.fresh, e.head), group.y), high = min(e.head, end);
     uint wrapped = max(e.ring - (e.fresh - min(e.fresh, e.head)), group.y), top = min(e.ring, end);
@@ -196,7 +197,8 @@ void main() {
         }
     }
     memoryBarrier();  // words written above are read as texels below
-    // A jet's particles all test obstacles; others only when they reach the ground: a bit per iteration marks those.
+    // A jet's particles all test obstacles; others only when they reach the ground: a bit per
+    // iteration marks those.
     bool jet = e.shieldCount > 0u;
     uint met = 0u, turn = jet ? turns - 1u : 0u;
     do {

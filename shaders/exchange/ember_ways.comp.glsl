@@ -1,4 +1,5 @@
-// Removes embers whose path an occluder box or the heat-occlusion grid crosses. One thread per object slot.
+// Removes embers whose path an occluder box or the heat-occlusion grid crosses. One thread per
+// object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

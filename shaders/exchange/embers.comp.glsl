@@ -1,5 +1,5 @@
-// Landing of the remaining embers: whether each lights its target. A thread per object slot handles its sources; embers
-// are rare.
+// Landing of the remaining embers: whether each lights its target. A thread per object slot handles
+// its sources; embers are rare.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

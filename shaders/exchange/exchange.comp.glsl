@@ -1,6 +1,6 @@
-// Heat from sources to the tiles of the objects that they may heat, an eighth of the tiles per exchange. One group per
-// receiver, one thread per tile. FW_SHIELD: with a heat-occlusion grid; a variant, as a software device executes loop
-// bodies once even without active lanes.
+// Heat from sources to the tiles of the objects that they may heat, an eighth of the tiles per
+// exchange. One group per receiver, one thread per tile. FW_SHIELD: with a heat-occlusion grid; a
+// variant, as a software device executes loop bodies once even without active lanes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,4 +1,5 @@
-// Sums burning tiles into the fire sources of their objects, in any order. 64 of the tiles found by `reduce` per group.
+// Sums burning tiles into the fire sources of their objects, in any order. 64 of the tiles found by
+// `reduce` per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

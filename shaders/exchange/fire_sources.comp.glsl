@@ -1,5 +1,5 @@
-// Per object: who lit it, whether it may continue, world positions of its sources, and which of them send an ember.
-// Wakes the objects that they may heat. One thread per object slot.
+// Per object: who lit it, whether it may continue, world positions of its sources, and which of
+// them send an ember. Wakes the objects that they may heat. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

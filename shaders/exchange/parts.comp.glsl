@@ -1,5 +1,5 @@
-// Fire between parts of one mesh, over gaps of a few centimetres. 64 of the tiles found by `reduce` per group. All
-// ignitions have the exchange's tick, so order does not matter.
+// Fire between parts of one mesh, over gaps of a few centimetres. 64 of the tiles found by `reduce`
+// per group. All ignitions have the exchange's tick, so order does not matter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,4 +1,5 @@
-// Receivers of this exchange and their 64 strongest sources, found by halving. One thread per object slot.
+// Receivers of this exchange and their 64 strongest sources, found by halving. One thread per
+// object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -22,7 +23,8 @@ bool gives(uint slot, uint entry) {
                    bothChances(push.chance, remoteObjects[from].chance));
 }
 
-// Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry` and a `weight`.
+// Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry`
+// and a `weight`.
 #define FW_EACH_SOURCE(statement)                                                                     \
     for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {                                  \
         uint entry = neighbours[remoteObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
@@ -47,8 +49,8 @@ void listSource(uint slot, uint place, uint source, uint entry) {
     if (place < kSourcesPerReceiver)
         receivers[slot * kReceiverWords + 2u + place] = source | (entry & 0xFF000000u);
 }
-// Lists sources of weight >= low, of which there are `strong`, then those of at least half of it, up to the capacity.
-// Returns the number of listed sources.
+// Lists sources of weight >= low, of which there are `strong`, then those of at least half of it,
+// up to the capacity. Returns the number of listed sources.
 uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
     uint listed = 0u, weak = strong;
     FW_EACH_SOURCE(if (weight >= low / 2u) listSource(slot, weight >= low ? listed++ : weak++, source, entry);)

@@ -1,4 +1,5 @@
-// Buffers of particle fields. A shader defines FW_FIELD_<NAME> as the access it needs before it includes this.
+// Buffers of particle fields. A shader defines FW_FIELD_<NAME> as the access it needs before it
+// includes this.
 #ifndef FW_FIELD_BUFFERS_GLSL
 #define FW_FIELD_BUFFERS_GLSL
 #include "shared/burn.h"

@@ -1,6 +1,6 @@
-// One step of particle fields. A thread walks up a strip of four columns and computes for each row what its six columns
-// (one left to one right of the strip) give, so threads exchange nothing. Emission comes last. Eight strips are a unit;
-// a group holds units of whole fields.
+// One step of particle fields. A thread walks up a strip of four columns and computes for each row
+// what its six columns (one left to one right of the strip) give, so threads exchange nothing.
+// Emission comes last. Eight strips are a unit; a group holds units of whole fields.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -74,8 +74,8 @@ FieldPushes pushesAt(FieldWeights w, uint key, uint quad, uint rows) {
     return fieldPushes(w, fieldChaos(fieldRandom(key, quad, rows)));
 }
 
-// Rows that may change: around occupied ones, emitting ones, and those that the output cells held two steps ago. In
-// fours.
+// Rows that may change: around occupied ones, emitting ones, and those that the output cells held
+// two steps ago. In fours.
 uvec2 activeRows(uint now, uint before, uvec2 sources) {
     uvec2 rows = uvec2(0xFFFFu, 0u);
     if (now != 0u) rows = uvec2(8u * uint(findLSB(now)), 8u * uint(findMSB(now)) + 9u);

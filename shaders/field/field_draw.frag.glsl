@@ -1,6 +1,6 @@
-// A particle field: density by cubic splines between cells, fine structure by tiled noise that the motion advects in
-// two phases. Emission uses the volumetric fires' profile; absorption takes sun and sky; refraction has a specular
-// surface. Output is premultiplied: colour, and coverage.
+// A particle field: density by cubic splines between cells, fine structure by tiled noise that the
+// motion advects in two phases. Emission uses the volumetric fires' profile; absorption takes sun
+// and sky; refraction has a specular surface. Output is premultiplied: colour, and coverage.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/black_body.h"
@@ -126,8 +126,8 @@ void main() {
     float alpha = 0.0;
 
     if (kVariant <= 1u) {  // emits
-        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot would only hide, and
-        // a flame would end in a stump.
+        // Tongues: noise erodes more with height, except a thin tip that still glows; cooler soot
+        // would only hide, and a flame would end in a stump.
         float y = inPlace.y * float(inField.z) / (2.6 * inSize.y), high = min(y, 1.0);
         float d = f.density * (1.0 + detail * (1.5 * rough + 0.6 * ridge)) -
                   detail * (0.05 + 0.36 * (high - 0.48 * high * high * high));
@@ -165,8 +165,8 @@ void main() {
     if (kVariant == 2u) {  // refracts
         float d = max(f.density * (1.0 + 1.6 * detail * rough), 0.0);
         vec3 up = normalize(cross(normal, inAlong));
-        // A sheet ends within a cell or two at pools and sources: full slopes there would make rims rows of white
-        // highlights.
+        // A sheet ends within a cell or two at pools and sources: full slopes there would make rims
+        // rows of white highlights.
         vec2 wave = -f.slope * (round_ ? 2.4 : 0.25) - detail * vec2(rough, 0.6 * ridge) * 1.8;
         vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
         float film = smoothstep(0.10, 0.42, d) * edge;

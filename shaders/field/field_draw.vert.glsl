@@ -1,5 +1,5 @@
-// A particle field's body, generated from the vertex number: a billboard that turns about its up axis, or a spheroid
-// around which the field is wound, displaced by density if requested.
+// A particle field's body, generated from the vertex number: a billboard that turns about its up
+// axis, or a spheroid around which the field is wound, displaced by density if requested.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
@@ -57,8 +57,8 @@ void main() {
 
     vec2 ballPlace = vec2((float(quad % kFieldAround) + turn.x) / float(kFieldAround),
                           (float(quad / kFieldAround) + turn.y) / float(kFieldUp));
-    // Longitude by angle; latitude half by height and half by angle, so cells keep their shape in the middle and the
-    // poles do not dominate.
+    // Longitude by angle; latitude half by height and half by angle, so cells keep their shape in
+    // the middle and the poles do not dominate.
     float lon = 2.0 * kPi * ballPlace.x, lat = kPi * (ballPlace.y - 0.5);
     vec3 ball = vec3(cos(lat) * cos(lon), sin(lat), -cos(lat) * sin(lon));
     vec3 normal = normalize(d.right.xyz * (ball.x / d.size.x) + d.up.xyz * (ball.y / d.size.y) +

@@ -1,5 +1,5 @@
-// New masks of particle fields, one group per field: walls and painted emission. Particles under a new wall die. A
-// fresh field becomes empty.
+// New masks of particle fields, one group per field: walls and painted emission. Particles under a
+// new wall die. A fresh field becomes empty.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

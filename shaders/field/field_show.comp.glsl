@@ -1,5 +1,6 @@
-// Displayed cells of particle fields: density between the last two steps, advected by each cell's motion so that
-// nothing jumps, and the share of sunlight. kFieldShowGroups groups per field. Cosmetic.
+// Displayed cells of particle fields: density between the last two steps, advected by each cell's
+// motion so that nothing jumps, and the share of sunlight. kFieldShowGroups groups per field.
+// Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -47,7 +48,8 @@ void main() {
     uint count = width * height, share = (count + kFieldShowGroups - 1u) / kFieldShowGroups;
     uint end = min((part + 1u) * share, count);
     float between = d.place.w;
-    // Direction to the sun in cells. A billboard is lit from its side; light from behind shines through.
+    // Direction to the sun in cells. A billboard is lit from its side; light from behind shines
+    // through.
     vec2 sun = vec2(dot(view.sunDirection.xyz, d.right.xyz), dot(view.sunDirection.xyz, d.up.xyz));
     sun = sun / max(length(sun), 0.3);
     for (uint i = part * share + gl_LocalInvocationID.x; i < end; i += 64u) {

@@ -1,7 +1,7 @@
 #version 450
-// Composites the half-resolution target. Of the four texels around a pixel, those drawn against a similar depth count,
-// so edges of objects in flames and smoke stay at full resolution. Premultiplied, encoded and blended: `over` is
-// associative.
+// Composites the half-resolution target. Of the four texels around a pixel, those drawn against a
+// similar depth count, so edges of objects in flames and smoke stay at full resolution.
+// Premultiplied, encoded and blended: `over` is associative.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/half.h"
 
@@ -31,8 +31,8 @@ void main() {
         greatest = max(greatest, four[i]);
         nearest = min(nearest, apart[i]);
     }
-    // All four lie across an edge, as around a thin object: uses a matching one of those around them, else the darkest,
-    // so that light behind an object does not show in front.
+    // All four lie across an edge, as around a thin object: uses a matching one of those around
+    // them, else the darkest, so that light behind an object does not show in front.
     vec4 other = least;
     float best = kHalfEdge;
     int around = nearest > kHalfEdge ? 12 : 0;

@@ -1,5 +1,6 @@
-// Axis of a quad that stands along `axis` and turns about it towards the camera. Seen along its axis it tilts on the
-// screen, so that at least half of its length stays visible. toEye: unit. Needs `view`.
+// Axis of a quad that stands along `axis` and turns about it towards the camera. Seen along its
+// axis it tilts on the screen, so that at least half of its length stays visible. toEye: unit.
+// Needs `view`.
 struct Billboard {
     vec3 axis, side, screenUp;
 };

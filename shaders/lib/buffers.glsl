@@ -1,5 +1,5 @@
-// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs (readonly, writeonly,
-// or FW_READ_WRITE) before it includes this; only those are declared.
+// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs
+// (readonly, writeonly, or FW_READ_WRITE) before it includes this; only those are declared.
 #ifndef FW_LIB_BUFFERS_GLSL
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
@@ -10,9 +10,10 @@
 #include "shared/heat.h"
 #endif
 
-// *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words at once for little
-// more than one, and pays for every load, taken or not. It also runs a loop's text until no lane is left, and a `for`
-// finds that out one turn late: hot loops are `do`, `while`.
+// *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
+// at once for little more than one, and pays for every load, taken or not. It also runs a loop's
+// text until no lane is left, and a `for` finds that out one turn late: hot loops are `do`,
+// `while`.
 #define FW_READ_WRITE
 #define FW_BUFFER(number, access, block, type, name) \
     layout(std430, set = 0, binding = number) access buffer block { type name[]; }
@@ -106,7 +107,8 @@ FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
 FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
 #endif
 #ifdef FW_USE_RUN
-// World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its row of `tiles`.
+// World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its
+// row of `tiles`.
 FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
 const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
 const uint kRunLitBeside = 2u;   // due because texels just caught: settled ones need no run
@@ -118,9 +120,9 @@ FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
 uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 #endif
 #ifdef FW_USE_SCRATCH_QUADS
-// A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of the prediction:
-// (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first texel, object). The scratch's end
-// lists rim texels, see rimItem.
+// A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of
+// the prediction: (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first
+// texel, object). The scratch's end lists rim texels, see rimItem.
 FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
 #endif
 #ifdef FW_USE_MASKS
@@ -238,8 +240,8 @@ layout(push_constant) uniform StepPushBlock { StepPush push; };
 
 const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
 
-// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next pass drops them:
-// `alive` is false for those.
+// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next
+// pass drops them: `alive` is false for those.
 #if defined(FW_USE_OBJECTS) && defined(FW_USE_TILE_STATE)
 struct TileRef {
     uint object, local;

@@ -1,5 +1,5 @@
-// Effects of a texel's change outside the front kernel: dependent tiles become due, counters and lists are updated. For
-// events, contacts and embers.
+// Effects of a texel's change outside the front kernel: dependent tiles become due, counters and
+// lists are updated. For events, contacts and embers.
 #ifndef FW_LIB_CHANGE_GLSL
 #define FW_LIB_CHANGE_GLSL
 

@@ -1,12 +1,12 @@
-// Black-body colour and the film curve that maps deep orange to yellow-white. Hosts with their own tone mapper get
-// linear values. Soot: black_body.h.
+// Black-body colour and the film curve that maps deep orange to yellow-white. Hosts with their own
+// tone mapper get linear values. Soot: black_body.h.
 #include "shared/black_body.h"
 
 // White balance of a camera exposed for fire, for volumes, fireballs and fields.
 const vec3 kFireWhite = vec3(1.0, 1.25, 1.6);
 
-// Luminance of glowing char in cd/m^2 (Wien); chromaticity linear in T. Valid 800..2500 K. Cameras record embers more
-// orange than they are: the chromaticity is that of a hotter body.
+// Luminance of glowing char in cd/m^2 (Wien); chromaticity linear in T. Valid 800..2500 K. Cameras
+// record embers more orange than they are: the chromaticity is that of a hotter body.
 const float kEmberHueShift = 250.0;
 
 vec3 blackbodyChroma(float kelvin) {

@@ -1,7 +1,8 @@
-// Buffers of the deformation passes, as quads of words. As in lib/buffers.glsl a shader defines FW_USE_<NAME>. With
-// FW_TEXELS per-particle data is read through texel buffers: a software device reads a texel faster than four words of
-// a storage buffer, and writes words faster than texels. Particles, embeddings and soft state lie quad by quad: first
-// quad of all, then the second. So neighbouring reads are close, and unread quads cost nothing.
+// Buffers of the deformation passes, as quads of words. As in lib/buffers.glsl a shader defines
+// FW_USE_<NAME>. With FW_TEXELS per-particle data is read through texel buffers: a software device
+// reads a texel faster than four words of a storage buffer, and writes words faster than texels.
+// Particles, embeddings and soft state lie quad by quad: first quad of all, then the second. So
+// neighbouring reads are close, and unread quads cost nothing.
 #ifndef FW_LIB_DEFORM_BUFFERS_GLSL
 #define FW_LIB_DEFORM_BUFFERS_GLSL
 #include "lib/buffers.glsl"
@@ -26,7 +27,8 @@ FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGrou
 #ifdef FW_USE_DEFORM_NODES
 FW_QUADS(FW_BIND_DEFORM_NODES, readonly, DeformParticlesBuffer, nodeQuads);
 uvec4 deformNode(uint quad) { return FW_QUAD(nodeQuads, quad); }
-// Loops over links test at their end. All particles of a run have the same number of passes, so no lane leaves early.
+// Loops over links test at their end. All particles of a run have the same number of passes, so no
+// lane leaves early.
 uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
 uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // 0 or 1 additional passes
 #endif
@@ -46,8 +48,9 @@ FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownWordsBuffer, uint, shownWords);
 #endif
 
 #ifdef FW_USE_SOFT
-// Per particle: two positions, each with the path length to a pin and a bend share (packShare); the link cache; facts
-// for neighbours (packFacts) and two bend shares for constraint ends; nearest pin point with its radius.
+// Per particle: two positions, each with the path length to a pin and a bend share (packShare); the
+// link cache; facts for neighbours (packFacts) and two bend shares for constraint ends; nearest pin
+// point with its radius.
 FW_QUADS(FW_BIND_SOFT, FW_READ_WRITE, SoftBuffer, softQuads);
 #ifdef FW_TEXELS
 FW_BUFFER(FW_BIND_SOFT, writeonly, SoftOutBuffer, uvec4, softOut);
@@ -63,15 +66,17 @@ vec3 placeOf(uvec4 quad) { return uintBitsToFloat(quad.xyz & ~uvec3(kWayLow, kWa
 uint wayBits(uvec4 quad) {
     return (quad.x & kWayLow) | (quad.y & kWayLow) << 5u | (quad.z & kWayHigh) << 10u;
 }
-// First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding bending constraints,
-// two per set, below 24. Then charred shares of neighbours and of constraint ends; own facts.
+// First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding
+// bending constraints, two per set, below 24. Then charred shares of neighbours and of constraint
+// ends; own facts.
 const uint kLinkCachePinned = 8u, kLinkCacheBends = 16u, kLinkCacheWhole = 0x1000000u;  // no neighbour has parted
 #endif
 
 layout(push_constant) uniform DeformPushBlock { DeformPush push; };
 
-// Object and items of a thread, every 64th particle or vertex: object data is loaded once for several. Loops over items
-// test at their end, since a software device runs a loop's body once more with no active lane.
+// Object and items of a thread, every 64th particle or vertex: object data is loaded once for
+// several. Loops over items test at their end, since a software device runs a loop's body once more
+// with no active lane.
 struct DeformItem {
     uint object;  // quad of its DeformObject
     uint number;
@@ -95,7 +100,8 @@ DeformItem deformItem() {
 }
 
 #ifdef FW_USE_OBJECT_QUADS
-// World directions in object axes. facts: third quad of the DeformObject, which holds the object slot.
+// World directions in object axes. facts: third quad of the DeformObject, which holds the object
+// slot.
 vec3 rowOf(uvec4 facts, uint row) { return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz); }
 vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
     return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) / uintBitsToFloat(facts.z);

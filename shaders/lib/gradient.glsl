@@ -1,5 +1,5 @@
-// A word of FW_BIND_GRADIENT. Low byte: soot. Texel with a time: its gradient. Wet texel: distance to the fire. A texel
-// that was put out has no soot: see burn.h.
+// A word of FW_BIND_GRADIENT. Low byte: soot. Texel with a time: its gradient. Wet texel: distance
+// to the fire. A texel that was put out has no soot: see burn.h.
 #ifndef FW_LIB_GRADIENT_GLSL
 #define FW_LIB_GRADIENT_GLSL
 
@@ -12,8 +12,8 @@ vec2 unpackGradient(uint word) {
     return unpackHalf2x16((word & 0xFFF00000u) | ((word >> 4u) & 0xFFF0u));
 }
 
-// Wet texel: 12 bits that are read, in 64ths of a texel, and below them 12 bits that the next round reads, see
-// predict_commit.
+// Wet texel: 12 bits that are read, in 64ths of a texel, and below them 12 bits that the next round
+// reads, see predict_commit.
 const uint kAheadFar = 0xFFFFFF00u;  // the fire is out of sight
 bool isAheadFar(uint word) { return (word & 0xFFF00000u) == (kAheadFar & 0xFFF00000u); }
 uint packAheadNext(uint word, float texels) {

@@ -2,8 +2,8 @@
 #ifndef FW_LIB_LIGHT_GLSL
 #define FW_LIB_LIGHT_GLSL
 
-// True: it caught at this tick, by this flame or also by another one. Each counts, so the order of threads does not
-// matter: all ignitions of a texel in one dispatch have the same tick.
+// True: it caught at this tick, by this flame or also by another one. Each counts, so the order of
+// threads does not matter: all ignitions of a texel in one dispatch have the same tick.
 bool lightTexel(uint object, uint texel, uint tick, uint by) {
     uint at = objects[object].stateBase + texel;
     uint before = state[at];

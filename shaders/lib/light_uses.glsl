@@ -1,4 +1,5 @@
-// Buffers that lib/light.glsl needs; include before lib/buffers.glsl. gpu/passes/light_uses.h binds them.
+// Buffers that lib/light.glsl needs; include before lib/buffers.glsl. gpu/passes/light_uses.h binds
+// them.
 #define FW_USE_EXCHANGE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_TILES readonly

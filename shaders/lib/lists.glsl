@@ -1,5 +1,5 @@
-// Appends to tile lists, and touching of tiles. Membership is a flag bit, so a tile is in a list at most once and the
-// order does not matter.
+// Appends to tile lists, and touching of tiles. Membership is a flag bit, so a tile is in a list at
+// most once and the order does not matter.
 #ifndef FW_LIB_LISTS_GLSL
 #define FW_LIB_LISTS_GLSL
 
@@ -60,8 +60,8 @@ uint hotSlots(uint parity, uint count) {
 void hotAppend(uint parity, uint worldTile) {
     hotStore(parity, listSlot(kRowHot + parity, kHotPerGroup), worldTile);
 }
-// Objects with heat only: the tile's temperature, water or flux changes from now on. It is updated every step
-// (kTileWarm), or at intervals.
+// Objects with heat only: the tile's temperature, water or flux changes from now on. It is updated
+// every step (kTileWarm), or at intervals.
 void hotList(uint parity, uint worldTile, uint warm) {
     uint old = atomicOr(tileState[worldTile].flag, kTileHot | warm);
     if ((old & kTileHot) == 0u) hotAppend(parity, worldTile);
@@ -99,10 +99,11 @@ void addEnergy(uint object, uint low, uint high) {
 
 #if defined(FW_USE_BURN_LISTS) && defined(FW_USE_PREDICT_LISTS) && defined(FW_USE_TILE_STATE)
 #include "shared/grant.h"
-// Where burning tiles are limited, no tile is lit that is not on the burn list. A lighting pass runs twice: first it
-// requests tiles, then it lights those that `grant` put on the list in between; all else stays unchanged. Requests use
-// storage that is free meanwhile: the predict list that the frame's prediction will write, and, as marks per world
-// tile, the burn list that the next reduction will write.
+// Where burning tiles are limited, no tile is lit that is not on the burn list. A lighting pass
+// runs twice: first it requests tiles, then it lights those that `grant` put on the list in
+// between; all else stays unchanged. Requests use storage that is free meanwhile: the predict list
+// that the frame's prediction will write, and, as marks per world tile, the burn list that the next
+// reduction will write.
 const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
 const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
 const uint kRequestAllocated = 2u;
@@ -151,7 +152,8 @@ void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uin
     for (uint r = 0u; r < seam.w; ++r)
         touchTile(parity, row, worldTileBase + dependentTile(object, seam.z, r), bits);
 }
-// Texels of this mask of a tile changed between iterations: touches the tile and all tiles that depend on them.
+// Texels of this mask of a tile changed between iterations: touches the tile and all tiles that
+// depend on them.
 void touchReaders(uint object, uint local, uvec2 mask) {
     touchTile(push.parity, push.row, objects[object].worldTileBase + local, kTileTouched);
     touchBeside(push.parity, push.row, object, local, mask, kTileTouched);

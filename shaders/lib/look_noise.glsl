@@ -3,8 +3,8 @@
 
 float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
-// Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device would fetch two mips
-// otherwise, for twice the time.
+// Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device
+// would fetch two mips otherwise, for twice the time.
 float noiseLod(float pixel, float tiles) {
     return floor(log2(max(pixel * tiles * kLookTextureSide, 1.0)) + 0.5);
 }

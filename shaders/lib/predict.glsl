@@ -1,5 +1,5 @@
-// Shared by the prediction passes: times, gradients, and dependent tiles. With FW_USE_PREDICT_LISTS include after
-// lists.glsl.
+// Shared by the prediction passes: times, gradients, and dependent tiles. With FW_USE_PREDICT_LISTS
+// include after lists.glsl.
 #ifndef FW_LIB_PREDICT_GLSL
 #define FW_LIB_PREDICT_GLSL
 
@@ -34,9 +34,9 @@ uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
     return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) | (gradient[at] & 0xFFu);
 }
 
-// A round reads the times of the round before and nothing that it writes, so the result does not depend on the order of
-// threads. A changed texel's new time is stored in its gradient (24 bits, ticks from `push.now`) and the gradient is
-// computed afterwards.
+// A round reads the times of the round before and nothing that it writes, so the result does not
+// depend on the order of threads. A changed texel's new time is stored in its gradient (24 bits,
+// ticks from `push.now`) and the gradient is computed afterwards.
 const uint kNoTimeNext = 0x80000000u;
 uint packTimeNext(uint word, uint time) {
     int ticks = clamp(int(time - push.now), -0x7FFFFF, 0x7FFFFF);
@@ -47,15 +47,16 @@ uint unpackTimeNext(uint word) {
     return min(push.now + uint(int(word) >> 8), kLiveEnd - 1u);
 }
 
-// Is this change large enough to update neighbours? Rings would chase rounding forever; the further ahead, the larger a
-// change must be.
+// Is this change large enough to update neighbours? Rings would chase rounding forever; the further
+// ahead, the larger a change must be.
 bool concernsOthers(uint before, uint now) {
     int ahead = max(int(now - push.now), 0);
     return !(hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8);
 }
 
 #ifdef FW_USE_PREDICT_LISTS
-// Lists the tile, and those that depend on its texels of `mask` (lane = y * 8 + x), for the next frame.
+// Lists the tile, and those that depend on its texels of `mask` (lane = y * 8 + x), for the next
+// frame.
 void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY) {
     uint parity = push.predictParity ^ 1u;
     predictTouch(parity, worldTile);

@@ -1,11 +1,12 @@
-// Refined vertex of this frame, from the arrivals around its texel and around the opposite wall. Needs the buffers of
-// lib/refine_buffers.glsl with FW_USE_PREDICT.
+// Refined vertex of this frame, from the arrivals around its texel and around the opposite wall.
+// Needs the buffers of lib/refine_buffers.glsl with FW_USE_PREDICT.
 #ifndef FW_LIB_REFINE_ARRIVAL_GLSL
 #define FW_LIB_REFINE_ARRIVAL_GLSL
 
 bool isDoused(uint t) { return t == kOut || t == kOutWet; }
 
-// As the surface shows it: unsupported pieces turn to ash early, and a texel that was put out keeps its age.
+// As the surface shows it: unsupported pieces turn to ash early, and a texel that was put out keeps
+// its age.
 float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
     uint at = refined[object].stateBase + base;
     uint up = at + refined[object].textureWidth;
@@ -20,8 +21,8 @@ float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
     return refineArrival(t, weights, nowTick, refined[object].epochTick);
 }
 
-// behind: s since the object's epoch when the opposite wall was lit; unlit: assumed one burn-through time ahead, so
-// that corners around a lit area know the distance to it.
+// behind: s since the object's epoch when the opposite wall was lit; unlit: assumed one
+// burn-through time ahead, so that corners around a lit area know the distance to it.
 RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float recede, out float behind) {
     float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights, nowTick);
     behind = kRefineNever;

@@ -1,5 +1,5 @@
-// Buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs before it includes this. One
-// list entry is one workgroup's share.
+// Buffers of the refinement passes. A shader defines FW_USE_<NAME> as the access it needs before it
+// includes this. One list entry is one workgroup's share.
 #ifndef FW_LIB_REFINE_BUFFERS_GLSL
 #define FW_LIB_REFINE_BUFFERS_GLSL
 #include "shared/burn.h"

@@ -1,4 +1,5 @@
-// Ring of a rim texel, anywhere in the object's map. tile: row of `tiles`; lane: of the texel in its tile.
+// Ring of a rim texel, anywhere in the object's map. tile: row of `tiles`; lane: of the texel in
+// its tile.
 uint[8] rimRing(uint object, uint tile, uint lane) {
     uvec4 rim = tiles[tile * 2u + 1u];
     uint below = lane < 32u ? uint(bitCount(rim.x & ((1u << lane) - 1u)))

@@ -1,4 +1,5 @@
-// The host's depth at a pixel; the first of several samples, as choosing one needs a device feature.
+// The host's depth at a pixel; the first of several samples, as choosing one needs a device
+// feature.
 #ifndef FW_LIB_SCENE_DEPTH_GLSL
 #define FW_LIB_SCENE_DEPTH_GLSL
 #if FW_SOFT == 2

@@ -1,4 +1,5 @@
-// Heat-occlusion tests: shared/exchange.h with the buffers. The CPU backend's twin is gpu/cpu/cpu_exchange.cpp.
+// Heat-occlusion tests: shared/exchange.h with the buffers. The CPU backend's twin is
+// gpu/cpu/cpu_exchange.cpp.
 #ifndef FW_LIB_SHIELD_GLSL
 #define FW_LIB_SHIELD_GLSL
 #include "shared/heat.h"
@@ -18,8 +19,8 @@ bool shieldStands(uint what, uint texel) {
     return stands;
 }
 
-// Two loops: a software device executes a branch's body for all lanes of its group, so the expensive test of a solid
-// cell stays out of the walk over empty ones.
+// Two loops: a software device executes a branch's body for all lanes of its group, so the
+// expensive test of a solid cell stays out of the walk over empty ones.
 bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
     ShieldWalk w = shieldWalk(push, a, b);
     uint words = shieldWords(push.shieldCounts);

@@ -1,5 +1,5 @@
-// Position of a texel on moving vertices: the host's, or a sheet's. Every thread loads; objects without them read the
-// first records.
+// Position of a texel on moving vertices: the host's, or a sheet's. Every thread loads; objects
+// without them read the first records.
 #ifndef FW_LIB_SKIN_GLSL
 #define FW_LIB_SKIN_GLSL
 layout(std430, set = 0, binding = FW_BIND_SKIN_TEXELS) readonly buffer SkinTexelsBuffer {

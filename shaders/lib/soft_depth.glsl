@@ -3,8 +3,8 @@
 #define FW_LIB_SOFT_DEPTH_GLSL
 #include "lib/scene_depth.glsl"
 
-// m along the view from the fragment to the host's scene; below 0: the fragment is behind it. For any projection
-// matrix, reversed or infinite: depth is A + B / w with A and B from its rows.
+// m along the view from the fragment to the host's scene; below 0: the fragment is behind it. For
+// any projection matrix, reversed or infinite: depth is A + B / w with A and B from its rows.
 float gapToScene() {
     float depth = texelFetch(sceneDepth, ivec2(gl_FragCoord.xy), 0).r;
     vec3 alongZ = vec3(view.clip0.z, view.clip1.z, view.clip2.z);

@@ -1,8 +1,9 @@
-// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0 lists coarse triangles
-// with a hole, and those along open edges of closed meshes, one lane each. 1, one workgroup each: small triangles
-// crossed by a hole leave the index list; the rest of them is written as vertices, with inner skin and walls along the
-// hole and along open edges; without capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes
-// keep triangles whole until all of a triangle is gone, and only get walls along open edges.
+// Cuts the holes of near objects out of their small triangles. Phases with a barrier between: 0
+// lists coarse triangles with a hole, and those along open edges of closed meshes, one lane each.
+// 1, one workgroup each: small triangles crossed by a hole leave the index list; the rest of them
+// is written as vertices, with inner skin and walls along the hole and along open edges; without
+// capacity they stay whole. 2 writes draw arguments. Objects with per-pixel holes keep triangles
+// whole until all of a triangle is gone, and only get walls along open edges.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

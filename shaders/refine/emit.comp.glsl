@@ -1,5 +1,5 @@
-// One lane per output triangle of the objects whose levels changed: finds its coarse triangle, looks up the pattern,
-// writes three draw vertices.
+// One lane per output triangle of the objects whose levels changed: finds its coarse triangle,
+// looks up the pattern, writes three draw vertices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

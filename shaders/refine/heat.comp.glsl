@@ -1,6 +1,6 @@
-// Heats the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn list, ahead of the
-// fire. One lane per tile. For fresh objects all burnt tiles are heated once, one workgroup per object, so their holes
-// are there in the first frame.
+// Heats the edges and interiors near the tiles of the front (lit soon, or moving) or of the burn
+// list, ahead of the fire. One lane per tile. For fresh objects all burnt tiles are heated once,
+// one workgroup per object, so their holes are there in the first frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,6 +1,6 @@
-// Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for each bias (only over
-// budget); 2 least bias that fits (one group); 3 move (items); 4 pack (triangles): changed objects emit, moving items
-// are listed to be placed.
+// Levels of edges and interiors, in phases with a barrier between: 0 aim (items); 1 triangles for
+// each bias (only over budget); 2 least bias that fits (one group); 3 move (items); 4 pack
+// (triangles): changed objects emit, moving items are listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,6 @@
-// Positions of moving vertices, in phases with a barrier between: 0 corners, one lane each; 1 moving edges, one lane
-// each, positions and then the morph of their newest points; 2 interiors, half a workgroup each; 3 their morph.
+// Positions of moving vertices, in phases with a barrier between: 0 corners, one lane each; 1
+// moving edges, one lane each, positions and then the morph of their newest points; 2 interiors,
+// half a workgroup each; 3 their morph.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,6 @@
-// Refinement pattern of the reference, in phases with a barrier between: 0 places all pattern vertices, one lane each;
-// 1 writes the vertices of each triangle that the host's statuses draw, degenerate if consumed.
+// Refinement pattern of the reference, in phases with a barrier between: 0 places all pattern
+// vertices, one lane each; 1 writes the vertices of each triangle that the host's statuses draw,
+// degenerate if consumed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;

@@ -1,5 +1,5 @@
-// Output offset of each triangle: an exclusive sum, one workgroup per object whose levels changed. Writes draw
-// arguments and lists the output to be emitted. Readbacks report the sums.
+// Output offset of each triangle: an exclusive sum, one workgroup per object whose levels changed.
+// Writes draw arguments and lists the output to be emitted. Readbacks report the sums.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 128) in;

@@ -1,6 +1,6 @@
-// Refinement pattern of the reference implementation: packing of a pattern triangle in one word, its vertices, and the
-// rule that consumes its children. The host chooses the drawn triangles (runtime/mesh/refine). The product's scheme is
-// in refine.h.
+// Refinement pattern of the reference implementation: packing of a pattern triangle in one word,
+// its vertices, and the rule that consumes its children. The host chooses the drawn triangles
+// (runtime/mesh/refine). The product's scheme is in refine.h.
 // clang-format off
 #ifndef FW_SHARED_REFERENCE_PATTERN_H
 #define FW_SHARED_REFERENCE_PATTERN_H

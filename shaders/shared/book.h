@@ -1,4 +1,5 @@
-// Flipbooks: frame selection, motion-compensated blending of two frames, and the meaning of a texel.
+// Flipbooks: frame selection, motion-compensated blending of two frames, and the meaning of a
+// texel.
 // clang-format off
 #ifndef FW_SHARED_FLIPBOOK_H
 #define FW_SHARED_FLIPBOOK_H

@@ -1,5 +1,5 @@
-// Buffers, records, texel codes and lists of the burn simulation, for every backend and shader. Times are ticks of
-// 2^-12 s. The front's arithmetic is in front.h.
+// Buffers, records, texel codes and lists of the burn simulation, for every backend and shader.
+// Times are ticks of 2^-12 s. The front's arithmetic is in front.h.
 // clang-format off
 #ifndef FW_SHARED_BURN_H
 #define FW_SHARED_BURN_H

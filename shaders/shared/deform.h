@@ -1,6 +1,6 @@
-// Deformation of burning meshes: records of its buffers, and arithmetic for C++ and shaders. Cosmetic floats, derived
-// from the authoritative burn state. A particle stands for all drawn vertices at one position; one of these vertices
-// stores its state.
+// Deformation of burning meshes: records of its buffers, and arithmetic for C++ and shaders.
+// Cosmetic floats, derived from the authoritative burn state. A particle stands for all drawn
+// vertices at one position; one of these vertices stores its state.
 // clang-format off
 #ifndef FW_SHARED_DEFORM_H
 #define FW_SHARED_DEFORM_H

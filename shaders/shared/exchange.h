@@ -1,6 +1,6 @@
-// Inter-object heat transfer: radiation and plume at a receiver, ignition rules between objects, and ember flight.
-// Integers only, for C++ and GLSL; it accesses no buffer. The receiver's response is in heat.h. World positions are mm;
-// a pair further apart than kExchangeFar does not interact.
+// Inter-object heat transfer: radiation and plume at a receiver, ignition rules between objects,
+// and ember flight. Integers only, for C++ and GLSL; it accesses no buffer. The receiver's response
+// is in heat.h. World positions are mm; a pair further apart than kExchangeFar does not interact.
 // clang-format off
 #ifndef FW_SHARED_EXCHANGE_H
 #define FW_SHARED_EXCHANGE_H

@@ -1,8 +1,8 @@
-// 2D particle field: what a cell gives to its eight neighbours, and its state after a step. Integers only, so no
-// particle is lost or created. It accesses no buffer.
+// 2D particle field: what a cell gives to its eight neighbours, and its state after a step.
+// Integers only, so no particle is lost or created. It accesses no buffer.
 //
-// Units: cell side and step; a speed of 1 is one cell per step. Directions are a ring as in front.h: counter-clockwise
-// from +x, odd ones diagonal, +y up.
+// Units: cell side and step; a speed of 1 is one cell per step. Directions are a ring as in
+// front.h: counter-clockwise from +x, odd ones diagonal, +y up.
 // clang-format off
 #ifndef FW_SHARED_FIELD_H
 #define FW_SHARED_FIELD_H

@@ -1,8 +1,8 @@
-// Front kernel: when a texel catches fire from the eight texels of its ring. Integers only, for C++ and GLSL. It
-// accesses no buffer. Lists and tiles are driven by shaders/burn and runtime/gpu/cpu.
+// Front kernel: when a texel catches fire from the eight texels of its ring. Integers only, for C++
+// and GLSL. It accesses no buffer. Lists and tiles are driven by shaders/burn and runtime/gpu/cpu.
 //
-// Slowness along a unit vector v is A * (1 - e.v), exactly an ellipse. Times inside the kernel are 1/16 tick after the
-// earliest counting source of the ring.
+// Slowness along a unit vector v is A * (1 - e.v), exactly an ellipse. Times inside the kernel are
+// 1/16 tick after the earliest counting source of the ring.
 // clang-format off
 #ifndef FW_SHARED_FRONT_H
 #define FW_SHARED_FRONT_H

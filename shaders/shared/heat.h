@@ -1,9 +1,9 @@
-// Heat, fuel and water of one texel over one heat step. Integers only, for C++ and GLSL; no buffer access and no
-// neighbours. Arrival of the front is in front.h.
+// Heat, fuel and water of one texel over one heat step. Integers only, for C++ and GLSL; no buffer
+// access and no neighbours. Arrival of the front is in front.h.
 //
-// One temperature stands for a surface skin. The skin of thick fuel deepens as heat soaks in: pi/2 * k * (T - Ta) /
-// |net flux|, the exact solution of a half-space at constant flux, without a stored profile. Fractions below a unit are
-// rounded by a hash, so sums stay true.
+// One temperature stands for a surface skin. The skin of thick fuel deepens as heat soaks in: pi/2
+// * k * (T - Ta) / |net flux|, the exact solution of a half-space at constant flux, without a
+// stored profile. Fractions below a unit are rounded by a hash, so sums stay true.
 // clang-format off
 #ifndef FW_SHARED_HEAT_H
 #define FW_SHARED_HEAT_H

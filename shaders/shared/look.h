@@ -1,5 +1,5 @@
-// Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths in m, times in
-// appearance seconds (see BurnMaterial::timeScale), temperatures in K.
+// Records shared by the drawing passes: appearance of a burning material, view, flame quad. Lengths
+// in m, times in appearance seconds (see BurnMaterial::timeScale), temperatures in K.
 // clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H

@@ -1,5 +1,5 @@
-// Particles of fire emitters: emitter record of a frame, birth, motion, ageing from fire to smoke, and display. Sparks
-// are in spark.h. Cosmetic. SI units, kelvin.
+// Particles of fire emitters: emitter record of a frame, birth, motion, ageing from fire to smoke,
+// and display. Sparks are in spark.h. Cosmetic. SI units, kelvin.
 // clang-format off
 #ifndef FW_SHARED_PARTICLE_H
 #define FW_SHARED_PARTICLE_H

@@ -1,5 +1,5 @@
-// Adaptive refinement per lane, for C++ and GLSL: motion of levels and position of a vertex; with refine_pattern.h and
-// refine_cut.h. It accesses no buffer. Cosmetic floats.
+// Adaptive refinement per lane, for C++ and GLSL: motion of levels and position of a vertex; with
+// refine_pattern.h and refine_cut.h. It accesses no buffer. Cosmetic floats.
 // clang-format off
 #ifndef FW_SHARED_REFINE_H
 #define FW_SHARED_REFINE_H

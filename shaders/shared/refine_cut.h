@@ -1,5 +1,5 @@
-// Holes and open borders of refined triangles: the kept part of a small triangle, walls along its rim and along open
-// edges, and the inner skin.
+// Holes and open borders of refined triangles: the kept part of a small triangle, walls along its
+// rim and along open edges, and the inner skin.
 // clang-format off
 #ifndef FW_SHARED_REFINE_CUT_H
 #define FW_SHARED_REFINE_CUT_H

@@ -1,5 +1,5 @@
-// Patterns of refined triangles: the k-th triangle of a pattern, and the vertices at its corners, for any levels around
-// it.
+// Patterns of refined triangles: the k-th triangle of a pattern, and the vertices at its corners,
+// for any levels around it.
 // clang-format off
 #ifndef FW_SHARED_REFINE_PATTERN_H
 #define FW_SHARED_REFINE_PATTERN_H

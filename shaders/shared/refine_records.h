@@ -1,6 +1,7 @@
-// Records of adaptive refinement, and the packed levels of a triangle. A coarse triangle has a level per edge (0..5:
-// 2^l segments) and one for its interior (m). Edge levels are shared by all owners, so no crack can open. The interior
-// is a lattice of 2^m steps; a strip joins each edge to it. m < 2: a small table instead.
+// Records of adaptive refinement, and the packed levels of a triangle. A coarse triangle has a
+// level per edge (0..5: 2^l segments) and one for its interior (m). Edge levels are shared by all
+// owners, so no crack can open. The interior is a lattice of 2^m steps; a strip joins each edge to
+// it. m < 2: a small table instead.
 // clang-format off
 #ifndef FW_SHARED_REFINE_RECORDS_H
 #define FW_SHARED_REFINE_RECORDS_H

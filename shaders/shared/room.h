@@ -1,5 +1,5 @@
-// Air of rooms: oxygen that fires consume, ventilation, burning strength, and flashover. Integers only, for C++ and
-// GLSL; no buffer access. A texel's response is in heat.h.
+// Air of rooms: oxygen that fires consume, ventilation, burning strength, and flashover. Integers
+// only, for C++ and GLSL; no buffer access. A texel's response is in heat.h.
 // clang-format off
 #ifndef FW_SHARED_ROOM_H
 #define FW_SHARED_ROOM_H

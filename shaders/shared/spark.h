@@ -1,5 +1,6 @@
-// Sparks and embers of fire emitters. Each is a function of the clock, its number and its source's record. Nothing is
-// stored per spark, so any moment can be shown without those before it. Cosmetic. SI units, kelvin.
+// Sparks and embers of fire emitters. Each is a function of the clock, its number and its source's
+// record. Nothing is stored per spark, so any moment can be shown without those before it.
+// Cosmetic. SI units, kelvin.
 // clang-format off
 #ifndef FW_SHARED_SPARK_H
 #define FW_SHARED_SPARK_H

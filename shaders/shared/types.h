@@ -1,5 +1,5 @@
-// Common ground of shared headers: GLSL 4.50, and C++ through GLM. Structs use vec4, uvec4, uint, int and float only,
-// in multiples of 16 bytes; C++ asserts their sizes.
+// Common ground of shared headers: GLSL 4.50, and C++ through GLM. Structs use vec4, uvec4, uint,
+// int and float only, in multiples of 16 bytes; C++ asserts their sizes.
 #ifndef FW_SHARED_TYPES_H
 #define FW_SHARED_TYPES_H
 #ifdef __cplusplus

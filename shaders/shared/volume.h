@@ -1,5 +1,6 @@
-// Volumetric flames: records, coordinates along a curve, noise, emission and absorption at a point. The includer runs
-// the march and samples the profile between flameLookup and flameMedium. Lengths m, times s, temperatures K.
+// Volumetric flames: records, coordinates along a curve, noise, emission and absorption at a point.
+// The includer runs the march and samples the profile between flameLookup and flameMedium. Lengths
+// m, times s, temperatures K.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_H
 #define FW_SHARED_VOLUME_H

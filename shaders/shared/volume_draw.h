@@ -1,5 +1,5 @@
-// Drawing of volumetric flames: push constants and sample positions of rays. Emission is in volume.h; uniform data in
-// volume_flame.h.
+// Drawing of volumetric flames: push constants and sample positions of rays. Emission is in
+// volume.h; uniform data in volume_flame.h.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_DRAW_H
 #define FW_SHARED_VOLUME_DRAW_H

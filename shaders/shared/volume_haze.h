@@ -1,5 +1,5 @@
-// Heat haze: refraction by hot gas in and above a volumetric flame. Light bends towards denser air, by the gradient of
-// n - 1 = 2.9e-4 Ta / T across its path (Gladstone and Dale).
+// Heat haze: refraction by hot gas in and above a volumetric flame. Light bends towards denser air,
+// by the gradient of n - 1 = 2.9e-4 Ta / T across its path (Gladstone and Dale).
 // clang-format off
 #ifndef FW_SHARED_VOLUME_HAZE_H
 #define FW_SHARED_VOLUME_HAZE_H

@@ -1,6 +1,6 @@
-// A ray's path through a flame: its range in the tube and its coordinates along the curve. The curve is evaluated at a
-// few knots; samples interpolate between them. FW_FLAME_NODE(i) is the includer's: in GLSL one flame's nodes are a
-// uniform block.
+// A ray's path through a flame: its range in the tube and its coordinates along the curve. The
+// curve is evaluated at a few knots; samples interpolate between them. FW_FLAME_NODE(i) is the
+// includer's: in GLSL one flame's nodes are a uniform block.
 // clang-format off
 #ifndef FW_SHARED_VOLUME_MARCH_H
 #define FW_SHARED_VOLUME_MARCH_H

@@ -1,17 +1,18 @@
-// Sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and the convex polygon that a plane
-// across the view cuts out of each. Corners keep their place along the curve. FW_FLAME_NODE(i): see volume_march.h.
+// Sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and the convex
+// polygon that a plane across the view cuts out of each. Corners keep their place along the curve.
+// FW_FLAME_NODE(i): see volume_march.h.
 #ifndef FW_SHARED_VOLUME_SLICES_H
 #define FW_SHARED_VOLUME_SLICES_H
 #include "shared/volume_march.h"
 
 FW_SHARED_BEGIN
 
-FW_SHARED_CONST uint kSliceCorners = 6u;      // of a polygon, at most
-FW_SHARED_CONST uint kSliceVertices = 12u;    // of its triangle fan
+FW_SHARED_CONST uint kSliceCorners = 6u;    // of a polygon, at most
+FW_SHARED_CONST uint kSliceVertices = 12u;  // of its triangle fan
 
 struct SlicePoint {
-    vec3 at;              // m, world
-    uint corners;         // of its polygon; 0: no intersection
+    vec3 at;       // m, world
+    uint corners;  // of its polygon; 0: no intersection
 };
 
 // Reach of the lattice at a node, m from the axis.
@@ -28,14 +29,16 @@ FW_SHARED_FN vec3 sliceCorner(FlameNode a, float reach, uint corner) {
     return vec3(a.centre) + u * side + v * across;
 }
 
-// Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice piece, in order
-// around it. With fewer corners: the last one.
-FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward, float depth,
-                                    uint vertex) {
+// Corner `vertex` of the polygon cut by the plane dot(x - eye, forward) == depth out of a lattice
+// piece, in order around it. With fewer corners: the last one.
+FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec3 eye, vec3 forward,
+                                    float depth, uint vertex) {
     float reachA = sliceReach(f, a);
     float reachB = sliceReach(f, b);
-    vec3 low[4]; vec3 high[4];
-    float under[4]; float over[4];  // m, beyond the plane
+    vec3 low[4];
+    vec3 high[4];
+    float under[4];
+    float over[4];  // m, beyond the plane
     FW_UNROLL
     for (uint k = 0u; k < 4u; ++k) {
         low[k] = sliceCorner(a, reachA, k);
@@ -66,7 +69,8 @@ FW_SHARED_FN SlicePoint sliceVertex(FlameRecord f, FlameNode a, FlameNode b, vec
     vec3 middle = sum / max(float(corners), 1.0f);
     point.at = middle;
     // Order around the middle: by quadrant, then by tangent, [0, 4).
-    vec3 right = abs(forward.y) < 0.9f ? cross(forward, vec3(0.0f, 1.0f, 0.0f)) : cross(forward, vec3(1.0f, 0.0f, 0.0f));
+    vec3 right = abs(forward.y) < 0.9f ? cross(forward, vec3(0.0f, 1.0f, 0.0f))
+                                       : cross(forward, vec3(1.0f, 0.0f, 0.0f));
     vec3 upward = cross(right, forward);
     float angle[12];
     FW_UNROLL

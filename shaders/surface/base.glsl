@@ -1,5 +1,5 @@
-// Procedural detail of the unburnt material, as a factor on its base colour: grain, paint, print, weave, veins, straw.
-// Needs lib/look_noise.glsl. coarse, fine: samples of the front warp.
+// Procedural detail of the unburnt material, as a factor on its base colour: grain, paint, print,
+// weave, veins, straw. Needs lib/look_noise.glsl. coarse, fine: samples of the front warp.
 
 struct Base {
     vec3 factor;  // on the base colour, mean about 1

@@ -1,6 +1,7 @@
-// A burning surface as a pure function of time since ignition, appearance and tiling noise. Lengths m, times appearance
-// seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl, lib/colour.glsl and the families of
-// surface.frag. Layer order matters: heat, char, film, ash, glow, rim, soot, water.
+// A burning surface as a pure function of time since ignition, appearance and tiling noise. Lengths
+// m, times appearance seconds, temperatures K, emission cd/m^2. Needs lib/look_noise.glsl,
+// lib/colour.glsl and the families of surface.frag. Layer order matters: heat, char, film, ash,
+// glow, rim, soot, water.
 
 const float kThinRim = 0.007;  // m, rimWidth below which the glow is a line
 
@@ -43,8 +44,8 @@ struct Skin {  // shading input
     vec2 slope;  // d depth / d detail coordinate
 };
 
-// Displaces the lookup of the ignition time, so raggedness does not depend on speed. Also returns its two noise
-// samples, which the unburnt detail uses.
+// Displaces the lookup of the ignition time, so raggedness does not depend on speed. Also returns
+// its two noise samples, which the unburnt detail uses.
 vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fine) {
     pixel = max(pixel, m.blur);
     coarse = noiseAt(d, 4.0, pixel);
@@ -64,8 +65,8 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
     return m.holeVariation * n + 1.5 * m.jitter * delay;
 }
 
-// Burn-through offset, s, by the opposite wall, lit `other` s ago; as refineHole: when one wall has burnt through, or
-// where both fronts meet.
+// Burn-through offset, s, by the opposite wall, lit `other` s ago; as refineHole: when one wall has
+// burnt through, or where both fronts meet.
 float burnThroughOffset(float a, float other, float through) {
     if (other <= -0.999 * through) return 0.0;
     float both = max(0.5 * (through - a - other), -min(a, other));
@@ -75,14 +76,16 @@ float burnThroughOffset(float a, float other, float through) {
 // Distance to the rim of the hole, m; negative: gone.
 float holeEdge(float a, Site s, MaterialLook m) {
     if (m.holeTime <= 0.0) return 1.0;
-    // A cut rim is smooth: its glow gets patches. Far away it is as wide as the noise makes other rims.
+    // A cut rim is smooth: its glow gets patches. Far away it is as wide as the noise makes other
+    // rims.
     if (s.left >= 0.0)
         return s.left / s.slow * mix(0.5, 1.0, s.nearness) +
                0.5 * m.rimWidth * s.nearness * smoothstep(0.42, 0.62, s.fine.r);
     return (m.holeTime + holeDelay(s.grown, s.fine, s.delay, m) - s.offset - a) / s.slow;
 }
 
-// x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow. c: texel of the char layer.
+// x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow. c: texel of the char
+// layer.
 vec4 charCracks(float a, Site s, MaterialLook m, vec4 c) {
     float random = s.coarse.a;
     float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * random);
@@ -235,7 +238,8 @@ Skin burningSkin(Site s, MaterialLook m) {
     if (m.holeTime > 0.0) {
         float e = max(edge, 0.0) / s.steep;
         if (m.rimKelvin > 0.0) {
-            // A line thinner than a pixel keeps its energy; on thin material it is two pixels wide to avoid dots.
+            // A line thinner than a pixel keeps its energy; on thin material it is two pixels wide
+            // to avoid dots.
             float least = m.rimWidth < kThinRim ? 1.5 * s.pixel : 0.5 * s.pixel;
             float wide = 0.35 * m.rimWidth / (0.35 * m.rimWidth + least);
             // The rim of a hole that stopped growing dies down.
@@ -286,9 +290,9 @@ Skin freshSkin(Site s, MaterialLook m) {
     return o;
 }
 
-// Wall of a hole in a thin shell: distance along the view ray, m; negative: the ray passes through. ray: in the tangent
-// frame, z < 0 inwards; rise: gradient of the edge distance along the surface, per m. The edge is extrapolated
-// linearly; a rounded wall makes the intersection a quadratic.
+// Wall of a hole in a thin shell: distance along the view ray, m; negative: the ray passes through.
+// ray: in the tangent frame, z < 0 inwards; rise: gradient of the edge distance along the surface,
+// per m. The edge is extrapolated linearly; a rounded wall makes the intersection a quadratic.
 float rimHit(float edge, vec2 rise, float thickness, vec3 ray) {
     // At grazing angles the extrapolation fails: outlines of burnt parts would remain.
     if (edge < -0.8 * thickness) return -1.0;

@@ -1,5 +1,6 @@
-// Position of a drawn point, bit-identical for all passes that compare depth. `precise` ensures it: `invariant` would
-// decorate a member of gl_PerVertex, which drivers warn about. Needs `view` and `draw`.
+// Position of a drawn point, bit-identical for all passes that compare depth. `precise` ensures it:
+// `invariant` would decorate a member of gl_PerVertex, which drivers warn about. Needs `view` and
+// `draw`.
 #ifndef FW_SURFACE_PLACE_GLSL
 #define FW_SURFACE_PLACE_GLSL
 vec3 fromEye(vec3 rest) {  // m, world, relative to the camera, from object space

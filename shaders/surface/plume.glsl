@@ -1,5 +1,5 @@
-// Soot from a fire on surfaces above it, as dark as its current flames are tall. The soot pass makes it permanent on
-// burnt objects; elsewhere it vanishes with the flames.
+// Soot from a fire on surfaces above it, as dark as its current flames are tall. The soot pass
+// makes it permanent on burnt objects; elsewhere it vanishes with the flames.
 
 // Plume height, m, somewhat above the flame.
 float plumeHeight(float power) { return 0.02 + 0.014 * pow(max(power, 1.0), 0.4); }

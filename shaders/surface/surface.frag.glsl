@@ -1,14 +1,14 @@
 #version 450
-// A burning surface in the host's pass: looks up the ignition time, evaluates look.glsl, and lights the result. Writes
-// linear HDR or encoded colour.
+// A burning surface in the host's pass: looks up the ignition time, evaluates look.glsl, and lights
+// the result. Writes linear HDR or encoded colour.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/heat.h"
 #include "shared/look.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-// Material families of a variant, and whether it can burn (kSurface...). A software device executes both sides of every
-// branch, so unused code is compiled out.
+// Material families of a variant, and whether it can burn (kSurface...). A software device executes
+// both sides of every branch, so unused code is compiled out.
 layout(constant_id = 2) const uint kVariant = 127u;
 const bool kHasPaint = (kVariant & kSurfacePaint) != 0u;
 const bool kHasWood = (kVariant & kSurfaceWood) != 0u;
@@ -56,10 +56,11 @@ layout(location = 8) in vec4 inMiddleUv;
 #endif
 
 #if FW_MULTISAMPLED == 2
-// Samples of the target. Coverage per sample makes hole rims as smooth as triangle edges. Alpha to coverage would
-// change the picture's alpha and cannot choose samples.
+// Samples of the target. Coverage per sample makes hole rims as smooth as triangle edges. Alpha to
+// coverage would change the picture's alpha and cannot choose samples.
 layout(constant_id = 4) const uint kSamples = 4u;
-// Vulkan's standard sample positions for 2, 4, 8 and 16 samples, in sixteenths of a pixel from its middle.
+// Vulkan's standard sample positions for 2, 4, 8 and 16 samples, in sixteenths of a pixel from its
+// middle.
 const ivec2 kSamplePlaces[30] = ivec2[30](ivec2(4, 4), ivec2(-4, -4),
     ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
     ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1), ivec2(3, 7), ivec2(7, -7),
@@ -92,10 +93,10 @@ struct Arrival {
     bool none;      // no texel is near
 };
 
-// Bilinear over valid taps. At chart borders each tap is extrapolated along its gradient, so both sides of a seam
-// agree; where all four miss, the nearest of the 25 around are used. steepest: s/texel; beyond it, where fronts meet,
-// slopes are meaningless. scorch: s before a front that show: beside extinguished texels nothing arrives, and the rim
-// is one texel.
+// Bilinear over valid taps. At chart borders each tap is extrapolated along its gradient, so both
+// sides of a seam agree; where all four miss, the nearest of the 25 around are used. steepest:
+// s/texel; beyond it, where fronts meet, slopes are meaningless. scorch: s before a front that
+// show: beside extinguished texels nothing arrives, and the rim is one texel.
 Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     vec2 st = uv - 0.5;
     vec2 corner = floor(st);
@@ -105,7 +106,8 @@ Arrival arrivalAt(vec2 uv, float steepest, float scorch) {
     o.gradient = vec2(0.0);
     o.known = o.out_ = o.damp = 0.0;
     float total = 0.0, never = 0.0, ahead = 0.0, soot = 0.0;
-    // The test comes first: lavapipe keeps a lane's values from its last test when it leaves a loop early.
+    // The test comes first: lavapipe keeps a lane's values from its last test when it leaves a loop
+    // early.
     int taps = 4;
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2(i & 1, i >> 1) : ivec2((i - 4) % 5 - 2, (i - 4) / 5 - 2);
@@ -181,8 +183,8 @@ Warmth warmthAt(vec2 uv) {
     return Warmth(kelvin / total, 1.0 - fuel / total);
 }
 
-// x: water, [0, 1] of what the surface holds; y: browning by other objects' heat, [0, 1]. Poured water has a one-texel
-// edge, filtered over five texels. Five taps detect whether there is an edge.
+// x: water, [0, 1] of what the surface holds; y: browning by other objects' heat, [0, 1]. Poured
+// water has a one-texel edge, filtered over five texels. Five taps detect whether there is an edge.
 vec2 wetnessAt(vec2 uv) {
     vec2 middle = floor(uv), off = uv - middle - 0.5;
     ivec2 limit = lastTexel();
@@ -218,8 +220,8 @@ vec2 wetnessAt(vec2 uv) {
     return sum / total;
 }
 
-// Over a wet border the age falls to that of the wet side: first fast to that of young char, so that most of the texel
-// is brown, then evenly.
+// Over a wet border the age falls to that of the wet side: first fast to that of young char, so
+// that most of the texel is brown, then evenly.
 float dampen(float age, float damp, float young, float wetAge) {
     if (damp <= 0.0) return age;
     float top = clamp(age, wetAge, young);
@@ -369,15 +371,16 @@ void main() {
         wetness = wetnessAt(inAtlas + clamp(creeps, -1.0, 1.0));
     }
 
-    // A sliver seen edge-on covers samples many texels beyond its chart: no burn state is known there, so adjacent
-    // triangles show.
+    // A sliver seen edge-on covers samples many texels beyond its chart: no burn state is known
+    // there, so adjacent triangles show.
     bool lost = false;
 #ifdef FW_MULTISAMPLED
     lost = arrival.none && leap > 16.0;
 #endif
 
-    // Pattern of the holes; in wood it follows the rings. Both walls of a solid use the same pattern: mirrored ones
-    // would align into symmetric see-through holes. Wood's planks differ anyway.
+    // Pattern of the holes; in wood it follows the rings. Both walls of a solid use the same
+    // pattern: mirrored ones would align into symmetric see-through holes. Wood's planks differ
+    // anyway.
     bool sheet = (draw.flags & kObjectTwoSided) != 0u;
     vec2 grownAt = sheet ? d : flatPlace;
     grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(grownAt.x, grownAt.y / look.drip);
@@ -399,7 +402,8 @@ void main() {
         fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
     }
 
-    // Derivatives before any branch, and only of values without buffer reads: lanes outside the triangle read nothing.
+    // Derivatives before any branch, and only of values without buffer reads: lanes outside the
+    // triangle read nothing.
     float height = -fresh.height;
     vec2 relief = vec2(dFdx(height), dFdy(height));
     relief = clamp(relief, -pixel, pixel);
@@ -457,7 +461,8 @@ void main() {
     }
     site.left = cut ? max(inSootOffset.y, 0.0) * draw.timeScale : -1.0;
     site.nearness = draw.nearness;
-    // Walls on borders have no rim. Where corners are too far apart to know a hole between them, texels do.
+    // Walls on borders have no rim. Where corners are too far apart to know a hole between them,
+    // texels do.
     if (wall && !rim) site.left = (draw.flags & kDrawTold) != 0u ? -1.0 : 1000.0;
     if (rim) {
         // Burnt-through char; the rim's glow fades inwards.
@@ -471,8 +476,8 @@ void main() {
     int covered = -1;
 #endif
     vec3 position = inPosition;
-    // Refined faces recede while they burn, by a wall's thickness in its burn time (up to kRefineRecede): they tilt
-    // towards the part that caught first.
+    // Refined faces recede while they burn, by a wall's thickness in its burn time (up to
+    // kRefineRecede): they tilt towards the part that caught first.
     float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
     bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
     float fall = recedes ? draw.thickness / look.holeTime : 0.0;

@@ -1,6 +1,6 @@
 #version 450
-// Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far from the world's
-// origin. Lights small triangles per vertex.
+// Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far
+// from the world's origin. Lights small triangles per vertex.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -30,7 +30,8 @@ layout(location = 6) in uint inSlot;   // of refined vertices
 layout(location = 7) in float inOffset;  // burn-through offset, appearance seconds
 layout(location = 8) in vec3 inRest;   // m, object space, before deformation
 
-// centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and outline burnt triangles.
+// centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and
+// outline burnt triangles.
 layout(location = 0) centroid out vec4 outPosition;  // m, world, relative to the camera; w: flame light, red
 layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
 layout(location = 2) centroid out vec4 outNormal;    // w: blue
@@ -38,8 +39,8 @@ layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas;
 layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
 layout(location = 6) centroid out vec2 outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
-                                            // kDrawCut the last word of a cut vertex, in s; with kSurfaceCold x: 1 near
-                                            // traces of fire
+                                            // kDrawCut the last word of a cut vertex, in s; with
+                                            // kSurfaceCold x: 1 near traces of fire
 #ifdef FW_MULTISAMPLED
 // At pixels' middles, which form a grid, so differences between them are safe.
 layout(location = 7) out vec3 outMiddle;    // as outPosition
@@ -82,8 +83,8 @@ bool markedNear(vec2 texel) {
 }
 
 void main() {
-    // A zero that is not constant: a software device recompiles a shader, in milliseconds per draw, for each set of
-    // constants that alone decide its branches.
+    // A zero that is not constant: a software device recompiles a shader, in milliseconds per draw,
+    // for each set of constants that alone decide its branches.
     uint zero = uint(gl_VertexIndex) >> 31u;
     flags = draw.flags | zero;
     float scale = length(draw.row0.xyz);
@@ -108,7 +109,8 @@ void main() {
     outSootOffset = vec2(0.0, offset);
     vec3 color = vec3(0.0);
     vec4 towards = vec4(0.0, 0.0, 0.0, 1e-6);
-    // A loop, not a branch: a software device would execute the branch masked; a loop that ends at once costs one test.
+    // A loop, not a branch: a software device would execute the branch masked; a loop that ends at
+    // once costs one test.
     uint count = (flags & kDrawVertexLight) != 0u ? view.lightCount | zero : 0u;
     for (uint i = 0u; i < count; ++i) addFlame(lights[i], position, normal, color, towards);
     towards.xyz /= towards.w;
@@ -124,8 +126,8 @@ void main() {
     outMiddleUv = vec4(outTexture.xy, outDetail.xy);
 #endif
     gl_Position = clipPlace(position);
-    // Moves marked corners beyond the far plane: triangles with three such corners are clipped, fragments of others are
-    // discarded, and remaining samples lie behind the burning surface.
+    // Moves marked corners beyond the far plane: triangles with three such corners are clipped,
+    // fragments of others are discarded, and remaining samples lie behind the burning surface.
     if ((kVariant & kSurfaceCold) != 0u && (offset >= 1e-3 || markedNear(inAtlas))) {
         outSootOffset.x = 1.0;
         gl_Position.z = view.wind.w * gl_Position.w;

@@ -1,5 +1,5 @@
-// A ray through a volumetric flame: its tube and the medium at a sample. Sample loops are in the shaders. Needs
-// `profiles`, `view` and FW_FLAME_NODE.
+// A ray through a volumetric flame: its tube and the medium at a sample. Sample loops are in the
+// shaders. Needs `profiles`, `view` and FW_FLAME_NODE.
 #include "shared/volume_march.h"
 
 struct RayTube {
@@ -82,8 +82,8 @@ ViewRay viewRay(vec3 way) {
     return ray;
 }
 
-// Makes branches depend on `zero`, which is 0 but not constant: a software device recompiles a shader, in milliseconds
-// per draw, for each set of constants that alone decide its branches.
+// Makes branches depend on `zero`, which is 0 but not constant: a software device recompiles a
+// shader, in milliseconds per draw, for each set of constants that alone decide its branches.
 void addZero(inout FlameRecord f, uint zero) {
     f.octaves |= zero;
     f.tint.w += float(zero);
@@ -99,8 +99,8 @@ vec4 flameShown(FlameRay ray, vec3 scattered, vec3 white, uint encoding) {
     float alpha = 1.0 - dot(ray.through, vec3(0.2126, 0.7152, 0.0722));
     vec3 color = ray.radiance * white;
     if (encoding != 0u) {
-        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a thin one must turn red,
-        // not grey.
+        // The target blends encoded values. Smoke is a coloured medium. Flame adds light, and a
+        // thin one must turn red, not grey.
         vec3 grey = scattered * white;
         float cover = max(alpha, 1e-4);
         color = encodeOutput(max(color - grey, vec3(0.0)), encoding) + encodeOutput(grey / cover, encoding) * cover;

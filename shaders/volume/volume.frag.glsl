@@ -1,7 +1,7 @@
 #version 450
-// A volumetric flame along one ray, or many for a small flame, or the part in one slab, for views without a previous
-// march. Emission and absorption are exact per step, so brightness depends neither on the number of steps nor of slabs.
-// Output is premultiplied: light, and coverage.
+// A volumetric flame along one ray, or many for a small flame, or the part in one slab, for views
+// without a previous march. Emission and absorption are exact per step, so brightness depends
+// neither on the number of steps nor of slabs. Output is premultiplied: light, and coverage.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -51,7 +51,8 @@ FlameSmokeRay smokeOfFour(FlameSmokeRay smoke) {
     return smoke;
 }
 
-// Colour along the ray `off` pixels from the pixel's middle, with samples delayed by `jitter` of a step.
+// Colour along the ray `off` pixels from the pixel's middle, with samples delayed by `jitter` of a
+// step.
 vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     vec2 perPixel = 2.0 / abs(view.viewport.zw);
     ViewRay along = viewRay(inRay + off.x * perPixel.x * draw.rayX.xyz + off.y * perPixel.y * draw.rayY.xyz);

@@ -1,5 +1,6 @@
 #version 450
-// A flame's billboard impostor: a previous march of it, or of a similar flame, facing the camera at its current size.
+// A flame's billboard impostor: a previous march of it, or of a similar flame, facing the camera at
+// its current size.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 

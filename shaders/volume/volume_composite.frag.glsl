@@ -1,7 +1,8 @@
 #version 450
-// A slab of a marched flame at a pixel: the nearest nine march pixels, weighted so that the four sample phases count
-// alike; for a small flame all that lie in the pixel. With the host's depth: light in front of it, else light on the
-// flame's side of the base plane, which light of neighbouring march pixels would cross.
+// A slab of a marched flame at a pixel: the nearest nine march pixels, weighted so that the four
+// sample phases count alike; for a small flame all that lie in the pixel. With the host's depth:
+// light in front of it, else light on the flame's side of the base plane, which light of
+// neighbouring march pixels would cross.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
@@ -26,8 +27,8 @@ layout(location = 0) out vec4 outColor;
 
 float cut = 0.0;  // slabs from this slab's front to the scene, or to the base
 
-// A march pixel is weighted by the transmittance of the slabs in front: its mean is what they let through when drawn,
-// so slabs neither lose nor create light.
+// A march pixel is weighted by the transmittance of the slabs in front: its mean is what they let
+// through when drawn, so slabs neither lose nor create light.
 void add(uint at, float weight, inout vec4 color, inout float through) {
     uvec4 cell = cellAt(at);
     weight *= slabTransmittance(cell.z);

@@ -25,8 +25,8 @@ void main() {
     uint slab = draw.slabs - 1u - (quad - listed * draw.slabs);
     uint row = quotient22(tile, draw.tilesX);
     ivec2 at = ivec2(tile - row * draw.tilesX, row);
-    // Filters at a tile's edge read the nearest rows and columns of its neighbours; unmarched neighbours contain
-    // nothing. A small flame's pixels read their own tile only.
+    // Filters at a tile's edge read the nearest rows and columns of its neighbours; unmarched
+    // neighbours contain nothing. A small flame's pixels read their own tile only.
     uint lit = 0u;
     ivec4 reach = ivec4(-1, -1, 1, 1);
     FW_UNROLL

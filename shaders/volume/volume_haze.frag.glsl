@@ -1,6 +1,6 @@
 #version 450
-// Heat haze: the host's scene refracted by a volumetric flame's hot column. A pixel shows where its bent ray arrives,
-// without objects in front of the column, so no foreground smears.
+// Heat haze: the host's scene refracted by a volumetric flame's hot column. A pixel shows where its
+// bent ray arrives, without objects in front of the column, so no foreground smears.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"

@@ -1,6 +1,6 @@
 #version 450
-// Screen bounds of a volumetric flame's hot column as a grid: eddies are wider than its cells, so refraction is
-// evaluated at corners and interpolated.
+// Screen bounds of a volumetric flame's hot column as a grid: eddies are wider than its cells, so
+// refraction is evaluated at corners and interpolated.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"

@@ -1,8 +1,8 @@
 #version 450
-// March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a slab's contribution
-// does not depend on the scene, whose depth is known later per pixel and selects slabs. A workgroup is a tile listed by
-// volume_probe. FW_SMOKE (volume_smoke): with smoke, which would cost a sixth of the march on devices that do not skip
-// branches.
+// March of a volumetric flame's rays, one per march pixel of a few pixels, stored slab by slab: a
+// slab's contribution does not depend on the scene, whose depth is known later per pixel and
+// selects slabs. A workgroup is a tile listed by volume_probe. FW_SMOKE (volume_smoke): with smoke,
+// which would cost a sixth of the march on devices that do not skip branches.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -21,9 +21,9 @@ layout(push_constant) uniform Push { VolumeMarch march; };
 
 FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 
-// Stores what slab `s` adds to the light without it and those behind; where_: light, and its first and second moment in
-// the slab. The nearest slabs then compose to exactly what one ray would show. Also stores the transmittance in front,
-// which is the march pixel's weight among its neighbours.
+// Stores what slab `s` adds to the light without it and those behind; where_: light, and its first
+// and second moment in the slab. The nearest slabs then compose to exactly what one ray would show.
+// Also stores the transmittance in front, which is the march pixel's weight among its neighbours.
 vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float left = 1.0 / max(1.0 - before.a, 1e-4);
     vec4 color = max((shown - before) * left, 0.0);
@@ -122,7 +122,8 @@ void main() {
         bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float length_ = burns ? stride : 0.0;
-    // Every loop has the same length for all lanes of a quarter: divergent loops are slow on a software device.
+    // Every loop has the same length for all lanes of a quarter: divergent loops are slow on a
+    // software device.
     do {
         uint to = min((s + 1u) * turns, end);
         vec3 where_ = vec3(0.0);

@@ -1,6 +1,6 @@
 #version 450
-// Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart, with a margin around
-// what they meet. Lists the tiles to march, each with its range of samples.
+// Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart,
+// with a margin around what they meet. Lists the tiles to march, each with its range of samples.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"

@@ -1,6 +1,6 @@
 #version 450
-// A slice of a volumetric flame's lattice: one sample, weighted by the slice spacing along its ray, so brightness does
-// not depend on the number of slices. Premultiplied.
+// A slice of a volumetric flame's lattice: one sample, weighted by the slice spacing along its ray,
+// so brightness does not depend on the number of slices. Premultiplied.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"
@@ -61,8 +61,8 @@ void main() {
 #endif
     FlameRay one = flameStep(FlameRay(vec3(0.0), vec3(1.0)), m, light, stride * part);
     outColor = flameShown(one, vec3(0.0), white * view.sunDirection.w, kEncoding);
-    // One coverage for all channels: half by its absorption of light of its own colour, which dominates what is behind,
-    // and half by its absorption of white, for the scene.
+    // One coverage for all channels: half by its absorption of light of its own colour, which
+    // dominates what is behind, and half by its absorption of white, for the scene.
     const vec3 seen = vec3(0.2126, 0.7152, 0.0722);
     vec3 lit = seen * one.radiance;
     float all = lit.r + lit.g + lit.b;

@@ -1,6 +1,6 @@
 #version 450
-// Sliced lattice of a volumetric flame: an instance is a plane across the view, far to near; it contains the polygon
-// that the plane cuts out of each lattice piece.
+// Sliced lattice of a volumetric flame: an instance is a plane across the view, far to near; it
+// contains the polygon that the plane cuts out of each lattice piece.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/burn.h"
 #include "shared/look.h"

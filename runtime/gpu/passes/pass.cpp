@@ -193,8 +193,8 @@ constexpr auto kDrawPasses = [] {
     passes[draw::field_emitting] = field(0);
     passes[draw::field_absorbing] = field(1);
     passes[draw::field_refracting] = field(2);
-    // What is soft of a view is drawn at half resolution against the host's depth, and laid over
-    // the picture at once, along its edges of full resolution.
+    // Soft effects are drawn at half resolution against the host's depth, then composited over the
+    // picture along its full-resolution edges.
     passes[draw::half_depth] = intoHalf("half_depth", "half_depth.frag", "half_depth_ms.frag");
     passes[draw::half_tiles] = intoHalf("half_tiles", "half_tiles.frag", "half_tiles.frag");
     passes[draw::half_tiles].textures1 = Textures::halfColor;

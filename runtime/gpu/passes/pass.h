@@ -97,7 +97,7 @@ enum class Cull : uint8_t { none, back, front };  // front faces: counter-clockw
 // constant: a mix of all that is there with the blend constant, whatever its depth.
 enum class Blend : uint8_t { opaque, premultiplied, additive, depthAlone, constant };
 
-// What becomes of a pass in a target with FW_TARGET_HALF_EFFECTS.
+// How a pass is drawn in a target with FW_TARGET_HALF_EFFECTS.
 enum class AtHalf : uint8_t {
     same,    // drawn as elsewhere
     soft,    // drawn at half resolution
@@ -114,7 +114,7 @@ enum class DrawnIn : uint8_t {
     transparency,  // FW_TARGET_TRANSPARENCY
 };
 
-// What a pass has in set 1 or 2, binding 0.
+// Textures that a pass binds in set 1 or 2, binding 0.
 enum class Textures : uint8_t {
     none,
     ofItem,     // sampler2D: an object's base colour, white if it has none
@@ -158,7 +158,7 @@ struct DrawPass {
     }
 };
 
-// What of a material decides its pipeline, beside its image; stone is drawn as wood.
+// The part of a material that selects its pipeline, besides its image; stone is drawn as wood.
 enum class MaterialFamily : uint8_t { wood, paint, sheet, plant, hide };
 // Fresh: no fire reached the object. Of others, cold triangles are far from all traces of fire.
 enum class SurfaceState : uint8_t { fresh, cold, burning };

@@ -4,7 +4,7 @@
 // A pass binds what its shader declares in set 0 (shader_interface.h), so nothing else is listed
 // here. A shader `name_texels.comp` runs instead of `name.comp` where the device has texel buffers.
 
-// What was created, moved or restored since the last frame.
+// Objects created, moved or restored since the last frame.
 FW_COMPUTE_PASS(reset, StepPush)
 FW_COMPUTE_PASS(restore, StepPush)
 FW_COMPUTE_PASS(field_mask, FieldPush)

@@ -1,4 +1,4 @@
-// What shaders declare, read from their SPIR-V: no pass lists its buffers a second time.
+// The bindings that shaders declare, read from their SPIR-V: no pass lists its buffers again.
 #pragma once
 #include "gpu/passes/pass.h"
 

@@ -72,8 +72,8 @@ struct FieldsRecord {
 // Whether an event concerns all texels of its object.
 [[nodiscard]] bool addressesAll(const TexelEvent& event) noexcept;
 
-// What a frame's march of volumetric flames takes, for one view. The last `cards` of `volumes` are
-// impostors; what is known of tiles are words from `first` to `end`.
+// Inputs of a frame's march of volumetric flames, for one view. The last `cards` of `volumes` are
+// impostors; the words from `first` to `end` hold the tiles' history.
 struct MarchRecord {
     std::span<const MarchedVolume> volumes;
     uint32_t first = 0, end = 0, cards = 0;
@@ -92,7 +92,7 @@ struct RefineRecord {
     bool turn = false, cuts = false, fresh = false;
 };
 
-// What changed since the last frame: objects, fields, vertices that the host moves.
+// Changes since the last frame: objects, fields, vertices that the host moves.
 void recordReset(FrameRecorder& r, uint32_t object, uint32_t tiles);
 void recordRestore(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles);
 // BurnTiles of the burn list as it is: see kSwitchShows.

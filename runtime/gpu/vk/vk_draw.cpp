@@ -303,8 +303,8 @@ class ViewDraws {
           part_(part),
           viewOffset_(viewOffset) {}
 
-    // What the view shows of fields, and of volumetric flames as they were marched for it or, where
-    // nothing was, marched as they are drawn.
+    // Collects the fields and volumetric flames that the view shows. A flame that was not marched
+    // for this view is marched while it is drawn.
     void prepare(OutsideView& of, const FwView& view);
     void record() {
         for (uint32_t i = 0; i < uint32_t(DrawPhase::Count); ++i)

@@ -326,8 +326,8 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
     recordSupport(recorder, plan.endTick, {first, count, ticks});
 }
 
-// What was created, moved or restored since the last frame, and what the plan brings that is no
-// step.
+// Records objects created, moved or restored since the last frame, and the plan's changes outside
+// of steps.
 void recordChanges(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& needs,
                    FrameRecorder& recorder, UploadWriter& writer) {
     const Table& vk = s.device.table;
@@ -528,7 +528,7 @@ uint32_t VkBackend::State::pushView(FrameInFlight& slot, const FwView& view,
     return offset;
 }
 
-// What a frame's plan says of detail, which comes and goes little by little.
+// Moves the detail shown toward the plan's detail, a bounded amount per frame.
 void VkBackend::State::followDetail(const Detail& planned) noexcept {
     const auto toward = [](auto& now, auto wanted, auto turn) {
         now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);

@@ -15,7 +15,7 @@ namespace fw::gpu::vk {
 constexpr uint32_t kTileTexels = 64;
 constexpr uint32_t kFieldUnit = 64;  // cells of a particle field
 
-// What ranges are allocated of, and the unit.
+// Pools from which ranges are allocated, each with its unit.
 enum BufferPool : uint32_t {
     kPoolObjects,      // object slots
     kPoolObjectTiles,  // 8x8 tiles of objects: state, lists, scratch
@@ -123,7 +123,7 @@ struct WorldSizes {       // of the fixed buffers
     bool exact = false;  // buffers have no room to spare: see WorldLimits::exactBuffers
 };
 
-// What is freed once the GPU is done with a frame.
+// A resource to free once the GPU is done with a frame.
 struct Retired {
     uint64_t frameIndex = 0;
     Buffer buffer;

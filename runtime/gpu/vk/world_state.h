@@ -268,7 +268,7 @@ struct OwnDevice {  // command pool and offscreen images of the own-device mode
     uint32_t width = 0, height = 0;
 };
 
-// What the host has made: meshes, objects, images and rooms, and what of them waits for a frame.
+// Meshes, objects, images and rooms that the host created, and those that wait for a frame.
 struct SceneTables {
     explicit SceneTables(std::pmr::memory_resource* pmr)
         : meshes(pmr),
