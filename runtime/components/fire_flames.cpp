@@ -96,7 +96,7 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     f.stood = volume::vecOf(fire.position);
     def.position = f.stood + x * part.x + z * part.z;
     def.power = part.power;
-    def.diameter = std::max(part.diameter, 0.002f);  // a fire without power has parts of no width
+    def.diameter = part.diameter;
     def.look = fire.look;
     def.blend = fire.blend;
     def.profile = fire.profile;

@@ -212,7 +212,7 @@ uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamele
     const float ratio = d / std::max(width(1.0f), 1e-4f);
     const uint32_t n = uint32_t(std::clamp(0.6f * ratio * ratio, 2.0f, float(kMaxFlamelets)));
     FW_ASSERT(n >= 2 && n <= kMaxFlamelets, "%u flames", n);
-    const float each = std::min(width(float(n)), d);
+    const float each = std::clamp(width(float(n)), 1e-4f, d);  // also of a power that underflows
     for (uint32_t k = 0; k < n; ++k) {  // a sunflower's pattern
         const float r = 0.5f * std::max(d - each, 0.0f) * std::sqrt((float(k) + 0.5f) / float(n));
         const float a = 2.3999632f * float(k);

@@ -53,18 +53,23 @@ uint32_t QuerySystem::pollEvents(std::span<FwEvent> out) {
     return context_.events.poll(out);
 }
 
+uint32_t QuerySystem::texelAt(FwBurnableMeshId id, const Object& object,
+                              const float position[3]) const {
+    float point[3];
+    components::toObject(object.data.pose, position, point);
+    const uint32_t texel = scene_.nearestTexel(object, point, 1e18f);
+    if (texel == mesh::kNone)
+        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
+    return texel;
+}
+
 void QuerySystem::tagPoint(FwBurnableMeshId id, const float position[3], uint32_t tag) {
     components::checkLengths(position, 3, "position", -1e6f, 1e6f);
     const Object& object = *scene_.objects.get(id);
     if (state_.tags.size() >= kMaxTags)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu tagged points wait; the limit is %u.",
                    state_.tags.size(), kMaxTags);
-    float point[3];
-    components::toObject(object.data.pose, position, point);
-    const uint32_t texel = scene_.nearestTexel(object, point, 1e18f);
-    if (texel == mesh::kNone)
-        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
-    state_.tags.push_back({id, texel, tag});
+    state_.tags.push_back({id, texelAt(id, object, position), tag});
 }
 
 void QuerySystem::untagPoint(FwBurnableMeshId id, uint32_t tag) {
@@ -144,13 +149,9 @@ Query QuerySystem::makeQuery(FwBurnableMeshId id, const float position[3]) {
     if (state_.queries.live() >= kMaxQueries)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u queries are open; the limit is %u.",
                    state_.queries.live(), kMaxQueries);
-    float point[3];
-    components::toObject(object.data.pose, position, point);
     Query query;
     query.object = id;
-    query.texel = scene_.nearestTexel(object, point, 1e18f);
-    if (query.texel == mesh::kNone)
-        core::fail(FW_ERROR_BAD_DATA, "The mesh of burnable mesh %u has no texel.", id.index1);
+    query.texel = texelAt(id, object, position);
     float place[3];
     scene_.texelPosition(object, query.texel, place);
     float sum = 0;

@@ -117,6 +117,8 @@ class QuerySystem {
     [[nodiscard]] ProbeFrame& currentProbes() noexcept {
         return probeFrames_[context_.frames % kFramesInFlight];
     }
+    // The texel nearest to a place of the world. Throws FW_ERROR_BAD_DATA if the mesh has none.
+    uint32_t texelAt(FwBurnableMeshId id, const Object& object, const float position[3]) const;
     Query makeQuery(FwBurnableMeshId id, const float position[3]);
     Query& openQuery(FwQueryId id, bool isArrival);
     FwPointState pointState(const Object& object, uint32_t texel, const gpu::ProbeAnswer& answer,

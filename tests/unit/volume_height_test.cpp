@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <vector>
 
 namespace {
@@ -113,6 +114,19 @@ TEST(VolumeHeight, WideWeakFiresAreManySmallFlames) {
             EXPECT_NEAR(sum, q, 1e-3f * q + 1e-6f);
         }
     EXPECT_GT(splitFire(5.0f, 1.0f, parts), 4u);
+}
+
+// A host may set any power from zero on: the smallest float divided by 32 is zero.
+TEST(VolumeHeight, PartsOfAVanishingPowerKeepAWidth) {
+    std::array<Flamelet, kMaxFlamelets> parts;
+    for (const float power : {std::numeric_limits<float>::denorm_min(), 1e-40f, 1e-20f}) {
+        const uint32_t n = splitFire(power, 1.0f, parts);
+        ASSERT_GE(n, 2u);
+        for (uint32_t i = 0; i < n; ++i) {
+            EXPECT_GT(parts[i].diameter, 0.0f) << power;
+            EXPECT_TRUE(std::isfinite(puffFrequency(parts[i].diameter))) << power;
+        }
+    }
 }
 
 TEST(VolumeHeight, CentrelineSpeedMatchesMcCaffrey) {

@@ -233,7 +233,7 @@ void RangeAllocator::release(uint32_t first, uint32_t units) noexcept {
 // --- RetireQueue ---
 
 void RetireQueue::add(const Retired& one) noexcept {
-    queue_.push_back(one);  // room was promised
+    queue_.push_back(one);  // promise() reserved the capacity
     if (promised_) --promised_;
 }
 
@@ -446,7 +446,7 @@ void WorldBuffers::checkLimit(BufferPool pool, uint32_t units) const {
 }
 
 void WorldBuffers::fit(BufferPool pool, uint32_t units, bool shrinks, uint64_t lastFrame) {
-    // What is asked for sways, and it grows by and by.
+    // Requests fluctuate and grow slowly: spare capacity avoids a reallocation for each.
     const uint32_t capacity = pools_[pool].capacity(), spare = units / 8;
     if (units <= capacity && (!shrinks || capacity - units <= spare)) return;
     checkLimit(pool, units);
