@@ -2,11 +2,11 @@
 // generated from this table (tests/unit/limits_test.cpp compares the two).
 // Not named limits.h, which would hide the C header of that name.
 #pragma once
-#include "shared/book.h"
 #include "shared/burn.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
+#include "shared/flipbook.h"
 #include "shared/particle.h"
 #include "shared/refine.h"
 #include "shared/room.h"

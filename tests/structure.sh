@@ -30,7 +30,7 @@ retired() {
             while (match(rest, /[A-Z]+[a-z]*|[a-z]+/)) {
                 word = substr(rest, RSTART, RLENGTH)
                 rest = substr(rest, RSTART + RLENGTH)
-                # In CPUTold the last capital begins the next word.
+                # In CPUFlame the last capital begins the next word.
                 if (match(word, /^[A-Z]+[a-z]/) && RLENGTH > 2) {
                     head = tolower(substr(word, 1, RLENGTH - 2))
                     tail = tolower(substr(word, RLENGTH - 1))

@@ -213,8 +213,8 @@ void FlamePage::open() {
         View& view = views[i];
         view.target = std::make_unique<fwview::SceneTarget>(host, ui);
         FwWorldDef def = fwDefaultWorldDef();
-        def.volumeCell = i == 0 ? 2 : 3;
-        def.volumeSteps = 40;
+        def.volumePixelSize = i == 0 ? 2 : 3;
+        def.rayStepCount = 40;
         fwCreateWorld(context, &def, &view.world);
     }
     const FwVulkanTargetDef def = views[0].target->flames();

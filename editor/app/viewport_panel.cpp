@@ -332,7 +332,7 @@ void drawReach(const App& app, ImDrawList* list, const Picture& picture,
                const fwedit::HeatSource& source, ImU32 color) {
     const glm::vec3 place = placeOf(app, source.id);
     const glm::vec3 direction = asVec(
-        fwedit::turnedBy(fwedit::holderPose(app.document.scene, source.id, app.document.nodePose),
+        fwedit::turnedBy(fwedit::parentPose(app.document.scene, source.id, app.document.nodePose),
                          source.direction));
     glm::vec3 axis = direction;
     const bool flat = source.shape == fwedit::SourceDisc || source.shape == fwedit::SourceRain;
@@ -548,7 +548,7 @@ void rotateOrScale(App& app, const Picture& picture, ImDrawList* list) {
                 const glm::mat4 turn =
                     glm::rotate(glm::mat4(1), glm::radians(amount), axisOf(state.axis));
                 const fwedit::Pose holder =
-                    fwedit::holderPose(app.document.scene, id, app.document.nodePose);
+                    fwedit::parentPose(app.document.scene, id, app.document.nodePose);
                 const glm::vec3 turned(turn *
                                        glm::vec4(asVec(fwedit::turnedBy(holder, before)), 0));
                 now = fwedit::directionWithin(holder, {turned.x, turned.y, turned.z});

@@ -42,7 +42,7 @@ std::string attachProblem(const Scene& scene, ObjectId child, ObjectId parent) {
     const Object* object = findObject(scene, parent);
     if (!object) return "sticks_to is #" + std::to_string(parent) + ", which is not in the scene";
     if (!hasPosition(scene, parent)) return "\"" + object->name + "\" has no place to stick to";
-    const std::vector<ObjectId> holders = holdersOf(scene, parent);
+    const std::vector<ObjectId> holders = ancestorsOf(scene, parent);
     if (std::find(holders.begin(), holders.end(), child) != holders.end())
         return "\"" + object->name + "\" sticks to it already, directly or through others";
     return "";
@@ -81,7 +81,7 @@ bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignmen
         std::string fieldRepair;
         const bool attaches = made.field == "sticks_to" || made.field == "sticks_to_node";
         const bool keeps = attaches && keepPlace && findField(kind, "position");
-        const Pose before = keeps ? holderPose(scene, id, nodePose) : Pose{};
+        const Pose before = keeps ? parentPose(scene, id, nodePose) : Pose{};
         const ObjectId parent = attaches ? parentOf(scene, id) : 0;
         if (const double* number = std::get_if<double>(&made.value)) {
             const auto to = static_cast<ObjectId>(std::clamp(*number, 0.0, 4294967295.0));
@@ -100,7 +100,7 @@ bool setFields(Scene& scene, Kind kind, ObjectId id, const std::vector<Assignmen
         // A node belongs to its previous mesh.
         std::string* node = nodeOf(scene, id);
         if (attaches && node && parentOf(scene, id) != parent) node->clear();
-        if (keeps) keepInWorld(scene, id, before, holderPose(scene, id, nodePose));
+        if (keeps) keepInWorld(scene, id, before, parentPose(scene, id, nodePose));
     }
     return true;
 }
@@ -111,7 +111,7 @@ void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePose
         for (auto& object : list)
             if constexpr (requires { object.sticksTo; })
                 if (object.sticksTo == id) {
-                    keepInWorld(scene, object.id, holderPose(scene, object.id, nodePose),
+                    keepInWorld(scene, object.id, parentPose(scene, object.id, nodePose),
                                 kWorldPose);
                     object.sticksTo = 0;
                     if constexpr (requires { object.sticksToNode; }) object.sticksToNode.clear();
@@ -128,7 +128,7 @@ void removeObject(Scene& scene, PaintImages& images, ObjectId id, const NodePose
 
 // Returns true if the targets include a direct or indirect parent of `id`.
 bool holdsAny(const Scene& scene, const std::vector<ObjectId>& targets, ObjectId id) {
-    const std::vector<ObjectId> holders = holdersOf(scene, parentOf(scene, id));
+    const std::vector<ObjectId> holders = ancestorsOf(scene, parentOf(scene, id));
     return std::find_first_of(holders.begin(), holders.end(), targets.begin(), targets.end()) !=
            holders.end();
 }
@@ -271,7 +271,7 @@ std::string freeName(const Scene& scene, std::string name) {
     }
 }
 
-bool mendReferences(Scene& scene, std::vector<std::string>* repairs) {
+bool repairReferences(Scene& scene, std::vector<std::string>* repairs) {
     bool anyRepaired = false;
     forEachList(scene, [&](Kind kind, auto& list) {
         for (size_t i = 0; i < list.size(); ++i) {
@@ -343,7 +343,7 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
                     if (holdsAny(scene, command.targets, id)) continue;  // it moves with its parent
                     auto& position = std::get<std::vector<double>>(value);
                     const Vec3 by =
-                        offsetWithin(holderPose(scene, id, document.nodePose), command.offset);
+                        offsetWithin(parentPose(scene, id, document.nodePose), command.offset);
                     for (size_t k = 0; k < 3; ++k) position[k] += double(by[k]);
                     good = setField(scene, kind, id, "position", value, repair, error);
                 }

@@ -16,6 +16,6 @@ bool applyCommand(const Document& document, const Command& command, Scene& scene
 std::string freeName(const Scene& scene, std::string name);
 // Sets references that are missing, self-referential or circular to 0. Returns true if there were
 // any.
-bool mendReferences(Scene& scene, std::vector<std::string>* repairs);
+bool repairReferences(Scene& scene, std::vector<std::string>* repairs);
 
 }  // namespace fwedit

@@ -167,10 +167,10 @@ FwFlipbookId flipbookOf(Burn& burn, BurnShared& shared, uint32_t preset) {
 }
 
 void assignFlipbooks(Burn& burn, BurnShared& shared, FwFireEmitterDef& def) {
-    def.fireBooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_ROLL);
-    def.fireBooks[1] = flipbookOf(burn, shared, FW_FLIPBOOK_PUFF);
-    def.smokeBooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_SMOKE);
-    def.sparkBook = flipbookOf(burn, shared, FW_FLIPBOOK_SPARK);
+    def.fireFlipbooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_ROLL);
+    def.fireFlipbooks[1] = flipbookOf(burn, shared, FW_FLIPBOOK_PUFF);
+    def.smokeFlipbooks[0] = flipbookOf(burn, shared, FW_FLIPBOOK_SMOKE);
+    def.sparkFlipbook = flipbookOf(burn, shared, FW_FLIPBOOK_SPARK);
 }
 
 void addSource(Burn& burn, BurnShared& shared, const HeatSource& source) {
@@ -232,8 +232,8 @@ void addCollider(Burn& burn, const Collider& collider) {
     const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
     FwResult result = fwWorld_AddFireCollider(burn.world, &def, &part.collider);
     if (result >= 0 && collider.shields && collider.shape == ColliderBox) {
-        const FwBlockerDef blockerDef = blockerDefOf(burn.scene, collider);
-        result = fwWorld_AddBlocker(burn.world, &blockerDef, &part.blocker);
+        const FwHeatOccluderDef occluderDef = heatOccluderDefOf(burn.scene, collider);
+        result = fwWorld_AddHeatOccluder(burn.world, &occluderDef, &part.occluder);
     }
     if (result < 0)
         burn.report.push_back("\"" + collider.name +
@@ -335,7 +335,7 @@ void feedParts(Burn& burn, double time) {
                 windZoneDefOf(burn.scene, *findIn(burn.scene.winds, part.id), factor);
             fwWorld_SetWindZone(burn.world, part.zone, &def);
         }
-        const float now = std::min(kMostPower, share * power * factor);
+        const float now = std::min(kMaxPower, share * power * factor);
         for (const FwVolumetricFireId fire : part.fires)
             fwWorld_SetVolumetricFirePower(burn.world, fire, now);
         if (part.emitter.index1 != 0) fwWorld_SetFireEmitterPower(burn.world, part.emitter, now);
@@ -475,8 +475,9 @@ void adjust(const Burn&, BurnPart& part, const Wind&) { part.lastFactor = -1; }
 void adjust(const Burn& burn, BurnPart& part, const Collider& collider) {
     const FwFireColliderDef def = colliderDefOf(burn.scene, collider);
     if (part.collider.index1 != 0) fwWorld_SetFireCollider(burn.world, part.collider, &def);
-    const FwBlockerDef blocker = blockerDefOf(burn.scene, collider);
-    if (part.blocker.index1 != 0) fwWorld_MoveBlocker(burn.world, part.blocker, blocker.transform);
+    const FwHeatOccluderDef occluder = heatOccluderDefOf(burn.scene, collider);
+    if (part.occluder.index1 != 0)
+        fwWorld_MoveHeatOccluder(burn.world, part.occluder, occluder.transform);
 }
 
 void removePart(const Burn& burn, const BurnPart& part) {
@@ -484,7 +485,7 @@ void removePart(const Burn& burn, const BurnPart& part) {
         fwWorld_DestroyVolumetricFire(burn.world, fire);
     if (part.emitter.index1 != 0) fwWorld_DestroyFireEmitter(burn.world, part.emitter);
     if (part.collider.index1 != 0) fwWorld_RemoveFireCollider(burn.world, part.collider);
-    if (part.blocker.index1 != 0) fwWorld_RemoveBlocker(burn.world, part.blocker);
+    if (part.occluder.index1 != 0) fwWorld_RemoveHeatOccluder(burn.world, part.occluder);
     if (part.zone.index1 != 0) fwWorld_DestroyWindZone(burn.world, part.zone);
 }
 
@@ -617,8 +618,8 @@ bool feedBurn(Burn& burn, float deltaTime, std::string& error) {
         Vec3 wind = burn.scene.settings.wind;
         for (const Wind& gust : burn.scene.winds)
             for (size_t k = 0; k < 3 && gust.shape == WindEverywhere; ++k)
-                wind[k] = std::clamp(wind[k] + gust.velocity[k] * factorOf(gust, from), -kMostWind,
-                                     kMostWind);
+                wind[k] = std::clamp(wind[k] + gust.velocity[k] * factorOf(gust, from), -kMaxWind,
+                                     kMaxWind);
         const FwResult result = fwWorld_SetWind(burn.world, wind.data());
         if (result < 0) {
             error = worldProblem(burn, result);

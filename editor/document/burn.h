@@ -44,7 +44,7 @@ struct BurnPart {  // an active source, flame, emitter, collider or wind zone
     std::vector<FwVolumetricFireId> fires;
     FwFireEmitterId emitter{};
     FwFireColliderId collider{};
-    FwBlockerId blocker{};
+    FwHeatOccluderId occluder{};
     FwWindZoneId zone{};
     float lastFactor = -1;
 };

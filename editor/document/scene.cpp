@@ -75,7 +75,7 @@ struct Root {
 
 Root rootOf(const Scene& scene, ObjectId parent, std::string_view node) {
     Root root;
-    for (const ObjectId holder : holdersOf(scene, parent)) {
+    for (const ObjectId holder : ancestorsOf(scene, parent)) {
         const Place place = placeOf(scene, holder);
         if (place.mesh) {
             root.mesh = place.mesh;
@@ -195,7 +195,7 @@ Vec3 offsetWithin(const Pose& holder, const Vec3& world) {
 
 ObjectId parentOf(const Scene& scene, ObjectId id) { return placeOf(scene, id).sticksTo; }
 
-std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent) {
+std::vector<ObjectId> ancestorsOf(const Scene& scene, ObjectId parent) {
     std::vector<ObjectId> holders;
     if (parent == 0) return holders;
     std::unordered_map<ObjectId, ObjectId> next;
@@ -214,7 +214,7 @@ std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent) {
     return holders;
 }
 
-Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose) {
+Pose parentPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose) {
     const Place place = placeOf(scene, id);
     const Root root = rootOf(scene, place.sticksTo, place.node);
     Pose pose = kWorldPose;
@@ -228,7 +228,7 @@ Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose) {
 }
 
 Vec3 worldPosition(const Scene& scene, ObjectId id, const NodePoseOf& nodePose) {
-    return placedBy(holderPose(scene, id, nodePose), placeOf(scene, id).position);
+    return placedBy(parentPose(scene, id, nodePose), placeOf(scene, id).position);
 }
 
 const Mesh* meshHolding(const Scene& scene, ObjectId id) {

@@ -248,12 +248,12 @@ using NodePoseOf =
     std::function<bool(const Mesh& mesh, std::string_view node, Pose& pose, std::string& error)>;
 
 // Returns the coordinate frame of an object's position: its parent, or the world.
-Pose holderPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose = {});
+Pose parentPose(const Scene& scene, ObjectId id, const NodePoseOf& nodePose = {});
 // Returns the parent of an object; 0: none.
 ObjectId parentOf(const Scene& scene, ObjectId id);
 // Returns `parent` and all its ancestors. In a circular chain (from a damaged file), it stops at
 // the first repetition.
-std::vector<ObjectId> holdersOf(const Scene& scene, ObjectId parent);
+std::vector<ObjectId> ancestorsOf(const Scene& scene, ObjectId parent);
 Vec3 placedBy(const Pose& holder, const Vec3& position);
 Vec3 turnedBy(const Pose& holder, const Vec3& direction);  // keeps its length
 // Inverse transform; 0 for a parent without volume.

@@ -128,7 +128,7 @@ class SceneReader {
                                      " objects, the most a scene can have");
         repairIds(scene, root);
         std::vector<std::string> references;
-        mendReferences(scene, &references);
+        repairReferences(scene, &references);
         for (const std::string& repair : references) reportRepair(repair);
         if (version->get<int64_t>() == 1) convertDirectionsToLocal(scene);
         if (repairCount_ > kMostRepairs)
@@ -326,7 +326,7 @@ class SceneReader {
             for (auto& object : list) {
                 if constexpr (requires { object.direction; }) {
                     const Vec3 position = object.position;
-                    keepInWorld(scene, object.id, kWorldPose, holderPose(scene, object.id));
+                    keepInWorld(scene, object.id, kWorldPose, parentPose(scene, object.id));
                     object.position = position;  // already local
                 }
             }

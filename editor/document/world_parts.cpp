@@ -76,8 +76,8 @@ FwFireEmitterDef jetDefOf(const Scene& scene, const HeatSource& source) {
                 (source.hidden ? uint32_t{FW_EMITTER_HIDDEN} : 0u);
     def.seed = source.id;
     copy(def.position, worldPosition(scene, source.id));
-    copy(def.direction, unit(turnedBy(holderPose(scene, source.id), source.direction), {0, 1, 0}));
-    def.power = std::min(kMostPower, source.output * peakOf(source.keys));
+    copy(def.direction, unit(turnedBy(parentPose(scene, source.id), source.direction), {0, 1, 0}));
+    def.power = std::min(kMaxPower, source.output * peakOf(source.keys));
     return def;
 }
 
@@ -87,11 +87,11 @@ FwFireEmitterDef emitterDefOf(const Scene& scene, const Emitter& emitter) {
     def.flags = emitter.hidden ? uint32_t{FW_EMITTER_HIDDEN} : 0u;
     def.seed = emitter.id;
     copy(def.position, worldPosition(scene, emitter.id));
-    const Pose holder = holderPose(scene, emitter.id);
+    const Pose holder = parentPose(scene, emitter.id);
     copy(def.direction, unit(turnedBy(holder, emitter.direction), {0, 1, 0}));
     copy(def.extent, turnedBy(holder, emitter.extent));
     def.radius = emitter.radius;
-    def.power = std::min(kMostPower, emitter.power * peakOf(emitter.keys));
+    def.power = std::min(kMaxPower, emitter.power * peakOf(emitter.keys));
     def.speed = emitter.speed;
     def.cone = emitter.cone;
     def.life = emitter.life;
@@ -136,7 +136,7 @@ std::vector<FwVolumetricFireDef> sourceFiresOf(const Scene& scene, const HeatSou
         copy(def.position, middle);
         return {def};
     }
-    const Vec3 along = unit(turnedBy(holderPose(scene, source.id), source.direction), {1, 0, 0});
+    const Vec3 along = unit(turnedBy(parentPose(scene, source.id), source.direction), {1, 0, 0});
     const auto count = static_cast<uint32_t>(
         std::clamp(std::ceil(source.length / std::max(def.diameter, 0.05f)), 1.0f, 16.0f));
     std::vector<FwVolumetricFireDef> fires(count, def);
@@ -208,13 +208,13 @@ FwWindZoneDef windZoneDefOf(const Scene& scene, const Wind& wind, float factor) 
     copy(def.size, wind.shape == WindBox   ? wind.halfSize
                    : wind.shape == WindFan ? Vec3{wind.length, wind.radius, wind.radius}
                                            : Vec3{wind.radius, wind.radius, wind.radius});
-    def.speed = std::min(speed * factor, kMostWind);
+    def.speed = std::min(speed * factor, kMaxWind);
     def.falloff = wind.falloff;
     return def;
 }
 
-FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider) {
-    FwBlockerDef def = fwDefaultBlockerDef();
+FwHeatOccluderDef heatOccluderDefOf(const Scene& scene, const Collider& collider) {
+    FwHeatOccluderDef def = fwDefaultHeatOccluderDef();
     const std::array<float, 16> turn = turned(collider.rotation);
     std::copy(turn.begin(), turn.end(), def.transform);
     copy(def.transform + 12, worldPosition(scene, collider.id));

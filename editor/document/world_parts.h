@@ -7,8 +7,8 @@
 namespace fwedit {
 
 constexpr double kWateringStep = 0.125;  // s, between two amounts of rain and water
-constexpr float kMostPower = 100000;     // kW, limit of a flame or emitter
-constexpr float kMostWind = 120;         // m/s, limit per component
+constexpr float kMaxPower = 100000;      // kW, limit of a flame or emitter
+constexpr float kMaxWind = 120;          // m/s, limit per component
 
 // Returns an empty string on success, otherwise the plugin's message.
 std::string worldProblem(const Burn& burn, FwResult result);
@@ -25,7 +25,7 @@ FwBurnableMeshDef burnableDefOf(const Mesh& mesh);
 FwFireColliderDef colliderDefOf(const Scene& scene, const Collider& collider);
 // Returns the zone of a wind, scaled by `factor`.
 FwWindZoneDef windZoneDefOf(const Scene& scene, const Wind& wind, float factor);
-FwBlockerDef blockerDefOf(const Scene& scene, const Collider& collider);
+FwHeatOccluderDef heatOccluderDefOf(const Scene& scene, const Collider& collider);
 // Reads the texels of a cooked burn map. `slots`: material per triangle of the model.
 bool surfaceOfBake(FwContext* context, const std::vector<char>& bake,
                    const fwimport::ImportedModel& model, const std::vector<uint8_t>& slots,

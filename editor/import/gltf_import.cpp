@@ -776,18 +776,18 @@ int32_t findNode(std::span<const ImportedNode> nodes, std::string_view which, st
         if (code == std::errc{} && at == end && number < nodes.size() && nodes[number].inScene)
             return static_cast<int32_t>(number);
     }
-    constexpr size_t kMostListed = 12;
+    constexpr size_t kMaxListed = 12;
     size_t count = 0;
     std::string list;
     for (size_t i = 0; i < nodes.size(); ++i) {
-        if (!nodes[i].inScene || ++count > kMostListed) continue;
+        if (!nodes[i].inScene || ++count > kMaxListed) continue;
         list += list.empty() ? "" : ", ";
         list += nodes[i].name.empty() ? text("#", i) : nodes[i].name.substr(0, 80);
     }
     error = text(
         "there is no node \"", which.substr(0, 80), "\"; ",
         count == 0 ? "it has none" : text("its nodes are #0 to #", nodes.size() - 1, ": ", list),
-        count > kMostListed ? text(" and ", count - kMostListed, " more") : "");
+        count > kMaxListed ? text(" and ", count - kMaxListed, " more") : "");
     return -1;
 }
 

@@ -171,8 +171,8 @@ void printFields(Fields& fields, const FwWindZoneDef& def) {
     FW_ONE(falloff);
 }
 
-void printFields(Fields& fields, const FwBlockerDef& def) {
-    const FwBlockerDef standard = fwDefaultBlockerDef();
+void printFields(Fields& fields, const FwHeatOccluderDef& def) {
+    const FwHeatOccluderDef standard = fwDefaultHeatOccluderDef();
     FW_LIST(transform);
     FW_LIST(halfSize);
 }
@@ -195,10 +195,10 @@ const char* presetWord(uint32_t preset) {
 struct Book {
     const char *member, *preset, *slot;
 };
-constexpr Book kBooks[] = {{"roll_book", "FW_FLIPBOOK_ROLL", "fireBooks[0]"},
-                           {"puff_book", "FW_FLIPBOOK_PUFF", "fireBooks[1]"},
-                           {"smoke_book", "FW_FLIPBOOK_SMOKE", "smokeBooks[0]"},
-                           {"spark_book", "FW_FLIPBOOK_SPARK", "sparkBook"}};
+constexpr Book kBooks[] = {{"roll_book", "FW_FLIPBOOK_ROLL", "fireFlipbooks[0]"},
+                           {"puff_book", "FW_FLIPBOOK_PUFF", "fireFlipbooks[1]"},
+                           {"smoke_book", "FW_FLIPBOOK_SMOKE", "smokeFlipbooks[0]"},
+                           {"spark_book", "FW_FLIPBOOK_SPARK", "sparkFlipbook"}};
 
 class Writer {
  public:
@@ -514,10 +514,11 @@ class Writer {
         line("return fwWorld_AddFireCollider(" + world() + ", &def, &" + in(name) + ");");
         functions_ += "}\n\n";
         if (!collider.shields || collider.shape != ColliderBox) return;
-        member("FwBlockerId", name + "_shield");
-        open("shield_" + name, false, collider.name + ": heat and embers do not pass either.");
-        def("Blocker", blockerDefOf(scene_, collider));
-        line("return fwWorld_AddBlocker(" + world() + ", &def, &" + in(name + "_shield") + ");");
+        member("FwHeatOccluderId", name + "_shield");
+        open("occlusion_" + name, false, collider.name + ": heat and embers do not pass either.");
+        def("HeatOccluder", heatOccluderDefOf(scene_, collider));
+        line("return fwWorld_AddHeatOccluder(" + world() + ", &def, &" + in(name + "_shield") +
+             ");");
         functions_ += "}\n\n";
     }
 
@@ -560,7 +561,7 @@ class Writer {
                  "};\n        const float share = " + factor(wind, "from") +
                  ";\n        for (int i = 0; i < 3; ++i)\n"
                  "            wind[i] = within(wind[i] + velocity[i] * share, " +
-                 literal(kMostWind) + ");\n    }\n";
+                 literal(kMaxWind) + ");\n    }\n";
     }
 
     void addZone(const Wind& wind) {
@@ -578,7 +579,7 @@ class Writer {
         times_ = parts_ = true;
         powers_ += "    { /* " + words(wind.name) + " */\n" + keyTable(wind.keys, "        ") +
                    "        FwResult result;\n        " + in(name + "_zone") + ".speed = within(" +
-                   literal(made.speed) + " * " + factor(wind, "time") + ", " + literal(kMostWind) +
+                   literal(made.speed) + " * " + factor(wind, "time") + ", " + literal(kMaxWind) +
                    ");\n        result = fwWorld_SetWindZone(" + world() + ", " + in(name) + ", &" +
                    in(name + "_zone") + ");\n        if (result < 0) return result;\n    }\n";
     }
@@ -626,7 +627,7 @@ class Writer {
         times_ = parts_ = true;
         powers_ += "    { /* " + words(object.name) + " */\n" + keyTable(object.keys, "        ") +
                    "        const float power = within(" + literal(output) + " * " +
-                   factor(object, "time") + ", " + literal(kMostPower) + ");\n        " +
+                   factor(object, "time") + ", " + literal(kMaxPower) + ");\n        " +
                    "const FwResult result = " + function + "(" + world() + ", " + id +
                    ", power);\n        if (result < 0) return result;\n    }\n";
     }

@@ -44,8 +44,8 @@ bool destroyNow(world::World& w, const FwObjectRef& object) {
             case FW_OBJECT_BURNABLE_MESH:
                 w.destroyBurnableMesh(idOf<FwBurnableMeshId>(object));
                 break;
-            case FW_OBJECT_BLOCKER:
-                w.exchange().removeBlocker(idOf<FwBlockerId>(object));
+            case FW_OBJECT_HEAT_OCCLUDER:
+                w.exchange().removeHeatOccluder(idOf<FwHeatOccluderId>(object));
                 break;
             case FW_OBJECT_VOLUMETRIC_FIRE:
                 w.flames().destroy(idOf<FwVolumetricFireId>(object));

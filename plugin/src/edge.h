@@ -172,6 +172,6 @@ void writeInfo(Info* out, uint32_t size, Info filled) {
 }
 
 // view.cpp. Throws unless every number of a camera can be used; turns its lengths into metres.
-void takeView(const Unit& unit, FwView& view, const char* name);
+void validatedView(const Unit& unit, FwView& view, const char* name);
 
 }  // namespace fw::edge

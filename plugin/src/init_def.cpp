@@ -36,8 +36,8 @@ void defaults(FwWorldDef& def) noexcept {
     def.maxFlames = 4096;
     def.maxRefinedTriangles = 400000;
     def.spreadChance = 1;
-    def.volumeCell = 2;
-    def.volumeSteps = 64;
+    def.volumePixelSize = 2;
+    def.rayStepCount = 64;
     def.maxParticles = 16384;
     def.arrivalTiles = 1024;
     def.volumeOctaves = 4;
@@ -73,12 +73,12 @@ void defaults(FwNetDef& def) noexcept {
     def.delay = 0.15f;
 }
 
-void defaults(FwBlockerDef& def) noexcept {
+void defaults(FwHeatOccluderDef& def) noexcept {
     identity(def.transform);
     set(def.halfSize, 0.5f, 0.5f, 0.5f);
 }
 
-void defaults(FwHeatShieldDef& def) noexcept {
+void defaults(FwHeatOcclusionDef& def) noexcept {
     def.counts[0] = def.counts[1] = def.counts[2] = 1;
     def.cellSize = 0.25f;
 }
@@ -99,7 +99,7 @@ void defaults(FwWindGridDef& def) noexcept {
 void defaults(FwGustDef& def) noexcept { def.size = 12; }
 void defaults(FwTimelineDef& def) noexcept {
     def.interval = 2;
-    def.longest = 32;
+    def.maxInterval = 32;
     def.bytes = uint64_t(64) << 20;
 }
 
@@ -218,8 +218,8 @@ bool visitDef(uint32_t type, Body body) {
         case FW_DEF_OFFSCREEN:
             body.template operator()<FwOffscreenDef>();
             return true;
-        case FW_DEF_BLOCKER:
-            body.template operator()<FwBlockerDef>();
+        case FW_DEF_HEAT_OCCLUDER:
+            body.template operator()<FwHeatOccluderDef>();
             return true;
         case FW_DEF_VOLUMETRIC_FIRE:
             body.template operator()<FwVolumetricFireDef>();
@@ -239,8 +239,8 @@ bool visitDef(uint32_t type, Body body) {
         case FW_DEF_WIND_ZONE:
             body.template operator()<FwWindZoneDef>();
             return true;
-        case FW_DEF_HEAT_SHIELD:
-            body.template operator()<FwHeatShieldDef>();
+        case FW_DEF_HEAT_OCCLUSION:
+            body.template operator()<FwHeatOcclusionDef>();
             return true;
         case FW_DEF_WIND_GRID:
             body.template operator()<FwWindGridDef>();

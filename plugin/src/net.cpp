@@ -116,25 +116,25 @@ FwResult FW_CALL fwNet_Read(FwWorld* world, FwPeerId from, const void* packet, u
     });
 }
 
-FwResult FW_CALL fwNet_Tell(FwWorld* world, const void* message, uint32_t size) {
-    return onWorld("fwNet_Tell", world, [&](world::World& w) {
+FwResult FW_CALL fwNet_SendMessage(FwWorld* world, const void* message, uint32_t size) {
+    return onWorld("fwNet_SendMessage", world, [&](world::World& w) {
         if (size > 0) checkPointer(message, "message");
         serverOf(*world).sendMessage(w, {static_cast<const std::byte*>(message), size});
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwNet_TakeTurn(FwWorld* world, FwNetTurn* turn) {
-    return onWorld("fwNet_TakeTurn", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(turn, "FwNetTurn");
-        if (size < sizeof(FwNetTurn))
-            core::fail(FW_ERROR_VERSION, "FwNetTurn::structSize is %u; it has %zu bytes.", size,
-                       sizeof(FwNetTurn));
+FwResult FW_CALL fwNet_NextAction(FwWorld* world, FwNetAction* action) {
+    return onWorld("fwNet_NextAction", world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(action, "FwNetAction");
+        if (size < sizeof(FwNetAction))
+            core::fail(FW_ERROR_VERSION, "FwNetAction::structSize is %u; it has %zu bytes.", size,
+                       sizeof(FwNetAction));
         if (!world->client)
             core::fail(FW_ERROR_INVALID_ARGUMENT, "The world is no client's; see fwNet_Join.");
-        FwNetTurn filled{};
+        FwNetAction filled{};
         world->client->takeTurn(w, filled);
-        edge::writeInfo(turn, size, filled);
+        edge::writeInfo(action, size, filled);
         return FW_OK;
     });
 }

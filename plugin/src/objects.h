@@ -143,31 +143,31 @@ class InMetres {
 };
 
 // The same of a shield, whose function asks the host in the host's unit.
-class ShieldInMetres {
+class OcclusionInMetres {
  public:
-    ShieldInMetres(FwWorld& world, const FwHeatShieldDef* given)
+    OcclusionInMetres(FwWorld& world, const FwHeatOcclusionDef* given)
         : unitsPerMetre_(float(world.unit.perMetre())),
-          def_(readDef(world.unit, given, FW_DEF_HEAT_SHIELD, "FwHeatShieldDef")),
+          def_(readDef(world.unit, given, FW_DEF_HEAT_OCCLUSION, "FwHeatOcclusionDef")),
           ask_(def_.distance),
           data_(def_.distanceData) {
         if (!def_.distance || world.unit.isMetre()) return;
         def_.distance = &distance;
         def_.distanceData = this;
     }
-    ShieldInMetres(const ShieldInMetres&) = delete;
-    ShieldInMetres& operator=(const ShieldInMetres&) = delete;
-    operator const FwHeatShieldDef&() const noexcept { return def_; }
+    OcclusionInMetres(const OcclusionInMetres&) = delete;
+    OcclusionInMetres& operator=(const OcclusionInMetres&) = delete;
+    operator const FwHeatOcclusionDef&() const noexcept { return def_; }
 
  private:
     static float FW_CALL distance(void* data, const float place[3]) {
-        const auto& self = *static_cast<const ShieldInMetres*>(data);
+        const auto& self = *static_cast<const OcclusionInMetres*>(data);
         const float per = self.unitsPerMetre_;
         const float asked[3] = {place[0] * per, place[1] * per, place[2] * per};
         return self.ask_(self.data_, asked) / per;
     }
 
     float unitsPerMetre_;
-    FwHeatShieldDef def_;
+    FwHeatOcclusionDef def_;
     float(FW_CALL* ask_)(void*, const float*);
     void* data_;
 };

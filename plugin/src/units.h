@@ -92,11 +92,11 @@ FW_NO_LENGTHS(FwNetDef);
 FW_NO_LENGTHS(FwTimelineDef);
 FW_NO_LENGTHS(FwFireTrackDef);
 FW_NO_LENGTHS(FwRoomState);
-FW_NO_LENGTHS(FwFirePush);
+FW_NO_LENGTHS(FwFireForce);
 FW_NO_LENGTHS(FwParticleFieldState);
 FW_NO_LENGTHS(FwObjectState);
 FW_NO_LENGTHS(FwWorldStats);
-FW_NO_LENGTHS(FwEnergyBook);
+FW_NO_LENGTHS(FwEnergyLedger);
 FW_NO_LENGTHS(FwBudgetState);
 FW_NO_LENGTHS(FwTimelineState);
 #undef FW_NO_LENGTHS
@@ -115,11 +115,11 @@ inline void visitLengths(FwBurnableMeshDef& def, const Scale& scale) noexcept {
 inline void visitLengths(FwIgnitionDef& def, const Scale& scale) noexcept {
     scale(def.position, def.radius);
 }
-inline void visitLengths(FwBlockerDef& def, const Scale& scale) noexcept {
+inline void visitLengths(FwHeatOccluderDef& def, const Scale& scale) noexcept {
     scale.transform(def.transform);
     scale(def.halfSize);
 }
-inline void visitLengths(FwHeatShieldDef& def, const Scale& scale) noexcept {
+inline void visitLengths(FwHeatOcclusionDef& def, const Scale& scale) noexcept {
     scale(def.origin, def.cellSize);
 }
 inline void visitLengths(FwWindZoneDef& def, const Scale& scale) noexcept {
@@ -143,13 +143,13 @@ inline void visitLengths(FwFireColliderDef& def, const Scale& scale) noexcept {
     scale(def.position, def.end, def.halfSize, def.radius, def.cellSize);
     scale.view(def.view, def.projection);
 }
-inline void visitLengths(FwFireAnswer& answer, const Scale& scale) noexcept { scale(answer.gas); }
+inline void visitLengths(FwFireSample& answer, const Scale& scale) noexcept { scale(answer.gas); }
 inline void visitLengths(FwFireEmitterDef& def, const Scale& scale) noexcept {
     scale(def.position, def.extent, def.radius, def.speed, def.size0, def.size1, def.ground,
           def.behind);
 }
 inline void visitLengths(FwFireEmitterState& state, const Scale& scale) noexcept {
-    scale(state.speed, state.reach, state.lightPosition, state.freeWay);
+    scale(state.speed, state.reach, state.lightPosition, state.clearDistance);
 }
 inline void visitLengths(FwParticleFieldDef& def, const Scale& scale) noexcept {
     scale(def.position, def.size);

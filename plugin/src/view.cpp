@@ -56,7 +56,7 @@ void checkMatrices(const FwView& view, const char* name) {
 
 }  // namespace
 
-void takeView(const Unit& unit, FwView& view, const char* name) {
+void validatedView(const Unit& unit, FwView& view, const char* name) {
     if (view.flags != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.flags is 0x%x; it is zero.", name, view.flags);
     checkRange(view.view, 16, name, "view", -1e9f, 1e9f);

@@ -1,8 +1,8 @@
 // Functions of flamewright_vulkan.h. The only file of this folder that uses Vulkan types.
 #include "flamewright/flamewright_vulkan.h"
 
-#include "components/look_table.h"
-#include "components/look_textures.h"
+#include "components/appearance_table.h"
+#include "components/appearance_textures.h"
 #include "components/view_params.h"
 #include "components/volumetric_fire.h"
 #include "gpu/vk/vk_backend.h"
@@ -33,7 +33,7 @@ void defaults(FwVulkanTargetDef& def) noexcept {
     def.encoding = FW_OUTPUT_AUTO;
 }
 void defaults(FwVulkanFrame&) noexcept {}
-void defaults(FwVulkanWishes& def) noexcept { def.minimumApiVersion = VK_API_VERSION_1_0; }
+void defaults(FwVulkanRequirements& def) noexcept { def.minimumApiVersion = VK_API_VERSION_1_0; }
 void defaults(FwVulkanComposite&) noexcept {}
 void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 
@@ -50,8 +50,8 @@ bool visitVulkanDef(uint32_t type, Body body) noexcept {
         case FW_DEF_VULKAN_FRAME:
             body.template operator()<FwVulkanFrame>();
             return true;
-        case FW_DEF_VULKAN_WISHES:
-            body.template operator()<FwVulkanWishes>();
+        case FW_DEF_VULKAN_REQUIREMENTS:
+            body.template operator()<FwVulkanRequirements>();
             return true;
         case FW_DEF_VULKAN_COMPOSITE:
             body.template operator()<FwVulkanComposite>();
@@ -100,8 +100,8 @@ class VulkanDevice final : public Device {
         limits.maxLights = def.maxLights;
         limits.maxFlames = def.maxFlames;
         limits.maxRefinedTriangles = def.maxRefinedTriangles;
-        limits.volumeCell = def.volumeCell;
-        limits.volumeSteps = def.volumeSteps;
+        limits.volumePixelSize = def.volumePixelSize;
+        limits.rayStepCount = def.rayStepCount;
         limits.seed = def.seed;
         std::copy_n(def.up, 3, limits.up);
         limits.paceFactor = def.paceFactor;
@@ -173,7 +173,7 @@ class VulkanDevice final : public Device {
     const core::Log& log_;
     gpu::vk::Context context_;
     // Kept for later worlds: a backend copies them at its creation.
-    std::pmr::vector<gpu::MaterialLook> lookTable_;
+    std::pmr::vector<gpu::MaterialAppearance> lookTable_;
     std::mutex looksMutex_;
     std::pmr::vector<std::byte> lookTextures_, fireProfiles_;
 };
@@ -274,13 +274,13 @@ FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
 }
 
 // Read by fwWorld_DestroyAfterFrame on any thread.
-void noteFrame(FwWorld& world, const FwVulkanFrame& frame) noexcept {
+void recordFrameUse(FwWorld& world, const FwVulkanFrame& frame) noexcept {
     if (frame.frameIndex > world.newestFrame) world.newestFrame = frame.frameIndex;
 }
 
 FwView checkedView(const FwWorld& world, const FwView* given) {
     FwView view = readDef(given, FW_DEF_VIEW, "FwView");
-    takeView(world.unit, view, "FwView");
+    validatedView(world.unit, view, "FwView");
     return view;
 }
 
@@ -306,7 +306,7 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
                 "views[%u].structSize is %u and views[0].structSize is %u; it is the array's "
                 "stride, so it is the same in all.",
                 i, size, stride);
-        takeView(world.unit, out[i], name);
+        validatedView(world.unit, out[i], name);
         for (uint32_t j = 0; j < i; ++j)
             if (out[j].viewId == out[i].viewId)
                 core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -320,7 +320,7 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
 FwResult recordOutside(FwWorld& world, world::World& w, gpu::vk::VkBackend& backend,
                        const FwVulkanFrame& frame, std::span<const FwView> views) {
     w.checkFrame(frame.frameIndex, frame.deltaTime);
-    noteFrame(world, frame);
+    recordFrameUse(world, frame);
     destroyDoomed(world);
     if (!backend.beginOutside(frame, views)) return FW_NOT_READY;
     try {
@@ -514,14 +514,14 @@ Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
 
 extern "C" {
 
-FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes) {
+FwResult FW_CALL fwQueryVulkanRequirements(FwVulkanRequirements* requirements) {
     const auto nobody = [](FwResult, const char*) {};  // no context to report to
-    return edge::guard("fwQueryVulkanWishes", nobody, [&] {
-        const uint32_t size = edge::checkInfo(wishes, "FwVulkanWishes");
-        FwVulkanWishes filled;
-        (void)edge::writeVulkanDefaults(FW_DEF_VULKAN_WISHES, &filled);
-        gpu::vk::Context::wishes(filled);
-        edge::writeInfo(wishes, size, filled);
+    return edge::guard("fwQueryVulkanRequirements", nobody, [&] {
+        const uint32_t size = edge::checkInfo(requirements, "FwVulkanRequirements");
+        FwVulkanRequirements filled;
+        (void)edge::writeVulkanDefaults(FW_DEF_VULKAN_REQUIREMENTS, &filled);
+        gpu::vk::Context::requirements(filled);
+        edge::writeInfo(requirements, size, filled);
         return FW_OK;
     });
 }
@@ -600,7 +600,7 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(*world, givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
-        edge::noteFrame(*world, frame);
+        edge::recordFrameUse(*world, frame);
         return backend.recordInside(frame, target, view, *viewport) ? FW_OK : FW_NOT_READY;
     });
 }
@@ -635,7 +635,7 @@ FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* gi
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "
                        "pass, which needs a primary command buffer.");
-        edge::noteFrame(*world, frame);
+        edge::recordFrameUse(*world, frame);
         if (images.width == 0 || images.height == 0) return FW_OK;
         if (images.width > 32768 || images.height > 32768)
             core::fail(FW_ERROR_INVALID_ARGUMENT,

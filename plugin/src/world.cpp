@@ -168,34 +168,38 @@ FwResult FW_CALL fwWorld_SetFlags(FwWorld* world, uint32_t flags) {
     });
 }
 
-FwResult FW_CALL fwWorld_AddBlocker(FwWorld* world, const FwBlockerDef* given, FwBlockerId* id) {
-    return onWorld("fwWorld_AddBlocker", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_AddHeatOccluder(FwWorld* world, const FwHeatOccluderDef* given,
+                                         FwHeatOccluderId* id) {
+    return onWorld("fwWorld_AddHeatOccluder", world, [&](world::World& w) {
         checkPointer(id, "id");
         *id = {};
-        *id = w.exchange().addBlocker(InMetres(*world, given, FW_DEF_BLOCKER, "FwBlockerDef"));
+        *id = w.exchange().addHeatOccluder(
+            InMetres(*world, given, FW_DEF_HEAT_OCCLUDER, "FwHeatOccluderDef"));
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_MoveBlocker(FwWorld* world, FwBlockerId id, const float transform[16]) {
-    return onWorld("fwWorld_MoveBlocker", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_MoveHeatOccluder(FwWorld* world, FwHeatOccluderId id,
+                                          const float transform[16]) {
+    return onWorld("fwWorld_MoveHeatOccluder", world, [&](world::World& w) {
         checkPointer(transform, "transform");
         const edge::TransformInMetres pose(world->unit, world->unit, transform);
-        w.exchange().moveBlocker(id, pose.matrix);
+        w.exchange().moveHeatOccluder(id, pose.matrix);
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld* world, FwBlockerId id) {
-    return destroyOf("fwWorld_RemoveBlocker", world, &world::ExchangeSystem::removeBlocker, id);
+FwResult FW_CALL fwWorld_RemoveHeatOccluder(FwWorld* world, FwHeatOccluderId id) {
+    return destroyOf("fwWorld_RemoveHeatOccluder", world,
+                     &world::ExchangeSystem::removeHeatOccluder, id);
 }
 
-FwResult FW_CALL fwWorld_SetHeatShield(FwWorld* world, const FwHeatShieldDef* given) {
-    return onWorld("fwWorld_SetHeatShield", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_SetHeatOcclusion(FwWorld* world, const FwHeatOcclusionDef* given) {
+    return onWorld("fwWorld_SetHeatOcclusion", world, [&](world::World& w) {
         if (given)
-            w.exchange().setHeatShield(edge::ShieldInMetres(*world, given));
+            w.exchange().setHeatOcclusion(edge::OcclusionInMetres(*world, given));
         else
-            w.exchange().setHeatShield({});
+            w.exchange().setHeatOcclusion({});
         return FW_OK;
     });
 }
@@ -544,29 +548,29 @@ FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld* world, FwFireColliderId id)
     return destroyOf("fwWorld_RemoveFireCollider", world, &world::FlameSystem::removeCollider, id);
 }
 
-FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld* world, const float point[3],
-                                            FwFireAnswer* answer) {
-    return onWorld("fwWorld_AskVolumetricFires", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_SampleVolumetricFires(FwWorld* world, const float point[3],
+                                               FwFireSample* sample) {
+    return onWorld("fwWorld_SampleVolumetricFires", world, [&](world::World& w) {
         checkPointer(point, "point");
-        const uint32_t size = edge::checkInfo(answer, "FwFireAnswer");
-        FwFireAnswer filled{};
+        const uint32_t size = edge::checkInfo(sample, "FwFireSample");
+        FwFireSample filled{};
         w.flames().ask(Metres(world->unit, point), filled);
         edge::fromMetres(world->unit, filled);
-        edge::writeInfo(answer, size, filled);
+        edge::writeInfo(sample, size, filled);
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld* world, const float centre[3], float radius,
-                                               FwFirePush* push) {
-    return onWorld("fwWorld_GetVolumetricFirePush", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_GetVolumetricFireForce(FwWorld* world, const float centre[3], float radius,
+                                                FwFireForce* force) {
+    return onWorld("fwWorld_GetVolumetricFireForce", world, [&](world::World& w) {
         checkPointer(centre, "centre");
-        const uint32_t size = edge::checkInfo(push, "FwFirePush");
-        FwFirePush filled{};
+        const uint32_t size = edge::checkInfo(force, "FwFireForce");
+        FwFireForce filled{};
         const edge::Scale metres(world->unit);
         metres(radius);
         w.flames().push(Metres(world->unit, centre), radius, filled);
-        edge::writeInfo(push, size, filled);
+        edge::writeInfo(force, size, filled);
         return FW_OK;
     });
 }
@@ -632,7 +636,7 @@ FwResult FW_CALL fwWorld_Ignite(FwWorld* world, const FwIgnitionDef* given, uint
         // surprise.
         if (def.kind == FW_IGNITE) {
             char reason[sizeof FwErrorInfo::message];
-            w.burn().explainNothingThere(def, count, reason);
+            w.burn().explainMiss(def, count, reason);
             char text[sizeof FwErrorInfo::message];
             edge::composeMessage(text, reason, "fwWorld_Ignite", world->unit);
             world->message.set(text);
@@ -664,7 +668,7 @@ FwResult FW_CALL fwWorld_RenderOffscreen(FwWorld* world, const FwOffscreenDef* g
                        def.height);
         checkPointer(def.pixels, "FwOffscreenDef::pixels");
         components::checkValues(def.background, 4, "FwOffscreenDef::background", 0.0f, 1e6f);
-        edge::takeView(world->unit, def.view, "FwOffscreenDef::view");
+        edge::validatedView(world->unit, def.view, "FwOffscreenDef::view");
         if (world->world->shifted())
             world->context->device->step(*world->backend, *world->world, 0.0f);
         world->context->device->renderOffscreen(*world->backend, def);
@@ -779,26 +783,26 @@ uint32_t FW_CALL fwWorld_GetLights(FwWorld* world, FwLight* lights, uint32_t cap
     return count;
 }
 
-FwResult FW_CALL fwWorld_AskSurroundings(FwWorld* world, const float point[3],
-                                         FwSurroundings* surroundings) {
-    return onWorld("fwWorld_AskSurroundings", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_SampleSurroundings(FwWorld* world, const float point[3],
+                                            FwSurroundings* surroundings) {
+    return onWorld("fwWorld_SampleSurroundings", world, [&](world::World& w) {
         checkPointer(point, "point");
         const uint32_t size = edge::checkInfo(surroundings, "FwSurroundings");
         FwSurroundings filled{};
-        w.queries().askSurroundings(Metres(world->unit, point), filled);
+        w.queries().querySurroundings(Metres(world->unit, point), filled);
         edge::fromMetres(world->unit, filled);
         edge::writeInfo(surroundings, size, filled);
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_AskSight(FwWorld* world, const float from[3], const float to[3],
-                                  float* seen) {
-    return onWorld("fwWorld_AskSight", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_SampleVisibility(FwWorld* world, const float from[3], const float to[3],
+                                          float* seen) {
+    return onWorld("fwWorld_SampleVisibility", world, [&](world::World& w) {
         checkPointer(from, "from");
         checkPointer(to, "to");
         checkPointer(seen, "seen");
-        *seen = w.queries().askSight(Metres(world->unit, from), Metres(world->unit, to));
+        *seen = w.queries().querySight(Metres(world->unit, from), Metres(world->unit, to));
         return FW_OK;
     });
 }
@@ -821,8 +825,8 @@ FwResult FW_CALL fwWorld_GetStats(FwWorld* world, FwWorldStats* stats) {
     return fill("fwWorld_GetStats", world, stats, "FwWorldStats", &world::World::stats);
 }
 
-FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld* world, FwEnergyBook* book) {
-    return fill("fwWorld_GetEnergyBook", world, book, "FwEnergyBook",
+FwResult FW_CALL fwWorld_GetEnergyLedger(FwWorld* world, FwEnergyLedger* ledger) {
+    return fill("fwWorld_GetEnergyLedger", world, ledger, "FwEnergyLedger",
                 &world::QuerySystem::energyLedger);
 }
 
@@ -913,38 +917,38 @@ FwResult FW_CALL fwWorld_StopBurn(FwWorld* world, FwBurnableMeshId id) {
     });
 }
 
-FwResult FW_CALL fwWorld_StartLog(FwWorld* world) {
-    return onWorld("fwWorld_StartLog", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_StartCommandLog(FwWorld* world) {
+    return onWorld("fwWorld_StartCommandLog", world, [&](world::World& w) {
         w.persistence().startLog();
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_StopLog(FwWorld* world) {
-    return onWorld("fwWorld_StopLog", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_StopCommandLog(FwWorld* world) {
+    return onWorld("fwWorld_StopCommandLog", world, [&](world::World& w) {
         w.persistence().stopLog();
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_FetchLog(FwWorld* world, void* buffer, uint64_t* size) {
-    return onWorld("fwWorld_FetchLog", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_FetchCommandLog(FwWorld* world, void* buffer, uint64_t* size) {
+    return onWorld("fwWorld_FetchCommandLog", world, [&](world::World& w) {
         checkPointer(size, "size");
         giveBytes(w.persistence().fetchLog(), "log", buffer, *size);
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_OpenLog(FwWorld* world, const void* bytes, uint64_t size) {
-    return onWorld("fwWorld_OpenLog", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_OpenCommandLog(FwWorld* world, const void* bytes, uint64_t size) {
+    return onWorld("fwWorld_OpenCommandLog", world, [&](world::World& w) {
         if (size > 0) checkPointer(bytes, "bytes");
         w.persistence().openLog({static_cast<const std::byte*>(bytes), size_t(size)});
         return FW_OK;
     });
 }
 
-FwResult FW_CALL fwWorld_PlayLog(FwWorld* world, uint64_t untilTick, float* seconds) {
-    return onWorld("fwWorld_PlayLog", world, [&](world::World& w) {
+FwResult FW_CALL fwWorld_PlayCommandLog(FwWorld* world, uint64_t untilTick, float* seconds) {
+    return onWorld("fwWorld_PlayCommandLog", world, [&](world::World& w) {
         checkPointer(seconds, "seconds");
         *seconds = w.persistence().playLog(untilTick);
         return FW_OK;

@@ -66,11 +66,11 @@ void checkFacts(const Facts& f) {
     check("frames", f.frames, 2, kMaxFrames);
     check("motionWidth", f.motionWidth, 1, f.width);
     check("motionHeight", f.motionHeight, 1, f.height);
-    check("motionMost", double(f.motionMost), 0, 1);
+    check("maxMotion", double(f.maxMotion), 0, 1);
     check("seconds", double(f.seconds), 1e-3, 600);
 }
 
-std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource* memory) {
+std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_resource* memory) {
     const Facts& f = book.facts;
     checkFacts(f);
     const Sizes sizes = sizesOf(f);
@@ -95,7 +95,7 @@ std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource
     for (const uint32_t word :
          {uint32_t(f.kind), f.loops, f.width, f.height, f.frames, f.motionWidth, f.motionHeight})
         put(word, 4);
-    putFloat(f.motionMost), putFloat(f.seconds), put(0, 4);
+    putFloat(f.maxMotion), putFloat(f.seconds), put(0, 4);
     for (const Rect& r : book.rects) put(r.left, 2), put(r.low, 2), put(r.right, 2), put(r.high, 2);
     for (const uint8_t byte : book.texels) out.push_back(std::byte(byte));
     for (const uint8_t byte : book.motion) out.push_back(std::byte(byte));
@@ -104,7 +104,7 @@ std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource
     return out;
 }
 
-void readBook(std::span<const std::byte> bytes, Book& book) {
+void readFlipbook(std::span<const std::byte> bytes, Book& book) {
     if (bytes.size() < kHeaderBytes)
         core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; its header alone has %zu.",
                    bytes.size(), kHeaderBytes);
@@ -120,7 +120,7 @@ void readBook(std::span<const std::byte> bytes, Book& book) {
     f.width = wordAt(bytes, 24), f.height = wordAt(bytes, 28);
     f.frames = wordAt(bytes, 32);
     f.motionWidth = wordAt(bytes, 36), f.motionHeight = wordAt(bytes, 40);
-    f.motionMost = floatAt(bytes, 44), f.seconds = floatAt(bytes, 48);
+    f.maxMotion = floatAt(bytes, 44), f.seconds = floatAt(bytes, 48);
     checkFacts(f);
     if (wordAt(bytes, 52) != 0)
         core::fail(FW_ERROR_BAD_DATA, "the book's reserved word is %u; it is zero.",
@@ -177,14 +177,16 @@ vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     const vec4 m =
         lookup<2>(book.motion.data() + size_t(2) * f.motionWidth * f.motionHeight * frame,
                   f.motionWidth, f.motionHeight, uv, true);
-    return gpu::bookMotion(vec2(m), f.motionMost);
+    return gpu::decodeFlipbookMotion(vec2(m), f.maxMotion);
 }
 
-vec4 showBook(const Book& book, float time, vec2 uv) noexcept {
-    const gpu::BookPlace p = gpu::bookPlace(time, book.facts.frames, book.facts.loops != 0);
+vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept {
+    const gpu::FlipbookPlace p =
+        gpu::flipbookPlaceAt(time, book.facts.frames, book.facts.loops != 0);
     const vec2 before = gpu::bookBefore(uv, motionAt(book, p.before, uv), p.part);
-    const vec2 after = gpu::bookAfter(uv, motionAt(book, p.after, uv), p.part);
-    return gpu::bookMix(frameAt(book, p.before, before), frameAt(book, p.after, after), p.part);
+    const vec2 after = gpu::flipbookUvAfter(uv, motionAt(book, p.after, uv), p.part);
+    return gpu::mixFlipbookTexels(frameAt(book, p.before, before), frameAt(book, p.after, after),
+                                  p.part);
 }
 
 }  // namespace fw::book

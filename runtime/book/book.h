@@ -1,7 +1,7 @@
 // A flipbook: side views of fire, smoke or sparks for particles and distant fires, with the motion
 // between frames; its file (.fwbook) and reader. editor/tools bakes flipbooks.
 #pragma once
-#include "shared/book.h"
+#include "shared/flipbook.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -25,7 +25,7 @@ struct Facts {
     uint32_t width = 128, height = 128;            // texels of a frame, [8, 512]
     uint32_t frames = 64;                          // [2, 256]
     uint32_t motionWidth = 64, motionHeight = 64;  // [1, width], [1, height]
-    float motionMost = 0.0f;                       // uv per frame of a full motion texel, [0, 1]
+    float maxMotion = 0.0f;                        // uv per frame of a full motion texel, [0, 1]
     float seconds = 2.0f;                          // s, length, (0, 600]
 };
 
@@ -38,10 +38,10 @@ struct Book {
     explicit Book(std::pmr::memory_resource* memory)
         : texels(memory), motion(memory), rects(memory) {}
     Facts facts;
-    // RGBA8: temperature (bookKelvin), opacity of glowing soot, total opacity, thickness
+    // RGBA8: temperature (flipbookKelvin), opacity of glowing soot, total opacity, thickness
     // (1 - exp(-tau / 4)).
     std::pmr::vector<uint8_t> texels;
-    std::pmr::vector<uint8_t> motion;  // RG8, bookMotion
+    std::pmr::vector<uint8_t> motion;  // RG8, decodeFlipbookMotion
     std::pmr::vector<Rect> rects;      // per frame: the visible part of it and of the next
 };
 
@@ -49,11 +49,11 @@ struct Book {
 void checkFacts(const Facts& facts);
 
 // .fwbook, little-endian: u32 magic 'FWBK', u32 version, u64 FNV-1a of the rest; u32 kind,
-// loops, width, height, frames, motionWidth, motionHeight, f32 motionMost, seconds, u32 0; rects
+// loops, width, height, frames, motionWidth, motionHeight, f32 maxMotion, seconds, u32 0; rects
 // (four u16 each), texels, motion.
-std::pmr::vector<std::byte> cookBook(const Book& book, std::pmr::memory_resource* memory);
+std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_resource* memory);
 // Throws core::Error; `book` is then unchanged.
-void readBook(std::span<const std::byte> bytes, Book& book);
+void readFlipbook(std::span<const std::byte> bytes, Book& book);
 
 // Whether no texel absorbs light: particles then add to the background in any order.
 bool emitsAlone(const Book& book) noexcept;
@@ -61,7 +61,7 @@ bool emitsAlone(const Book& book) noexcept;
 // Bilinear like a sampler, zero beyond the borders.
 vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept;
 vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame
-// A texel between two frames (shared/book.h). time: see bookPlace.
-vec4 showBook(const Book& book, float time, vec2 uv) noexcept;
+// A texel between two frames (shared/flipbook.h). time: see flipbookPlaceAt.
+vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept;
 
 }  // namespace fw::book

@@ -8,6 +8,6 @@
 namespace fw::book {
 
 // The .fwbook of an FwFlipbookPreset except FW_FLIPBOOK_CUSTOM.
-std::pmr::vector<std::byte> ownBook(uint32_t preset, std::pmr::memory_resource* memory);
+std::pmr::vector<std::byte> presetFlipbook(uint32_t preset, std::pmr::memory_resource* memory);
 
 }  // namespace fw::book

@@ -89,7 +89,7 @@ void copyFrames(const Facts& f, const Block& block, std::span<const uint8_t> fro
 
 }  // namespace
 
-Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* memory) {
+Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resource* memory) {
     std::pmr::vector<Block> blocks(memory);
     for (uint32_t i = 0; i < books.size(); ++i) {
         if (!books[i]) continue;
@@ -97,15 +97,15 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
         const uint32_t cell = f.width + 2 * kBorder;
         const double square = std::sqrt(double(f.frames) * (f.height + 2) / cell);
         const uint32_t columns =
-            std::clamp(uint32_t(std::ceil(square)), 1u, std::min(f.frames, kMostPicture / cell));
-        for (uint32_t level = 0; level < gpu::kBookLevels && hasLevel(f, level); ++level)
+            std::clamp(uint32_t(std::ceil(square)), 1u, std::min(f.frames, kMaxPicture / cell));
+        for (uint32_t level = 0; level < gpu::kFlipbookLevels && hasLevel(f, level); ++level)
             blocks.push_back(blockOf(f, i, level, false, columns));
         blocks.push_back(blockOf(f, i, 0, true, columns));
     }
     std::stable_sort(blocks.begin(), blocks.end(),
                      [](const Block& a, const Block& b) { return a.height > b.height; });
     Picture picture(memory);
-    for (picture.width = 256; picture.width <= kMostPicture; picture.width *= 2) {
+    for (picture.width = 256; picture.width <= kMaxPicture; picture.width *= 2) {
         const bool fits = std::all_of(blocks.begin(), blocks.end(), [&](const Block& block) {
             return block.width <= picture.width;
         });
@@ -113,13 +113,13 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
         picture.height = std::max(shelve(blocks, picture.width), 1u);
         if (picture.height <= picture.width) break;
     }
-    if (picture.width > kMostPicture)
+    if (picture.width > kMaxPicture)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "The world's flipbooks fill %u rows of %u texels; the limit is %u rows.",
-                   picture.height, kMostPicture, kMostPicture);
+                   picture.height, kMaxPicture, kMaxPicture);
     picture.texels.resize(size_t(4) * picture.width * picture.height);
-    picture.words.resize(gpu::kBookWords);
-    FW_ASSERT(books.size() <= gpu::kMaxBooks, "%zu flipbooks", books.size());
+    picture.words.resize(gpu::kFlipbookWords);
+    FW_ASSERT(books.size() <= gpu::kMaxFlipbooks, "%zu flipbooks", books.size());
     for (const Block& block : blocks) {
         const Book& book = *books[block.book];
         const Facts& f = book.facts;
@@ -134,8 +134,8 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
                                  f.width >> level, f.height >> level, f.frames, memory);
             copyFrames(f, block, smaller, picture);
         }
-        gpu::BookRecord record{};
-        uint32_t* words = picture.words.data() + size_t(block.book) * gpu::kBookRecordWords;
+        gpu::FlipbookRecord record{};
+        uint32_t* words = picture.words.data() + size_t(block.book) * gpu::kFlipbookRecordWords;
         std::memcpy(&record, words, sizeof record);
         const uint32_t border = block.motion ? 0 : kBorder;
         const uint32_t at = (block.x + border) | (block.y + border) << 16;
@@ -145,12 +145,12 @@ Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* 
         record.motionSize = f.motionWidth | f.motionHeight << 16;
         record.frames = f.frames;
         record.columns = block.columns;
-        record.flags = f.loops ? gpu::kBookLoops : 0u;
-        record.motionMost = f.motionMost;
+        record.flags = f.loops ? gpu::kFlipbookLoops : 0u;
+        record.maxMotion = f.maxMotion;
         record.seconds = f.seconds;
         std::memcpy(words, &record, sizeof record);
-        uint32_t* rects =
-            picture.words.data() + gpu::kBookRects + size_t(2) * block.book * gpu::kMostBookFrames;
+        uint32_t* rects = picture.words.data() + gpu::kFlipbookRects +
+                          size_t(2) * block.book * gpu::kMaxFlipbookFrames;
         for (size_t i = 0; i < book.rects.size(); ++i) {
             const Rect& r = book.rects[i];
             rects[2 * i] = r.left | uint32_t(r.low) << 16;

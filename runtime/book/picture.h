@@ -1,5 +1,5 @@
 // All flipbooks of a world as one picture for the device: their frames, smaller copies for distant
-// particles, and motion; and the words with the place of each (shared/book.h).
+// particles, and motion; and the words with the place of each (shared/flipbook.h).
 #pragma once
 #include "book/book.h"
 
@@ -9,13 +9,13 @@ struct Picture {
     explicit Picture(std::pmr::memory_resource* memory) : texels(memory), words(memory) {}
     uint32_t width = 1, height = 1;
     std::pmr::vector<uint8_t> texels;  // RGBA8; rows as the frames', from the bottom
-    std::pmr::vector<uint32_t> words;  // gpu::kBookWords
+    std::pmr::vector<uint32_t> words;  // gpu::kFlipbookWords
 };
 
-constexpr uint32_t kMostPicture = 4096;  // texels a side; every device supports it
+constexpr uint32_t kMaxPicture = 4096;  // texels a side; every device supports it
 
-// `books` by slot, at most gpu::kMaxBooks; null: an empty slot. Throws core::Error if they do not
-// fit.
-Picture layBooks(std::span<const Book* const> books, std::pmr::memory_resource* memory);
+// `books` by slot, at most gpu::kMaxFlipbooks; null: an empty slot. Throws core::Error if they do
+// not fit.
+Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resource* memory);
 
 }  // namespace fw::book

@@ -1,6 +1,6 @@
 #include "components/burnable_mesh.h"
 
-#include "components/look_table.h"
+#include "components/appearance_table.h"
 #include "core/error.h"
 #include "fire/presets.h"
 #include "mesh/bake.h"
@@ -57,13 +57,13 @@ bool sameTurn(const Pose& a, const Pose& b) noexcept {
 // A look was tuned at its own spread rate: a material twice as fast ages twice as fast. 0: no
 // ageing.
 float timeScale(const FwMaterialDef& def, float pace) noexcept {
-    const float tuned = lookSpreadRate(def.look);
+    const float tuned = lookSpreadRate(def.appearance);
     return tuned > 0 && def.spreadRate > 0 ? pace * def.spreadRate / tuned : 0.0f;
 }
 
 }  // namespace
 
-FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFlags) noexcept {
+FwBurnableMeshDef applyWorldFlags(const FwBurnableMeshDef& given, uint32_t worldFlags) noexcept {
     FwBurnableMeshDef def = given;
     if (worldFlags & FW_WORLD_NO_SPREAD) def.flags |= FW_BURNABLE_NO_SPREAD;
     if (worldFlags & FW_WORLD_NO_DAMAGE) def.flags |= FW_BURNABLE_NO_DAMAGE;
@@ -71,7 +71,7 @@ FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given, uint32_t worldFl
     if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
     def.flags |= FW_BURNABLE_NO_HOLES;  // and no feature that only shows damage
     def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_RECEDE |
-                           FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS);
+                           FW_BURNABLE_SPRINGS | FW_BURNABLE_DEPTH_PEEL);
     return def;
 }
 
@@ -80,7 +80,7 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
         FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED | FW_BURNABLE_NO_HOLES |
         FW_BURNABLE_LITE | FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL |
         FW_BURNABLE_SPRINGS | FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED |
-        FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
+        FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_DEPTH_PEEL;
     checkFlags(def.flags, "FwBurnableMeshDef::flags", kKnown);
     BurnableMesh object;
     object.flags = def.flags;
@@ -129,7 +129,7 @@ bool hasHeat(const BurnableMesh& object) noexcept {
     return (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
 }
 
-bool keepsBook(const BurnableMesh& object) noexcept {
+bool tracksBurntFuel(const BurnableMesh& object) noexcept {
     return (object.flags & FW_BURNABLE_PUBLISHED) == 0;
 }
 
@@ -230,9 +230,9 @@ bool isThere(const mesh::BurnDomain& domain, uint32_t texel, const CutOut& pictu
 
 }  // namespace
 
-std::pmr::vector<uint8_t> makeGone(const mesh::BurnDomain& domain,
-                                   std::span<const CutOut* const, kMaterials> pictures,
-                                   std::pmr::memory_resource* memory) {
+std::pmr::vector<uint8_t> makeCutOutMask(const mesh::BurnDomain& domain,
+                                         std::span<const CutOut* const, kMaterials> pictures,
+                                         std::pmr::memory_resource* memory) {
     std::pmr::vector<uint8_t> gone(memory);
     if (std::all_of(pictures.begin(), pictures.end(), [](const CutOut* one) { return !one; }))
         return gone;
@@ -327,8 +327,8 @@ bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const Dr
     const fire::SpreadFacts f = facts(object, domain, drive, latch.pose);
     for (uint32_t i = 0; i < kMaterials; ++i)
         if ((object.materialMask >> i & 1) &&
-            !fire::windAtRest(latch.filters[i], drive.wind,
-                              fire::linkTicks(object.materials[i], f)))
+            !fire::isWindSteady(latch.filters[i], drive.wind,
+                                fire::linkTicks(object.materials[i], f)))
             return false;
     return true;
 }
@@ -336,7 +336,7 @@ bool atRest(const BurnableMesh& object, const mesh::BurnDomain& domain, const Dr
 uint32_t holeTicks(const BurnableMesh& object, uint32_t material, float pace) noexcept {
     FW_ASSERT(material < kMaterials, "material %u", material);
     const FwMaterialDef& def = object.materials[material];
-    const float holeTime = materialLook(def.look).holeTime;
+    const float holeTime = materialLook(def.appearance).holeTime;
     const float scale = timeScale(def, pace);
     if ((object.flags & FW_BURNABLE_NO_HOLES) || !(scale > 0) || !(holeTime > 0)) return 0;
     return uint32_t(std::min(holeTime * (float(gpu::kTicksPerSecond) / scale), 4.0e9f));
@@ -357,7 +357,7 @@ Records makeRecords(const BurnableMesh& object, const mesh::BurnDomain& domain,
         gpu::BurnMaterial& record = records.materials[i];
         record = fire::burnMaterial(def, f, winds[i]);
         if (const float scale = timeScale(def, drive.pace); scale > 0) record.timeScale = scale;
-        const gpu::MaterialLook look = materialLook(def.look);
+        const gpu::MaterialAppearance look = materialLook(def.appearance);
         if (record.timeScale > 0 && look.holeTime > 0) {
             const float ticks = float(gpu::kTicksPerSecond) / record.timeScale;
             record.holeTicks = uint32_t(std::min(look.holeTime * ticks, 4.0e9f));
@@ -457,7 +457,7 @@ uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain)
     if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS))
         flags |= gpu::kObjectSkinned;
     if (hasHeat(object)) flags |= gpu::kObjectHeat;
-    if (object.flags & FW_BURNABLE_Z_PASS) flags |= gpu::kObjectZPass;
+    if (object.flags & FW_BURNABLE_DEPTH_PEEL) flags |= gpu::kObjectZPass;
     return flags;
 }
 

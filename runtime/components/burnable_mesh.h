@@ -50,8 +50,8 @@ struct Records {
 };
 
 // A def changed by its world's flags (FwWorldFlags): no feature shows damage where there is none.
-[[nodiscard]] FwBurnableMeshDef underSwitches(const FwBurnableMeshDef& given,
-                                              uint32_t worldFlags) noexcept;
+[[nodiscard]] FwBurnableMeshDef applyWorldFlags(const FwBurnableMeshDef& given,
+                                                uint32_t worldFlags) noexcept;
 // Throws core::Error naming the field. Ids are the caller's: mesh, materials and image stay unset.
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def);
 // Sets a new pose. A shape other than the object's stretches only the drawn mesh: the front keeps
@@ -67,7 +67,7 @@ void setMaterial(BurnableMesh& object, uint32_t index, const FwMaterialDef& def)
 // Whether the object has temperature, fuel and water per texel.
 [[nodiscard]] bool hasHeat(const BurnableMesh& object) noexcept;
 // Whether the world keeps an energy ledger of the object's fuel.
-[[nodiscard]] bool keepsBook(const BurnableMesh& object) noexcept;
+[[nodiscard]] bool tracksBurntFuel(const BurnableMesh& object) noexcept;
 
 // The opaque pixels of a picture, by its alpha.
 struct CutOut {
@@ -80,9 +80,9 @@ struct CutOut {
 CutOut makeCutOut(const FwImageDef& def, std::pmr::memory_resource* memory);
 // 1 for each real texel without any opaque pixel; empty: all have some. pictures: by material
 // index; null: no picture, or one that is opaque everywhere.
-std::pmr::vector<uint8_t> makeGone(const mesh::BurnDomain& domain,
-                                   std::span<const CutOut* const, kMaterials> pictures,
-                                   std::pmr::memory_resource* memory);
+std::pmr::vector<uint8_t> makeCutOutMask(const mesh::BurnDomain& domain,
+                                         std::span<const CutOut* const, kMaterials> pictures,
+                                         std::pmr::memory_resource* memory);
 
 // Q7 slowness per texel times the host's speed multiplier, 0 where the object is cut out. Empty
 // without a multiplier and without `gone`.

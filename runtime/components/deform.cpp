@@ -1,6 +1,6 @@
 #include "components/deform.h"
 
-#include "components/look_table.h"
+#include "components/appearance_table.h"
 #include "core/error.h"
 
 #include <algorithm>
@@ -42,11 +42,11 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
     made.drag = 9.81f / (kFlutter * std::sqrt(weight / 0.08f));
     made.shrink = def.shrink;
     made.curl = def.curl;
-    made.bend = softness(def.look);
+    made.bend = softness(def.appearance);
     if (!(record.flags & 1) || !harmed) return made;
     made.charTicks = record.flameTicks;
     made.depth = def.recede * def.thickness;
-    const float opens = materialLook(def.look).holeTime;
+    const float opens = materialLook(def.appearance).holeTime;
     if (holes && opens > 0 && record.timeScale > 0) {
         made.holeSeconds = opens;
         made.holeTicks = ticksOf(opens / record.timeScale);
@@ -71,11 +71,12 @@ void checkDeform(const FwBurnableMeshDef& def) {
                    "and SPRINGS one is "
                    "possible.",
                    def.flags);
-    if ((def.flags & FW_BURNABLE_Z_PASS) &&
+    if ((def.flags & FW_BURNABLE_DEPTH_PEEL) &&
         !(def.flags & (FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS)))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_Z_PASS needs SPRINGS or RECEDE.",
-                   def.flags);
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_DEPTH_PEEL needs SPRINGS or RECEDE.",
+            def.flags);
     checkLength(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
         core::fail(FW_ERROR_INVALID_ARGUMENT,

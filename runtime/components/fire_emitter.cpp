@@ -47,7 +47,7 @@ vec4 with(const float v[3], float w) noexcept { return {v[0], v[1], v[2], w}; }
 // Factor on speed and life of flames at a share of the power (Heskestad: height scales with its
 // 0.4th power). Without it, flames at low power would float far above the fire. Follows the power
 // slowly, so that no existing particle gets younger.
-float vigourOf(float share, float before, bool first, float seconds) noexcept {
+float flameScaleOf(float share, float before, bool first, float seconds) noexcept {
     constexpr float kLeast = 0.25f, kPerSecond = 0.6f;
     const float target = std::max(std::pow(share, 0.2f), kLeast);
     const float step = kPerSecond * seconds;
@@ -132,7 +132,7 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     readDirection(def.direction, "FwFireEmitterDef::direction", direction);
     checkLengths(def.extent, 3, "FwFireEmitterDef::extent", -100.0f, 100.0f);
     checkLength(def.radius, "FwFireEmitterDef::radius", 0.0f, 50.0f);
-    checkValue(def.power, "FwFireEmitterDef::power", 0.0f, kMostPower);
+    checkValue(def.power, "FwFireEmitterDef::power", 0.0f, kMaxPower);
     checkValue(def.rate, "FwFireEmitterDef::rate", 0.0f, 200000.0f);
     checkLength(def.speed, "FwFireEmitterDef::speed", 0.0f, 200.0f);
     checkValue(def.cone, "FwFireEmitterDef::cone", 0.0f, 2.0f);
@@ -188,37 +188,38 @@ void moveFireEmitter(FireEmitter& emitter, const float position[3], const float*
 }
 
 void setEmitterPower(FireEmitter& emitter, float power) {
-    checkValue(power, "power", 0.0f, kMostPower);
+    checkValue(power, "power", 0.0f, kMaxPower);
     emitter.def.power = power;
     if (power > 0) emitter.look = emitterLook(emitter.def);  // at 0, flying particles keep theirs
 }
 
-void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept {
+void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& shield,
+                    double now) noexcept {
     FW_ASSERT(i < kJetRays, "ray %u", i);
-    JetShield& has = emitter.shields[i];
+    JetObstacle& has = emitter.shields[i];
     float apart = 0;
     for (int k = 0; k < 3; ++k)
         apart += (has.place[k] - shield.place[k]) * (has.place[k] - shield.place[k]);
     if (has.met && (!shield.met || apart > 0.16f)) {
-        JetShield& last = emitter.lastShields[emitter.nextLast++ % kJetRays];
+        JetObstacle& last = emitter.lastObstacles[emitter.nextLast++ % kJetRays];
         last = has;
         last.until = now + 0.8;
     }
     has = shield;
 }
 
-float emitterLasts(const FireEmitter& emitter) {
+float longestParticleLife(const FireEmitter& emitter) {
     const FwFireEmitterDef& def = emitter.def;
     const float fire = emitter.look.life * (1 + 1.55f * def.lifeVariance);
     const bool smokes = def.smoke > 0 && !(def.flags & FW_EMITTER_NO_SMOKE);
     return fire * (smokes ? 1 + def.smokeLife : 1.0f);
 }
 
-uint32_t emitterNeeds(const FireEmitter& emitter) {
+uint32_t particlesNeeded(const FireEmitter& emitter) {
     if (emitter.def.maxParticles) return emitter.def.maxParticles;
     const float stuck = emitter.def.stick > 0 ? kStuckRates : 0.0f;
     const double needed =
-        double(emitter.look.rate) * double(1 + stuck) * double(emitterLasts(emitter)) + 4;
+        double(emitter.look.rate) * double(1 + stuck) * double(longestParticleLife(emitter)) + 4;
     return uint32_t(std::min(needed, 4e9));
 }
 
@@ -265,7 +266,7 @@ FrameOfEmitter followEmitter(FireEmitter& emitter, float frame) noexcept {
     const FwFireEmitterDef& def = emitter.def;
     FireEmitter::Births& births = emitter.next;
     FrameOfEmitter f;
-    f.seconds = births.warms ? std::max(frame, emitterLasts(emitter)) : frame;
+    f.seconds = births.warms ? std::max(frame, longestParticleLife(emitter)) : frame;
     births.warms = false;
     if (!births.placed) std::copy_n(emitter.position, 3, births.position);
     float moved[3];
@@ -291,7 +292,7 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
     const bool flows = def.power > 0 && emitter.share > 0;
     f.burns = flows || f.stuckRate > 0;
     if (def.shape == FW_EMITTER_MESH && flows)
-        births.vigour = vigourOf(emitter.share, births.vigour, births.filled == 0, f.seconds);
+        births.vigour = flameScaleOf(emitter.share, births.vigour, births.filled == 0, f.seconds);
     // Shorter lives and as many more births keep the same number of particles.
     const double stream =
         flows ? double(emitter.look.rate) * double(emitter.share / births.vigour) : 0.0;
@@ -305,22 +306,22 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
     births.filled = std::min(births.filled + f.fresh, emitter.ring);
     births.serial += f.fresh;
     if (f.fresh > 0) births.last = now;
-    if (births.filled > 0 && now - births.last > double(emitterLasts(emitter)) + 0.1)
+    if (births.filled > 0 && now - births.last > double(longestParticleLife(emitter)) + 0.1)
         births.filled = 0;
 }
 
 // The discs that stop a jet.
 void writeShields(const FireEmitter& emitter, double now, gpu::ParticleEmitter& record) noexcept {
-    const auto add = [&](const JetShield& shield) {
-        FW_ASSERT(2 * record.shieldCount + 1 < std::size(record.shields), "%u discs",
-                  record.shieldCount);
-        record.shields[2 * record.shieldCount] = with(shield.place, shield.radius);
-        record.shields[2 * record.shieldCount + 1] = with(shield.normal, 0);
-        ++record.shieldCount;
+    const auto add = [&](const JetObstacle& shield) {
+        FW_ASSERT(2 * record.obstacleCount + 1 < std::size(record.shields), "%u discs",
+                  record.obstacleCount);
+        record.shields[2 * record.obstacleCount] = with(shield.place, shield.radius);
+        record.shields[2 * record.obstacleCount + 1] = with(shield.normal, 0);
+        ++record.obstacleCount;
     };
-    for (const JetShield& shield : emitter.shields)
+    for (const JetObstacle& shield : emitter.shields)
         if (shield.met) add(shield);
-    for (const JetShield& shield : emitter.lastShields)
+    for (const JetObstacle& shield : emitter.lastObstacles)
         if (shield.met && shield.until > now) add(shield);
 }
 
@@ -393,7 +394,7 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.waves0 = waves(air.now - double(seconds));
     record.waves1 = waves(air.now);
     record.steps =
-        std::min(uint32_t(std::ceil(seconds / gpu::kMostParticleStep)), gpu::kMostParticleSteps);
+        std::min(uint32_t(std::ceil(seconds / gpu::kMaxParticleStep)), gpu::kMaxParticleSteps);
     return true;
 }
 
@@ -450,15 +451,16 @@ void fillEmitterState(const FireEmitter& emitter, const EmitterAir& air,
     out.life = look.life;
     out.speed = look.speed;
     out.reach = look.reach;
-    out.struck = isSwept(emitter.def) ? emitter.struck : 0;
-    out.freeWay = isSwept(emitter.def) && emitter.struck > 0 ? emitter.freeWay : look.reach;
+    out.blockedRays = isSwept(emitter.def) ? emitter.blockedRays : 0;
+    out.clearDistance =
+        isSwept(emitter.def) && emitter.blockedRays > 0 ? emitter.clearDistance : look.reach;
     out.heated = emitter.heated;
     if (emitter.stream) {
         double fuel = 0, power = 0;
         for (const JetPatch& patch : emitter.stream->patches) {
             fuel += double(patch.fuel);
             power += double(patch.power);
-            out.stuckPlaces += patch.left > 0 ? 1u : 0u;
+            out.stuckPatches += patch.left > 0 ? 1u : 0u;
         }
         out.stuckFuel = float(fuel / double(kPatchUnitsPerJoule) * 1e-3);
         out.stuckPower = float(power * 1e-12);

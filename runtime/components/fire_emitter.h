@@ -28,7 +28,7 @@ struct EmitterLook {
 };
 
 // A disc that a jet's particles do not pass.
-struct JetShield {
+struct JetObstacle {
     bool met = false;
     float place[3] = {}, normal[3] = {}, radius = 0;  // m
     double until = 0;                                 // s; end of a disc that no ray strikes now
@@ -57,7 +57,7 @@ struct EmitterAir {
     double now = 0;  // s
 };
 
-struct EmitterBooks {
+struct EmitterFlipbooks {
     uint32_t fire = 0, other = 0;  // see ParticleEmitter
     uint32_t spark = 0;            // see SparkSource
     bool fireEmits = false;        // has flipbooks of fire, and none of them absorbs light
@@ -76,7 +76,7 @@ constexpr float kTeleport = 100;  // m/s; a faster move is a teleport
 struct FireEmitter {
     FwFireEmitterDef def{};
     EmitterLook look;
-    EmitterBooks books;
+    EmitterFlipbooks books;
     float share = 1;  // of its births; on a mesh, the burning share of it
     uint32_t seed = 0;
     uint32_t first = 0, ring = 0;  // its range of the world's particles
@@ -85,11 +85,11 @@ struct FireEmitter {
     JetHits hits{};
     uint64_t swept = 0;                     // the world's frame of that sweep
     std::array<JetHole, kJetRays> holes{};  // as of the last readback; cosmetic
-    std::array<JetShield, kJetRays> shields{}, lastShields{};
+    std::array<JetObstacle, kJetRays> shields{}, lastObstacles{};
     uint32_t nextLast = 0;
-    uint32_t struck = 0;  // rays that an obstacle stopped
-    float freeWay = 0;    // m to the nearest obstacle
-    float heated = 0;     // W that reached burnable meshes at the last exchange
+    uint32_t blockedRays = 0;  // rays that an obstacle stopped
+    float clearDistance = 0;   // m to the nearest obstacle
+    float heated = 0;          // W that reached burnable meshes at the last exchange
     std::array<JetTouch, 8> touches{};
     core::Owned<JetStream> stream;  // of an emitter that ignites
     // As of the last frame.
@@ -114,11 +114,12 @@ inline bool isSwept(const FwFireEmitterDef& def) noexcept {
     return (def.flags & FW_EMITTER_JET) && !(def.flags & FW_EMITTER_NO_COLLISION);
 }
 // Sets the disc that ray `i` strikes; the disc before it still stops particles on their way there.
-void takeShield(FireEmitter& emitter, uint32_t i, const JetShield& shield, double now) noexcept;
+void setJetObstacle(FireEmitter& emitter, uint32_t i, const JetObstacle& shield,
+                    double now) noexcept;
 EmitterLook emitterLook(const FwFireEmitterDef& def);
 // Particles that the emitter needs at its power; s that a particle lasts at most.
-uint32_t emitterNeeds(const FireEmitter& emitter);
-float emitterLasts(const FireEmitter& emitter);
+uint32_t particlesNeeded(const FireEmitter& emitter);
+float longestParticleLife(const FireEmitter& emitter);
 // Computes the next frame, of `frame` seconds, into `next` and the record. False: no particle is
 // left.
 bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,

@@ -11,7 +11,7 @@ using gpu::vec4;
 
 constexpr float kOut = 1e-4f;              // kW; a flame below it is invisible
 constexpr size_t kNearColliders = 16;      // most colliders of one flame
-constexpr float kFluxMost = 200000.0f;     // W/m^2
+constexpr float kMaxFlux = 200000.0f;      // W/m^2
 constexpr float kLumensPerWatt = 0.4f;     // of FlameLight::flux
 constexpr float kFullCircle = 12.566371f;  // sr of a sphere
 
@@ -58,7 +58,7 @@ const gpu::FlameNode& nodeAt(const volume::Flame& f, float s) noexcept {
 
 }  // namespace
 
-size_t FireFlames::findRoom(size_t more) {
+size_t FireFlames::reserveFlames(size_t more) {
     const size_t wanted = std::min<size_t>(now_.size() + more, gpu::kMaxVolumeFlames);
     size_t room = now_.capacity();
     if (room < wanted)
@@ -114,7 +114,7 @@ void FireFlames::place(FireFlame& f, const FireAir& air) const noexcept {
     f.trackVersion = fire.trackVersion;
 }
 
-FireState FireFlames::foresee(VolumetricFire& fire, const FireAir& air) const noexcept {
+FireState FireFlames::predictAhead(VolumetricFire& fire, const FireAir& air) const noexcept {
     FireState s;
     FireFlame f;
     f.fire = &fire;
@@ -222,7 +222,7 @@ void FireFlames::advance(const FireAir& air, float seconds) noexcept {
     FW_ASSERT(others_.size() <= met_.capacity(), "%zu of %zu flames", others_.size(),
               met_.capacity());
     met_.resize(others_.size());
-    volume::meetNeighbours(others_, up, met_);
+    volume::updateNeighbours(others_, up, met_);
     for (size_t i = 0; i < next_.size(); ++i) {
         FireFlame& f = next_[i];
         Near near;
@@ -289,19 +289,19 @@ uint32_t FireFlames::write(std::span<gpu::VolumeFlame> out) const noexcept {
     return count;
 }
 
-FireAnswer askFires(std::span<const FireFlame> flames,
-                    std::span<const core::Owned<volume::Profile>> profiles,
-                    std::span<const volume::Collider> walls, vec3 point) noexcept {
+FireAnswer queryFires(std::span<const FireFlame> flames,
+                      std::span<const core::Owned<volume::Profile>> profiles,
+                      std::span<const volume::Collider> walls, vec3 point) noexcept {
     FireAnswer all;
     float most = 0;
     for (const FireFlame& f : flames) {
         FW_ASSERT(f.fire->profile < profiles.size(), "profile %u of %zu", f.fire->profile,
                   profiles.size());
         const volume::FlameAnswer a =
-            volume::askFlame(f.flame, *profiles[f.fire->profile], point, walls);
+            volume::queryFlame(f.flame, *profiles[f.fire->profile], point, walls);
         all.air.inside |= a.inside;
         all.air.kelvin = std::max(all.air.kelvin, a.kelvin);
-        all.air.heatFlux = std::min(all.air.heatFlux + a.heatFlux, kFluxMost);
+        all.air.heatFlux = std::min(all.air.heatFlux + a.heatFlux, kMaxFlux);
         all.air.gas += a.gas;
         if (a.heatFlux > most) {
             most = a.heatFlux;

@@ -31,12 +31,12 @@ class FireFlames {
 
     // Reserves memory for `more` further flames, so that frames need none. Throws. Returns
     // capacity.
-    size_t findRoom(size_t more);
+    size_t reserveFlames(size_t more);
     void drop(const VolumetricFire& fire) noexcept;  // the flames of a destroyed fire
     void carry(gpu::vec3 by) noexcept;               // moves all flames, m
 
     // An estimate of the fire's state after its first frame.
-    FireState foresee(VolumetricFire& fire, const FireAir& air) const noexcept;
+    FireState predictAhead(VolumetricFire& fire, const FireAir& air) const noexcept;
 
     void begin() noexcept {
         FW_ASSERT(now_.size() <= next_.capacity(), "%zu of %zu flames", now_.size(),
@@ -69,9 +69,9 @@ struct FireAnswer {
     volume::FlameAnswer air;
     const VolumetricFire* fire = nullptr;
 };
-FireAnswer askFires(std::span<const FireFlame> flames,
-                    std::span<const core::Owned<volume::Profile>> profiles,
-                    std::span<const volume::Collider> walls, gpu::vec3 point) noexcept;
+FireAnswer queryFires(std::span<const FireFlame> flames,
+                      std::span<const core::Owned<volume::Profile>> profiles,
+                      std::span<const volume::Collider> walls, gpu::vec3 point) noexcept;
 volume::FlamePush pushOfFires(std::span<const FireFlame> flames,
                               std::span<const core::Owned<volume::Profile>> profiles,
                               std::span<const volume::Collider> walls, gpu::vec3 centre,

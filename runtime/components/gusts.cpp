@@ -13,11 +13,11 @@ namespace fw::components {
 namespace {
 
 constexpr int64_t kGustOne = int64_t(1) << 14;
-constexpr float kLeastGust = 0.5f, kMostGust = 1000;  // m
-constexpr int64_t kMostGustWind = fire::kMostWindUnits;
+constexpr float kMinGust = 0.5f, kMaxGust = 1000;  // m
+constexpr int64_t kMaxGustWind = fire::kMaxWindUnits;
 // Units of drift in a metre.
 constexpr int64_t kDriftMetre = 128 * int64_t(gpu::kTicksPerSecond);
-constexpr int64_t kMostMoved = 1000000000;  // m that an origin may move, see moveGusts
+constexpr int64_t kMaxMoved = 1000000000;  // m that an origin may move, see moveGusts
 
 int64_t floorDivide(int64_t a, int64_t b) noexcept { return a / b - (a % b < 0 ? 1 : 0); }
 
@@ -58,7 +58,7 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
     if (def.flags != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwGustDef::flags is 0x%x; it is zero.", def.flags);
     checkValue(def.strength, "FwGustDef::strength", 0.0f, 1.0f);
-    checkLength(def.size, "FwGustDef::size", kLeastGust, kMostGust);
+    checkLength(def.size, "FwGustDef::size", kMinGust, kMaxGust);
     Gusts gusts = before;
     gusts.strength = std::llround(double(def.strength) * double(kGustOne));
     gusts.size = millimetres(def.size);
@@ -67,11 +67,11 @@ Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
 
 bool plausible(const Gusts& gusts, uint64_t tick) noexcept {
     if (gusts.since > tick || gusts.strength < 0 || gusts.strength > kGustOne) return false;
-    const int64_t most = kMostGustWind * int64_t(gusts.since) + kMostMoved * kDriftMetre;
+    const int64_t most = kMaxGustWind * int64_t(gusts.since) + kMaxMoved * kDriftMetre;
     for (const int64_t drift : gusts.drift)
         if (drift < -most || drift > most) return false;
     return gusts.strength == 0 ||
-           (gusts.size >= millimetres(kLeastGust) && gusts.size <= millimetres(kMostGust));
+           (gusts.size >= millimetres(kMinGust) && gusts.size <= millimetres(kMaxGust));
 }
 
 void windChanges(Gusts& gusts, const fire::WindVector& wind, uint64_t tick) noexcept {
@@ -99,7 +99,7 @@ fire::WindVector gustOf(const Gusts& gusts, uint32_t seed, const fire::WindVecto
     const int64_t gain = kGustOne + gusts.strength * both / kGustOne;
     fire::WindVector out;
     for (size_t i = 0; i < 3; ++i)
-        out[i] = int32_t(std::clamp(here[i] * gain / kGustOne, -kMostGustWind, kMostGustWind));
+        out[i] = int32_t(std::clamp(here[i] * gain / kGustOne, -kMaxGustWind, kMaxGustWind));
     return out;
 }
 

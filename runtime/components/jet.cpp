@@ -52,8 +52,7 @@ uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept {
         patch.fuel -= std::min(patch.fuel, patch.water);
         patch.water = 0;
     }
-    FW_ASSERT(patch.fuel <= kPatchMost, "%llu of fuel",
-              static_cast<unsigned long long>(patch.fuel));
+    FW_ASSERT(patch.fuel <= kMaxPatch, "%llu of fuel", static_cast<unsigned long long>(patch.fuel));
     patch.power = patch.fuel / patch.left;
     patch.fuel -= patch.power;
     --patch.left;
@@ -63,7 +62,7 @@ uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept {
 }
 
 uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept {
-    const uint64_t takes = std::min(fuel, kPatchMost - std::min(patch.fuel, kPatchMost));
+    const uint64_t takes = std::min(fuel, kMaxPatch - std::min(patch.fuel, kMaxPatch));
     if (takes == 0) return fuel;
     patch.fuel += takes;
     patch.left = exchanges;
@@ -73,22 +72,22 @@ uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept 
 void wetPatch(JetPatch& patch, uint32_t grams, uint32_t tick) noexcept {
     // A patch has 0.2 m^2; in integers: grams * J * units / 5.
     constexpr uint64_t kOfGram = kPatchJoulesPerGram * kPatchUnitsPerJoule / 5;
-    const uint64_t most = kPatchMost / kOfGram;
-    const uint64_t takes = grams < most ? grams * kOfGram : kPatchMost;
+    const uint64_t most = kMaxPatch / kOfGram;
+    const uint64_t takes = grams < most ? grams * kOfGram : kMaxPatch;
     patch.waterAt = patch.water > 0 ? std::min(patch.waterAt, tick) : tick;
-    patch.water = std::min(patch.water + takes, kPatchMost);
+    patch.water = std::min(patch.water + takes, kMaxPatch);
 }
 
-uint64_t shareJet(uint64_t power, std::span<const uint64_t> areas,
-                  std::span<uint32_t> flux) noexcept {
+uint64_t updateJetShare(uint64_t power, std::span<const uint64_t> areas,
+                        std::span<uint32_t> flux) noexcept {
     FW_ASSERT(areas.size() <= flux.size(), "%zu areas, %zu fluxes", areas.size(), flux.size());
     uint64_t all = 0;
     for (const uint64_t area : areas) all += area;
     if (all == 0) return power;
-    const auto even = uint32_t(std::min<uint64_t>(power / all, gpu::kFluxMost));
+    const auto even = uint32_t(std::min<uint64_t>(power / all, gpu::kMaxFlux));
     uint64_t left = power - even * all;
     for (size_t i = 0; i < areas.size(); ++i) {
-        const bool more = even < gpu::kFluxMost && areas[i] <= left;
+        const bool more = even < gpu::kMaxFlux && areas[i] <= left;
         flux[i] = even + (more ? 1u : 0u);
         left -= more ? areas[i] : 0;
     }

@@ -23,7 +23,7 @@ struct JetHit {  // of one ray of a jet
     bool met = false;
     float distance = 0;  // m from the ray's start
     float place[3] = {}, normal[3] = {};
-    FwBurnableMeshId object{};  // null: a collider or blocker
+    FwBurnableMeshId object{};  // null: a collider or occluder
     uint32_t texel = 0;
 
     template <class A>
@@ -107,7 +107,7 @@ struct JetParcel {
 // Stuck fuel where rays struck, in nW times the length of an exchange.
 constexpr uint32_t kJetPatches = 16;
 constexpr float kPatchRadius = 0.25f;                  // m
-constexpr uint64_t kPatchMost = uint64_t(1) << 61;     // of fuel
+constexpr uint64_t kMaxPatch = uint64_t(1) << 61;      // of fuel
 constexpr uint64_t kPatchUnitsPerJoule = 8000000000u;  // exchanges a second, nW in a W
 constexpr uint64_t kPatchJoulesPerGram = 2600;         // heat to warm and boil off water
 struct JetPatch {
@@ -125,8 +125,8 @@ struct JetPatch {
         if (left == 0) return;
         a.texel("fuel that sticks", object, texel);
         a(fuel, power, water, waterAt, place, normal);
-        a.range("fuel that sticks", fuel, 0, double(kPatchMost));
-        a.range("water on fuel that sticks", water, 0, double(kPatchMost));
+        a.range("fuel that sticks", fuel, 0, double(kMaxPatch));
+        a.range("water on fuel that sticks", water, 0, double(kMaxPatch));
         a.range("place of fuel that sticks", place, -kJetReach, kJetReach);
         a.range("normal of fuel that sticks", normal, -1e6, 1e6);
     }
@@ -134,7 +134,7 @@ struct JetPatch {
 using JetPatches = std::array<JetPatch, kJetPatches>;
 // Burns a patch for one exchange and returns its power. The last exchange burns the last fuel.
 uint64_t burnPatch(JetPatch& patch, uint32_t now) noexcept;
-// Adds fuel and restarts the patch's time. Returns the fuel beyond kPatchMost.
+// Adds fuel and restarts the patch's time. Returns the fuel beyond kMaxPatch.
 uint64_t feedPatch(JetPatch& patch, uint64_t fuel, uint32_t exchanges) noexcept;
 // `grams`: g/m^2 of water at a tick; kPatchDrowned: enough to put the patch out.
 constexpr uint32_t kPatchDrowned = 0xFFFFFFFFu;
@@ -154,8 +154,8 @@ struct JetStream {
 };
 
 // Shares `power` nW as W/m^2 over texels with `areas` in 1e-9 m^2. Returns the rest: less than the
-// smallest texel takes for 1 W/m^2, unless all texels have gpu::kFluxMost.
-uint64_t shareJet(uint64_t power, std::span<const uint64_t> areas,
-                  std::span<uint32_t> flux) noexcept;
+// smallest texel takes for 1 W/m^2, unless all texels have gpu::kMaxFlux.
+uint64_t updateJetShare(uint64_t power, std::span<const uint64_t> areas,
+                        std::span<uint32_t> flux) noexcept;
 
 }  // namespace fw::components

@@ -12,7 +12,7 @@ namespace {
 
 constexpr uint32_t kPublishedRate = 10;  // Hz
 constexpr uint32_t kTicksPerSecond = 4096;
-constexpr float kMostWind = 1.5f;  // cells a step
+constexpr float kMaxWind = 1.5f;  // cells a step
 constexpr uint32_t kFlags = FW_FIELD_HIDDEN | FW_FIELD_AS_PUBLISHED | FW_FIELD_WETS;
 constexpr uint32_t kOpen =
     FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_BOTTOM | FW_FIELD_OPEN_TOP;
@@ -47,11 +47,11 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     checkLengths(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
     checkLengths(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
     checkRotation(def.rotation, "FwParticleFieldDef::rotation");
-    checkWhole(def.width, "FwParticleFieldDef::width", 32, gpu::kFieldSideMost);
+    checkWhole(def.width, "FwParticleFieldDef::width", 32, gpu::kMaxFieldSide);
     if (def.width % 4 != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwParticleFieldDef::width is %u; it is a multiple of 4.", def.width);
-    checkWhole(def.height, "FwParticleFieldDef::height", 32, gpu::kFieldSideMost);
+    checkWhole(def.height, "FwParticleFieldDef::height", 32, gpu::kMaxFieldSide);
     checkWhole(def.stepRate, "FwParticleFieldDef::stepRate", 20, 30);
     checkWhole(def.open, "FwParticleFieldDef::open", 0, kOpen);
     checkValue(def.amount, "FwParticleFieldDef::amount", 0.0f, 4.0f);
@@ -70,7 +70,7 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     checkValues(def.tint, 3, "FwParticleFieldDef::tint", 0.0f, 10.0f);
     checkValue(def.opacity, "FwParticleFieldDef::opacity", 0.0f, 10.0f);
 
-    const bool ring = def.shape != FW_FIELD_CARD;
+    const bool ring = def.shape != FW_FIELD_BILLBOARD;
     field.def.width = def.width;
     field.def.height = def.height;
     field.def.look = {def.amount, def.rise, def.spread, def.memory,
@@ -109,7 +109,7 @@ void setFieldPlace(ParticleField& field, const float position[3], const float ro
 void cellPlace(const ParticleField& field, float u, float v, float (&out)[3]) noexcept {
     const float* q = field.rotation;
     gpu::vec3 p((u - 0.5f) * field.size[0], v * field.size[1], 0);
-    if (field.shape != FW_FIELD_CARD) {  // as field_draw.vert
+    if (field.shape != FW_FIELD_BILLBOARD) {  // as field_draw.vert
         const float lon = 6.2831853f * u, lat = 3.1415927f * (v - 0.5f);
         p = gpu::vec3(std::cos(lat) * std::cos(lon) * field.size[0],
                       (std::sin(lat) + 1) * field.size[1],
@@ -143,7 +143,7 @@ field::FieldRules rulesOf(const ParticleField& field, const float wind[3]) noexc
     const float x[3] = {1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] + q[2] * q[3]),
                         2 * (q[0] * q[2] - q[1] * q[3])};
     const float along = wind[0] * x[0] + wind[1] * x[1] + wind[2] * x[2];
-    def.wind.x = std::clamp(along * field.windResponse, -kMostWind, kMostWind);
+    def.wind.x = std::clamp(along * field.windResponse, -kMaxWind, kMaxWind);
     field::FieldRules rules = field::fieldRules(def);
     const int w = int(def.width), h = int(def.height);
     const uint32_t rate = field::emissionRate(def.look.amount);

@@ -89,11 +89,11 @@ Pose makePose(const float transform[16], const char* field) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has scale %g; the limits are [0.001, 1000].",
                    field, scale);
     const auto [shortest, longest] = std::minmax({length[0], length[1], length[2]});
-    if (!(longest <= shortest * double(kMostStretch)))
+    if (!(longest <= shortest * double(kMaxStretch)))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "%s scales its axes by %g, %g and %g; the largest is at most %g times the "
                    "smallest.",
-                   field, length[0], length[1], length[2], double(kMostStretch));
+                   field, length[0], length[1], length[2], double(kMaxStretch));
     for (int c = 0; c < 3; ++c) {
         const int d = (c + 1) % 3;
         double dot = 0;

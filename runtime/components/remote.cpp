@@ -30,8 +30,8 @@ double powerOf(const FwMaterialDef& def) noexcept {
 
 }  // namespace
 
-void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
-                 gpu::RemoteObject& out) noexcept {
+void placeExchangeObject(const Pose& pose, const mesh::BurnDomain& domain,
+                         gpu::ExchangeObject& out) noexcept {
     // Three products of 16 bits of position and a row must stay below 2^31.
     const double unit = double(domain.quantum) * double(pose.scale) * kMillimetres;
     FW_ASSERT(unit > 0, "%g mm", unit);
@@ -67,7 +67,7 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
         boxHigh[i] = -2000000000;
     }
     for (uint32_t corner = 0; corner < 8; ++corner) {
-        const gpu::ivec3 at = gpu::remotePlace(
+        const gpu::ivec3 at = gpu::toWorldMm(
             out, gpu::ivec3((corner & 1 ? high : low)[0], (corner & 2 ? high : low)[1],
                             (corner & 4 ? high : low)[2]));
         for (int i = 0; i < 3; ++i) {
@@ -83,8 +83,8 @@ void placeRemote(const Pose& pose, const mesh::BurnDomain& domain,
     out.high[3] = 0;
 }
 
-void fillRemote(const BurnableMesh& object, const mesh::BurnDomain& domain,
-                const Governance& governance, gpu::RemoteObject& out) noexcept {
+void fillExchangeObject(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                        const Governance& governance, gpu::ExchangeObject& out) noexcept {
     const double scale = double(object.pose.scale);
     const double area = domain.texelArea() * scale * scale;
     out.texelArea = uint32_t(std::clamp(area * 1e6, 1.0, 4e9));
@@ -100,16 +100,16 @@ void fillRemote(const BurnableMesh& object, const mesh::BurnDomain& domain,
                                                      object.materials[i].extinctionMoisture)));
     }
     out.catches = uint32_t(std::lround(std::clamp(damping, 0.0, 1.0) * 256));
-    out.flags = gpu::kRemoteLive;
-    if (!(object.flags & FW_BURNABLE_NO_SPREAD)) out.flags |= gpu::kRemoteGives;
-    if (object.flags & FW_BURNABLE_TWO_SIDED) out.flags |= gpu::kRemoteTwoSided;
+    out.flags = gpu::kExchangeLive;
+    if (!(object.flags & FW_BURNABLE_NO_SPREAD)) out.flags |= gpu::kExchangeGives;
+    if (object.flags & FW_BURNABLE_TWO_SIDED) out.flags |= gpu::kExchangeTwoSided;
     out.chance = chanceOf(governance.chance);
     out.hopsMost = limitOf(governance.hopsMost);
-    out.tilesMost = limitOf(governance.tilesMost);
+    out.maxTiles = limitOf(governance.maxTiles);
     out.lifeTicks = lifeTicksOf(governance.life);
 }
 
-void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) noexcept {
+void placeHeatOccluder(const Pose& pose, const float halfSize[3], gpu::HeatOccluder& out) noexcept {
     gpu::ivec4* turns[3] = {&out.turn0, &out.turn1, &out.turn2};
     for (int r = 0; r < 3; ++r) {
         for (int c = 0; c < 3; ++c)  // transposed: world to box
@@ -122,8 +122,8 @@ void placeBlocker(const Pose& pose, const float halfSize[3], gpu::Blocker& out) 
     out.size[3] = 1;
 }
 
-uint32_t remoteReach(const BurnableMesh& object, const mesh::BurnDomain& domain,
-                     const std::array<uint32_t, kMaterials>& texelsOf) noexcept {
+uint32_t exchangeReach(const BurnableMesh& object, const mesh::BurnDomain& domain,
+                       const std::array<uint32_t, kMaterials>& texelsOf) noexcept {
     const double scale = double(object.pose.scale);
     const double area = domain.texelArea() * scale * scale;
     double watts = 0;

@@ -13,9 +13,9 @@ namespace {
 constexpr double kQ14 = 16384;
 constexpr double kWholeAir = 4294967296.0;  // of RoomAir::oxygen
 constexpr float kFarthestRoom = 1e6f;       // m
-constexpr float kMostHalf = 1000, kLeastHalf = 0.05f;
-constexpr float kMostVolume = 1e6f, kLeastVolume = 0.1f;  // m^3
-constexpr float kMostVent = 1e4f;                         // m^3/s
+constexpr float kMaxHalf = 1000, kMinHalf = 0.05f;
+constexpr float kMaxVolume = 1e6f, kMinVolume = 0.1f;  // m^3
+constexpr float kMaxVent = 1e4f;                       // m^3/s
 constexpr uint32_t kKnownRoomFlags = FW_ROOM_REFILL;
 // m^3 of oxygen per J of fire: 13.1 MJ/kg (Huggett), 1.330 kg/m^3 at 293 K.
 constexpr double kOxygenPerJoule = 1 / (13.1e6 * 1.330);
@@ -33,17 +33,17 @@ Room makeRoom(const FwRoomDef& def) {
                    def.flags, def.reserved, kKnownRoomFlags);
     checkLengths(def.position, 3, "FwRoomDef::position", -kFarthestRoom, kFarthestRoom);
     checkRotation(def.rotation, "FwRoomDef::rotation");
-    checkLengths(def.halfSize, 3, "FwRoomDef::halfSize", kLeastHalf, kMostHalf);
-    checkValue(def.volume, "FwRoomDef::volume", 0, kMostVolume);
-    checkValue(def.vent, "FwRoomDef::vent", 0, kMostVent);
+    checkLengths(def.halfSize, 3, "FwRoomDef::halfSize", kMinHalf, kMaxHalf);
+    checkValue(def.volume, "FwRoomDef::volume", 0, kMaxVolume);
+    checkValue(def.vent, "FwRoomDef::vent", 0, kMaxVent);
     checkValue(def.oxygen, "FwRoomDef::oxygen", 0, 1);
     const double box =
         8.0 * double(def.halfSize[0]) * double(def.halfSize[1]) * double(def.halfSize[2]);
     const double volume = def.volume != 0 ? double(def.volume) : box;
-    if (!(volume >= double(kLeastVolume) && volume <= double(kMostVolume)))
+    if (!(volume >= double(kMinVolume) && volume <= double(kMaxVolume)))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwRoomDef::volume is %g m^3 and its box has %g; the limits are [%g, %g].",
-                   double(def.volume), box, double(kLeastVolume), double(kMostVolume));
+                   double(def.volume), box, double(kMinVolume), double(kMaxVolume));
     const double x = double(def.rotation[0]), y = double(def.rotation[1]),
                  z = double(def.rotation[2]), w = double(def.rotation[3]);
     const double axes[9] = {
@@ -67,12 +67,11 @@ bool plausible(const Room& room) noexcept {
         return double(value) >= low && double(value) <= high;
     };
     const double far = double(kFarthestRoom) * 1000;
-    bool fine =
-        within(int64_t(room.volume), double(kLeastVolume) * 1000, double(kMostVolume) * 1000);
-    fine &= within(int64_t(room.vent), 0, double(kMostVent) * 1e6);
+    bool fine = within(int64_t(room.volume), double(kMinVolume) * 1000, double(kMaxVolume) * 1000);
+    fine &= within(int64_t(room.vent), 0, double(kMaxVent) * 1e6);
     for (size_t i = 0; i < 3; ++i)
         fine &= within(room.middle[i], -far, far) &&
-                within(room.half[i], double(kLeastHalf) * 1000, double(kMostHalf) * 1000);
+                within(room.half[i], double(kMinHalf) * 1000, double(kMaxHalf) * 1000);
     for (const int64_t axis : room.axes) fine &= within(axis, -1.01 * kQ14, 1.01 * kQ14);
     return fine;
 }
@@ -81,7 +80,7 @@ bool isIn(const Room& room, const WindPlace& place) noexcept {
     const int64_t off[3] = {place.x - room.middle[0], place.y - room.middle[1],
                             place.z - room.middle[2]};
     // No room reaches as far; the products below fit 64 bits.
-    const auto far = int64_t(kMostHalf) * 2000;
+    const auto far = int64_t(kMaxHalf) * 2000;
     for (const int64_t value : off)
         if (std::abs(value) > far) return false;
     for (size_t i = 0; i < 3; ++i) {
@@ -114,7 +113,7 @@ gpu::Room roomRecord(const Room& room, float pace, const gpu::RoomAir& begins) n
     record.flash = begins.flash;
     // Powers beyond the range of the mean never occur.
     const double flashes = double(room.flashPower()) * kPeriod * double(pace);
-    if (flashes <= double(gpu::kFlashMost))
+    if (flashes <= double(gpu::kMaxFlash))
         record.flashes = std::max(uint32_t(wholeOf(flashes)), 1u);
     return record;
 }

@@ -38,7 +38,7 @@ void note(SparkHistory& history, const float place[3], float rate) noexcept {
 void findWall(const FireEmitter& emitter, gpu::SparkSource& record) noexcept {
     gpu::vec3 place(0.0f), normal(0.0f);
     float count = 0, radius = 0;
-    for (const JetShield& shield : emitter.shields) {
+    for (const JetObstacle& shield : emitter.shields) {
         if (!shield.met) continue;
         place += gpu::vec3(shield.place[0], shield.place[1], shield.place[2]);
         normal += gpu::vec3(shield.normal[0], shield.normal[1], shield.normal[2]);
@@ -126,7 +126,7 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.kelvin = look.kelvin0 + kBrighter;
     record.seed = emitter.seed;
     record.slots =
-        std::min(uint32_t(std::ceil(double(most) * double(gpu::kSparkTurn))), gpu::kMostSparks);
+        std::min(uint32_t(std::ceil(double(most) * double(gpu::kSparkTurn))), gpu::kMaxSparks);
     if (def.flags & FW_EMITTER_GROUND) record.flags |= gpu::kSparkGround;
     record.book = emitter.books.spark;
     record.object = onMesh ? def.object.index1 : 0;
@@ -134,7 +134,7 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
 }
 
 uint32_t sparkQuads(const gpu::SparkSource& record) noexcept {
-    return record.object ? gpu::kMostTileSparks : record.slots;
+    return record.object ? gpu::kMaxTileSparks : record.slots;
 }
 
 }  // namespace fw::components

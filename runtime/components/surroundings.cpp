@@ -11,10 +11,10 @@ namespace {
 
 constexpr float kRadiant = 0.3f;      // of a fire's power
 constexpr float kConvection = 25.0f;  // W/(m^2 K), of hot gas on a body
-constexpr float kLeastFlux = 20.0f;   // W/m^2; below it walls are not tested
+constexpr float kMinFlux = 20.0f;     // W/m^2; below it walls are not tested
 // Soot of a kJ of wood, g: 0.015 of its fuel at 15 kJ/g. Its cross-section, m^2/g.
 constexpr float kSootPerKilojoule = 0.015f / 15.0f, kSmokeArea = 8.7f;
-constexpr float kLeastSmoke = 1e-5f;  // 1/m
+constexpr float kMinSmoke = 1e-5f;  // 1/m
 constexpr float kPainFlux = 2500.0f, kPainExcess = 40.0f, kBlindSmoke = 1.0f;
 constexpr int kSightParts = 48;
 
@@ -62,7 +62,7 @@ FireSource fireSource(vec3 base, float radius, float power, uint32_t id) noexcep
 float smokeAt(std::span<const FireSource> sources, const SurroundingAir& air, vec3 point) noexcept {
     float smoke = 0;
     for (const FireSource& fire : sources) smoke += smokeOf(fire, air, point);
-    return smoke < kLeastSmoke ? 0 : smoke;
+    return smoke < kMinSmoke ? 0 : smoke;
 }
 
 Surroundings surroundingsOf(std::span<const FireSource> sources, const SurroundingAir& air,
@@ -90,16 +90,16 @@ Surroundings surroundingsOf(std::span<const FireSource> sources, const Surroundi
         const float flux =
             kRadiant * 1000.0f * fire.power / (kSphere * std::max(glm::dot(to, to), near * near));
         const bool hidden =
-            flux > kLeastFlux && (std::any_of(air.walls.begin(), air.walls.end(),
-                                              [&](const volume::Collider& wall) {
-                                                  return volume::shades(wall, middle, point);
-                                              }) ||
-                                  shieldShades(air.shield, &middle.x, &point.x, fire.radius));
+            flux > kMinFlux && (std::any_of(air.walls.begin(), air.walls.end(),
+                                            [&](const volume::Collider& wall) {
+                                                return volume::shades(wall, middle, point);
+                                            }) ||
+                                isShadedByOcclusion(air.shield, &middle.x, &point.x, fire.radius));
         if (!hidden) all.heatFlux += flux;
         all.heatFlux += kConvection * excess;
     }
-    all.heatFlux = std::min(all.heatFlux, kMostHeatFlux);
-    if (all.smoke < kLeastSmoke) all.smoke = 0;
+    all.heatFlux = std::min(all.heatFlux, kMaxHeatFlux);
+    if (all.smoke < kMinSmoke) all.smoke = 0;
     return all;
 }
 
@@ -113,7 +113,7 @@ float sightThrough(std::span<const FireSource> sources, const SurroundingAir& ai
     return std::exp(-depth);
 }
 
-float dangerOf(const Surroundings& at) noexcept {
+float spreadRiskOf(const Surroundings& at) noexcept {
     return std::max({at.heatFlux / kPainFlux, at.excess / kPainExcess, at.smoke / kBlindSmoke});
 }
 

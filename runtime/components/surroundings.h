@@ -1,7 +1,7 @@
 // Effects of fires on places around them: heat on a body, hot air, smoke. For a game's damage,
 // sight and path finding. Cosmetic floats, from the host's view of the fires.
 #pragma once
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 #include "volume/collide.h"
 
 #include <cfloat>
@@ -12,7 +12,7 @@ namespace fw::components {
 
 using volume::vec3;
 
-constexpr float kMostHeatFlux = 150000.0f;  // W/m^2, of a full flame
+constexpr float kMaxHeatFlux = 150000.0f;  // W/m^2, of a full flame
 
 struct FireSource {      // a fire, modelled as a pool fire
     vec3 base{0.0f};     // m
@@ -27,7 +27,7 @@ FireSource fireSource(vec3 base, float radius, float power, uint32_t id) noexcep
 struct SurroundingAir {
     vec3 up{0.0f, 1.0f, 0.0f}, wind{0.0f};    // unit; m/s
     std::span<const volume::Collider> walls;  // stop heat
-    ShieldView shield;                        // likewise
+    OcclusionView shield;                     // likewise
 };
 
 struct Surroundings {
@@ -46,6 +46,6 @@ float sightThrough(std::span<const FireSource> sources, const SurroundingAir& ai
                    vec3 to) noexcept;
 // Danger to people, [0, inf): 1 is 2.5 kW/m^2 (pain within half a minute), 60 C, or smoke of 1 1/m,
 // a visibility of three metres (limits of ISO 13571).
-float dangerOf(const Surroundings& at) noexcept;
+float spreadRiskOf(const Surroundings& at) noexcept;
 
 }  // namespace fw::components

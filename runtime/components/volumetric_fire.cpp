@@ -159,13 +159,13 @@ void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, Volume
     look.coreTint[3] = def.coreTintWeight;
 }
 
-uint32_t mostParts(float power, float diameter) noexcept {
+uint32_t maxParts(float power, float diameter) noexcept {
     std::array<volume::Flamelet, volume::kMaxFlamelets> parts;
-    return power > 0 && power <= kMostPower ? volume::splitFire(power, diameter, parts) : 1;
+    return power > 0 && power <= kMaxPower ? volume::splitFire(power, diameter, parts) : 1;
 }
 
 void setFirePower(VolumetricFire& fire, float power) {
-    checkValue(power, "power", 0.0f, kMostPower);
+    checkValue(power, "power", 0.0f, kMaxPower);
     fire.power = power;
     splitAgain(fire);
 }
@@ -176,7 +176,7 @@ void setFirePosition(VolumetricFire& fire, const float position[3]) {
 }
 
 void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name) {
-    checkWhole(tier, name, 0, FW_FIRE_TIER_FLIPBOOK);
+    checkWhole(tier, name, 0, FW_FIRE_TIER_SHARED_IMPOSTOR);
     fire.tier = tier;
 }
 

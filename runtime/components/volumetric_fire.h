@@ -45,7 +45,7 @@ struct FireControls {        // that the host turns while it burns
     void serialize(A& a) {
         a(position, power, pointCount);
         a.range("volumetric fire's place", position, -1e6, 1e6);
-        a.range("volumetric fire's power", power, 0, kMostPower);
+        a.range("volumetric fire's power", power, 0, kMaxPower);
         a.require(pointCount != 1 && pointCount <= points.size(),
                   "number of points of a volumetric fire");
         for (uint32_t i = 0; i < pointCount; ++i) {
@@ -93,7 +93,7 @@ void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* mem
 // Throw core::Error if a value is out of its limits, and then change nothing. The caller sets the
 // profile's layer.
 void makeVolumetricFire(const FwVolumetricFireDef& def, uint32_t ownSeed, VolumetricFire& fire);
-uint32_t mostParts(float power, float diameter) noexcept;  // flames that it would divide into
+uint32_t maxParts(float power, float diameter) noexcept;  // flames that it would divide into
 void setFirePower(VolumetricFire& fire, float power);
 void setFirePosition(VolumetricFire& fire, const float position[3]);
 void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name);

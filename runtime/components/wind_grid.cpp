@@ -11,9 +11,9 @@ namespace fw::components {
 namespace {
 
 constexpr int64_t kWhole = int64_t(1) << 14;
-constexpr float kLeastGridCell = 0.01f, kMostGridCell = 1000;  // m
-constexpr float kMostGridFade = 1000;                          // m
-constexpr float kFarthestGrid = 1e6f;                          // m
+constexpr float kMinGridCell = 0.01f, kMaxGridCell = 1000;  // m
+constexpr float kMaxGridFade = 1000;                        // m
+constexpr float kFarthestGrid = 1e6f;                       // m
 
 }  // namespace
 
@@ -27,19 +27,19 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwWindGridDef::blend is %u; the limit is %u.",
                    def.blend, FW_WIND_BLEND_COUNT - 1);
     for (uint32_t i = 0; i < 3; ++i)
-        if (def.counts[i] < 2 || def.counts[i] > kMostGridSide)
+        if (def.counts[i] < 2 || def.counts[i] > kMaxGridSide)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwWindGridDef::counts[%u] is %u; the limits are [2, %u].", i, def.counts[i],
-                       kMostGridSide);
+                       kMaxGridSide);
     shape.blend = def.blend;
     std::copy_n(def.counts, 3, shape.counts.begin());
-    if (shape.points() > kMostGridPoints)
+    if (shape.points() > kMaxGridPoints)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwWindGridDef::counts makes %u x %u x %u = %u points; the limit is %u.",
-                   def.counts[0], def.counts[1], def.counts[2], shape.points(), kMostGridPoints);
+                   def.counts[0], def.counts[1], def.counts[2], shape.points(), kMaxGridPoints);
     checkLengths(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
-    checkLength(def.cellSize, "FwWindGridDef::cellSize", kLeastGridCell, kMostGridCell);
-    checkLength(def.fade, "FwWindGridDef::fade", 0.0f, kMostGridFade);
+    checkLength(def.cellSize, "FwWindGridDef::cellSize", kMinGridCell, kMaxGridCell);
+    checkLength(def.fade, "FwWindGridDef::fade", 0.0f, kMaxGridFade);
     for (size_t i = 0; i < 3; ++i) shape.origin[i] = millimetres(def.origin[i]);
     shape.cell = millimetres(def.cellSize);
     shape.fade = millimetres(def.fade);
@@ -48,12 +48,12 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
 
 WindPoint makeWindPoint(const float velocity[3], uint32_t point) {
     for (uint32_t i = 0; i < 3; ++i)
-        if (!(std::abs(velocity[i]) <= fire::kMostWind))
+        if (!(std::abs(velocity[i]) <= fire::kMaxWind))
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwWindGridDef::velocities[%u] is " FW_LENGTH " " FW_LENGTH_UNIT
                        "/s; the limits are [" FW_LENGTH ", " FW_LENGTH "].",
-                       3 * point + i, double(velocity[i]), double(-fire::kMostWind),
-                       double(fire::kMostWind));
+                       3 * point + i, double(velocity[i]), double(-fire::kMaxWind),
+                       double(fire::kMaxWind));
     const fire::WindVector units = fire::windUnits(velocity);
     return {int16_t(units[0]), int16_t(units[1]), int16_t(units[2])};
 }
@@ -70,14 +70,14 @@ void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& point
 
 bool plausible(const WindGridShape& shape) noexcept {
     if (shape == WindGridShape{}) return true;
-    bool fine = shape.blend < FW_WIND_BLEND_COUNT && shape.cell >= millimetres(kLeastGridCell) &&
-                shape.cell <= millimetres(kMostGridCell) && shape.fade >= 0 &&
-                shape.fade <= millimetres(kMostGridFade);
+    bool fine = shape.blend < FW_WIND_BLEND_COUNT && shape.cell >= millimetres(kMinGridCell) &&
+                shape.cell <= millimetres(kMaxGridCell) && shape.fade >= 0 &&
+                shape.fade <= millimetres(kMaxGridFade);
     const int64_t far = millimetres(kFarthestGrid);
     for (size_t i = 0; i < 3; ++i)
-        fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= kMostGridSide &&
+        fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= kMaxGridSide &&
                shape.origin[i] >= -far && shape.origin[i] <= far;
-    return fine && shape.points() <= kMostGridPoints;
+    return fine && shape.points() <= kMaxGridPoints;
 }
 
 fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,

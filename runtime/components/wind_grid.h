@@ -8,7 +8,7 @@
 
 namespace fw::components {
 
-constexpr uint32_t kMostGridPoints = 32768, kMostGridSide = 64;
+constexpr uint32_t kMaxGridPoints = 32768, kMaxGridSide = 64;
 
 struct WindGridShape;
 // Whether makeWindGridShape may have made it.
@@ -44,7 +44,7 @@ struct WindGrid {
         if (points.empty()) return;
         for (size_t axis = 0; axis < 3; ++axis)
             a.plane(
-                "wind grid", points.size(), shape.counts[0], {}, 2 * uint32_t(fire::kMostWindUnits),
+                "wind grid", points.size(), shape.counts[0], {}, 2 * uint32_t(fire::kMaxWindUnits),
                 [&](size_t i) {
                     const int32_t units = points[i][axis];
                     return units < 0 ? uint32_t(-units - 1) * 2 + 1 : uint32_t(units) * 2;

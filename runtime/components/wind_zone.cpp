@@ -15,10 +15,10 @@ using Vector = std::array<int64_t, 3>;
 
 constexpr int kOneBits = 14;
 constexpr int64_t kOne = int64_t(1) << kOneBits;
-constexpr float kMostZoneSize = 1000;  // m
+constexpr float kMaxZoneSize = 1000;   // m
 constexpr float kFarthestZone = 1e6f;  // m
-constexpr int32_t kMostZonePriority = 1000;
-constexpr int64_t kMostZoneWind = fire::kMostWindUnits;
+constexpr int32_t kMaxZonePriority = 1000;
+constexpr int64_t kMaxZoneWind = fire::kMaxWindUnits;
 constexpr uint32_t kQuarter = 32;  // 1/128 m/s in 1/4 m/s
 
 // Largest whole number whose square is not more than n.
@@ -104,15 +104,15 @@ WindZone makeWindZone(const FwWindZoneDef& def) {
     checkKind(def.shape, "shape", FW_WIND_SHAPE_COUNT);
     checkKind(def.flow, "flow", FW_WIND_FLOW_COUNT);
     checkKind(def.blend, "blend", FW_WIND_BLEND_COUNT);
-    if (def.priority < -kMostZonePriority || def.priority > kMostZonePriority)
+    if (def.priority < -kMaxZonePriority || def.priority > kMaxZonePriority)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwWindZoneDef::priority is %d; the limits are [%d, %d].", def.priority,
-                   -kMostZonePriority, kMostZonePriority);
+                   -kMaxZonePriority, kMaxZonePriority);
     checkLengths(def.position, 3, "FwWindZoneDef::position", -kFarthestZone, kFarthestZone);
     checkValues(def.axis, 3, "FwWindZoneDef::axis", -kFarthestZone, kFarthestZone);
     const unsigned sizes = sizesOf(def.shape);
-    checkLengths(def.size, sizes, "FwWindZoneDef::size", 0.01f, kMostZoneSize);
-    checkLength(def.speed, "FwWindZoneDef::speed", -fire::kMostWind, fire::kMostWind);
+    checkLengths(def.size, sizes, "FwWindZoneDef::size", 0.01f, kMaxZoneSize);
+    checkLength(def.speed, "FwWindZoneDef::speed", -fire::kMaxWind, fire::kMaxWind);
     checkValue(def.falloff, "FwWindZoneDef::falloff", 0.0f, 1.0f);
     WindZone zone;
     zone.shape = def.shape;
@@ -139,11 +139,11 @@ bool plausible(const WindZone& zone) noexcept {
     const auto within = [](int64_t value, int64_t low, int64_t high) {
         return value >= low && value <= high;
     };
-    const int64_t far = millimetres(kFarthestZone), most = millimetres(kMostZoneSize);
+    const int64_t far = millimetres(kFarthestZone), most = millimetres(kMaxZoneSize);
     bool fine = zone.shape < FW_WIND_SHAPE_COUNT && zone.flow < FW_WIND_FLOW_COUNT &&
                 zone.blend < FW_WIND_BLEND_COUNT &&
-                within(zone.priority, -kMostZonePriority, kMostZonePriority) &&
-                within(zone.speed, -kMostZoneWind, kMostZoneWind) && within(zone.fades, 0, kOne);
+                within(zone.priority, -kMaxZonePriority, kMaxZonePriority) &&
+                within(zone.speed, -kMaxZoneWind, kMaxZoneWind) && within(zone.fades, 0, kOne);
     for (size_t i = 0; i < 3; ++i)
         fine &= within(zone.middle[i], -far, far) && within(zone.axis[i], -kOne, kOne) &&
                 within(zone.size[i], i < sizesOf(zone.shape) ? 1 : 0, most);
@@ -172,7 +172,7 @@ fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector&
         return a.priority < b.priority;
     }));
     Vector sum{wind[0], wind[1], wind[2]};
-    const int64_t far = millimetres(2 * kMostZoneSize);
+    const int64_t far = millimetres(2 * kMaxZoneSize);
     for (const WindZone& zone : zones) {
         const Vector off{place.x - zone.middle[0], place.y - zone.middle[1],
                          place.z - zone.middle[2]};
@@ -191,7 +191,7 @@ fire::WindVector windIn(std::span<const WindZone> zones, const fire::WindVector&
     }
     fire::WindVector out;
     for (size_t i = 0; i < 3; ++i)
-        out[i] = int32_t(std::clamp(sum[i], -kMostZoneWind, kMostZoneWind));
+        out[i] = int32_t(std::clamp(sum[i], -kMaxZoneWind, kMaxZoneWind));
     return out;
 }
 
@@ -201,7 +201,7 @@ uint32_t packWind(const fire::WindVector& wind) noexcept {
     for (size_t i = 0; i < 3; ++i) {
         const int64_t away = wind[i] < 0 ? -1 : 1;
         const int64_t part = (std::abs(int64_t(wind[i])) + kQuarter / 2) / kQuarter * away;
-        const int64_t kept = std::clamp<int64_t>(part, -gpu::kWindMost, gpu::kWindMost);
+        const int64_t kept = std::clamp<int64_t>(part, -gpu::kMaxWind, gpu::kMaxWind);
         any |= kept != 0;
         word |= uint32_t(kept + gpu::kWindZero) << (i * gpu::kWindBits);
     }

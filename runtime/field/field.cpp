@@ -43,7 +43,7 @@ FieldRules fieldRules(const FieldDef& def) noexcept {
     // Half: with all of it, particles would never slow down.
     rules.inertia = fixed(0.5f * look.memory, 256, 256);
     rules.chaos = fixed(look.chaos, 256, 1024);
-    rules.spread = fixed(look.spread, float(kFieldSpreadMost), float(kFieldSpreadMost));
+    rules.spread = fixed(look.spread, float(kMaxFieldSpread), float(kMaxFieldSpread));
     rules.memory = fixed(look.memory, 128, 128);
     rules.death = fixed(1 - std::exp(-1 / (look.life * float(def.stepRate))), 65536, 65535);
     rules.seed = def.seed;
@@ -56,7 +56,7 @@ FieldRules fieldRules(const FieldDef& def) noexcept {
 uint32_t emissionRate(float amount) noexcept { return fixed(amount * 255 / 12, 256, 1u << 16); }
 
 void startField(Field& field, uint32_t width, uint32_t height) {
-    FW_ASSERT(width >= 4 && height >= 4 && width <= kFieldSideMost && height <= kFieldSideMost,
+    FW_ASSERT(width >= 4 && height >= 4 && width <= kMaxFieldSide && height <= kMaxFieldSide,
               "%u x %u cells", width, height);
     const size_t count = size_t(width) * height;
     std::pmr::memory_resource* memory = field.cells.get_allocator().resource();
@@ -119,7 +119,7 @@ void stepField(Field& field, const FieldRules& rules) noexcept {
                 const bool is = inside(x + d.x, y + d.y);
                 // Walls are full, and no particle spreads over a border.
                 const uint there =
-                    is ? field.cells[at(x + d.x, y + d.y)] & kFieldCellMost : kFieldCellMost;
+                    is ? field.cells[at(x + d.x, y + d.y)] & kMaxFieldCell : kMaxFieldCell;
                 around.k[k] = there * rules.spread;
                 rooms.k[k] = is ? fieldRoom(there) : open(i, y + d.y) ? fieldRoom(0) : 0;
             }

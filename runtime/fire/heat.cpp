@@ -10,9 +10,9 @@
 namespace fw::fire {
 namespace {
 
-constexpr double kLeastSkin = 0.0002;  // m
-constexpr float kSheet = 0.002f;       // m; up to it a sheet is evenly warm
-constexpr double kKelvin = 16;         // units per K
+constexpr double kMinSkin = 0.0002;  // m
+constexpr float kSheet = 0.002f;     // m; up to it a sheet is evenly warm
+constexpr double kKelvin = 16;       // units per K
 
 }  // namespace
 
@@ -33,12 +33,12 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
     m.ownFlux = fixed(double(facts.ownFlux), 1, 200000);
     m.ambient = fixed(double(ambient), kKelvin, 16000);
     const bool deep = facts.thick || facts.deep;
-    m.capacityMost = fixed(volumetric * depth / seconds, 256, 1 << 30);
-    m.capacityLeast = m.capacityMost;
+    m.maxCapacity = fixed(volumetric * depth / seconds, 256, 1 << 30);
+    m.minCapacity = m.maxCapacity;
     if (deep) {
         m.inertia = std::max(
             fixed(std::numbers::pi / 2 * double(facts.conductivity) * volumetric / seconds, 1), 1u);
-        m.capacityLeast = fixed(volumetric * std::min(kLeastSkin, depth) / seconds, 256, 1 << 30);
+        m.minCapacity = fixed(volumetric * std::min(kMinSkin, depth) / seconds, 256, 1 << 30);
     }
     if (facts.thick) {
         const double fuel = double(facts.density) * depth;  // kg/m^2
@@ -51,13 +51,13 @@ gpu::HeatMaterial heatMaterial(const HeatFacts& facts, double seconds, float amb
     m.ignitesAt = fixed(double(facts.ignition), kKelvin, 65535);
     m.ignitesAlone = fixed(double(facts.autoIgnition), kKelvin, 65535);
     m.diesAt = fixed(double(facts.extinction), kKelvin, 65535);
-    m.filmMost = fixed(double(facts.filmMost), 1, gpu::kFilmMost);
+    m.maxFilm = fixed(double(facts.maxFilm), 1, gpu::kMaxFilm);
     const double perGram = double(kLatentHeat) / 1000 / seconds;  // W/m^2
     m.filmFlux = std::max(fixed(perGram, 1, 1 << 22), 1u);
     const double wet = deep ? std::min(double(facts.moistDepth), depth) : depth;  // m
     m.moistFlux =
         std::max(fixed(double(facts.density) * wet * 1000 / 128 * perGram, 1, 1 << 26), 1u);
-    m.moistDies = fixed(double(facts.extinctionMoisture), 128, gpu::kMoistMost + 1);
+    m.moistDies = fixed(double(facts.extinctionMoisture), 128, gpu::kMaxMoist + 1);
     m.airDries = fixed(double(facts.airDrying) * seconds, 65536, 1 << 24);
     m.flags = (facts.burns ? gpu::kHeatBurns : 0u) | (facts.thick ? gpu::kHeatThick : 0u);
     return m;
@@ -77,7 +77,7 @@ HeatFacts heatFacts(const FwMaterialDef& def) noexcept {
     facts.ignition = def.ignitionTemperature;
     facts.autoIgnition = std::max(def.autoIgnitionTemperature, def.ignitionTemperature);
     facts.extinction = def.ignitionTemperature - 50;
-    facts.filmMost = def.waterHeld;
+    facts.maxFilm = def.waterHeld;
     facts.extinctionMoisture = def.extinctionMoisture;
     // The mean of 1 / share over its depth: the factor by which char prolongs burning.
     const double span =
@@ -97,7 +97,7 @@ gpu::HeatMaterial heatMaterial(const FwMaterialDef& def, const HeatPlace& place)
     const double step = double(gpu::kHeatSteps * gpu::kStepTicks) / gpu::kTicksPerSecond;
     const double seconds = step * double(place.pace);
     gpu::HeatMaterial m = heatMaterial(heatFacts(def), seconds, kAmbient);
-    m.moistAtRest = fixed(double(def.moisture) + double(place.moisture), 128, gpu::kMoistMost);
+    m.moistureAtRest = fixed(double(def.moisture) + double(place.moisture), 128, gpu::kMaxMoist);
     m.burnTicks = fixed(std::max(double(def.burnTime), 0.0) / double(place.pace),
                         gpu::kTicksPerSecond, 1u << 28);
     const double joules = double(def.heatOfCombustion) * double(arealFuel(def)) *

@@ -29,7 +29,7 @@ struct HeatFacts {  // of a material; defaults: softwood
     float ignition = 623;             // K, with a flame near
     float autoIgnition = 873;         // K, without a flame
     float extinction = 573;           // K; below it the flame dies
-    float filmMost = 200;             // g/m^2, most water on the surface, [0, 1023]
+    float maxFilm = 200;              // g/m^2, most water on the surface, [0, 1023]
     float airDrying = 0.05f;          // g/m^2/s of that water that dries in cold air
     float moistDepth = 0.002f;        // m that must dry before it heats further; sheets: all
     float extinctionMoisture = 0.4f;  // kg/kg

@@ -64,7 +64,7 @@ FwMaterialDef presetDef(uint32_t preset) noexcept {
     const Preset& p = kPresets[row];
     FwMaterialDef def{};
     def.structSize = uint32_t(sizeof def);
-    def.look = row;
+    def.appearance = row;
     def.spreadRate = p.spreadRate;
     def.windGain = p.windGain;
     def.upGain = p.upGain;

@@ -112,10 +112,10 @@ void checkMaterial(const FwMaterialDef& def) {
                    "FwMaterialDef::autoIgnitionTemperature is %g; it is at least "
                    "ignitionTemperature, which is %g.",
                    double(def.autoIgnitionTemperature), double(def.ignitionTemperature));
-    if (def.look >= FW_MATERIAL_PRESET_COUNT)
+    if (def.appearance >= FW_MATERIAL_PRESET_COUNT)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwMaterialDef::look is %u; it must be a FwMaterialPreset, below %d.", def.look,
-                   int(FW_MATERIAL_PRESET_COUNT));
+                   "FwMaterialDef::appearance is %u; it must be a FwMaterialPreset, below %d.",
+                   def.appearance, int(FW_MATERIAL_PRESET_COUNT));
 }
 
 float moistureFactor(float moisture, float extinctionMoisture) noexcept {
@@ -149,7 +149,7 @@ gpu::BurnMaterial inertMaterial() noexcept {
 gpu::BurnMaterial burnMaterial(const FwMaterialDef& def, const SpreadFacts& facts,
                                const WindVector& wind) noexcept {
     gpu::BurnMaterial m = inertMaterial();
-    m.look = def.look;
+    m.look = def.appearance;
     m.thickness = def.thickness;
     m.roughness = def.baseRoughness;
     m.baseColor = {def.baseColor[0], def.baseColor[1], def.baseColor[2], 1};

@@ -17,14 +17,14 @@ WindVector windUnits(const float wind[3]) noexcept {
     WindVector units{};
     for (size_t i = 0; i < 3; ++i) {
         if (std::isnan(wind[i])) continue;
-        units[i] = int32_t(std::lround(std::clamp(wind[i], -kMostWind, kMostWind) / kWindUnit));
+        units[i] = int32_t(std::lround(std::clamp(wind[i], -kMaxWind, kMaxWind) / kWindUnit));
     }
     return units;
 }
 
 void resetWind(WindFilter& filter, const WindVector& wind) noexcept {
     for (size_t i = 0; i < 3; ++i) {
-        FW_ASSERT(wind[i] >= -kMostWindUnits && wind[i] <= kMostWindUnits, "%d units", wind[i]);
+        FW_ASSERT(wind[i] >= -kMaxWindUnits && wind[i] <= kMaxWindUnits, "%d units", wind[i]);
         filter.value[i] = int64_t(wind[i]) << kFractionBits;
     }
     filter.latched = wind;
@@ -33,7 +33,7 @@ void resetWind(WindFilter& filter, const WindVector& wind) noexcept {
 void filterWind(WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept {
     const int64_t tau = std::max<int64_t>(tauTicks, gpu::kStepTicks);
     for (size_t i = 0; i < 3; ++i) {
-        FW_ASSERT(wind[i] >= -kMostWindUnits && wind[i] <= kMostWindUnits, "%d units", wind[i]);
+        FW_ASSERT(wind[i] >= -kMaxWindUnits && wind[i] <= kMaxWindUnits, "%d units", wind[i]);
         const int64_t gap = (int64_t(wind[i]) << kFractionBits) - filter.value[i];
         filter.value[i] += gap * int64_t(gpu::kStepTicks) / tau;
     }
@@ -53,7 +53,7 @@ bool latchWind(WindFilter& filter) noexcept {
     return true;
 }
 
-bool windAtRest(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept {
+bool isWindSteady(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept {
     WindFilter next = filter;
     filterWind(next, wind, tauTicks);
     return next.value == filter.value && filteredWind(filter) == filter.latched;

@@ -11,8 +11,8 @@ using WindVector = std::array<int32_t, 3>;  // 1/128 m/s
 
 constexpr uint32_t kWindLatchTicks = 1024;  // latches are at least 1/4 s apart
 constexpr float kWindUnit = 1.0f / 128.0f;  // m/s
-constexpr float kMostWind = 120;            // m/s along an axis, of any wind
-constexpr int32_t kMostWindUnits = int32_t(kMostWind / kWindUnit);
+constexpr float kMaxWind = 120;             // m/s along an axis, of any wind
+constexpr int32_t kMaxWindUnits = int32_t(kMaxWind / kWindUnit);
 
 struct WindFilter {
     std::array<int64_t, 3> value{};  // 1/128 m/s with 24 more bits
@@ -21,13 +21,13 @@ struct WindFilter {
     template <class A>
     void serialize(A& a) {
         a(value, latched);
-        a.range("filtered wind", value, -kMostWindUnits * 16777216.0 - 1,
-                kMostWindUnits * 16777216.0 + 1);
-        a.range("latched wind", latched, -kMostWindUnits, kMostWindUnits);
+        a.range("filtered wind", value, -kMaxWindUnits * 16777216.0 - 1,
+                kMaxWindUnits * 16777216.0 + 1);
+        a.range("latched wind", latched, -kMaxWindUnits, kMaxWindUnits);
     }
 };
 
-// m/s to units, clamped to +-kMostWind; NaN becomes 0.
+// m/s to units, clamped to +-kMaxWind; NaN becomes 0.
 WindVector windUnits(const float wind[3]) noexcept;
 
 // Sets the filter as if `wind` had always blown.
@@ -37,7 +37,7 @@ void filterWind(WindFilter& filter, const WindVector& wind, uint32_t tauTicks) n
 // Latches the filtered wind. True: it differs by a unit or more.
 bool latchWind(WindFilter& filter) noexcept;
 // Whether a step and a latch would change nothing.
-bool windAtRest(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
+bool isWindSteady(const WindFilter& filter, const WindVector& wind, uint32_t tauTicks) noexcept;
 // The wind that latchWind would latch.
 WindVector filteredWind(const WindFilter& filter) noexcept;
 

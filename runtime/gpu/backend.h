@@ -30,8 +30,8 @@ struct ObjectInit {
     uint32_t refineDepth = 0;
     float refinePixelsPerEdge = 8;
     // Refined by the published scheme; the model outlives the mesh.
-    const mesh::ArpModel* arpModel = nullptr;
-    mesh::ArpSettings arp;
+    const mesh::PatternModel* patternModel = nullptr;
+    mesh::PatternSettings pattern;
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
     // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
     const mesh::DeformModel* deformModel = nullptr;
@@ -48,10 +48,10 @@ struct MaterialUpdate {  // new records of one object at a step's start (a wind 
 
 // Who is where, as others see it, from a step's start on. Objects are known to the exchange from
 // their first update on.
-struct RemoteUpdate {
+struct ExchangeUpdate {
     struct Placed {
         uint32_t object = 0;
-        RemoteObject record;  // sources are the backend's to fill
+        ExchangeObject record;  // sources are the backend's to fill
     };
     struct Range {
         uint32_t first = 0, count = 0;
@@ -63,21 +63,21 @@ struct RemoteUpdate {
     // The same of links. Those of one (object, texel) are side by side; kNoneTexel: of no object.
     std::span<const ContactLink> links;
     std::span<const Range> linkRanges;
-    std::span<const Blocker> blockers;  // all of them, at most kMaxBlockers
+    std::span<const HeatOccluder> occluders;  // all of them, at most kMaxHeatOccluders
 };
 
 // All of the shield, in place of the one that was. See exchange.h.
-struct ShieldUpdate {
+struct OcclusionUpdate {
     ivec3 origin{};                 // mm
     uint32_t cell = 0, counts = 0;  // as ExchangePush has them; cell 0: there is none
     std::span<const uint32_t> words;
 };
-inline void placeShield(const ShieldUpdate& shield, ExchangePush& rules) noexcept {
-    rules.shieldX = shield.origin.x;
-    rules.shieldY = shield.origin.y;
-    rules.shieldZ = shield.origin.z;
-    rules.shieldCell = shield.cell;
-    rules.shieldCounts = shield.counts;
+inline void setOcclusionPush(const OcclusionUpdate& shield, ExchangePush& rules) noexcept {
+    rules.occlusionX = shield.origin.x;
+    rules.occlusionY = shield.origin.y;
+    rules.occlusionZ = shield.origin.z;
+    rules.occlusionCell = shield.cell;
+    rules.occlusionCounts = shield.counts;
 }
 
 struct StepPlan {               // one fixed step of 1/32 s
@@ -91,9 +91,9 @@ struct StepPlan {               // one fixed step of 1/32 s
     bool capped = false;        // and how many tiles may burn
     bool plays = false;         // some object may play a baked burn
     ExchangePush rules{};       // of the exchange; what places things in lists is the backend's
-    const RemoteUpdate* remote = nullptr;  // null: nothing changed
-    const ShieldUpdate* shield = nullptr;  // null: as it was; none at first, and after `restore`
-    std::span<const TexelEvent> events;    // sorted by (object, texel, order)
+    const ExchangeUpdate* remote = nullptr;   // null: nothing changed
+    const OcclusionUpdate* shield = nullptr;  // null: as it was; none at first, and after `restore`
+    std::span<const TexelEvent> events;       // sorted by (object, texel, order)
     std::span<const MaterialUpdate> materials;  // applied first; each object's tiles wake
 };
 
@@ -155,10 +155,10 @@ struct RestoredObject {
 // How much of what only shows a frame may have. Never of what burns: hashes are alike at all
 // levels.
 struct Detail {
-    uint32_t marchedHigh = 16;  // volumetric flames at most, with many samples a ray
-    uint32_t marched = 32;      // and at all; the others are cards
-    uint32_t volumeSteps = 64;  // samples of a ray at most; see FwWorldDef
-    float triangles = 1;        // share of FwWorldDef::maxRefinedTriangles
+    uint32_t marchedHigh = 16;   // volumetric flames at most, with many samples a ray
+    uint32_t marched = 32;       // and at all; the others are cards
+    uint32_t rayStepCount = 64;  // samples of a ray at most; see FwWorldDef
+    float triangles = 1;         // share of FwWorldDef::maxRefinedTriangles
     float quads = 1;  // share of flames' quads and particles that show; what shows is larger for it
     // Share of FwWorldDef::maxLights: the fewer there are, the more each shines for.
     float lights = 1;
@@ -246,7 +246,8 @@ class Backend {
     virtual void setObjectWind(uint32_t, uint32_t) {}
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
-    // Of an object with an arpModel: its heat boundary begins at a point (m, object space), once.
+    // Of an object with an patternModel: its heat boundary begins at a point (m, object space),
+    // once.
     virtual void startBoundary(uint32_t /*slot*/, const float /*point*/[3],
                                uint32_t /*tick*/) noexcept {}
     // Of an object with kObjectSkinned: where the host's vertices are from the next frame on, m,
@@ -261,13 +262,13 @@ class Backend {
     virtual void destroyImage(uint32_t slot) = 0;
     // A fire profile of the host's, kProfileWidth x kProfileHeight pairs of halfs. Looks alone.
     virtual void setFireProfile(uint32_t /*slot*/, std::span<const uint32_t> /*texels*/) {}
-    // All flipbooks, instead of those before: RGBA8, and words as shared/book.h has them; a width
-    // of 0: there are none. Unchanged when it throws. Looks alone.
-    virtual void setBooks(uint32_t /*width*/, uint32_t /*height*/,
-                          std::span<const std::byte> /*texels*/,
-                          std::span<const uint32_t> /*words*/) {}
+    // All flipbooks, instead of those before: RGBA8, and words as shared/flipbook.h has them; a
+    // width of 0: there are none. Unchanged when it throws. Looks alone.
+    virtual void setFlipbooks(uint32_t /*width*/, uint32_t /*height*/,
+                              std::span<const std::byte> /*texels*/,
+                              std::span<const uint32_t> /*words*/) {}
     // That show burning meshes' flames, from the next frame on: byte 0 fire's + 1, byte 1 smoke's.
-    virtual void setFlameBooks(uint32_t /*books*/) noexcept {}
+    virtual void setTileFlipbooks(uint32_t /*books*/) noexcept {}
 
     // All places move by whole metres. Poses and what others see of objects come by themselves.
     virtual void moveWorld(const double (&/*by*/)[3]) noexcept {}
@@ -286,7 +287,7 @@ class Backend {
 
     // All objects as they were when images of these were taken: the others are at rest. Frames go
     // on from `tick`, and what was to be read back of earlier ones never comes. Neighbours, links
-    // and blockers are told anew. Unchanged when it throws.
+    // and occluders are sent again. Unchanged when it throws.
     virtual void restore(std::span<const RestoredObject> objects, uint32_t tick) = 0;
 
     // Runs (cpu) or records (vk, between its begin and end of the outside part) a frame's steps.

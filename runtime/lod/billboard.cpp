@@ -10,8 +10,8 @@
 namespace fw::lod {
 namespace {
 
-constexpr float kCardCells = 24.0f;  // of a flame's diameter, where its smoke leaves as many
-constexpr float kGrows = 1.15f;      // cells, until they are few enough
+constexpr float kImpostorPixels = 24.0f;  // of a flame's diameter, where its smoke leaves as many
+constexpr float kGrows = 1.15f;           // cells, until they are few enough
 
 // m per unit of the view at so many m along it.
 vec2 metresAt(const VolumeDraw& draw, float depth) {
@@ -28,21 +28,21 @@ vec3 placeOf(const ViewParams& view, vec3 point) {
 
 }  // namespace
 
-bool cardFits(const VolumeItem& item) noexcept {
+bool impostorFits(const VolumeItem& item) noexcept {
     return item.whole.x < item.whole.z && item.whole.y < item.whole.w && item.draw.front > 0.0f;
 }
 
-void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept {
+void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                   uint32_t slot, ImpostorShape& card, MarchedVolume& out) noexcept {
     const VolumeDraw& draw = item.draw;
     const vec3 at = placeOf(view, item.middle);
     const vec2 metres = metresAt(draw, at.z);
     const vec2 size = metres * vec2(item.whole.z - item.whole.x, item.whole.w - item.whole.y);
-    float cell = draw.wide / kCardCells;
+    float cell = draw.wide / kImpostorPixels;
     const auto tiles = [&](float length) {
-        return std::max(std::ceil(length / (cell * float(kVolumeTile))), 1.0f);
+        return std::max(std::ceil(length / (cell * float(kMarchTileSide))), 1.0f);
     };
-    while (tiles(size.x) * tiles(size.y) > float(kCardTiles)) cell *= kGrows;
+    while (tiles(size.x) * tiles(size.y) > float(kMaxImpostorTiles)) cell *= kGrows;
     card.there = true;
     card.middle = item.middle - item.base;
     card.direction = glm::normalize(item.middle - vec3(view.eye));
@@ -57,7 +57,7 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     out.smokes = item.smokes;
     out.march = {};
     out.composite = {};
-    VolumeMarch& march = out.march;
+    MarchPush& march = out.march;
     march.rayX = vec4(perCell.x * vec3(draw.rayX), 0.0f);
     march.rayX.w = kFinestDetail * glm::length(vec3(march.rayX));
     march.turns = uint32_t(std::clamp(
@@ -70,19 +70,19 @@ void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen&
     march.slabs = 1;
     march.intervals = draw.intervals;
     march.tilesX = card.tilesX;
-    march.cells = card.tilesX * card.tilesY * kVolumeTile * kVolumeTile;
-    march.tiles = slot * kCardWords;
-    march.samples = march.tiles + kCardTiles * kVolumeTileWords;
+    march.cells = card.tilesX * card.tilesY * kMarchTileSide * kMarchTileSide;
+    march.tiles = slot * kImpostorWords;
+    march.samples = march.tiles + kMaxImpostorTiles * kMarchTileWords;
     march.encoding = screen.encoding;
     march.apart = 2;
     march.least = 0;
-    march.perPixel = kVolumeTile;  // rays go where the mean of many is the flame
+    march.perPixel = kMarchTileSide;  // rays go where the mean of many is the flame
     out.composite.tilesX = card.tilesX;
     out.composite.tilesY = card.tilesY;
 }
 
-bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept {
+bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                  uint32_t slot, const ImpostorShape& card, VolumeImpostor& out) noexcept {
     const VolumeDraw& draw = item.draw;
     const vec3 at = placeOf(view, item.base + card.middle);
     if (draw.clip.z > 0.0f && !(at.z > 1e-3f)) return false;
@@ -99,7 +99,7 @@ bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     out.perY = 2.0f / (screen.size.y * perCell.y);
     out.tilesX = card.tilesX;
     out.tilesY = card.tilesY;
-    out.samples = slot * kCardWords + kCardTiles * kVolumeTileWords;
+    out.samples = slot * kImpostorWords + kMaxImpostorTiles * kMarchTileWords;
     out.to = 1.0f;
     return true;
 }

@@ -1,5 +1,5 @@
 // Heat haze over volumetric flames, before anything else of a view that is not solid: what the host
-// lends of its scene, drawn anew where hot gas bends it. Flames then go over it.
+// gives of its scene, bent by hot gas. Flames then go over it.
 #include "lod/volumes.h"
 #include "shared/volume_haze.h"
 
@@ -25,8 +25,8 @@ void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_
     low = vec4(least, 0.0f), high = vec4(most, 0.0f);
 }
 
-bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, float strength,
-                   VolumeHaze& out) noexcept {
+bool makeHazePush(const ViewParams& view, const vec4& low, const vec4& high, float strength,
+                  HazePush& out) noexcept {
     VolumeDraw draw{};
     if (!(strength > 0.0f) || !volumeDraw(view, low, high, 1, draw)) return false;
     out = {draw.rect, draw.rayX, draw.rayY, draw.rayO, draw.clip, strength, 0, 0, 0};

@@ -10,18 +10,18 @@
 namespace fw::lod {
 namespace {
 
-constexpr float kWider = 1.3f;      // at most, than the book's flame, or narrower
-constexpr float kTaller = 1.25f;    // the same of their heights in diameters
-constexpr float kFacing = 0.17f;    // of cosines: 10 degrees where it is seen from the side
-constexpr float kKeepsBook = 1.5f;  // as much further off is what has shown the book already
-constexpr float kStraight = 0.4f;   // diameters off the line from its base to its tip
-constexpr float kWhole = 0.9f;      // of FlameRecord::air.w
-constexpr float kSeenAside = 0.3f;  // of its height: less is seen along its axis
+constexpr float kWider = 1.3f;            // at most, than the book's flame, or narrower
+constexpr float kTaller = 1.25f;          // the same of their heights in diameters
+constexpr float kFacing = 0.17f;          // of cosines: 10 degrees where it is seen from the side
+constexpr float kAtlasHysteresis = 1.5f;  // as much further off is what has shown the book already
+constexpr float kStraight = 0.4f;         // diameters off the line from its base to its tip
+constexpr float kWhole = 0.9f;            // of FlameRecord::air.w
+constexpr float kSeenAside = 0.3f;        // of its height: less is seen along its axis
 
 // Pages late, least and most; what turns over needs some of those that are older.
-constexpr uint32_t kLeastLate = 1, kMostLate = kBookPages - kBookTurn - 2;
+constexpr uint32_t kMinLate = 1, kMaxLate = kAtlasFrames - kAtlasFrameStep - 2;
 
-bool isAlike(const BookKind& a, const BookKind& b, float keeps) noexcept {
+bool isAlike(const AtlasKind& a, const AtlasKind& b, float keeps) noexcept {
     if (a.look != b.look || !a.plain || !b.plain) return false;
     const auto within = [keeps](float x, float y, float most) {
         return std::abs(std::log(x / y)) < keeps * std::log(most);
@@ -37,8 +37,8 @@ vec2 axesOf(const VolumeDraw& draw, vec3 v) noexcept {
 
 }  // namespace
 
-BookKind bookKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count, vec3& tip) {
-    BookKind kind;
+AtlasKind atlasKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count, vec3& tip) {
+    AtlasKind kind;
     const float numbers[] = {r.tint.x,         r.tint.y,         r.tint.z,   r.tint.w,
                              r.stretch,        r.turbulence,     r.radial,   r.columns,
                              r.ridge,          r.converge,       r.puff,     r.blue,
@@ -76,26 +76,26 @@ BookKind bookKind(const FlameRecord& r, const FlameNode* nodes, uint32_t count, 
     return kind;
 }
 
-void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had, uint32_t room,
-                 VolumeBookShelf& books, std::span<uint32_t> out) noexcept {
-    std::fill(out.begin(), out.end(), kNoBook);
+void chooseAtlases(std::span<const AtlasItem> items, std::span<const uint32_t> had, uint32_t room,
+                   ImpostorAtlases& books, std::span<uint32_t> out) noexcept {
+    std::fill(out.begin(), out.end(), kNoAtlas);
     const auto take = [&](uint32_t number) {
-        VolumeBook& book = books[number];
+        ImpostorAtlas& book = books[number];
         book.shares = 0;
         for (size_t i = 0; i < items.size(); ++i) {
-            const BookItem& item = items[i];
-            if (!item.wants || out[i] != kNoBook ||
-                !isAlike(item.kind, book.kind, had[i] == number ? kKeepsBook : 1.0f))
+            const AtlasItem& item = items[i];
+            if (!item.wants || out[i] != kNoAtlas ||
+                !isAlike(item.kind, book.kind, had[i] == number ? kAtlasHysteresis : 1.0f))
                 continue;
             out[i] = number;
             ++book.shares;
         }
     };
     // Whose pages a book gets: the largest of those that want it and are like it.
-    const auto lead = [&](VolumeBook& book, const auto& may) {
-        const BookItem* best = nullptr;
+    const auto lead = [&](ImpostorAtlas& book, const auto& may) {
+        const AtlasItem* best = nullptr;
         for (size_t i = 0; i < items.size(); ++i)
-            if (items[i].wants && items[i].fits && items[i].kind.plain && out[i] == kNoBook &&
+            if (items[i].wants && items[i].fits && items[i].kind.plain && out[i] == kNoAtlas &&
                 may(i) && (!best || items[i].covers > best->covers))
                 best = &items[i];
         if (!best) return false;
@@ -104,22 +104,23 @@ void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had,
         book.kind = best->kind;
         return true;
     };
-    for (uint32_t b = 0; b < kVolumeBooks; ++b) {
-        VolumeBook& book = books[b];
+    for (uint32_t b = 0; b < kMaxImpostorAtlases; ++b) {
+        ImpostorAtlas& book = books[b];
         if (!book.used) continue;
-        book.used = b < room &&
-                    (lead(book,
-                          [&](size_t i) {
-                              return items[i].key == book.key &&
-                                     isAlike(items[i].kind, book.kind, kKeepsBook);
-                          }) ||
-                     lead(book, [&](size_t i) {
-                         return isAlike(items[i].kind, book.kind, had[i] == b ? kKeepsBook : 1.0f);
-                     }));
+        book.used =
+            b < room &&
+            (lead(book,
+                  [&](size_t i) {
+                      return items[i].key == book.key &&
+                             isAlike(items[i].kind, book.kind, kAtlasHysteresis);
+                  }) ||
+             lead(book, [&](size_t i) {
+                 return isAlike(items[i].kind, book.kind, had[i] == b ? kAtlasHysteresis : 1.0f);
+             }));
         if (book.used) take(b);
     }
-    for (uint32_t b = 0; b < std::min(room, kVolumeBooks); ++b) {
-        VolumeBook& book = books[b];
+    for (uint32_t b = 0; b < std::min(room, kMaxImpostorAtlases); ++b) {
+        ImpostorAtlas& book = books[b];
         if (book.used) continue;
         const uint32_t run = book.run + 1;
         book.used = lead(book, [](size_t) { return true; });
@@ -130,40 +131,42 @@ void chooseBooks(std::span<const BookItem> items, std::span<const uint32_t> had,
     }
 }
 
-void BookReader::read(uint32_t number, const VolumeBookShelf& books) noexcept {
-    const VolumeBook& shown = books[number];
+void AtlasCursor::read(uint32_t number, const ImpostorAtlases& books) noexcept {
+    const ImpostorAtlas& shown = books[number];
     const uint64_t newest = shown.written - 1;
     const bool own = key == shown.key;
     const uint32_t hash = core::hash32(key);
-    const uint64_t late = own ? 0 : kLeastLate + (hash >> 1) % (kMostLate - kLeastLate + 1);
+    const uint64_t late = own ? 0 : kMinLate + (hash >> 1) % (kMaxLate - kMinLate + 1);
     const uint64_t wanted = newest - std::min(newest, late);
     const bool mirror = !own && (hash & 1u) != 0;
     const auto isThere = [&](uint32_t in, uint64_t page) {
-        return in != kNoBook && page < books[in].written && page + kBookPages > books[in].written;
+        return in != kNoAtlas && page < books[in].written &&
+               page + kAtlasFrames > books[in].written;
     };
-    const auto runOf = [&](uint64_t page) { return shown.pages[page % kBookPages].run; };
+    const auto runOf = [&](uint64_t page) { return shown.pages[page % kAtlasFrames].run; };
     const bool goesOn = book == number && mirrored == mirror && isThere(book, at) && wanted >= at &&
                         wanted <= at + 2 && runOf(at) == runOf(wanted);
-    if (turned < kBookTurn) ++turned;
-    if (!goesOn && book != kNoBook) {
+    if (turned < kAtlasFrameStep) ++turned;
+    if (!goesOn && book != kNoAtlas) {
         before = at, bookBefore = book, mirroredBefore = mirrored;
         turned = 1;
     }
     book = number, at = wanted, mirrored = mirror;
-    if (!isThere(bookBefore, before)) turned = kBookTurn;
+    if (!isThere(bookBefore, before)) turned = kAtlasFrameStep;
 }
 
-void layPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-             uint32_t slot, BookPage& page, MarchedVolume& out) noexcept {
-    layCard(view, item, screen, slot, page.card, out);
+void placeAtlasFrame(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                     uint32_t slot, AtlasFrame& page, MarchedVolume& out) noexcept {
+    placeImpostor(view, item, screen, slot, page.card, out);
     page.middle =
         vec3(axesOf(item.draw, page.card.middle), glm::dot(page.card.middle, vec3(view.forward)));
     page.tip = axesOf(item.draw, item.tip);
     page.wide = item.draw.wide;
 }
 
-bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-              uint32_t slot, const BookPage& page, bool mirrored, VolumeCard& out) noexcept {
+bool showAtlasFrame(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                    uint32_t slot, const AtlasFrame& page, bool mirrored,
+                    VolumeImpostor& out) noexcept {
     // Across the view: what lies along the page's flame comes to lie along the item's, what lies
     // across it across.
     const float wider = item.draw.wide / page.wide, side = mirrored ? -wider : wider;
@@ -185,12 +188,12 @@ bool showPage(const ViewParams& view, const VolumeItem& item, const VolumeScreen
     // As far from the eye as its middle is: seen from above that is nearer than where it stands,
     // and a page in the distance of its foot would be too small.
     const vec2 aside = page.middle.x * x + page.middle.y * y;
-    VolumeCardShape stands = page.card;
+    ImpostorShape stands = page.card;
     stands.middle = aside.x * glm::normalize(vec3(item.draw.rayX)) +
                     aside.y * glm::normalize(vec3(item.draw.rayY)) +
                     deeper * page.middle.z * vec3(view.forward);
-    if (!showCard(view, item, screen, slot, stands, out)) return false;
-    // showCard has cells as they lie in the page: by how much a metre is.
+    if (!showImpostor(view, item, screen, slot, stands, out)) return false;
+    // showImpostor has cells as they lie in the page: by how much a metre is.
     const vec2 perMetre = vec2(out.place.z, out.upY) / page.card.cell;
     const vec2 middle = vec2(out.place) - page.card.low * perMetre;
     const vec2 first = page.card.low.x * x + page.card.low.y * y;

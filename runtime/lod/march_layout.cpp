@@ -12,8 +12,8 @@
 namespace fw::lod {
 namespace {
 
-constexpr float kMostCell = 64.0f;     // px
-constexpr uint32_t kMostPerPixel = 8;  // cells a side: a tile
+constexpr float kMaxCell = 64.0f;     // px
+constexpr uint32_t kMaxPerPixel = 8;  // cells a side: a tile
 // A flame is as wide as so many cells, or sheets and tongues fall between rays: its light would
 // depend on where cells lie.
 constexpr float kCellsAcross = 16.0f;
@@ -24,13 +24,13 @@ constexpr float kNoLayers = 100.0f;
 // Samples that a ray takes closer together rather than fewer, of a flame of that many cells; of
 // smaller ones, whose rays are fewer, up to so many times as many; of one that is to be as good as
 // can be so many for a cell, up to that: where it is small they are close already.
-constexpr float kLeastSamples = 20.0f, kLeastInSmall = 1.6f;
-constexpr float kLeastPerCell = 0.5f, kLeastOfHero = 48.0f;
-constexpr float kLeastSpacing = 0.5f;  // of small and of large ones, of what they say
+constexpr float kMinSamples = 20.0f, kLeastInSmall = 1.6f;
+constexpr float kMinPerCell = 0.5f, kMinSamplesHigh = 48.0f;
+constexpr float kMinSpacing = 0.5f;  // of small and of large ones, of what they say
 constexpr float kSamplesPerStep = 2.75f;
-constexpr uint64_t kMostWords = 16u << 20;  // 64 MiB
-constexpr uint64_t kLeastTiles = 2048;      // of small flames, however small the screen
-constexpr uint64_t kHalfScreens = 5;        // whose tiles there is room for: plumes overlap
+constexpr uint64_t kMaxWords = 16u << 20;  // 64 MiB
+constexpr uint64_t kMinTiles = 2048;       // of small flames, however small the screen
+constexpr uint64_t kHalfScreens = 5;       // whose tiles there is room for: plumes overlap
 // Where room is short: times as large as those of fire are smoke's cells at least, and so many
 // tiles of fire are worth one of smoke.
 constexpr float kSmokeCells = 4.0f;
@@ -40,7 +40,7 @@ constexpr uint64_t kFewTiles = 32;  // of a flame, which keeps its cells as long
 static_assert(kVolumeSlabs + 4 <= 32, "flags of a tile are a word");
 
 uint32_t wordsOfTile(uint32_t slabs) {
-    return kVolumeTileWords + kVolumeTile * kVolumeTile * kVolumeCellWords * slabs;
+    return kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords * slabs;
 }
 
 struct Tiles {
@@ -56,7 +56,7 @@ Tiles tilesOf(const vec4& rect, vec2 size, float cell) {
     };
     const auto tiles = [&](float ndc, float pixels, uint32_t from) {
         const float end = std::ceil((0.5f * ndc + 0.5f) * pixels / whole) * (whole / cell);
-        return uint32_t(std::max(std::ceil((end - float(from)) / float(kVolumeTile)), 1.0f));
+        return uint32_t(std::max(std::ceil((end - float(from)) / float(kMarchTileSide)), 1.0f));
     };
     const uint32_t x = first(rect.x, size.x), y = first(rect.y, size.y);
     return {x, y, tiles(rect.z, size.x, x), tiles(rect.w, size.y, y)};
@@ -74,7 +74,7 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const auto most = float(screen.cell);
     if (wanted >= most) return most;
     float cell = 1.0f;
-    while (cell > wanted && cell * float(kMostPerPixel) > 1.0f) cell *= 0.5f;
+    while (cell > wanted && cell * float(kMaxPerPixel) > 1.0f) cell *= 0.5f;
     return cell;
 }
 
@@ -83,26 +83,26 @@ float cellOf(const VolumeDraw& draw, const VolumeScreen& screen) {
 float spacingOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float wide = volumeWide(draw, screen);
     const float few = std::min(wide / kAllDetail, kNoLayers * cellOf(draw, screen) / wide);
-    return draw.spacing * std::clamp(few, kLeastSpacing, 1.0f);
+    return draw.spacing * std::clamp(few, kMinSpacing, 1.0f);
 }
 
 // Samples of a ray: of those with few steps as many as show the light of those with many.
-uint32_t mostOf(const VolumeDraw& draw, const VolumeScreen& screen) {
+uint32_t maxU(const VolumeDraw& draw, const VolumeScreen& screen) {
     return std::min(uint32_t(kSamplesPerStep * float(draw.mostSteps)), screen.steps);
 }
 
 // Of a slab.
 uint32_t turnsOf(const VolumeDraw& draw, const VolumeScreen& screen) {
     const float spacing = spacingOf(draw, screen);
-    const uint32_t most = mostOf(draw, screen) / draw.slabs;
+    const uint32_t most = maxU(draw, screen) / draw.slabs;
     return uint32_t(std::clamp(std::ceil(draw.deep / spacing), 1.0f, std::max(float(most), 1.0f)));
 }
 
-// VolumeMarch::least: of those with few steps no more than three quarters of what they may take.
-uint32_t leastOf(const VolumeItem& item, const VolumeScreen& screen, float cells) {
-    float least = kLeastSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
-    if (item.hero) least = std::max(least, std::min(kLeastPerCell * cells, kLeastOfHero));
-    return std::min(uint32_t(least), 3 * mostOf(item.draw, screen) / 4);
+// MarchPush::least: of those with few steps no more than three quarters of what they may take.
+uint32_t minU(const VolumeItem& item, const VolumeScreen& screen, float cells) {
+    float least = kMinSamples * std::clamp(kNoLayers / cells, 1.0f, kLeastInSmall);
+    if (item.highQuality) least = std::max(least, std::min(kMinPerCell * cells, kMinSamplesHigh));
+    return std::min(uint32_t(least), 3 * maxU(item.draw, screen) / 4);
 }
 
 float coarser(float cell) { return cell < 1.0f ? 2.0f * cell : cell + 1.0f; }
@@ -118,9 +118,9 @@ struct Laid {  // a part of the view for a flame
     // Cells of the part of the largest become larger first: of those with many tiles that of small
     // cells, so that what is near does not show its cells before what is far. 0: they cannot.
     [[nodiscard]] float weight() const {
-        if (coarser(cell) > kMostCell) return 0.0f;
+        if (coarser(cell) > kMaxCell) return 0.0f;
         const auto n = float(count());
-        const float size = count() <= kFewTiles ? n / kMostCell : n / std::max(cell, 1.0f);
+        const float size = count() <= kFewTiles ? n / kMaxCell : n / std::max(cell, 1.0f);
         return smoke ? kSmokeTiles * size : size;
     }
 };
@@ -135,7 +135,7 @@ class Layout {
     bool fit(uint64_t room) {
         for (size_t i = 0; i < items_.size(); ++i)
             add(uint32_t(i), false, items_[i].draw.rect, cellOf(items_[i].draw, screen_));
-        if (all_ > room) smokeMakesWay();
+        if (all_ > room) yieldRoomOfSmoke();
         while (all_ > room) {
             Laid& most = *std::max_element(
                 parts_.begin(), parts_.begin() + ptrdiff_t(count_),
@@ -160,7 +160,7 @@ class Layout {
         part = {item, window, false, rect, cell, {}};
         lay(part, cell);
     }
-    void smokeMakesWay() {
+    void yieldRoomOfSmoke() {
         count_ = 0, all_ = 0;
         for (size_t i = 0; i < items_.size(); ++i) {
             const VolumeItem& item = items_[i];
@@ -196,7 +196,7 @@ void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
     const float cell = cellOf(draw, screen);
     draw.perPixel = cell <= 1.0f ? std::max(uint32_t(1.0f / cell), 2u) : 1;
     draw.spacing = spacingOf(draw, screen);
-    draw.mostSteps = mostOf(draw, screen);
+    draw.mostSteps = maxU(draw, screen);
     if (draw.perPixel == 1) return;
     // Of a pixel that is flame in part slabs would show less light than it has.
     draw.deep *= float(draw.slabs);
@@ -204,23 +204,23 @@ void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept {
 }
 
 uint32_t volumeRayWords(const VolumeScreen& screen) {
-    const float tile = float(screen.cell * kVolumeTile);
+    const float tile = float(screen.cell * kMarchTileSide);
     const auto tiles = [&](float pixels) {
         return uint64_t(std::clamp(std::ceil(pixels / tile), 0.0f, 4096.0f)) + 1;
     };
     const uint64_t all = std::max<uint64_t>(
-        tiles(screen.size.x) * tiles(screen.size.y) * kHalfScreens / 2, kLeastTiles);
-    return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMostWords));
+        tiles(screen.size.x) * tiles(screen.size.y) * kHalfScreens / 2, kMinTiles);
+    return uint32_t(std::min(all * wordsOfTile(screen.slabs), kMaxWords));
 }
 
-LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
-                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
-                       uint32_t first) {
+VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                                 float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                                 uint32_t first) {
     Layout layout(items, screen);
     const uint64_t room = words > first ? (words - first) / wordsOfTile(screen.slabs) : 0;
     if (!layout.fit(room)) return {};
-    LaidVolumes laid;
-    laid.end = first + uint32_t(layout.tiles() * kVolumeTileWords);
+    VolumeAllocation laid;
+    laid.end = first + uint32_t(layout.tiles() * kMarchTileWords);
     uint32_t known = first, samples = laid.end;
     for (const Laid& part : layout.parts()) {
         const VolumeItem& item = items[part.item];
@@ -233,7 +233,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         one.flame = item.flame;
         one.window = part.window;
         one.smokes = item.smokes;
-        VolumeMarch& march = one.march;
+        MarchPush& march = one.march;
         march.rayX = vec4(perCell.x * vec3(draw.rayX), perPixel * cell * kFinestDetail);
         march.turns = turnsOf(draw, screen);
         march.rayY = vec4(perCell.y * vec3(draw.rayY), draw.deep / float(march.turns));
@@ -245,7 +245,7 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         march.originX = tiles.originX;
         march.originY = tiles.originY;
         march.tilesX = tiles.x;
-        march.cells = count * kVolumeTile * kVolumeTile;
+        march.cells = count * kMarchTileSide * kMarchTileSide;
         march.tiles = known;
         march.samples = samples;
         march.encoding = screen.encoding;
@@ -253,9 +253,9 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         // Flames of few cells are probed more closely, or rays go past them.
         const float wide = volumeWide(draw, screen) / cell;
         march.apart = wide < 8.0f ? 1 : wide < 48.0f ? 2 : 4;
-        march.least = leastOf(item, screen, wide);
+        march.least = minU(item, screen, wide);
         march.perPixel = cell < 1.0f ? uint32_t(1.0f / cell) : 0;
-        VolumeComposite& composite = one.composite;
+        CompositePush& composite = one.composite;
         composite.place =
             vec4(perCell * vec2(float(tiles.originX), float(tiles.originY)) - vec2(1.0f), perCell);
         composite.clip = draw.clip;
@@ -273,14 +273,14 @@ LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& sc
         composite.window = vec4(0.0f);
         if (part.window) {
             // Of the whole flame's cells, which end where these begin.
-            VolumeComposite& whole = out[laid.count - 2].composite;
+            CompositePush& whole = out[laid.count - 2].composite;
             const vec2 low = vec2(composite.place), size(tiles.x, tiles.y);
-            const vec2 high = low + perCell * float(kVolumeTile) * size;
+            const vec2 high = low + perCell * float(kMarchTileSide) * size;
             const vec2 from(whole.place), per(whole.place.z, whole.place.w);
             whole.window = vec4((low - from) / per, (high - from) / per);
         }
-        known += count * kVolumeTileWords;
-        samples += march.cells * kVolumeCellWords * draw.slabs;
+        known += count * kMarchTileWords;
+        samples += march.cells * kMarchPixelWords * draw.slabs;
     }
     return laid;
 }

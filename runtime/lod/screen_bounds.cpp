@@ -12,8 +12,8 @@ namespace fw::lod {
 namespace {
 
 constexpr float kFirstSlab = 1e-3f;  // m along the view, of the first slab
-constexpr float kLeastW = 1e-4f;     // of clip space: what is nearer is beside the eye or behind it
-constexpr float kLeastAway = 1e-4f;  // m: a plane that is nearer to the eye, or no more aslant
+constexpr float kMinW = 1e-4f;       // of clip space: what is nearer is beside the eye or behind it
+constexpr float kMinAway = 1e-4f;    // m: a plane that is nearer to the eye, or no more aslant
 constexpr float kBeyond = 4.0f;      // depth of no plane
 // Samples this far apart, in diameters: closer shows no more but for less grain.
 constexpr float kSpacing = 0.05f;
@@ -50,18 +50,18 @@ BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
         shown.near = std::min(shown.near, depth);
         shown.far = std::max(shown.far, depth);
         corners[i] = from.x * view.clip0 + from.y * view.clip1 + from.z * view.clip2 + view.clip3;
-        if (perspective && !(corners[i].w > kLeastW))
+        if (perspective && !(corners[i].w > kMinW))
             shown.around = true;
         else
             add(corners[i]);
     }
     // Of what is in part behind the eye the view shows what its edges have before it.
     for (int i = 0; shown.around && i < 8; ++i) {
-        if (!(corners[i].w > kLeastW)) continue;
+        if (!(corners[i].w > kMinW)) continue;
         for (int axis = 1; axis < 8; axis *= 2) {
             const vec4& other = corners[i ^ axis];
-            if (other.w > kLeastW) continue;
-            add(glm::mix(other, corners[i], (kLeastW - other.w) / (corners[i].w - other.w)));
+            if (other.w > kMinW) continue;
+            add(glm::mix(other, corners[i], (kMinW - other.w) / (corners[i].w - other.w)));
         }
     }
     return shown;
@@ -142,9 +142,7 @@ vec4 volumeBasePlane(const FlameRecord& record, const FlameNode* nodes, uint32_t
 void volumeBase(const ViewParams& view, const vec4& plane, VolumeDraw& out) noexcept {
     const vec3 normal(plane), forward(view.forward);
     const vec4& clip = out.clip;
-    const auto awayFrom = [](float x) {
-        return std::copysign(std::max(std::abs(x), kLeastAway), x);
-    };
+    const auto awayFrom = [](float x) { return std::copysign(std::max(std::abs(x), kMinAway), x); };
     // By the view's 1, x and y.
     const vec3 rays(glm::dot(normal, vec3(out.rayO)), glm::dot(normal, vec3(out.rayX)),
                     glm::dot(normal, vec3(out.rayY)));

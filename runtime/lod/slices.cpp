@@ -18,10 +18,10 @@ constexpr float kApart = 0.5f;    // of VolumeDraw::spacing: sheets are closer t
 
 bool slicesShow(uint32_t encoding) noexcept { return encoding == 0; }  // FW_OUTPUT_LINEAR
 
-SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept {
+SlicedVolume makeSlicedVolume(const VolumeItem& item) noexcept {
     SlicedVolume out;
     out.flame = item.flame;
-    VolumeSlices& draw = out.draw;
+    SlicesPush& draw = out.draw;
     const float deep = item.far - item.near;
     draw.clip = item.draw.clip;
     draw.front = item.near;

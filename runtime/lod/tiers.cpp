@@ -32,10 +32,11 @@ uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept {
     return at;
 }
 
-bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept {
-    if (asked == FW_FIRE_TIER_FLIPBOOK || life.shows(FW_FIRE_TIER_FLIPBOOK)) return true;
-    if (asked != FW_FIRE_TIER_AUTO || wide < kCardInside) return false;
-    return wide < kBookInside || life.tier == FW_FIRE_TIER_IMPOSTOR;
+bool wantsAtlas(uint32_t asked, float wide, const TierLife& life) noexcept {
+    if (asked == FW_FIRE_TIER_SHARED_IMPOSTOR || life.shows(FW_FIRE_TIER_SHARED_IMPOSTOR))
+        return true;
+    if (asked != FW_FIRE_TIER_AUTO || wide < kImpostorInside) return false;
+    return wide < kAtlasInside || life.tier == FW_FIRE_TIER_IMPOSTOR;
 }
 
 void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLimits& limits,
@@ -73,24 +74,25 @@ void chooseTiers(std::span<const TierItem> items, uint32_t cards, const MarchLim
         const TierItem& item = items[order[k]];
         const uint32_t place = places[order[k]];
         TierLife& life = lives[place];
-        const float border = life.tier == FW_FIRE_TIER_IMPOSTOR ? kCardOutside : kCardInside;
+        const float border =
+            life.tier == FW_FIRE_TIER_IMPOSTOR ? kImpostorOutside : kImpostorInside;
         uint32_t tier = item.asked;
         uint32_t steps = kHighSteps;
         if (tier == FW_FIRE_TIER_AUTO) {
-            const bool hadBook = life.tier == FW_FIRE_TIER_FLIPBOOK;
-            const bool book = item.booked && (item.shared || hadBook);
+            const bool hadAtlas = life.tier == FW_FIRE_TIER_SHARED_IMPOSTOR;
+            const bool book = item.booked && (item.shared || hadAtlas);
             if (item.wide < border) {
                 tier = FW_FIRE_TIER_IMPOSTOR;
             } else if (rank >= limits.all) {
-                tier = book ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
-            } else if (book && item.wide < (hadBook ? kBookOutside : kBookInside)) {
-                tier = FW_FIRE_TIER_FLIPBOOK;
+                tier = book ? FW_FIRE_TIER_SHARED_IMPOSTOR : FW_FIRE_TIER_IMPOSTOR;
+            } else if (book && item.wide < (hadAtlas ? kAtlasOutside : kAtlasInside)) {
+                tier = FW_FIRE_TIER_SHARED_IMPOSTOR;
             } else {
                 tier = rank < limits.high ? FW_FIRE_TIER_MARCH_HIGH : FW_FIRE_TIER_MARCH_LOW;
                 ++rank;
             }
         }
-        if (tier == FW_FIRE_TIER_FLIPBOOK && !item.booked) tier = FW_FIRE_TIER_IMPOSTOR;
+        if (tier == FW_FIRE_TIER_SHARED_IMPOSTOR && !item.booked) tier = FW_FIRE_TIER_IMPOSTOR;
         if (tier == FW_FIRE_TIER_IMPOSTOR && place >= cards) tier = FW_FIRE_TIER_MARCH_LOW;
         if (tier == FW_FIRE_TIER_MARCH_LOW) steps = kLowSteps;
         if (life.tier == 0) {

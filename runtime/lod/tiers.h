@@ -16,8 +16,8 @@ using namespace gpu;  // what shaders share
 constexpr uint32_t kTierFrames = 16;  // of the way from one tier to the next
 constexpr uint32_t kStepsTurn = 2;    // a frame, from many samples to few
 constexpr uint32_t kMarchedHigh = 16, kMarchedFlames = 32;
-constexpr float kCardInside = 10.0f, kCardOutside = 13.0f;  // px across: below, above
-constexpr float kBookInside = 24.0f, kBookOutside = 31.0f;  // a book's pages are as fine
+constexpr float kImpostorInside = 10.0f, kImpostorOutside = 13.0f;  // px across: below, above
+constexpr float kAtlasInside = 24.0f, kAtlasOutside = 31.0f;        // a book's pages are as fine
 // Of a cell: detail as fine as this is still sampled. What a pixel averages is many cells, and to
 // leave sheets out costs light where to sample them costs none.
 constexpr float kFinestDetail = 0.25f;
@@ -59,7 +59,7 @@ struct MarchLimits {  // flames of FW_FIRE_TIER_AUTO
 
 // Whether a flame would rather show a book than be marched or have a card of its own, by what it is
 // now.
-bool wantsBook(uint32_t asked, float wide, const TierLife& life) noexcept;
+bool wantsAtlas(uint32_t asked, float wide, const TierLife& life) noexcept;
 // The life that a flame of this key had in the frame before; kMaxVolumeFlames: none.
 uint32_t lifeOf(uint32_t key, const TierLives& lives) noexcept;
 // One frame on. places[i]: the life of items[i]. `cards`: how many places have one; a flame beyond

@@ -25,7 +25,7 @@ struct VolumeItem {  // a volumetric flame that a view may show
     vec3 tip{};               // m, from there to where its mean height ends
     float near = 0, far = 0;  // m along the view: of all that it shows, smoke too
     bool smokes = false;
-    bool hero = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
+    bool highQuality = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
 // Where the view shows it, in so many slabs; false: nowhere.
@@ -53,8 +53,8 @@ struct MarchedVolume {  // one whose rays are marched before the drawing, and ho
     uint32_t flame = 0;
     bool smokes = false;  // marched by volume_smoke
     bool window = false;  // finer cells where it burns, of the one before it
-    VolumeMarch march{};
-    VolumeComposite composite{};
+    MarchPush march{};
+    CompositePush composite{};
 };
 // Of VolumeWork per flame: it, its card, where it burns, its book's page.
 constexpr uint32_t kVolumeWorks = 4;
@@ -78,15 +78,15 @@ void volumeRays(const VolumeScreen& screen, VolumeDraw& draw) noexcept;
 // of 1. Where room is short smoke, thin and wide, makes way for fire: a flame that smokes gets
 // large cells, and behind it in `out` fine ones where it burns. So `out` needs room for twice as
 // many.
-struct LaidVolumes {
+struct VolumeAllocation {
     uint32_t end = 0;    // of the words that are known of tiles; 0: they do not fit
     uint32_t count = 0;  // of `out`
 };
-LaidVolumes layVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
-                       float perPixel, uint32_t words, std::span<MarchedVolume> out,
-                       uint32_t first = 0);
+VolumeAllocation allocateVolumes(std::span<const VolumeItem> items, const VolumeScreen& screen,
+                                 float perPixel, uint32_t words, std::span<MarchedVolume> out,
+                                 uint32_t first = 0);
 
-struct VolumeCardShape {  // what is in a card's words
+struct ImpostorShape {  // what is in a card's words
     bool there = false;
     uint32_t key = 0;    // whose
     uint64_t frame = 0;  // that marched it
@@ -97,36 +97,36 @@ struct VolumeCardShape {  // what is in a card's words
     uint32_t tilesX = 0, tilesY = 0, encoding = 0;
 };
 // A flame's billboard impostor fades, pixel by pixel, from one march to the next.
-struct VolumeCardPair {
-    std::array<VolumeCardShape, 2> shapes;
+struct ImpostorPair {
+    std::array<ImpostorShape, 2> shapes;
     uint32_t newest = 0;  // of them
     uint32_t over = 1;    // frames from when it was marched until it shows alone
 };
-bool cardFits(const VolumeItem& item) noexcept;
+bool impostorFits(const VolumeItem& item) noexcept;
 // How the card in `slot`, a half of a pair, is marched, from where it is seen now.
-void layCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-             uint32_t slot, VolumeCardShape& card, MarchedVolume& out) noexcept;
+void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                   uint32_t slot, ImpostorShape& card, MarchedVolume& out) noexcept;
 // False: it is behind the eye.
-bool showCard(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
-              uint32_t slot, const VolumeCardShape& card, VolumeCard& out) noexcept;
+bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
+                  uint32_t slot, const ImpostorShape& card, VolumeImpostor& out) noexcept;
 
 struct SlicedVolume {  // one that is drawn as slices of its lattice
     uint32_t flame = 0;
-    VolumeSlices draw{};
+    SlicesPush draw{};
 };
 bool slicesShow(uint32_t encoding) noexcept;  // whether slices add up there, see FwOutputEncoding
-SlicedVolume layVolumeSlices(const VolumeItem& item) noexcept;
+SlicedVolume makeSlicedVolume(const VolumeItem& item) noexcept;
 
 struct HazedVolume {  // one whose heat bends what is seen behind it
     uint32_t flame = 0;
     float away = 0;  // m along the view
-    VolumeHaze draw{};
+    HazePush draw{};
 };
 // Of the column of hot gas in and above a flame.
 void volumeHazeBounds(const FlameRecord& record, const FlameNode* nodes, uint32_t count, vec4& low,
                       vec4& high);
 // False: the view shows none of it.
-bool layVolumeHaze(const ViewParams& view, const vec4& low, const vec4& high, float strength,
-                   VolumeHaze& out) noexcept;
+bool makeHazePush(const ViewParams& view, const vec4& low, const vec4& high, float strength,
+                  HazePush& out) noexcept;
 
 }  // namespace fw::lod

@@ -168,7 +168,7 @@ Groups groupByChart(const Surface& surface, uint32_t charts, std::pmr::memory_re
                    [&](uint32_t i) { return surface.triangles[i].chart; });
 }
 
-AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory) {
+AtlasPlan packAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory) {
     double uvAreaSum = 0;
     for (const Triangle& t : surface.triangles) uvAreaSum += std::abs(uvArea(t));
     const bool hasUv = !input.uvs.empty() && uvAreaSum > 1e-18;

@@ -13,7 +13,7 @@ struct AtlasPlan {
 };
 
 // Sets uv (texels) of every triangle. Neighbours must be paired again afterwards.
-AtlasPlan layAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory);
+AtlasPlan packAtlas(Surface& surface, const BakeInput& input, std::pmr::memory_resource* memory);
 
 // Strict uniqueness test by rasterising: a texel centre well inside two triangles is a conflict.
 class Coverage {

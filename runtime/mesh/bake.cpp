@@ -97,7 +97,7 @@ BurnDomain bake(const BakeInput& input, std::pmr::memory_resource* memory) {
     validate(input);
     BurnDomain domain(memory);
     Surface surface = collectSurface(input, 0.5 / (input.texelsPerMetre * kUnitsPerTexel), memory);
-    const AtlasPlan plan = layAtlas(surface, input, memory);
+    const AtlasPlan plan = packAtlas(surface, input, memory);
     pairEdges(surface, true, memory);
     TexelGrid grid =
         rasterise(surface, plan.width, plan.height, plan.density, domain.report, memory);

@@ -34,8 +34,8 @@ struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quan
 struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
     uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
     uint32_t seamMaskHigh = 0;
-    uint32_t readerStart = 0;  // into readers
-    uint32_t readerCount = 0;
+    uint32_t dependentStart = 0;  // into readers
+    uint32_t dependentCount = 0;
     uint32_t rimMaskLow = 0;  // texels of this tile with a link record
     uint32_t rimMaskHigh = 0;
     uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
@@ -119,7 +119,7 @@ struct BurnDomain {
     std::pmr::vector<uint32_t> readers;       // tiles, see TileStatic
     std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
     std::pmr::vector<TileBounds> tileBounds;  // per tile, for queries; not stored when cooked
-    std::pmr::vector<uint32_t> partLinks;     // 4 per tile, as gpu::RemoteTile::parts; not stored
+    std::pmr::vector<uint32_t> partLinks;     // 4 per tile, as gpu::ExchangeTile::parts; not stored
                                               // when cooked. Empty: no part is near another one
     std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
     std::pmr::vector<uint32_t> sources;       // per drawn vertex: the host's, for skinning

@@ -34,8 +34,9 @@ void record(Stream& s, std::conditional_t<Stream::kReads, TexelPosition, const T
 }
 template <typename Stream>
 void record(Stream& s, std::conditional_t<Stream::kReads, TileStatic, const TileStatic>& t) {
-    s.number(t.seamMaskLow), s.number(t.seamMaskHigh), s.number(t.readerStart);
-    s.number(t.readerCount), s.number(t.rimMaskLow), s.number(t.rimMaskHigh), s.number(t.rimBase);
+    s.number(t.seamMaskLow), s.number(t.seamMaskHigh), s.number(t.dependentStart);
+    s.number(t.dependentCount), s.number(t.rimMaskLow), s.number(t.rimMaskHigh),
+        s.number(t.rimBase);
     s.number(t.reserved);
 }
 template <typename Stream>
@@ -126,10 +127,10 @@ void checkTiles(const BurnDomain& d) {
         const TileStatic& tile = d.tiles[t];
         const uint64_t rim = uint64_t(tile.rimMaskHigh) << 32 | tile.rimMaskLow;
         require(tile.rimBase == records, "First link record of a tile", t);
-        require(tile.readerStart == readers && tile.readerCount <= d.readers.size() - readers,
+        require(tile.dependentStart == readers && tile.dependentCount <= d.readers.size() - readers,
                 "Readers of a tile", t);
         records += uint32_t(std::popcount(rim));
-        readers += tile.readerCount;
+        readers += tile.dependentCount;
         const TileTexels texels = d.texelsOf(t);
         for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
             const uint32_t texel = texels[lane];

@@ -178,9 +178,9 @@ class Linker {
             if (isRim(texel)) tighten(texel);
         for (uint32_t texel = 0; texel < grid_.count(); ++texel)
             if (isRim(texel)) answerReaders(texel);
-        countReaders();
+        countDependents();
         for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.real(texel) && heard_[texel] == 0) findReader(texel);
+            if (grid_.real(texel) && heard_[texel] == 0) findDependent(texel);
         measure();
     }
 
@@ -405,7 +405,7 @@ class Linker {
         }
     }
 
-    void countReaders() {
+    void countDependents() {
         heard_.assign(grid_.count(), 0);
         for (uint32_t i = 0; i < grid_.count(); ++i)
             for (int k = 0; grid_.real(i) && k < 8; ++k)
@@ -415,7 +415,7 @@ class Linker {
 
     // For a texel i that no other reads, where a fire would stay: among the texels that i reads,
     // the slot with the nearest aim takes i instead of a texel that others read too.
-    void findReader(uint32_t i) {
+    void findDependent(uint32_t i) {
         double least = kMissLimit * grid_.side;
         uint32_t* slot = nullptr;
         for (int k = 0; k < 8; ++k) {

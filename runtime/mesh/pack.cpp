@@ -27,7 +27,7 @@ glm::dvec2 turned(glm::dvec2 u, glm::dvec2 cosSin) {
 }
 
 // Turns a chart so that its box is smallest and upright, and moves it to the origin.
-Piece layPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
+Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t chart) {
     glm::dvec2 bestCosSin(1, 0);
     double bestArea = 1e300;
     for (int turn = 0; turn < kTurns; ++turn) {
@@ -68,7 +68,7 @@ class Packer {
           plainTops_(memory),
           skyline_(memory) {
         for (uint32_t c = 0; c < charts; ++c)
-            if (!groups_.of(c).empty()) pieces_.push_back(layPiece(surface, groups_.of(c), c));
+            if (!groups_.of(c).empty()) pieces_.push_back(orientPiece(surface, groups_.of(c), c));
         std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
             return a.size.y != b.size.y ? a.size.y > b.size.y : a.chart < b.chart;
         });

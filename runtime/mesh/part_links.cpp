@@ -112,8 +112,8 @@ PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
     return {lane, domain.texelsOf(tile)[lane], link % gpu::kPartTexels};
 }
 
-PartWay partWay(const BurnDomain& domain, std::span<const gpu::BurnMaterial> materials,
-                const PartLink& link) noexcept {
+PartPath partPath(const BurnDomain& domain, std::span<const gpu::BurnMaterial> materials,
+                  const PartLink& link) noexcept {
     FW_ASSERT(domain.real(link.from) && domain.real(link.to), "from texel %u to %u", link.from,
               link.to);
     FW_ASSERT(materials.size() >= gpu::kMaterialsPerObject, "%zu materials", materials.size());
@@ -121,7 +121,7 @@ PartWay partWay(const BurnDomain& domain, std::span<const gpu::BurnMaterial> mat
     const auto materialOf = [&](const TexelPosition& at) {
         return &materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];
     };
-    PartWay way{materialOf(p), materialOf(q)};
+    PartPath way{materialOf(p), materialOf(q)};
     const gpu::ivec3 gap(int(q.x) - p.x, int(q.y) - p.y, int(q.z) - p.z);
     way.delay = (way.reached->flags & 1) != 0 ? gpu::partDelay(*way.reached, gap) : gpu::kNever;
     return way;

@@ -15,13 +15,13 @@ struct PartLink {
 [[nodiscard]] PartLink readPartLink(const BurnDomain& domain, uint32_t tile, uint32_t block,
                                     uint32_t link) noexcept;
 
-struct PartWay {  // fire's path over a link
+struct PartPath {  // fire's path over a link
     const gpu::BurnMaterial *left = nullptr, *reached = nullptr;
     uint32_t delay = 0;  // ticks; gpu::kNever: the material reached does not burn
 };
 // `materials`: the object's, kMaterialsPerObject of them.
-[[nodiscard]] PartWay partWay(const BurnDomain& domain,
-                              std::span<const gpu::BurnMaterial> materials,
-                              const PartLink& link) noexcept;
+[[nodiscard]] PartPath partPath(const BurnDomain& domain,
+                                std::span<const gpu::BurnMaterial> materials,
+                                const PartLink& link) noexcept;
 
 }  // namespace fw::mesh

@@ -16,13 +16,13 @@ struct Units {
     uint32_t shift;
 };
 
-constexpr double kMostDistance = 2305843009213693952.0;  // 2^61
-constexpr int64_t kMostUnits = int64_t(1) << 30;         // three squares of these fit into 63 bits
+constexpr double kMaxDistance = 2305843009213693952.0;  // 2^61
+constexpr int64_t kMaxUnits = int64_t(1) << 30;         // three squares of these fit into 63 bits
 
 int64_t toUnits(double metres, double quantum) {
     const double units = metres / quantum;
     if (std::isnan(units)) return 0;
-    return int64_t(std::floor(std::clamp(units, -kMostDistance, kMostDistance) + 0.5));
+    return int64_t(std::floor(std::clamp(units, -kMaxDistance, kMaxDistance) + 0.5));
 }
 Units unitsOf(const BurnDomain& domain, const float point[3]) {
     Units units{};
@@ -32,7 +32,7 @@ Units unitsOf(const BurnDomain& domain, const float point[3]) {
         units.at[k] = toUnits(d, double(domain.quantum));
         most = std::max(most, std::abs(units.at[k]));
     }
-    while (most >> units.shift > kMostUnits) ++units.shift;
+    while (most >> units.shift > kMaxUnits) ++units.shift;
     return units;
 }
 int64_t squareTo(const TexelPosition& p, const Units& u) {
@@ -86,9 +86,9 @@ int64_t unitsOf(const BurnDomain& domain, float metres) {
 
 uint32_t nearestTexel(const BurnDomain& domain, const float point[3], float maxDistance) {
     const Units units = unitsOf(domain, point);
-    // No texel is farther away than twice kMostUnits.
+    // No texel is farther away than twice kMaxUnits.
     const int64_t reach = unitsOf(domain, maxDistance) >> units.shift;
-    const int64_t coarse = std::min(reach + (units.shift > 0 ? 1 : 0), 2 * kMostUnits);
+    const int64_t coarse = std::min(reach + (units.shift > 0 ? 1 : 0), 2 * kMaxUnits);
     // The 2: half a unit of rounding on each side must not lose a texel at the very reach.
     return nearestWithin(domain, units, coarse * coarse + 2);
 }
@@ -100,7 +100,7 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
         nearestWithin(domain, unitsOf(domain, point), std::numeric_limits<int64_t>::max());
     if (centre == kNone) return;
     const TexelPosition& p = domain.texels[centre];
-    const int64_t reach = std::min(unitsOf(domain, radius), kMostUnits);  // the mesh ends before
+    const int64_t reach = std::min(unitsOf(domain, radius), kMaxUnits);  // the mesh ends before
     visitWithin(domain, {{p.x, p.y, p.z}, 0}, reach * reach,
                 [&](uint32_t texel, int64_t) { out.push_back(texel); });
     std::sort(out.begin(), out.end());

@@ -48,10 +48,10 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_reso
     size_t next = 0;
     FW_ASSERT(domain.links.size() % 8 == 0, "%zu links", domain.links.size());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
-        domain.tiles[t].readerStart = uint32_t(next);
+        domain.tiles[t].dependentStart = uint32_t(next);
         for (; next < reads.size() && reads[next].of == t; ++next)
             domain.readers.push_back(reads[next].to);
-        domain.tiles[t].readerCount = uint32_t(next) - domain.tiles[t].readerStart;
+        domain.tiles[t].dependentCount = uint32_t(next) - domain.tiles[t].dependentStart;
     }
 }
 

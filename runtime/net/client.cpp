@@ -32,7 +32,7 @@ Client::Client(const FwNetDef& def, world::World& world, std::pmr::memory_resour
       theirHashes_(memory),
       ourHashes_(memory),
       packet_(memory) {
-    packet_.reserve(kPacketMost);
+    packet_.reserve(kMaxPacket);
     marks_.reserve(kMarks);
 }
 
@@ -58,7 +58,7 @@ void Client::readPacket(std::span<const std::byte> packet) {
                    "session 0x%08X.",
                    head.client, head.session, def_.token, session_);
     const bool early = session_ == 0 && head.kind != PacketKind::welcome;  // that one comes again
-    if (!early && !came_.isNew(head.sequence) && silent_ > kSilentMost && head.sequence > 0)
+    if (!early && !came_.isNew(head.sequence) && silent_ > kMaxSilent && head.sequence > 0)
         came_.restartAt(head.sequence);
     if (early || !came_.isNew(head.sequence)) {
         ++traffic_.ignored;
@@ -94,7 +94,7 @@ void Client::checkProgress(const Reached& mark) {
         contradictions_ = 0;
         return;
     }
-    if (++contradictions_ >= kContradictions && asked_ != Request::state) {
+    if (++contradictions_ >= kContradictions && requested_ != Request::state) {
         contradictions_ = 0;
         ask(Request::state);
     }
@@ -155,7 +155,7 @@ void Client::readStream(core::Reader& reader, bool newest) {
     if (!counts) return;
     if (newest) overloaded_ = (flags & kStreamOverloaded) != 0;
     // Until the state is there the world burns on without the changes that are left out.
-    if (outdated != 0 && asked_ != Request::state) ask(Request::state);
+    if (outdated != 0 && requested_ != Request::state) ask(Request::state);
     // Messages from before the state was saved may be of another past.
     if (mark.records < loadedAt_) return;
     heard_ = std::max(heard_, mark.step);
@@ -170,7 +170,7 @@ void Client::keep(uint32_t record, std::span<const std::byte> bytes) {
     const bool skipped = record_.kind == RecordKind::skipped;
     const uint32_t count = skipped ? uint32_t(record_.tick) : 1;
     if (record + count <= next_) return;
-    if (waiting_.size() >= kWaitingMost && record > received_) return;
+    if (waiting_.size() >= kMaxWaiting && record > received_) return;
     Waiting waiting{count, std::pmr::vector<std::byte>(memory_)};
     if (!skipped) waiting.bytes.assign(bytes.begin(), bytes.end());
     auto at = waiting_.find(record);
@@ -201,7 +201,7 @@ void Client::writeRuns(core::Writer& writer) {
     uint16_t count = 0;
     writer.number(count);
     uint32_t end = received_;
-    for (auto at = waiting_.upper_bound(received_); at != waiting_.end() && count < kRunsMost;) {
+    for (auto at = waiting_.upper_bound(received_); at != waiting_.end() && count < kMaxRuns;) {
         const uint32_t first = at->first;
         uint32_t last = first + at->second.count;
         for (++at; at != waiting_.end() && at->first <= last; ++at)
@@ -240,7 +240,7 @@ void Client::readPiece(core::Reader& reader, bool newest) {
     ChunkHead head;
     const std::span<const std::byte> piece = readChunk(reader, head);
     const Request brings = head.state.id % 2 != 0 ? Request::tiles : Request::state;
-    if (asked_ != brings || !joined_ || retryIn_ > 0) return;
+    if (requested_ != brings || !joined_ || retryIn_ > 0) return;
     if (!state_.take(head, piece, newest)) return forgetState();
     stuck_ = 0;
 }
@@ -255,7 +255,7 @@ void Client::forgetState() noexcept {
 }
 
 void Client::ask(Request what) noexcept {
-    asked_ = what;
+    requested_ = what;
     state_.forget();
     retryIn_ = stuck_ = asking_ = 0;
     ownNumber_ = 0;
@@ -263,20 +263,20 @@ void Client::ask(Request what) noexcept {
     tilesDue_ = false;
 }
 
-void Client::goWrong(const world::World& world, const char* why, uint32_t slot) {
-    if (asked_ != Request::nothing) return;
+void Client::scrambleForTest(const world::World& world, const char* why, uint32_t slot) {
+    if (requested_ != Request::nothing) return;
     // Where tiles alone did not help, all of it is asked for.
     const bool tiles = slot != kNoSlot && repaired_ > kRepairTrust;
     ask(tiles ? Request::tiles : Request::state);
     wrongSlot_ = slot;
-    ++strays_;
+    ++desyncs_;
     world.log().write(FW_LOG_WARNING, "%s The client asks for %s.", why,
                       tiles ? "the tiles that differ" : "the server's state");
 }
 
 // The server saved its state where this world is now: what differs is found between two saves.
-void Client::takeOwn(world::World& world) {
-    if (asked_ != Request::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
+void Client::loadOwnState(world::World& world) {
+    if (requested_ != Request::tiles || ownNumber_ == 0 || !ownBlocks_.empty()) return;
     try {
         const std::pmr::vector<std::byte>* bytes =
             world.persistence().fetchSave(world::SaveFor::net);
@@ -293,19 +293,20 @@ void Client::takeOwn(world::World& world) {
 
 // Messages behind the record that a state is of come with that state's records.
 bool Client::holdsMessages() const noexcept {
-    if (asked_ == Request::state) return state_.state().id == 0 || next_ >= state_.state().record;
-    return asked_ == Request::tiles && ownNumber_ != 0 && next_ >= ownRecord_;
+    if (requested_ == Request::state)
+        return state_.state().id == 0 || next_ >= state_.state().record;
+    return requested_ == Request::tiles && ownNumber_ != 0 && next_ >= ownRecord_;
 }
 
-void Client::handMessage(FwNetTurn& turn) noexcept {
-    turn.kind = FW_TURN_MESSAGE;
+void Client::handMessage(FwNetAction& turn) noexcept {
+    turn.kind = FW_NET_ACTION_MESSAGE;
     turn.messageSize = uint32_t(record_.message.size());
     std::transform(record_.message.begin(), record_.message.end(), turn.message,
                    [](std::byte b) { return (unsigned char)b; });
     messagesEnd_ = next_ + 1;
 }
 
-bool Client::reachState(const world::World& world, FwNetTurn& turn) {
+bool Client::reachState(const world::World& world, FwNetAction& turn) {
     const StateHead& state = state_.state();
     if (loads_ == 0 || state.id % 2 != 0) return true;
     if (state.record < messagesEnd_) {
@@ -323,7 +324,7 @@ bool Client::reachState(const world::World& world, FwNetTurn& turn) {
             if (record_.kind == RecordKind::message) handMessage(turn);
         }
         advance(std::min(end, state.record));
-        if (turn.kind == FW_TURN_MESSAGE) return false;
+        if (turn.kind == FW_NET_ACTION_MESSAGE) return false;
     }
     return next_ >= state.record;
 }
@@ -380,13 +381,13 @@ void Client::compare(world::World& world) {
             });
         if (ours == ourHashes_.end()) return theirs.tick + kHashAge < now;
         ++compared_;
-        if (ours->hash != theirs.hash && alike && asked_ == Request::nothing) {
+        if (ours->hash != theirs.hash && alike && requested_ == Request::nothing) {
             alike = false;
             char why[160];
             std::snprintf(why, sizeof why,
                           "Burnable mesh %u differs from the server's at tick %llu.",
                           theirs.slot + 1, static_cast<unsigned long long>(theirs.tick));
-            goWrong(world, why, theirs.slot);
+            scrambleForTest(world, why, theirs.slot);
         }
         return true;
     });
@@ -394,30 +395,31 @@ void Client::compare(world::World& world) {
                   [&](const world::ObjectHash& one) { return one.tick + kHashAge < now; });
 }
 
-void Client::takeTurn(world::World& world, FwNetTurn& turn) {
-    turn.kind = FW_TURN_WAIT;
+void Client::takeTurn(world::World& world, FwNetAction& turn) {
+    turn.kind = FW_NET_ACTION_WAIT;
     if (state_.whole() && reachState(world, turn)) load(world);
-    if (loads_ == 0 || turn.kind != FW_TURN_WAIT) return;
+    if (loads_ == 0 || turn.kind != FW_NET_ACTION_WAIT) return;
     compare(world);
-    takeOwn(world);
+    loadOwnState(world);
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
     while (next_ < received_) {
         uint32_t end = 0;
         const Waiting& waiting = front(end);
         if (waiting.bytes.empty()) {  // the server has a state instead
             advance(end);
-            if (asked_ != Request::state) ask(Request::state);
+            if (requested_ != Request::state) ask(Request::state);
             continue;
         }
         readRecord(waiting.bytes, record_);
         if (record_.step > now) break;
         if (record_.kind == RecordKind::message && holdsMessages()) break;
-        if (record_.step < now) goWrong(world, "A record of the server's comes too late.", kNoSlot);
+        if (record_.step < now)
+            scrambleForTest(world, "A record of the server's comes too late.", kNoSlot);
         if (record_.kind == RecordKind::command) {
             try {
                 world.persistence().apply(record_.command);
             } catch (const core::Error& error) {
-                goWrong(world, error.message, kNoSlot);
+                scrambleForTest(world, error.message, kNoSlot);
             }
         } else if (record_.kind == RecordKind::hashes) {
             for (uint32_t i = 0; i < record_.hashCount; ++i)
@@ -425,17 +427,17 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
                     theirHashes_.push_back({record_.first + i * record_.stride, record_.stride,
                                             record_.tick, record_.hashes[i]});
         } else if (record_.kind == RecordKind::capture) {
-            if (asked_ == Request::tiles && ownNumber_ == 0) {
+            if (requested_ == Request::tiles && ownNumber_ == 0) {
                 world.persistence().requestSave(world::SaveFor::net);
                 ownNumber_ = uint32_t(record_.tick);
                 ownRecord_ = end;
-                turn.kind = FW_TURN_STEP;  // of no time: a save is of the next frame
+                turn.kind = FW_NET_ACTION_STEP;  // of no time: a save is of the next frame
             }
         } else {
             handMessage(turn);
         }
         advance(end);
-        if (turn.kind != FW_TURN_WAIT) return;
+        if (turn.kind != FW_NET_ACTION_WAIT) return;
     }
     // As far as nothing has to be done and no hash is due.
     uint32_t until = std::min(reached_, (now / world::kHashSteps + 1) * world::kHashSteps);
@@ -453,7 +455,7 @@ void Client::takeTurn(world::World& world, FwNetTurn& turn) {
         seconds = std::nextafter(seconds, std::numeric_limits<float>::infinity());
     owed_ = std::max(owed_ - double(seconds), 0.0);
     recording_.until = uint64_t(until) * gpu::kStepTicks;
-    turn.kind = FW_TURN_STEP;
+    turn.kind = FW_NET_ACTION_STEP;
     turn.deltaTime = seconds;
 }
 
@@ -464,10 +466,10 @@ void Client::update(world::World& world, float seconds) {
     asking_ += double(seconds);
     repaired_ += double(seconds);
     const bool takes = state_.state().id != 0 && !state_.whole();
-    if (asked_ == Request::state && takes && stuck_ > kStuckAfter) forgetState();
+    if (requested_ == Request::state && takes && stuck_ > kStuckAfter) forgetState();
     // A welcome of a session that nobody is in has no packets after it.
-    if (joined_ && loads_ == 0 && silent_ > kSilentMost) joined_ = false;
-    if (asked_ == Request::tiles && asking_ > kTilesPatience) ask(Request::state);
+    if (joined_ && loads_ == 0 && silent_ > kMaxSilent) joined_ = false;
+    if (requested_ == Request::tiles && asking_ > kTilesPatience) ask(Request::state);
     untilDue_ -= double(seconds);
     if (untilDue_ <= 1e-4) {
         const double interval =
@@ -508,7 +510,7 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
     (due_ ? due_ : tilesDue_) = false;
     core::Writer writer = beginPacket(packet_, {kind, joined_ ? session_ : 0, def_.token, ++sent_});
     if (kind == PacketKind::status) {
-        writer.number(uint16_t(retryIn_ <= 0 ? asked_ : Request::nothing));
+        writer.number(uint16_t(retryIn_ <= 0 ? requested_ : Request::nothing));
         writer.number(loaded_);
         writer.number(received_);
         writer.number(uint32_t(world.tick() / gpu::kStepTicks));
@@ -537,7 +539,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
                   : loads_ == 0 ? FW_NET_LOADING
                                 : FW_NET_FOLLOWING;
     state.step = world.tick() / gpu::kStepTicks;
-    state.heardStep = heard_;
+    state.newestKnownStep = heard_;
     state.behind = float(std::max(double(heard_) / 32 - world.persistence().seconds(), 0.0));
     state.silent = float(silent_);
     state.records = uint32_t(waiting_.size());
@@ -545,7 +547,7 @@ void Client::fillState(world::World& world, FwNetState& state) const {
     addTraffic(traffic_, state);
     state.states = loads_;
     state.hashes = compared_;
-    state.strays = strays_;
+    state.desyncs = desyncs_;
     state.repairs = repairs_;
     state.overloaded = overloaded_ ? 1 : 0;
 }

@@ -20,13 +20,13 @@ class Client {
     void update(world::World& world, float seconds);
     bool write(world::World& world, std::span<std::byte> room, uint32_t& size);
     void read(std::span<const std::byte> packet);
-    // What to do next; see fwNet_TakeTurn.
-    void takeTurn(world::World& world, FwNetTurn& turn);
+    // What to do next; see fwNet_NextAction.
+    void takeTurn(world::World& world, FwNetAction& turn);
     void fillState(world::World& world, FwNetState& state) const;
 
  private:
     static constexpr uint32_t kNoSlot = 0xFFFFFFFFu;
-    static constexpr size_t kWaitingMost = 1u << 14;  // records that may wait for those before them
+    static constexpr size_t kMaxWaiting = 1u << 14;  // records that may wait for those before them
 
     struct Waiting {  // one record, or a run of skipped ones
         uint32_t count = 1;
@@ -47,16 +47,16 @@ class Client {
     void advance(uint32_t record) noexcept;
     void load(world::World& world);
     void ask(Request what) noexcept;
-    void takeOwn(world::World& world);
+    void loadOwnState(world::World& world);
     void forgetState() noexcept;
     void compare(world::World& world);
     // slot: of the object that differs; kNoSlot: more than one may.
-    void goWrong(const world::World& world, const char* why, uint32_t slot);
+    void scrambleForTest(const world::World& world, const char* why, uint32_t slot);
     void settleMarks() noexcept;
-    void handMessage(FwNetTurn& turn) noexcept;
+    void handMessage(FwNetAction& turn) noexcept;
     [[nodiscard]] bool holdsMessages() const noexcept;
     // Hands on the messages before the state that came. True: they are all handed on.
-    bool reachState(const world::World& world, FwNetTurn& turn);
+    bool reachState(const world::World& world, FwNetAction& turn);
 
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
@@ -67,7 +67,7 @@ class Client {
     bool refused_ = false;  // and it is another one
     bool joined_ = false;   // it is this one
     uint64_t theirs_ = 0;   // the server's identity
-    Request asked_ = Request::state;
+    Request requested_ = Request::state;
     uint32_t loads_ = 0;     // states and tiles so far
     uint32_t loaded_ = 0;    // id of the last of them
     uint32_t loadedAt_ = 0;  // its record
@@ -98,7 +98,7 @@ class Client {
     bool due_ = true;
     std::pmr::vector<world::ObjectHash> theirHashes_, ourHashes_;
     uint64_t compared_ = 0;
-    uint32_t strays_ = 0;
+    uint32_t desyncs_ = 0;
     Traffic traffic_;
     std::pmr::vector<std::byte> packet_;  // scratch
     Record record_;                       // scratch

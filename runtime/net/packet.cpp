@@ -36,9 +36,9 @@ void sealPacket(std::span<std::byte> packet) noexcept {
 }
 
 PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
-    if (packet.size() < kPacketHead || packet.size() > kPacketMost)
+    if (packet.size() < kPacketHead || packet.size() > kMaxPacket)
         core::fail(FW_ERROR_BAD_DATA, "The packet has %zu bytes; the limits are [%zu, %zu].",
-                   packet.size(), kPacketHead, kPacketMost);
+                   packet.size(), kPacketHead, kMaxPacket);
     uint32_t magic = 0, sum = 0;
     uint16_t version = 0, kind = 0;
     PacketHead head;

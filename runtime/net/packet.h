@@ -30,8 +30,8 @@ struct PacketHead {
 };
 
 constexpr uint32_t kPacketVersion = 3;
-constexpr size_t kPacketHead = 24;                        // bytes
-constexpr size_t kPacketLeast = 512, kPacketMost = 1400;  // that packets have at most
+constexpr size_t kPacketHead = 24;                     // bytes
+constexpr size_t kMinPacket = 512, kMaxPacket = 1400;  // that packets have at most
 
 // Begins a packet in `out`, whose room is kept.
 core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head);
@@ -42,7 +42,7 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
 
 // s without an accepted packet: a packet that seems old then restarts the sequence, since its
 // newest number may have been wrong.
-constexpr double kSilentMost = 3;
+constexpr double kMaxSilent = 3;
 
 // The packets of a sequence that have arrived. Those far behind the newest count as arrived.
 class SequenceWindow {

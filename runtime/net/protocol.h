@@ -13,21 +13,21 @@ enum class PeerPhase : uint8_t {
     calling,         // it has not greeted
     joining,         // it has no state and asks for none yet
     waitsForState,   // a capture for it is to come
-    takesState,      // pieces of a capture are on their way
+    loadsState,      // pieces of a capture are on their way
     follows,         // it has a state, from which records go on
     waitsForTiles,   // it follows; a capture is to come, or its hashes of it
-    takesTiles,      // it follows; tiles of a capture are on their way
+    loadsTiles,      // it follows; tiles of a capture are on their way
     outdated,        // it has a state from which the server's records do not go on
     waitsForReload,  // its state is wrong or outdated; a capture is to come
-    takesReload,     // its state is wrong or outdated; pieces of a capture are on their way
+    loadsReload,     // its state is wrong or outdated; pieces of a capture are on their way
     count
 };
 
 enum class PeerEvent : uint8_t {
     greets,
-    asksNothing,
-    asksState,
-    asksTiles,
+    requestsNothing,
+    requestsState,
+    requestsTiles,
     loads,   // it has loaded a state or tiles that it was given
     begins,  // the server begins to send it a state or tiles
     falls,   // it is too far behind, or the server's world has another past
@@ -51,27 +51,27 @@ constexpr std::array<PeerRule, size_t(PeerPhase::count)> kPeerRules = [] {
     return std::array<PeerRule, size_t(PeerPhase::count)>{{
         // clang-format off
         // name, hasState, waits, takes, shown,
-        //     {greets, asksNothing, asksState, asksTiles, loads, begins, falls}
+        //     {greets, requestsNothing, requestsState, requestsTiles, loads, begins, falls}
         {"calling", false, false, false, FW_NET_CALLING,
          {joining, none, none, none, none, none, calling}},
         {"joining", false, false, false, FW_NET_LOADING,
          {joining, joining, waitsForState, none, follows, none, joining}},
         {"waiting for a state", false, true, false, FW_NET_LOADING,
-         {waitsForState, joining, waitsForState, none, follows, takesState, waitsForState}},
+         {waitsForState, joining, waitsForState, none, follows, loadsState, waitsForState}},
         {"taking a state", false, false, true, FW_NET_LOADING,
-         {takesState, joining, takesState, none, follows, none, waitsForState}},
+         {loadsState, joining, loadsState, none, follows, none, waitsForState}},
         {"following", true, false, false, FW_NET_FOLLOWING,
          {follows, follows, waitsForReload, waitsForTiles, follows, none, outdated}},
         {"waiting for tiles", true, true, false, FW_NET_FOLLOWING,
-         {waitsForTiles, follows, waitsForReload, waitsForTiles, follows, takesTiles, outdated}},
+         {waitsForTiles, follows, waitsForReload, waitsForTiles, follows, loadsTiles, outdated}},
         {"taking tiles", true, false, true, FW_NET_FOLLOWING,
-         {takesTiles, follows, waitsForReload, takesTiles, follows, none, outdated}},
+         {loadsTiles, follows, waitsForReload, loadsTiles, follows, none, outdated}},
         {"outdated", true, false, false, FW_NET_LOADING,
          {outdated, outdated, waitsForReload, outdated, follows, none, outdated}},
         {"waiting for another state", true, true, false, FW_NET_LOADING,
-         {waitsForReload, outdated, waitsForReload, none, follows, takesReload, waitsForReload}},
+         {waitsForReload, outdated, waitsForReload, none, follows, loadsReload, waitsForReload}},
         {"taking another state", true, false, true, FW_NET_LOADING,
-         {takesReload, outdated, takesReload, none, follows, none, waitsForReload}},
+         {loadsReload, outdated, loadsReload, none, follows, none, waitsForReload}},
         // clang-format on
     }};
 }();

@@ -52,9 +52,9 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
             core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u and number %llu.",
                        kind, static_cast<unsigned long long>(record.tick));
     } else {
-        if (reader.left() > kMessageMost)
+        if (reader.left() > kMaxMessage)
             core::fail(FW_ERROR_BAD_DATA, "The packet has a message of %zu bytes; the limit is %u.",
-                       reader.left(), kMessageMost);
+                       reader.left(), kMaxMessage);
         record.message = reader.take(reader.left());
     }
     if (reader.left() != 0)
@@ -117,7 +117,7 @@ uint32_t RecordLog::dropOldestMessage() noexcept {
 }
 
 RecordLog::Entry RecordLog::entryAt(uint32_t record, uint32_t skipsBefore) const noexcept {
-    constexpr uint32_t kMostScanned = 4096;
+    constexpr uint32_t kMaxScanned = 4096;
     uint32_t end = record;
     if (record < first_) {
         const auto next =
@@ -127,7 +127,7 @@ RecordLog::Entry RecordLog::entryAt(uint32_t record, uint32_t skipsBefore) const
         end = next != kept_.end() ? next->record : first_;
         if (end < first_) return {{}, end - record};
     }
-    for (uint32_t i = 0; i < kMostScanned && end < std::min(skipsBefore, this->end()); ++i, ++end)
+    for (uint32_t i = 0; i < kMaxScanned && end < std::min(skipsBefore, this->end()); ++i, ++end)
         if (isMessage(end)) break;
     if (end == record) return {at(record), 1};
     return {{}, end - record};

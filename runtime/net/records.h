@@ -13,15 +13,15 @@
 
 namespace fw::net {
 
-constexpr uint32_t kMessageMost = 1024;  // bytes of a host's message
-static_assert(kMessageMost == sizeof FwNetTurn::message);
+constexpr uint32_t kMaxMessage = 1024;  // bytes of a host's message
+static_assert(kMaxMessage == sizeof FwNetAction::message);
 
 // Of a packet of records: the server says that its rate cannot carry its changes.
 constexpr uint16_t kStreamOverloaded = 1;
 constexpr uint16_t kStreamFlags = kStreamOverloaded;  // all of them
 
 // Runs of records that a client has behind a gap, at most so many in a status.
-constexpr size_t kRunsMost = 64;
+constexpr size_t kMaxRuns = 64;
 struct RecordRun {
     uint32_t first = 0, end = 0;
 };
@@ -42,7 +42,7 @@ struct Record {
     // Of one round, which a tick names: slots `first`, `first` + `stride` and so on.
     uint64_t tick = 0;
     uint32_t first = 0, stride = 1;
-    std::array<uint64_t, world::kMostHashes> hashes{};
+    std::array<uint64_t, world::kMaxHashes> hashes{};
     uint32_t hashCount = 0;
     std::span<const std::byte> message;
 };

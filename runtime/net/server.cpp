@@ -10,22 +10,22 @@ namespace {
 constexpr double kCaptureAge = 10;  // s that a state may be given to a client that joins
 // Saves for the sake of one peer: so many at once, then one each so many seconds.
 constexpr double kCapturesAtOnce = 3, kCaptureEvery = 5;
-constexpr double kCaptureRetry = 1;                    // s after a save that failed
-constexpr size_t kCapturesMost = 4;                    // at a time
-constexpr size_t kLogMost = size_t(8) * 1024 * 1024;   // bytes of records
-constexpr size_t kKeptMost = size_t(4) * 1024 * 1024;  // bytes of messages before these
-constexpr double kIdentityAge = 0.5;                   // s
-constexpr size_t kStreamHead = 20, kRecordHead = 2;    // bytes
+constexpr double kCaptureRetry = 1;                   // s after a save that failed
+constexpr size_t kMaxCaptures = 4;                    // at a time
+constexpr size_t kMaxLog = size_t(8) * 1024 * 1024;   // bytes of records
+constexpr size_t kMaxKept = size_t(4) * 1024 * 1024;  // bytes of messages before these
+constexpr double kIdentityAge = 0.5;                  // s
+constexpr size_t kStreamHead = 20, kRecordHead = 2;   // bytes
 constexpr size_t kHashHead = 22, kSkipBytes = 14;  // bytes of a record of hashes, of skipped ones
 constexpr double kChunkAgain = 0.25;               // s, where the rate has room to spare
 // A peer whose oldest unanswered record is this old, and so many timeouts, is behind (s); where a
 // state is less to send than what waits, it gets that.
 constexpr double kBehind = 3, kBehindTimeouts = 3, kFallen = 5, kFallenTimeouts = 4;
-constexpr size_t kFallenLeast = 16 * 1024;  // bytes
-constexpr double kFallEvery = 10;           // s
-constexpr uint32_t kReordered = 3;          // packets by which one may overtake another
-constexpr double kReportEvery = 30;         // s between two log lines about the same peer's rate
-constexpr double kPacketsPerSecond = 512, kPacketsMost = 8192;  // from one peer
+constexpr size_t kMinFallen = 16 * 1024;  // bytes
+constexpr double kFallEvery = 10;         // s
+constexpr uint32_t kReordered = 3;        // packets by which one may overtake another
+constexpr double kReportEvery = 30;       // s between two log lines about the same peer's rate
+constexpr double kPacketsPerSecond = 512, kMaxPackets = 8192;  // from one peer
 
 }  // namespace
 
@@ -39,7 +39,7 @@ void checkNetDef(const FwNetDef& def) {
     check(def.flags, "flags", 0, 0);
     check(def.reserved, "reserved", 0, 0);
     check(def.token, "token", 1, 0xFFFFFFFFu);
-    check(def.packetBytes, "packetBytes", kPacketLeast, kPacketMost);
+    check(def.packetBytes, "packetBytes", kMinPacket, kMaxPacket);
     check(def.bytesPerSecond, "bytesPerSecond", 4000, 100000000);
     checkValue(def.delay, "FwNetDef::delay", 0.0f, 10.0f);
     checkValue(def.interval, "FwNetDef::interval", 1.0f / 64, 1.0f);
@@ -53,17 +53,17 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
       log_(memory),
       captures_(memory),
       packet_(memory) {
-    packet_.reserve(kPacketMost);
-    captures_.reserve(kCapturesMost + 1);
+    packet_.reserve(kMaxPacket);
+    captures_.reserve(kMaxCaptures + 1);
     step_ = uint32_t(world.tick() / gpu::kStepTicks);
 }
 
 FwPeerId Server::addPeer() {
-    if (peers_.live() >= kMostPeers)
+    if (peers_.live() >= kMaxPeers)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u peers are there; the limit is %u.", peers_.live(),
-                   kMostPeers);
+                   kMaxPeers);
     const FwPeerId id = peers_.create(memory_);
-    peers_.get(id).packets = kPacketsMost;
+    peers_.get(id).packets = kMaxPackets;
     peers_.get(id).captures = kCapturesAtOnce;
     return id;
 }
@@ -95,7 +95,7 @@ void Server::fall(Peer& peer) noexcept {
 // ---- records ------------------------------------------------------------------------------------
 
 void Server::endCapture() noexcept {
-    capturing_ = captureNoted_ = false;
+    capturing_ = captureRequested_ = false;
     eachPeer([](Peer& peer, uint32_t) {
         if (peer.phase == PeerPhase::waitsForTiles) peer.capture = 0;
     });
@@ -109,7 +109,7 @@ uint32_t Server::messagesFrom() noexcept {
         if (ruleOf(peer.phase).takes) from = std::min(from, peer.head.record);
     });
     for (const Capture& capture : captures_) from = std::min(from, capture.head.record);
-    if (captureNoted_) from = std::min(from, noted_.record);
+    if (captureRequested_) from = std::min(from, recorded_.record);
     return from;
 }
 
@@ -124,7 +124,7 @@ void Server::dropLog(uint32_t record) noexcept {
     }
 }
 
-void Server::loseAll() noexcept {
+void Server::discardAll() noexcept {
     eachPeer([&](Peer& peer, uint32_t) { fall(peer); });
     endCapture();
     captures_.clear();
@@ -136,7 +136,7 @@ void Server::push(const Record& record) {
         log_.push(record, now_);
         pushed_ += log_.at(log_.end() - 1).size();
     } catch (...) {
-        loseAll();
+        discardAll();
     }
 }
 
@@ -145,32 +145,32 @@ void Server::drain(world::World& world) {
     const auto now = uint32_t(world.tick() / gpu::kStepTicks);
     if (recording_.lost || recording_.loaded) {
         recording_.lost = recording_.loaded = false;
-        loseAll();
+        discardAll();
     }
-    const auto noteCapture = [&] {
+    const auto recordCapture = [&] {
         recording_.captured = false;
-        captureNoted_ = capturing_;
+        captureRequested_ = capturing_;
         if (!capturing_) return;
         record_.kind = RecordKind::capture;
         record_.step = uint32_t(recording_.capturedAt / gpu::kStepTicks);
         record_.tick = ++captureCount_;
         push(record_);
-        noted_.id = 2 * captureCount_;
-        noted_.step = record_.step;
-        noted_.record = log_.end();
+        recorded_.id = 2 * captureCount_;
+        recorded_.step = record_.step;
+        recorded_.record = log_.end();
         eachPeer([&](Peer& peer, uint32_t) {
             if (peer.phase == PeerPhase::waitsForTiles && peer.capture == 0)
                 peer.capture = captureCount_;
         });
     };
     for (size_t i = 0; i < recording_.commands.size(); ++i) {
-        if (recording_.captured && i == recording_.capturedBehind) noteCapture();
+        if (recording_.captured && i == recording_.capturedBehind) recordCapture();
         record_.kind = RecordKind::command;
         record_.step = uint32_t(recording_.commands[i].tick / gpu::kStepTicks);
         record_.command = recording_.commands[i].command;
         push(record_);
     }
-    if (recording_.captured) noteCapture();
+    if (recording_.captured) recordCapture();
     recording_.commands.clear();
     // Hashes of one tick are of one round; those of slots without an object are 0. A record is no
     // longer than a packet.
@@ -200,10 +200,10 @@ void Server::drain(world::World& world) {
 }
 
 void Server::sendMessage(world::World& world, std::span<const std::byte> message) {
-    if (message.size() > kMessageMost || message.size() + 64 > def_.packetBytes)
+    if (message.size() > kMaxMessage || message.size() + 64 > def_.packetBytes)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The message has %zu bytes; the limit is %u, and FwNetDef::packetBytes less 64.",
-                   message.size(), kMessageMost);
+                   message.size(), kMaxMessage);
     drain(world);
     record_.kind = RecordKind::message;
     record_.step = step_;
@@ -223,8 +223,8 @@ void Server::trim(const world::World& world) noexcept {
         if (ruleOf(peer.phase).takes) needed = std::min(needed, peer.head.record);
     });
     for (const Capture& capture : captures_) needed = std::min(needed, capture.head.record);
-    if (captureNoted_) needed = std::min(needed, noted_.record);
-    if (log_.bytes() > kLogMost) needed = std::max(needed, log_.recordBeforeLast(kLogMost / 2));
+    if (captureRequested_) needed = std::min(needed, recorded_.record);
+    if (log_.bytes() > kMaxLog) needed = std::max(needed, log_.recordBeforeLast(kMaxLog / 2));
     dropLog(std::max(needed, log_.begin()));
     eachPeer([&](Peer& peer, uint32_t) {
         if (!ruleOf(peer.phase).hasState || peer.skips || peer.acknowledged >= log_.begin()) return;
@@ -232,7 +232,7 @@ void Server::trim(const world::World& world) noexcept {
         ++peer.resyncs;
     });
     log_.dropMessagesBefore(messagesFrom());
-    while (log_.keptBytes() > kKeptMost) {
+    while (log_.keptBytes() > kMaxKept) {
         const uint32_t lost = log_.dropOldestMessage();
         eachPeer([&](Peer& peer, uint32_t name) {
             if (!ruleOf(peer.phase).hasState || peer.acknowledged > lost) return;
@@ -241,7 +241,7 @@ void Server::trim(const world::World& world) noexcept {
                                   "Peer %u has not answered for %.1f s: of messages that wait, the "
                                   "server keeps %zu bytes, and this peer misses the others. Remove "
                                   "it, or send it what it missed in another way.",
-                                  name, peer.silent, kKeptMost);
+                                  name, peer.silent, kMaxKept);
         });
     }
 }
@@ -271,7 +271,7 @@ void Server::watchBacklog(const world::World& world, Peer& peer, uint32_t name) 
             "FwNetDef::bytesPerSecond is %u. Change less, or raise the rate.",
             name, backlog, bytes, changeRate_, def_.bytesPerSecond);
     }
-    const size_t least = std::max(kFallenLeast, std::min(2 * stateBytes_, kLogMost / 4));
+    const size_t least = std::max(kMinFallen, std::min(2 * stateBytes_, kMaxLog / 4));
     if (backlog < kFallen + kFallenTimeouts * timeout || now_ - peer.fellAt < kFallEvery ||
         log_.skippableFrom(peer.acknowledged) < least)
         return;
@@ -288,18 +288,18 @@ Server::Capture* Server::captureOf(uint32_t number) noexcept {
 }
 
 void Server::fetchCapture(world::World& world) {
-    if (!capturing_ || !captureNoted_) return;
+    if (!capturing_ || !captureRequested_) return;
     try {
         const std::pmr::vector<std::byte>* bytes =
             world.persistence().fetchSave(world::SaveFor::net);
         if (!bytes) return;
-        if (bytes->size() > kStateMost)
+        if (bytes->size() > kMaxState)
             core::fail(FW_ERROR_OUT_OF_MEMORY, "The state has %zu bytes; the limit is %u.",
-                       bytes->size(), kStateMost);
-        captures_.push_back({noted_, {bytes->begin(), bytes->end(), memory_}, now_});
+                       bytes->size(), kMaxState);
+        captures_.push_back({recorded_, {bytes->begin(), bytes->end(), memory_}, now_});
         captures_.back().head.size = uint32_t(bytes->size());
         stateBytes_ = bytes->size();
-        capturing_ = captureNoted_ = false;
+        capturing_ = captureRequested_ = false;
     } catch (const core::Error& error) {
         failCapture(world, error.message);
     } catch (const std::bad_alloc&) {
@@ -320,7 +320,7 @@ void Server::dropCaptures() noexcept {
         eachPeer([&](const Peer& peer, uint32_t) { used |= peer.capture == capture.number(); });
         return used;
     };
-    while (captures_.size() > kCapturesMost) {
+    while (captures_.size() > kMaxCaptures) {
         const uint32_t number = captures_.front().number();
         eachPeer([&](Peer& peer, uint32_t) {
             if (peer.capture != number) return;
@@ -337,7 +337,7 @@ void Server::dropCaptures() noexcept {
 }
 
 // Gives states to the peers that wait for one, and has the world save where there is none for them.
-void Server::takeCaptures(world::World& world) {
+void Server::collectCaptures(world::World& world) {
     fetchCapture(world);
     dropCaptures();
     bool needed = false;
@@ -384,14 +384,12 @@ void Server::begin(Peer& peer, const StateHead& head, size_t bytes) {
 
 // ---- packets ------------------------------------------------------------------------------------
 
-double Server::budgetMost() const noexcept {
+double Server::maxBudget() const noexcept {
     return std::max(0.25 * def_.bytesPerSecond, 2.0 * def_.packetBytes);
 }
 
 // Then what has no answer yet may be sent again before it counts as lost.
-bool Server::hasSpareRate(const Peer& peer) const noexcept {
-    return peer.budget > budgetMost() / 2;
-}
+bool Server::hasSpareRate(const Peer& peer) const noexcept { return peer.budget > maxBudget() / 2; }
 
 void Server::update(world::World& world, float seconds) {
     const auto passed = double(seconds);
@@ -407,14 +405,14 @@ void Server::update(world::World& world, float seconds) {
         pushedBefore_ = pushed_;
         changeRateAt_ = now_;
     }
-    takeCaptures(world);
+    collectCaptures(world);
     trim(world);
     eachPeer([&](Peer& peer, uint32_t name) {
-        peer.packets = std::min(peer.packets + passed * kPacketsPerSecond, kPacketsMost);
+        peer.packets = std::min(peer.packets + passed * kPacketsPerSecond, kMaxPackets);
         peer.captures = std::min(peer.captures + passed / kCaptureEvery, kCapturesAtOnce);
         if (peer.token == 0) return;
         peer.silent += passed;
-        peer.budget = std::min(peer.budget + passed * def_.bytesPerSecond, budgetMost());
+        peer.budget = std::min(peer.budget + passed * def_.bytesPerSecond, maxBudget());
         watchBacklog(world, peer, name);
         peer.untilDue -= passed;
         if (peer.untilDue > 1e-4) return;
@@ -436,7 +434,7 @@ PacketHead Server::headOf(Peer& peer, PacketKind kind) noexcept {
 uint32_t Server::streamEnd(const Peer& peer) const noexcept {
     if (!peer.skips) return log_.end();
     if (ruleOf(peer.phase).takes) return std::min(peer.head.record, log_.end());
-    return captureNoted_ ? noted_.record : log_.end();
+    return captureRequested_ ? recorded_.record : log_.end();
 }
 
 // The record, or the first behind the run that the peer has it in.
@@ -503,7 +501,7 @@ bool Server::writeStream(Peer& peer, bool pieceDue) {
 bool Server::writePiece(Peer& peer, uint32_t piece) {
     if (piece == peer.chunks.count()) return false;
     const Capture* capture = captureOf(peer.capture);
-    const bool tiles = peer.phase == PeerPhase::takesTiles;
+    const bool tiles = peer.phase == PeerPhase::loadsTiles;
     if (!tiles && !capture) return false;
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::chunk));
     const auto each = uint16_t(def_.packetBytes - kPacketHead - kChunkHead);
@@ -572,7 +570,7 @@ void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
                    "The packet is of a client with token 0x%08X; peer %u has 0x%08X. Remove the "
                    "peer if another one came in its place.",
                    head.client, name, peer.token);
-    if (!peer.came.isNew(head.sequence) && peer.silent > kSilentMost && head.sequence > 0)
+    if (!peer.came.isNew(head.sequence) && peer.silent > kMaxSilent && head.sequence > 0)
         peer.came.restartAt(head.sequence);
     if (!peer.came.isNew(head.sequence)) {
         ++peer.traffic.ignored;
@@ -609,8 +607,8 @@ const Server::Given* Server::givenOf(const Peer& peer, uint32_t id) noexcept {
 }
 
 PeerEvent Server::eventOf(uint16_t request) noexcept {
-    constexpr PeerEvent events[] = {PeerEvent::asksNothing, PeerEvent::asksState,
-                                    PeerEvent::asksTiles};
+    constexpr PeerEvent events[] = {PeerEvent::requestsNothing, PeerEvent::requestsState,
+                                    PeerEvent::requestsTiles};
     return events[request];
 }
 
@@ -669,7 +667,7 @@ Server::Status Server::statusOf(core::Reader& reader) {
     reader.number(status.step), reader.number(status.answered);
     reader.number(status.state), reader.number(status.base), reader.number(status.came);
     reader.number(status.runCount);
-    if (status.runCount > kRunsMost || reader.left() != status.runCount * 2 * sizeof(uint16_t))
+    if (status.runCount > kMaxRuns || reader.left() != status.runCount * 2 * sizeof(uint16_t))
         core::fail(FW_ERROR_BAD_DATA, "The packet's status has %u runs of records in %zu bytes.",
                    uint32_t(status.runCount), reader.left());
     uint32_t at = status.next;
@@ -715,7 +713,7 @@ void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, b
     peer.step = status.step;
     // It has forgotten what it had of the state, and begins again.
     const bool forgot = Request(status.request) == Request::state && status.state == 0 &&
-                        peer.chunks.base() > 0 && peer.phase != PeerPhase::takesTiles;
+                        peer.chunks.base() > 0 && peer.phase != PeerPhase::loadsTiles;
     if (peer.chunks.active() && forgot) move(peer, PeerEvent::falls);
     move(peer, eventOf(status.request));
 }
@@ -724,7 +722,7 @@ void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, b
 void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
     uint32_t number = 0, slot = 0;
     reader.number(number), reader.number(slot);
-    std::array<uint32_t, world::kMostBlocks> hashes{};
+    std::array<uint32_t, world::kMaxBlocks> hashes{};
     const size_t count = reader.left() / sizeof(uint32_t);
     if (count > hashes.size())
         core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of %zu blocks; the limit is %zu.",
@@ -776,7 +774,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
         const Peer& peer = peers_.get(id);
         add(peer);
         state.phase = ruleOf(peer.phase).shown;
-        state.heardStep = peer.step;
+        state.newestKnownStep = peer.step;
         state.behind = float(double(state.step - std::min<uint64_t>(state.step, peer.step)) / 32);
         state.silent = float(peer.silent);
         state.roundTrip = float(peer.trip.seconds());
@@ -785,7 +783,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
     for (uint32_t i = 0; i < peers_.slotCount(); ++i)
         if (const Peer* peer = peers_.at(i)) add(*peer);
     state.phase = FW_NET_FOLLOWING;
-    state.heardStep = state.step;
+    state.newestKnownStep = state.step;
 }
 
 }  // namespace fw::net

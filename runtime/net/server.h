@@ -23,7 +23,7 @@ class Server {
     void removePeer(FwPeerId id) { peers_.destroy(id); }
     void update(world::World& world, float seconds);
     // A save is requested; the next frame of the world takes it, even one of deltaTime 0.
-    [[nodiscard]] bool awaitsFrame() const noexcept { return capturing_ && !captureNoted_; }
+    [[nodiscard]] bool awaitsFrame() const noexcept { return capturing_ && !captureRequested_; }
     // False: nothing is due.
     bool write(FwPeerId to, std::span<std::byte> room, uint32_t& size);
     void read(world::World& world, FwPeerId from, std::span<const std::byte> packet);
@@ -31,7 +31,7 @@ class Server {
     void fillState(world::World& world, FwPeerId peer, FwNetState& state);
 
  private:
-    static constexpr uint32_t kMostPeers = 256;
+    static constexpr uint32_t kMaxPeers = 256;
     struct Given {  // a state or tiles that a peer was sent
         uint32_t id = 0, record = 0;
         bool whole = false;  // every piece was sent at least once
@@ -46,7 +46,7 @@ class Server {
         // the bits behind it.
         uint32_t state = 0, base = 0;
         uint64_t came = 0;
-        std::array<RecordRun, kRunsMost> runs;  // of records that it has behind `next`
+        std::array<RecordRun, kMaxRuns> runs;  // of records that it has behind `next`
         uint16_t runCount = 0;
     };
     struct Peer {
@@ -67,7 +67,7 @@ class Server {
         uint64_t messagesLost = 0;
         // Records: acknowledged <= cursor <= sentEnd, the end of those that were ever sent to it.
         uint32_t acknowledged = 0, cursor = 0, sentEnd = 0;
-        std::array<RecordRun, kRunsMost> runs;  // of records that it has behind these
+        std::array<RecordRun, kMaxRuns> runs;  // of records that it has behind these
         uint32_t runCount = 0;
         uint32_t sentIn = 0;  // number of the last packet with records
         double resendAt = 0;  // s: then records without an answer count as lost
@@ -105,7 +105,7 @@ class Server {
     void push(const Record& record);
     [[nodiscard]] uint32_t messagesFrom() noexcept;
     void dropLog(uint32_t record) noexcept;
-    void loseAll() noexcept;
+    void discardAll() noexcept;
     void trim(const world::World& world) noexcept;
     void move(Peer& peer, PeerEvent event) noexcept;
     void fall(Peer& peer) noexcept;
@@ -116,9 +116,9 @@ class Server {
     void failCapture(const world::World& world, const char* why) noexcept;
     void fetchCapture(world::World& world);
     void dropCaptures() noexcept;
-    void takeCaptures(world::World& world);
+    void collectCaptures(world::World& world);
     void begin(Peer& peer, const StateHead& head, size_t bytes);
-    [[nodiscard]] double budgetMost() const noexcept;
+    [[nodiscard]] double maxBudget() const noexcept;
     [[nodiscard]] bool hasSpareRate(const Peer& peer) const noexcept;
     [[nodiscard]] PacketHead headOf(Peer& peer, PacketKind kind) noexcept;
     [[nodiscard]] uint32_t streamEnd(const Peer& peer) const noexcept;
@@ -148,9 +148,9 @@ class Server {
     std::pmr::vector<Capture> captures_;  // oldest first
     size_t stateBytes_ = 0;               // of the newest
     bool capturing_ = false;              // one is on its way
-    bool captureNoted_ = false;           // it is of what is in `noted_`
+    bool captureRequested_ = false;       // it is of what is in `recorded_`
     double captureFailedAt_ = -1e9;       // s
-    StateHead noted_;
+    StateHead recorded_;
     uint32_t captureCount_ = 0;           // noted so far
     std::pmr::vector<std::byte> packet_;  // scratch
     Record record_;                       // scratch

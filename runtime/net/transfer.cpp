@@ -31,8 +31,8 @@ void writeChunk(core::Writer& writer, const ChunkHead& head, std::span<const std
 std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head) {
     eachOf(reader, head);
     const uint64_t from = uint64_t(head.index) * head.bytes;
-    if (head.state.id == 0 || head.state.size == 0 || head.state.size > kStateMost ||
-        head.bytes < kChunkLeast || from >= head.state.size ||
+    if (head.state.id == 0 || head.state.size == 0 || head.state.size > kMaxState ||
+        head.bytes < kMinChunk || from >= head.state.size ||
         reader.left() != std::min<uint64_t>(head.bytes, head.state.size - from))
         core::fail(FW_ERROR_BAD_DATA,
                    "The packet has piece %u, %zu of %u bytes, of a state of %u bytes.", head.index,

@@ -9,9 +9,9 @@
 
 namespace fw::net {
 
-constexpr uint32_t kChunkWindow = 64;                // pieces on their way at most
-constexpr uint32_t kStateMost = 256u * 1024 * 1024;  // bytes of a state
-constexpr size_t kChunkLeast = 256;                  // bytes of a piece
+constexpr uint32_t kChunkWindow = 64;               // pieces on their way at most
+constexpr uint32_t kMaxState = 256u * 1024 * 1024;  // bytes of a state
+constexpr size_t kMinChunk = 256;                   // bytes of a piece
 
 // The request of a client.
 enum class Request : uint16_t { nothing, state, tiles, count };

@@ -11,11 +11,11 @@
 namespace fw::volume {
 namespace {
 
-constexpr float kMostSqueeze = 0.88f;
-constexpr float kMostWiden = 1.7f;
-constexpr float kBelow = 0.1f;         // m below ground that still counts as on it
-constexpr float kSkin = 1e-3f;         // m by which a ray may graze a shape
-constexpr uint32_t kMostFeeler = 48u;  // samples along a ray
+constexpr float kMaxSqueeze = 0.88f;
+constexpr float kMaxWiden = 1.7f;
+constexpr float kBelow = 0.1f;        // m below ground that still counts as on it
+constexpr float kSkin = 1e-3f;        // m by which a ray may graze a shape
+constexpr uint32_t kMaxFeeler = 48u;  // samples along a ray
 
 vec3 normalOr(vec3 v, vec3 fallback) noexcept {
     const float l = glm::length(v);
@@ -121,7 +121,7 @@ bool crossesBox(const Collider& c, vec3 from, vec3 to) noexcept {
 
 bool feels(const Collider& c, vec3 from, vec3 to) noexcept {
     const float length = glm::length(to - from);
-    const float least = length / float(kMostFeeler);
+    const float least = length / float(kMaxFeeler);
     for (float t = 0.0f; t < length;) {
         const float d = surfaceOf(c, from + (to - from) * (t / length)).distance;
         if (d < -kSkin) return true;
@@ -253,7 +253,7 @@ void checkCollider(const Collider& c) {
                    "distance of the callback collider is null; it must be a function.");
 }
 
-void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept {
+void flattenNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept {
     if (colliders.empty() || nodes.empty()) return;
     for (gpu::FlameNode& node : nodes) {
         const float radius = node.centre.w;
@@ -262,16 +262,16 @@ void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode>
         const vec3 along(node.along);
         const vec3 across = s.normal - along * glm::dot(along, s.normal);
         const float square = glm::dot(across, across);  // 1: the tube runs along the surface
-        const float most = kMostSqueeze * glm::smoothstep(0.1f, 0.8f, square);
+        const float most = kMaxSqueeze * glm::smoothstep(0.1f, 0.8f, square);
         const float squeeze = std::clamp(1.0f - s.distance / radius, 0.0f, 1.0f) * most;
         if (squeeze <= 0.0f) continue;
-        const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMostWiden);
+        const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMaxWiden);
         FW_ASSERT(squeeze < 1.0f, "squeeze %g", double(squeeze));
         node.squeeze = vec4(normalOr(across, vec3(0, 1, 0)), squeeze);
         node.side.w = widen;
         node.centre.w = radius * widen;
     }
-    mendNodes(nodes, vec3(nodes[0].along));
+    repairNodes(nodes, vec3(nodes[0].along));
 }
 
 }  // namespace fw::volume

@@ -48,6 +48,6 @@ void checkCollider(const Collider& collider);
 
 // Flattens the tube of a curve against surfaces nearer than its radius, and widens it accordingly:
 // along a ceiling a flame is a jet, along a wall half a flame.
-void squeezeNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept;
+void flattenNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept;
 
 }  // namespace fw::volume

@@ -112,7 +112,7 @@ CurveSample Curve::at(float s) const noexcept {
                     float(kArcEntries));
 }
 
-void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept {
+void placeFlameNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept {
     FW_ASSERT(std::isfinite(length), "%g m", double(length));
     const float step = std::max(length, 1e-4f) / float(nodes.size() - 1);
     vec3 tangent = curve.at(0.0f).tangent;
@@ -125,10 +125,10 @@ void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept {
         nodes[k].side = vec4(0.0f, 0.0f, 0.0f, 1.0f);
         nodes[k].squeeze = vec4(0.0f, 1.0f, 0.0f, 0.0f);
     }
-    mendNodes(nodes, vec3(nodes[0].along));
+    repairNodes(nodes, vec3(nodes[0].along));
 }
 
-void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept {
+void raiseNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept {
     for (gpu::FlameNode& node : nodes) {
         const float level =
             weight - weight * glm::smoothstep(0.0f, std::max(over, kTiny), node.along.w);
@@ -137,10 +137,10 @@ void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weig
         node.along =
             vec4(unitOr(glm::mix(vec3(node.along), up, level * upright), up), node.along.w);
     }
-    mendNodes(nodes, up);
+    repairNodes(nodes, up);
 }
 
-void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept {
+void repairNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept {
     if (nodes.empty()) return;
     const size_t n = nodes.size();
     vec3 before = vec3(nodes[0].along);

@@ -54,12 +54,12 @@ using FlameNodes = std::array<gpu::FlameNode, gpu::kFlameNodes>;
 
 // Nodes every length / (kFlameNodes - 1) metres. Radii are clamped so that no two neighbouring
 // bisector planes meet inside the tube: each point of it then lies between one pair of planes.
-void layNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept;
+void placeFlameNodes(const Curve& curve, float length, FlameNodes& nodes) noexcept;
 // Levels the lowest planes, so that a leaning flame stands flat on its bed: fully at the base, not
 // at all from `over` metres on; scaled by `weight`.
-void standNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept;
+void raiseNodes(std::span<gpu::FlameNode> nodes, vec3 up, float over, float weight) noexcept;
 // Computes radius limits and frames again after nodes moved; `nodes` keep their places.
-void mendNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept;
+void repairNodes(std::span<gpu::FlameNode> nodes, vec3 up) noexcept;
 
 // The place of a point in the curve's coordinates, between the pair of planes whose axis is nearest
 // in radii. None: before the base or beyond the end.

@@ -14,7 +14,7 @@ constexpr float kPowerLag = 0.3f;       // s
 constexpr float kStefan = 5.67e-8f;     // W/(m^2 K^4)
 constexpr float kConvection = 25.0f;    // W/(m^2 K), of flames on small bodies
 constexpr float kLumensPerWatt = 0.4f;  // of a flame's radiation, soot of about 1720 K
-constexpr float kLeastFlux = 1.0f;      // W/m^2; below it walls are not tested
+constexpr float kMinFlux = 1.0f;        // W/m^2; below it walls are not tested
 constexpr float kFadePower = 0.02f;     // kW per m of diameter; below it a flame fades
 
 MotionRules rulesOf(const Flame& f, const FlameAir& air) noexcept {
@@ -54,7 +54,7 @@ void describe(Flame& f, const FlameAir& air) noexcept {
     f.record.air.w = std::clamp(f.power / (kFadePower * f.def.diameter), 0.0f, 1.0f);
 }
 
-void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
+void updateCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
     std::array<ControlPoint, kMaxControlPoints> live, points;
     uint32_t n = motionPoints(f.motion, rules, live);
     if (f.def.driver == FlameDriver::Track && air.track) {
@@ -67,10 +67,10 @@ void layCurve(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept 
     Curve curve;
     curve.set(std::span(points).first(n), f.def.up);
     // Up to the highest puff, so that nodes do not slide while the flame puffs.
-    layNodes(curve, rules.top * (1.0f + rules.puff), f.nodes);
-    standNodes(f.nodes, f.def.up, std::min(f.size.diameter, 0.7f * f.size.height),
+    placeFlameNodes(curve, rules.top * (1.0f + rules.puff), f.nodes);
+    raiseNodes(f.nodes, f.def.up, std::min(f.size.diameter, 0.7f * f.size.height),
                1.0f - f.tracked);
-    squeezeNodes(air.colliders, f.nodes);
+    flattenNodes(air.colliders, f.nodes);
 }
 
 // Pink noise: three slow octaves, different for each flame.
@@ -115,7 +115,7 @@ void shine(Flame& f) noexcept {
 void finish(Flame& f, const FlameAir& air, const MotionRules& rules) noexcept {
     f.size.pulse = glm::mix(motionPulse(f.motion, rules), 1.0f, f.tracked);
     f.record.high.w *= f.size.pulse;
-    layCurve(f, air, rules);
+    updateCurve(f, air, rules);
     f.bounds = flameBounds(f.record, f.nodes);
     FW_ASSERT(f.bounds.low.x <= f.bounds.high.x && f.bounds.low.y <= f.bounds.high.y &&
               f.bounds.low.z <= f.bounds.high.z);
@@ -185,8 +185,8 @@ void advanceFlame(Flame& f, const FlameAir& air, double seconds) noexcept {
     finish(f, air, rules);
 }
 
-FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
-                     std::span<const Collider> walls) noexcept {
+FlameAnswer queryFlame(const Flame& f, const Profile& profile, vec3 point,
+                       std::span<const Collider> walls) noexcept {
     FlameAnswer a;
     const float height = f.size.height, diameter = f.size.diameter;
     if (f.power <= 0.0f) return a;
@@ -218,7 +218,7 @@ FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
         const float near = 0.5f * diameter;
         const float part = 0.25f * radiated / (12.566f * std::max(glm::dot(to, to), near * near));
         const bool hidden =
-            part > kLeastFlux && std::any_of(walls.begin(), walls.end(), [&](const Collider& wall) {
+            part > kMinFlux && std::any_of(walls.begin(), walls.end(), [&](const Collider& wall) {
                 return shades(wall, from, point);
             });
         flux += hidden ? 0.0f : part;
@@ -233,7 +233,7 @@ FlameAnswer askFlame(const Flame& f, const Profile& profile, vec3 point,
 
 FlamePush pushOf(const Flame& f, const Profile& profile, vec3 centre, float radius,
                  std::span<const Collider> walls) noexcept {
-    const FlameAnswer a = askFlame(f, profile, centre, walls);
+    const FlameAnswer a = queryFlame(f, profile, centre, walls);
     const float r = std::max(radius, 0.0f), area = 3.1415927f * r * r;
     const float density = 353.0f / a.kelvin;  // kg/m^3
     FlamePush push;

@@ -77,8 +77,8 @@ struct FlameAnswer {
     vec3 gas{0.0f};         // m/s of the gas
 };
 // `walls` stop radiation, not gas.
-FlameAnswer askFlame(const Flame& flame, const Profile& profile, vec3 point,
-                     std::span<const Collider> walls = {}) noexcept;
+FlameAnswer queryFlame(const Flame& flame, const Profile& profile, vec3 point,
+                       std::span<const Collider> walls = {}) noexcept;
 
 struct FlamePush {
     vec3 force{0.0f};       // N on a sphere at rest

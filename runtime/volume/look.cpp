@@ -15,7 +15,7 @@ using glm::smoothstep;
 
 // Most displacement by an eddy, of its wavelength. More would fold flame tongues over themselves,
 // into shreds smaller than a sample's step.
-constexpr float kMostWarp = 1.0f;
+constexpr float kMaxWarp = 1.0f;
 
 struct Paint {
     float kelvin, soot;
@@ -213,7 +213,7 @@ uint32_t splitFire(float power, float diameter, std::array<Flamelet, kMaxFlamele
     const uint32_t n = uint32_t(std::clamp(0.6f * ratio * ratio, 2.0f, float(kMaxFlamelets)));
     FW_ASSERT(n >= 2 && n <= kMaxFlamelets, "%u flames", n);
     const float each = std::clamp(width(float(n)), 1e-4f, d);  // also of a power that underflows
-    for (uint32_t k = 0; k < n; ++k) {  // a sunflower's pattern
+    for (uint32_t k = 0; k < n; ++k) {                         // a sunflower's pattern
         const float r = 0.5f * std::max(d - each, 0.0f) * std::sqrt((float(k) + 0.5f) / float(n));
         const float a = 2.3999632f * float(k);
         out[k] = {r * std::cos(a), r * std::sin(a), q / float(n), each,
@@ -259,7 +259,7 @@ gpu::FlameRecord describeFlame(const FlameLook& l, const FlameSize& size, const 
     r.lambda = l.lambda * scale, r.lambdaWarp = l.lambdaWarp * scale;
     r.lambdaColumn = l.lambdaColumn * scale;
     r.stretch = l.stretch, r.turbulence = l.turbulence, r.radial = l.radial;
-    r.warp = std::min(l.warp, kMostWarp * r.lambdaWarp / d);
+    r.warp = std::min(l.warp, kMaxWarp * r.lambdaWarp / d);
     r.columns = l.columns, r.ridge = l.ridge, r.converge = l.converge;
     r.puff = l.puff, r.soot = l.thickness / scale, r.blue = l.blue, r.blueHeight = l.blueHeight;
     r.erode = l.erode, r.filament = l.filament, r.filamentWidth = l.filamentWidth;

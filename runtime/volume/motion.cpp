@@ -153,7 +153,7 @@ void advanceMotion(FlameMotion& m, const MotionRules& r, vec3 base,
     FW_ASSERT(r.burn > 0 && r.size.diameter > 0, "burn %g, %g m", double(r.burn),
               double(r.size.diameter));
     m.leftover = std::min(m.leftover + std::max(seconds, 0.0) * double(r.burn),
-                          dt * (kMostMotionSteps + 0.5));
+                          dt * (kMaxMotionSteps + 0.5));
     const uint32_t steps = uint32_t(m.leftover / dt);
     const vec3 from = m.base;
     if (seconds > 0.0) {

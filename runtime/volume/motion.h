@@ -10,7 +10,7 @@
 namespace fw::volume {
 
 constexpr float kMotionStep = 1.0f / 128.0f;  // s
-constexpr uint32_t kMostMotionSteps = 32;     // of a frame; a hitch drops the rest
+constexpr uint32_t kMaxMotionSteps = 32;      // of a frame; a hitch drops the rest
 constexpr uint32_t kMotionPieces = 14;        // control points above the base
 constexpr uint32_t kMotionParticles = 24;
 constexpr uint32_t kPulseParts = 16;  // of a puff, for the mean of contact

@@ -14,8 +14,8 @@ float inflow(float power, float diameter, float distance) noexcept {
     return std::min(0.12f * plume * half / std::max({distance, half, 1e-3f}), 0.3f * plume);
 }
 
-void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
-                    std::span<Neighbourhood> out) noexcept {
+void updateNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
+                      std::span<Neighbourhood> out) noexcept {
     const size_t n = std::min(flames.size(), out.size());
     // 1 for flames much taller than their gap, 0 for flames that do not span it.
     const auto overlap = [](const NeighbourFlame& a, const NeighbourFlame& b, float distance) {

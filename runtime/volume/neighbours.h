@@ -26,7 +26,7 @@ struct Neighbourhood {
 // as 1/d.
 float inflow(float power, float diameter, float distance) noexcept;
 // O(n^2) over at most a few hundred. `out` is as long as `flames`.
-void meetNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
-                    std::span<Neighbourhood> out) noexcept;
+void updateNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
+                      std::span<Neighbourhood> out) noexcept;
 
 }  // namespace fw::volume

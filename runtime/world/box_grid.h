@@ -2,7 +2,7 @@
 // power of two of their sizes. A box is in one cell, that of its middle, so a move costs the same
 // however many boxes there are. Not who they belong to.
 #pragma once
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 
 #include <algorithm>
 #include <array>

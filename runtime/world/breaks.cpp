@@ -148,7 +148,7 @@ void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
         const uint32_t t = ticks[i], opens = holes[scene_.texelMaterial(object, i)];
         bool open = false;
         if (opens != 0 && gpu::isSource(t)) {
-            open = heated ? gpu::gateLets(gpu::kEventGate, opens, gpu::unpackHeat(heat[i]), t, now)
+            open = heated ? gpu::gateOpens(gpu::kEventGate, opens, gpu::unpackHeat(heat[i]), t, now)
                           : t <= now && now - t >= opens;
             breaks.waits = breaks.waits || !open;
         }
@@ -157,14 +157,14 @@ void BurnSystem::findBreaks(Object& object, std::span<const uint32_t> ticks,
     }
     const double scale = areaScale(object.data);
     const bool much = breaks.share > 0 && double(gone) >= double(breaks.share) * double(all);
-    if (much && !breaks.shareTold && tells) {
+    if (much && !breaks.shareReported && tells) {
         float middle[3], place[3];
         for (int i = 0; i < 3; ++i) middle[i] = (domain.boundsLow[i] + domain.boundsHigh[i]) * 0.5f;
         components::toWorld(object.data.pose, middle, place);
         context_.raise(FW_EVENT_STRUCTURE_BROKE, &object, FW_BREAK_SHARE, *tells, place,
                        float(double(gone) * scale));
     }
-    breaks.shareTold = much;
+    breaks.shareReported = much;
     if (!(breaks.area > 0) || gone == 0 || (breaks.hangs && breaks.pinCount == 0)) return;
     markBearers(object);
     mesh::markHeld(domain, holds_);
@@ -202,7 +202,7 @@ void BurnSystem::restoreBreaks(Object& object, const BreakState* saved, const Im
                                uint32_t now) noexcept {
     Breaks& breaks = *object.breaks;
     breaks.lookCount = 0;
-    breaks.shareTold = breaks.waits = false;
+    breaks.shareReported = breaks.waits = false;
     if (saved && saved->share == breaks.share && saved->area == breaks.area) {
         static_cast<BreakState&>(breaks) = *saved;
         std::copy(store.lost.begin(), store.lost.end(), breaks.lost.begin());

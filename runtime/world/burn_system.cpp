@@ -17,12 +17,12 @@ namespace {
 // Counters of `reduce` are at most 4 steps old; a fire is judged only well after its last event.
 constexpr uint64_t kSettleTicks = 6 * gpu::kStepTicks;
 constexpr uint64_t kWaterWorks = 2 * gpu::kTicksPerSecond;  // until it has put out what it hit
-constexpr uint32_t kClampsToTell = 32;
+constexpr uint32_t kReportedClampStep = 32;
 
 // Fire may come to it, and none has: its counters have not changed.
 bool waitsForFire(const Object& object, const gpu::ObjectCounters& now) noexcept {
-    return now.ignited == 0 && now.burning == 0 && !object.story.active && !object.story.sawFire &&
-           object.play.began == 0 && object.story.power == 0 &&
+    return now.ignited == 0 && now.burning == 0 && !object.lifecycle.active &&
+           !object.lifecycle.sawFire && object.play.began == 0 && object.lifecycle.power == 0 &&
            std::memcmp(&now, &object.counters, sizeof now) == 0;
 }
 
@@ -64,7 +64,7 @@ void BurnSystem::recordIgnition(Object& object, Stimulus& stimulus, uint32_t tex
     stimulus.ignites = true;
     stimulus.ignition = tick;
     scene_.texelPlace(object, texel, stimulus.ignitionPoint);
-    if (!object.story.ignitionKnown && !object.story.sawFire && !object.ignites)
+    if (!object.lifecycle.ignitionKnown && !object.lifecycle.sawFire && !object.ignites)
         context_.backend.startBoundary(object.slot, stimulus.ignitionPoint, tick);
     object.ignites = true;
 }
@@ -72,7 +72,7 @@ void BurnSystem::recordIgnition(Object& object, Stimulus& stimulus, uint32_t tex
 void BurnSystem::commitStimuli(const ClockAdvance& time, uint64_t frameIndex) noexcept {
     for (size_t i = state_.stimuli.size(); i-- > 0 && state_.stimuli[i].frameIndex == frameIndex;)
         scene_.objectAt(state_.stimuli[i].slot).stimulusAt = mesh::kNone;
-    FrameNote note;
+    InFlightFrame note;
     note.frameIndex = frameIndex;
     note.end = time.after.tick;
     note.roomsStirred = rooms_.state().stirred;
@@ -85,7 +85,7 @@ void BurnSystem::commitStimuli(const ClockAdvance& time, uint64_t frameIndex) no
 // With the readback of a frame, before anything else of it.
 void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
     size_t frames = 0;
-    for (const FrameNote& note : state_.frameNotes) {
+    for (const InFlightFrame& note : state_.frameNotes) {
         if (note.frameIndex > frameIndex) break;
         ++frames;
         rooms_.onFrameDone(note.roomsStirred);
@@ -103,23 +103,23 @@ void BurnSystem::onFrameDone(uint64_t frameIndex) noexcept {
         if (one.frameIndex > frameIndex) break;
         ++taken;
         Object& object = scene_.objectAt(one.slot);
-        Story& story = object.story;
+        BurnLifecycle& lifecycle = object.lifecycle;
         if (--object.stimuli == 0) object.ignites = false;
         if (one.from1 != 0)
-            continueBurn(object, one.given ? *one.given : scene_.objectAt(one.from1 - 1).story);
-        if (one.first) story.heatSteps = one.heatSteps;
+            continueBurn(object, one.given ? *one.given : scene_.objectAt(one.from1 - 1).lifecycle);
+        if (one.first) lifecycle.heatSteps = one.heatSteps;
         if (one.starts) {
-            story.active = true;
-            story.lastStimulus = std::max(story.lastStimulus, one.latest);
+            lifecycle.active = true;
+            lifecycle.lastStimulus = std::max(lifecycle.lastStimulus, one.latest);
         }
-        if (one.ignites && !story.ignitionKnown && !story.sawFire) {
-            story.ignitionKnown = true;
-            story.firstIgnition = one.ignition;
-            std::copy_n(one.ignitionPoint, 3, story.ignitionPoint);
+        if (one.ignites && !lifecycle.ignitionKnown && !lifecycle.sawFire) {
+            lifecycle.ignitionKnown = true;
+            lifecycle.firstIgnition = one.ignition;
+            std::copy_n(one.ignitionPoint, 3, lifecycle.ignitionPoint);
         }
         if (one.douses) {
-            story.lastDouse = one.douse;
-            story.douseCause = one.douseCause;
+            lifecycle.lastDouse = one.douse;
+            lifecycle.douseCause = one.douseCause;
         }
     }
     state_.stimuli.erase(state_.stimuli.begin(), state_.stimuli.begin() + std::ptrdiff_t(taken));
@@ -160,60 +160,61 @@ void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
         if (waitsForFire(object, now)) {
             object.countersFrame = readback.frameIndex;
             if (components::hasHeat(object.data))
-                object.story.heatSteps = heatStepsBefore(readback.endTick);
+                object.lifecycle.heatSteps = heatStepsBefore(readback.endTick);
             clamps += now.lateClamps;
             continue;
         }
         const gpu::ObjectCounters before = object.counters;
         object.counters = now;
         object.countersFrame = readback.frameIndex;
-        object.story.mostIgnited = std::max(object.story.mostIgnited, now.ignited);
+        object.lifecycle.maxIgnited = std::max(object.lifecycle.maxIgnited, now.ignited);
         clamps += now.lateClamps;
         if (object.play.began != 0 && readback.endTick >= object.play.began &&
-            !gpu::playsAt(now.playsUntil, readback.endTick))
+            !gpu::isPlayingBack(now.playsUntil, readback.endTick))
             endPlay(object, readback.frameIndex, now.playsUntil);  // others' fire came
         applyEnergy(object, readback.endTick);
         exchange_.onCounters(object, readback);
         float place[3];
-        if (now.burning > 0) object.story.lastBurning = readback.endTick;
+        if (now.burning > 0) object.lifecycle.lastBurning = readback.endTick;
         countFlames(object, before, readback.endTick);
 
         const bool freshFire = now.ignited > before.ignited || now.burning > 0;
-        if (!object.story.sawFire && now.ignited > 0 && freshFire) {
-            object.story.sawFire = true;
-            object.story.active = true;
+        if (!object.lifecycle.sawFire && now.ignited > 0 && freshFire) {
+            object.lifecycle.sawFire = true;
+            object.lifecycle.active = true;
             const uint64_t tick =
-                object.story.ignitionKnown ? object.story.firstIgnition : now.lastIgnition;
-            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+                object.lifecycle.ignitionKnown ? object.lifecycle.firstIgnition : now.lastIgnition;
+            components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
             context_.raise(FW_EVENT_IGNITED, &object, 0, readback.frameIndex, place,
                            float(double(tick) / gpu::kTicksPerSecond));
         }
         // A few late arrivals come with any change of the wind; only many of them are a limit.
-        const uint32_t limit = std::max(kClampsToTell, now.ignited / 50);
-        if (now.lateClamps >= object.story.clampsTold + limit) {
-            components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+        const uint32_t limit = std::max(kReportedClampStep, now.ignited / 50);
+        if (now.lateClamps >= object.lifecycle.clampsReported + limit) {
+            components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
             context_.raise(FW_EVENT_FRONT_LIMITED, &object, 0, readback.frameIndex, place,
-                           float(now.lateClamps - object.story.clampsTold));
-            object.story.clampsTold = now.lateClamps;
+                           float(now.lateClamps - object.lifecycle.clampsReported));
+            object.lifecycle.clampsReported = now.lateClamps;
         }
         const bool settled = now.burning == 0 && now.frontTiles == 0 &&
-                             readback.endTick >= object.story.lastStimulus + kSettleTicks &&
+                             readback.endTick >= object.lifecycle.lastStimulus + kSettleTicks &&
                              readback.endTick >= uint64_t(now.lastIgnition) + kSettleTicks;
-        if (settled && object.story.active) {
-            object.story.active = false;
-            if (object.story.sawFire) {
+        if (settled && object.lifecycle.active) {
+            object.lifecycle.active = false;
+            if (object.lifecycle.sawFire) {
                 const float fraction =
-                    object.texels ? float(object.story.mostIgnited) / float(object.texels) : 0.0f;
-                components::toWorld(object.data.pose, object.story.ignitionPoint, place);
+                    object.texels ? float(object.lifecycle.maxIgnited) / float(object.texels)
+                                  : 0.0f;
+                components::toWorld(object.data.pose, object.lifecycle.ignitionPoint, place);
                 // At least half of its last flames left fuel behind.
-                const Story& end = object.story;
+                const BurnLifecycle& end = object.lifecycle;
                 const bool out = end.wentOut > 0 && end.wentOut >= end.flames - end.wentOut;
                 context_.raise(out ? FW_EVENT_EXTINGUISHED : FW_EVENT_BURNT_OUT, &object,
                                out ? end.outCause : 0u, readback.frameIndex, place, fraction);
             }
-            object.story.sawFire = false;
-            object.story.ignitionKnown = false;
-            object.story.flames = object.story.wentOut = object.story.outCause = 0;
+            object.lifecycle.sawFire = false;
+            object.lifecycle.ignitionKnown = false;
+            object.lifecycle.flames = object.lifecycle.wentOut = object.lifecycle.outCause = 0;
         }
     }
     state_.counts.lateClamps = clamps;
@@ -223,22 +224,23 @@ void BurnSystem::applyCounters(const gpu::Readback& readback) noexcept {
 void BurnSystem::countFlames(Object& object, const gpu::ObjectCounters& before,
                              uint32_t endTick) noexcept {
     const gpu::ObjectCounters& now = object.counters;
-    Story& story = object.story;
+    BurnLifecycle& lifecycle = object.lifecycle;
     const uint32_t out = before.ignited - std::min(before.ignited, now.ignited);
     if (now.burning == 0 && before.burning == 0 && out == 0) return;
-    const uint64_t seconds = endTick / gpu::kTicksPerSecond -
-                             std::min<uint64_t>(endTick, story.halvedUntil) / gpu::kTicksPerSecond;
+    const uint64_t seconds =
+        endTick / gpu::kTicksPerSecond -
+        std::min<uint64_t>(endTick, lifecycle.halvedUntil) / gpu::kTicksPerSecond;
     const uint64_t halvings = std::min<uint64_t>(seconds, 31);
-    story.halvedUntil = endTick;
-    story.wentOut = (story.wentOut >> halvings) + out;
-    story.flames = std::max({story.flames >> halvings, now.burning, story.wentOut});
+    lifecycle.halvedUntil = endTick;
+    lifecycle.wentOut = (lifecycle.wentOut >> halvings) + out;
+    lifecycle.flames = std::max({lifecycle.flames >> halvings, now.burning, lifecycle.wentOut});
     if (out == 0) return;
     const bool air =
         std::min(gpu::airStrength(now.air), gpu::airStrength(before.air)) < gpu::kAirFull;
-    if (story.lastDouse != 0 && endTick <= story.lastDouse + kWaterWorks)
-        story.outCause = story.douseCause;
+    if (lifecycle.lastDouse != 0 && endTick <= lifecycle.lastDouse + kWaterWorks)
+        lifecycle.outCause = lifecycle.douseCause;
     else
-        story.outCause = air ? FW_EXTINGUISHED_BY_AIR : FW_EXTINGUISHED_BY_COLD;
+        lifecycle.outCause = air ? FW_EXTINGUISHED_BY_AIR : FW_EXTINGUISHED_BY_COLD;
 }
 
 // Without fuel per texel, a texel has all of its own until it has burnt out. A texel that caught
@@ -249,7 +251,7 @@ void BurnSystem::applyBurntFuel(Object& object, uint32_t endTick) noexcept {
     if (fuel.texels == 0 || now.lastIgnition > lastReduced(endTick)) return;
     const uint64_t burnt = std::min(now.ignited - std::min(now.ignited, now.burning), fuel.texels);
     // In parts, as the product is too large.
-    object.story.energy =
+    object.lifecycle.energy =
         fuel.energy / fuel.texels * burnt + fuel.energy % fuel.texels * burnt / fuel.texels;
 }
 
@@ -261,15 +263,15 @@ void BurnSystem::applyEnergy(Object& object, uint32_t endTick) noexcept {
     }
     const uint64_t energy = uint64_t(now.energyHigh) << 32 | now.energyLow;
     const uint64_t steps = heatStepsBefore(endTick);
-    if (steps == object.story.heatSteps) return;
-    const double seconds = double(steps - object.story.heatSteps) * gpu::kHeatSteps / 32;
+    if (steps == object.lifecycle.heatSteps) return;
+    const double seconds = double(steps - object.lifecycle.heatSteps) * gpu::kHeatSteps / 32;
     if (!std::exchange(object.carried, false))
-        object.story.power = now.burning == 0
-                                 ? 0.0f
-                                 : float(double(energy - object.story.energy) / 1048576 / seconds /
-                                         double(context_.def.paceFactor));
-    object.story.energy = energy;
-    object.story.heatSteps = steps;
+        object.lifecycle.power = now.burning == 0
+                                     ? 0.0f
+                                     : float(double(energy - object.lifecycle.energy) / 1048576 /
+                                             seconds / double(context_.def.paceFactor));
+    object.lifecycle.energy = energy;
+    object.lifecycle.heatSteps = steps;
 }
 
 }  // namespace fw::world

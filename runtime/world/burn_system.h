@@ -32,7 +32,7 @@ struct BurnState {
     uint64_t lastStimulus = 0;  // tick
     bool idle = true;
     std::pmr::vector<Stimulus> stimuli;  // of frames whose readback is on its way
-    std::pmr::vector<FrameNote> frameNotes;
+    std::pmr::vector<InFlightFrame> frameNotes;
     uint64_t planStamp = 0;
     // As of the last readback.
     uint64_t seenStimulus = 0;
@@ -49,8 +49,7 @@ class BurnSystem {
     // Texels addressed. `acts`: one of them, or of a match one that can burn.
     uint32_t ignite(const FwIgnitionDef& def, bool* acts = nullptr);
     // Why a match that addressed so many texels lights nothing, for people.
-    void explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
-                             std::span<char> text) noexcept;
+    void explainMiss(const FwIgnitionDef& def, uint32_t texels, std::span<char> text) noexcept;
     void transferBurn(FwBurnableMeshId from, FwBurnableMeshId to);
     void pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const uint32_t> texels);
     // A baked burn is made of what requestBurnMap brings.
@@ -79,7 +78,7 @@ class BurnSystem {
     [[nodiscard]] const BurnState& state() const noexcept { return state_; }
     // As of the last readback, or by what came since.
     [[nodiscard]] static bool isActive(const Object& object) noexcept {
-        return object.story.active || object.stimuli > 0;
+        return object.lifecycle.active || object.stimuli > 0;
     }
     [[nodiscard]] uint64_t bytes() const noexcept;  // of memory that frames use
     uint32_t igniteObject(Object& object, const FwIgnitionDef& def, uint32_t tick);
@@ -162,8 +161,8 @@ class BurnSystem {
     void countFlames(Object& object, const gpu::ObjectCounters& before, uint32_t endTick) noexcept;
     void applyBurntFuel(Object& object, uint32_t endTick) noexcept;
     // carry.cpp
-    void waitForCarries() noexcept;
-    void continueBurn(Object& to, const Story& from) noexcept;
+    void waitForTransfers() noexcept;
+    void continueBurn(Object& to, const BurnLifecycle& from) noexcept;
     [[nodiscard]] bool gives(uint32_t slot) const noexcept;  // its burn is about to be carried
     void checkCarry(const PendingTexel& event, const Clock& clock);  // of a save; throws
     void settlePending() noexcept;                                   // after a load

@@ -71,16 +71,16 @@ void BurnSystem::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
 }
 
 // With the readback of the frame that carried it: its fire is the other's, its own counts stay.
-void BurnSystem::continueBurn(Object& to, const Story& from) noexcept {
-    Story& story = to.story;
-    const Story before = story;
-    story = from;
-    story.mostIgnited = before.mostIgnited;
-    story.clampsTold = before.clampsTold;
-    story.spotsTold = before.spotsTold;
-    story.energy = before.energy;
-    story.heatSteps = before.heatSteps;
-    story.flames = story.wentOut = 0;
+void BurnSystem::continueBurn(Object& to, const BurnLifecycle& from) noexcept {
+    BurnLifecycle& lifecycle = to.lifecycle;
+    const BurnLifecycle before = lifecycle;
+    lifecycle = from;
+    lifecycle.maxIgnited = before.maxIgnited;
+    lifecycle.clampsReported = before.clampsReported;
+    lifecycle.spotsReported = before.spotsReported;
+    lifecycle.energy = before.energy;
+    lifecycle.heatSteps = before.heatSteps;
+    lifecycle.flames = lifecycle.wentOut = 0;
     to.carried = true;
 }
 
@@ -96,7 +96,7 @@ void BurnSystem::checkGone(const Object& object) const {
 void BurnSystem::keepGiven(const Object& from) {
     for (Stimulus& one : state_.stimuli)
         if (one.from1 == from.slot + 1)
-            one.given = core::Owned<Story>::make(context_.memory, from.story);
+            one.given = core::Owned<BurnLifecycle>::make(context_.memory, from.lifecycle);
 }
 
 // Of a save. Throws FW_ERROR_BAD_DATA.
@@ -118,7 +118,7 @@ void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
 }
 
 // Within a step no other event may be of a texel that is copied, nor pass through one as a hole.
-void BurnSystem::waitForCarries() noexcept {
+void BurnSystem::waitForTransfers() noexcept {
     if (context_.clock.tick >= state_.carriesUntil) return;
     for (PendingTexel& event : state_.pending) {
         if (isCarry(event)) continue;

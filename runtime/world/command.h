@@ -2,7 +2,7 @@
 // network carry them; PersistenceSystem::apply makes each of them again. Creating and destroying is
 // no command: every host does that by itself. Things are named by slot.
 #pragma once
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 #include "components/room.h"
 #include "components/wind_grid.h"
 #include "save/archive.h"
@@ -121,7 +121,7 @@ struct SetPose {
     FW_SERIALIZE(slot, transform)
 };
 
-struct MoveBlocker {
+struct MoveHeatOccluder {
     uint32_t slot = 0;
     Transform transform;
 
@@ -226,7 +226,7 @@ struct SetWindPoints {
         a(first, points);
         for (const components::WindPoint& point : points)
             for (const int16_t units : point)
-                a.require(units >= -fire::kMostWindUnits && units <= fire::kMostWindUnits,
+                a.require(units >= -fire::kMaxWindUnits && units <= fire::kMaxWindUnits,
                           "wind at a grid point");
     }
 };
@@ -238,7 +238,7 @@ struct SetGusts {
 };
 
 struct SetHeatShield {  // empty, until SetShieldCells and AddShieldObject follow
-    components::ShieldShape shape;
+    components::OcclusionGridShape shape;
 
     FW_SERIALIZE(shape)
 };
@@ -271,11 +271,11 @@ struct TransferBurn {
 };
 
 // In files and packets a command is its place in this list, then its fields.
-using Command =
-    std::variant<SetWind, SetFlags, IgniteTexels, IgniteObjects, WetPatch, SetPose, MoveBlocker,
-                 MoveFire, SetFirePower, MoveEmitter, SetEmitterPower, MoveField, SetFieldAmount,
-                 SetWindZone, SetRoom, PlayBurn, StopBurn, SetWindGrid, SetWindPoints, SetGusts,
-                 SetHeatShield, SetShieldCells, AddShieldObject, ShiftOrigin, TransferBurn>;
+using Command = std::variant<SetWind, SetFlags, IgniteTexels, IgniteObjects, WetPatch, SetPose,
+                             MoveHeatOccluder, MoveFire, SetFirePower, MoveEmitter, SetEmitterPower,
+                             MoveField, SetFieldAmount, SetWindZone, SetRoom, PlayBurn, StopBurn,
+                             SetWindGrid, SetWindPoints, SetGusts, SetHeatShield, SetShieldCells,
+                             AddShieldObject, ShiftOrigin, TransferBurn>;
 constexpr uint32_t kCommandKinds = std::variant_size_v<Command>;
 
 // The fields alone; the kind is the caller's to write.

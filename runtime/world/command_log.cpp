@@ -15,7 +15,7 @@ constexpr uint32_t kMagic = 0x474C5746;  // "FWLG"
 constexpr uint32_t kLogVersion = 2;
 constexpr size_t kHeadBytes = 24;  // magic, version, identity, checksum of the rest
 constexpr uint16_t kSaveEntry = 0xFFFF;
-constexpr size_t kLeastEntry = sizeof(uint32_t) + sizeof(uint16_t);
+constexpr size_t kMinEntry = sizeof(uint32_t) + sizeof(uint16_t);
 
 }  // namespace
 
@@ -66,7 +66,7 @@ void readLog(std::span<const std::byte> bytes, uint64_t identity,
     if (world != identity)
         core::fail(FW_ERROR_BAD_DATA,
                    "The log is of a world with other rules, objects or meshes than this one's.");
-    const uint32_t count = reader.count("entries", kLeastEntry);
+    const uint32_t count = reader.count("entries", kMinEntry);
     entries.clear();
     entries.reserve(count);
     for (uint32_t i = 0; i < count; ++i) {
@@ -107,7 +107,8 @@ void PersistenceSystem::stopLog() noexcept { commandLog_ = {}; }
 
 const std::pmr::vector<std::byte>& PersistenceSystem::fetchLog() {
     if (!commandLog_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world records no log; fwWorld_StartLog first.");
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "The world records no log; fwWorld_StartCommandLog first.");
     if (commandLog_->lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "Memory ended while the log was recorded; it has a gap.");
@@ -127,7 +128,8 @@ void PersistenceSystem::openLog(std::span<const std::byte> bytes) {
 
 float PersistenceSystem::playLog(uint64_t untilTick) {
     if (!playedLog_)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "There is no log to play; fwWorld_OpenLog first.");
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "There is no log to play; fwWorld_OpenCommandLog first.");
     mayChange();
     std::span<const LogEntry> ahead =
         fromTick(playedLog_->entries, world_.context_.clock.tick,

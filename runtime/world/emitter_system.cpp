@@ -33,8 +33,8 @@ void moveEmitter(components::FireEmitter& emitter, const double (&by)[3], double
     moveBy(emitter.position, by);
     emitter.def.ground += float(along);
     for (components::JetHit& hit : emitter.hits) moveBy(hit.place, by);
-    for (auto* shields : {&emitter.shields, &emitter.lastShields})
-        for (components::JetShield& shield : *shields) moveBy(shield.place, by);
+    for (auto* shields : {&emitter.shields, &emitter.lastObstacles})
+        for (components::JetObstacle& shield : *shields) moveBy(shield.place, by);
     for (auto* births : {&emitter.births, &emitter.next}) {
         moveBy(births->position, by);
         for (auto& note : births->sparks.notes)
@@ -100,7 +100,7 @@ FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
     components::makeFireEmitter(def, context_.def.seed * 0x9E3779B9u + 77u * (made_ + 1), emitter);
     emitter.books = flames_.flipbooksOf(def);
     if (def.shape == FW_EMITTER_MESH) (void)scene_.objects.get(def.object);
-    emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
+    emitter.ring = std::max(components::particlesNeeded(emitter), 1u);
     emitter.first = findRing(emitter.ring);
     const size_t groups = groups_.capacity();
     size_t needed = (emitter.ring + gpu::kParticleGroup - 1) / gpu::kParticleGroup;
@@ -210,7 +210,7 @@ void EmitterSystem::plan(float seconds, gpu::FramePlan& plan) noexcept {
         if (emitter && components::isSwept(emitter->def)) {
             if (!listed) flames_.listShapes();
             listed = true;
-            shieldJet(*emitter, state_.time + double(seconds));
+            updateJetObstacles(*emitter, state_.time + double(seconds));
         }
         if (!emitter) continue;
         const components::EmitterAir air = airOf(*emitter, seconds);

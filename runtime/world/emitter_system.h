@@ -70,7 +70,7 @@ class EmitterSystem {
     bool stands(const components::JetHit& hit, uint32_t holeTicks, uint32_t tick) noexcept;
     void listJetTargets(const float from[3], float reach) noexcept;
     void sweepJets(components::FireEmitter& emitter) noexcept;
-    void shieldJet(components::FireEmitter& emitter, double now) noexcept;
+    void updateJetObstacles(components::FireEmitter& emitter, double now) noexcept;
     void heatObjects(components::FireEmitter& emitter, uint32_t now);
     void passHole(const components::FireEmitter& emitter, components::JetHit& hit) noexcept;
     void launchJet(const components::FireEmitter& emitter, components::JetParcel& parcel,
@@ -83,12 +83,12 @@ class EmitterSystem {
                    const components::JetGate& gate, uint32_t tick, uint64_t brought);
     bool heatFootprint(Object& object, const components::JetHit& hit, float radius, uint64_t power,
                        uint32_t tick, size_t most, const PendingTexel& like, uint64_t& left);
-    uint64_t stickFuel(components::FireEmitter& emitter, const components::JetHit& hit,
-                       uint64_t fuel) noexcept;
+    uint64_t attachFuel(components::FireEmitter& emitter, const components::JetHit& hit,
+                        uint64_t fuel) noexcept;
     void settlePatches(components::FireEmitter& emitter, uint32_t first) noexcept;
     void burnPatches(components::FireEmitter& emitter, uint32_t now);
-    void heatLite(components::FireEmitter& emitter, Object& object, const components::JetHit& hit,
-                  float radius, float flux, uint32_t now);
+    void heatStepThin(components::FireEmitter& emitter, Object& object,
+                      const components::JetHit& hit, float radius, float flux, uint32_t now);
     void findFootprint(const Object& object, const components::JetHit& hit, float radius);
 
     const WorldContext& context_;

@@ -5,7 +5,7 @@
 
 #include "core/growth.h"
 #include "fire/heat.h"
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 #include "world/persistence.h"
 #include "world/shift.h"
 #include "world/wind_system.h"
@@ -23,13 +23,14 @@ using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
 
-static_assert(FW_WORLD_RADIATION == gpu::kRemoteRadiation && FW_WORLD_PLUME == gpu::kRemotePlume &&
-              FW_WORLD_CONTACT == gpu::kRemoteContact && FW_WORLD_EMBERS == gpu::kRemoteEmbers);
+static_assert(FW_WORLD_RADIATION == gpu::kExchangeRadiation &&
+              FW_WORLD_PLUME == gpu::kExchangePlume && FW_WORLD_CONTACT == gpu::kExchangeContact &&
+              FW_WORLD_EMBERS == gpu::kExchangeEmbers);
 
 constexpr double kGapSpeed = 0.05;        // m/s at which flames lick across a gap
 constexpr double kBrandsPerJoule = 2e-6;  // embers that matter
 
-mesh::Box boxOf(const gpu::RemoteObject& o) noexcept {
+mesh::Box boxOf(const gpu::ExchangeObject& o) noexcept {
     mesh::Box box;
     const int low[3] = {o.turn0.w, o.turn1.w, o.turn2.w};
     for (int i = 0; i < 3; ++i) {
@@ -39,7 +40,7 @@ mesh::Box boxOf(const gpu::RemoteObject& o) noexcept {
     return box;
 }
 
-void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
+void moveRecord(gpu::ExchangeObject& record, const double (&by)[3]) noexcept {
     gpu::ivec4* rows[] = {&record.row0, &record.row1, &record.row2};
     gpu::ivec4* lows[] = {&record.turn0, &record.turn1, &record.turn2};
     for (int i = 0; i < 3; ++i) {
@@ -49,7 +50,7 @@ void moveRecord(gpu::RemoteObject& record, const double (&by)[3]) noexcept {
     }
 }
 
-bool sameRecord(const gpu::RemoteObject& a, const gpu::RemoteObject& b) noexcept {
+bool sameRecord(const gpu::ExchangeObject& a, const gpu::ExchangeObject& b) noexcept {
     return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
@@ -62,7 +63,7 @@ bool before(const gpu::ContactLink& a, const gpu::ContactLink& b) noexcept {
 
 ExchangeSystem::ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind)
     : context_(context), scene_(scene), wind_(wind) {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     const FwWorldDef& def = context.def;
     book.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
     book.capped = components::caps(book.governance);
@@ -81,7 +82,7 @@ void ExchangeSystem::setFlags(uint32_t given) {
     constexpr uint32_t kWarm = FW_WORLD_RADIATION | FW_WORLD_PLUME;
     state_.book.warms |= (flags & kWarm) != 0;
     if (state_.book.flags & ~flags & kWarm)
-        state_.book.fades = context_.clock.tick + 2 * gpu::kExchangeTurns * gpu::kExchangeTicks;
+        state_.book.fades = context_.clock.tick + 2 * gpu::kExchangeRounds * gpu::kExchangeTicks;
     state_.book.flags = flags;
     context_.recorder.record(SetFlags{given});
 }
@@ -89,12 +90,12 @@ void ExchangeSystem::setFlags(uint32_t given) {
 namespace {
 
 // Their integers hold so much and no more; a larger one would stop less than the host sees of it.
-void checkBlocker(const components::Pose& pose, const float halfSize[3], const char* field) {
+void checkHeatOccluder(const components::Pose& pose, const float halfSize[3], const char* field) {
     for (int i = 0; i < 3; ++i) {
         const float half = halfSize[i] * pose.scale * std::abs(pose.stretch[i]);
         if (half > 30.0f * 1.0001f)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s makes the blocker " FW_LENGTH " " FW_LENGTH_UNIT
+                       "%s makes the occluder " FW_LENGTH " " FW_LENGTH_UNIT
                        " to each side along its axis %d; the limit is " FW_LENGTH " " FW_LENGTH_UNIT
                        ". Put several side by side.",
                        field, double(half), i, 30.0);
@@ -103,40 +104,40 @@ void checkBlocker(const components::Pose& pose, const float halfSize[3], const c
 
 }  // namespace
 
-FwBlockerId ExchangeSystem::addBlocker(const FwBlockerDef& def) {
+FwHeatOccluderId ExchangeSystem::addHeatOccluder(const FwHeatOccluderDef& def) {
     ++scene_.geometryVersion;
     if (def.flags != 0 || def.reserved != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBlockerDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
+                   "FwHeatOccluderDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
                    def.reserved);
-    BlockerEntry entry;
-    entry.pose = components::makePose(def.transform, "FwBlockerDef::transform");
-    checkLengths(def.halfSize, 3, "FwBlockerDef::halfSize", 0.0f, 30.0f);
-    checkBlocker(entry.pose, def.halfSize, "FwBlockerDef::transform");
+    HeatOccluderEntry entry;
+    entry.pose = components::makePose(def.transform, "FwHeatOccluderDef::transform");
+    checkLengths(def.halfSize, 3, "FwHeatOccluderDef::halfSize", 0.0f, 30.0f);
+    checkHeatOccluder(entry.pose, def.halfSize, "FwHeatOccluderDef::transform");
     std::copy_n(def.halfSize, 3, entry.halfSize);
-    if (state_.blockers.live() >= gpu::kMaxBlockers)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u blockers are in place; the limit is %u.",
-                   state_.blockers.live(), gpu::kMaxBlockers);
-    const FwBlockerId id = state_.blockers.create(entry);
-    state_.book.blockersDue = true;
+    if (state_.occluders.live() >= gpu::kMaxHeatOccluders)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u occluders are in place; the limit is %u.",
+                   state_.occluders.live(), gpu::kMaxHeatOccluders);
+    const FwHeatOccluderId id = state_.occluders.create(entry);
+    state_.book.occludersDue = true;
     return id;
 }
 
-void ExchangeSystem::moveBlocker(FwBlockerId id, const float transform[16]) {
+void ExchangeSystem::moveHeatOccluder(FwHeatOccluderId id, const float transform[16]) {
     context_.recorder.mayChange();
     ++scene_.geometryVersion;
-    BlockerEntry& entry = state_.blockers.get(id);
+    HeatOccluderEntry& entry = state_.occluders.get(id);
     const components::Pose pose = components::makePose(transform, "transform");
-    checkBlocker(pose, entry.halfSize, "transform");
+    checkHeatOccluder(pose, entry.halfSize, "transform");
     entry.pose = pose;
-    state_.book.blockersDue = true;
-    context_.recorder.record(MoveBlocker{id.index1 - 1, Transform(transform)});
+    state_.book.occludersDue = true;
+    context_.recorder.record(MoveHeatOccluder{id.index1 - 1, Transform(transform)});
 }
 
-void ExchangeSystem::removeBlocker(FwBlockerId id) {
+void ExchangeSystem::removeHeatOccluder(FwHeatOccluderId id) {
     ++scene_.geometryVersion;
-    state_.blockers.destroy(id);
-    state_.book.blockersDue = true;
+    state_.occluders.destroy(id);
+    state_.book.occludersDue = true;
 }
 
 gpu::ExchangePush ExchangeSystem::rules() const noexcept {
@@ -153,7 +154,7 @@ gpu::ExchangePush ExchangeSystem::rules() const noexcept {
     rules.windZ = wind[2] * 1000 / 128;
     rules.chance = components::chanceOf(state_.book.governance.chance);
     rules.hopsMost = components::limitOf(state_.book.governance.hopsMost);
-    rules.tilesMost = components::limitOf(state_.book.governance.tilesMost);
+    rules.maxTiles = components::limitOf(state_.book.governance.maxTiles);
     rules.lifeTicks = components::lifeTicksOf(state_.book.governance.life);
     rules.seed = context_.def.seed;
     rules.ambient = uint32_t(fire::kAmbient) * 16;  // 1/16 K
@@ -165,22 +166,22 @@ gpu::ExchangePush ExchangeSystem::rules() const noexcept {
 
 // An object under another wind keeps its place and its contacts.
 void ExchangeSystem::updateWind(Object& object, int wind) noexcept {
-    if (object.remoteVersion == 0 || wind == object.remote.high.w) return;
+    if (object.exchangeVersion == 0 || wind == object.remote.high.w) return;
     object.remote.high.w = wind;
     markUnsent(object);
 }
 
 void ExchangeSystem::markUnsent(Object& object) noexcept {
     state_.book.unsent = true;
-    if (!object.remoteSent) return;
-    object.remoteSent = false;
+    if (!object.exchangeSent) return;
+    object.exchangeSent = false;
     state_.book.unsentSlots.push_back(object.slot);  // capacity was reserved at its creation
 }
 
 // Copies the lists that a planned update points to, before they change.
 void ExchangeSystem::keepPlanned() {
     if (frame_.used == 0) return;
-    RemoteTables& tables = *frame_.tables[frame_.used - 1];
+    ExchangeTables& tables = *frame_.tables[frame_.used - 1];
     if (tables.update.neighbours.data() == state_.book.neighbours.pool().all().data()) {
         tables.neighbours.assign(tables.update.neighbours.begin(), tables.update.neighbours.end());
         tables.update.neighbours = tables.neighbours;
@@ -195,24 +196,24 @@ void ExchangeSystem::latchPoses(uint32_t now) {
     for (const uint32_t slot : state_.book.due) {
         Object& object = scene_.objectAt(slot);
         const mesh::BurnDomain& domain = scene_.domainOf(object);
-        gpu::RemoteObject record{};
-        components::placeRemote(object.data.pose, domain, record);
-        components::fillRemote(object.data, domain, object.governance, record);
-        if (object.texels == 0) record.flags &= ~gpu::kRemoteLive;
+        gpu::ExchangeObject record{};
+        components::placeExchangeObject(object.data.pose, domain, record);
+        components::fillExchangeObject(object.data, domain, object.governance, record);
+        if (object.texels == 0) record.flags &= ~gpu::kExchangeLive;
         record.high.w = int(wind_.localWindOf(object, now));
         record.neighbourFirst = object.remote.neighbourFirst;
         record.neighbourCount = object.remote.neighbourCount;
         updateWind(object, record.high.w);
-        if (object.remoteVersion != 0 && sameRecord(record, object.remote)) continue;
+        if (object.exchangeVersion != 0 && sameRecord(record, object.remote)) continue;
         keepPlanned();
         object.remote = record;
-        object.reach = components::remoteReach(object.data, domain,
-                                               scene_.meshes.at(object.data.meshSlot)->texelsOf);
+        object.reach = components::exchangeReach(object.data, domain,
+                                                 scene_.meshes.at(object.data.meshSlot)->texelsOf);
         // Capacity for these was reserved at its creation.
-        if (object.remoteVersion == 0 && !object.touched) state_.book.waiting.push_back(slot);
-        object.remoteVersion = ++state_.book.version;
+        if (object.exchangeVersion == 0 && !object.touched) state_.book.waiting.push_back(slot);
+        object.exchangeVersion = ++state_.book.version;
         markUnsent(object);
-        if (!(record.flags & gpu::kRemoteLive) || slot > Neighbours::kSlot) continue;
+        if (!(record.flags & gpu::kExchangeLive) || slot > Neighbours::kSlot) continue;
         if (!object.contactsDue) state_.book.contactsDue.push_back(slot);
         object.contactsDue = true;
         if (context_.def.visibility && !object.seenDue) state_.book.seenDue.push_back(slot);
@@ -228,12 +229,12 @@ void ExchangeSystem::latchPoses(uint32_t now) {
     for (uint32_t slot = 0; wind_.hasGusts() && slot < scene_.objects.slotCount(); ++slot)
         if (auto* owned = scene_.objects.at(slot))
             updateWind(**owned, int(wind_.localWindOf(**owned, now)));
-    if (!state_.book.blockersDue) return;
-    state_.book.blockers.clear();
-    for (auto [i, entry] : state_.blockers.entries()) {
-        gpu::Blocker blocker{};
-        components::placeBlocker(entry.pose, entry.halfSize, blocker);
-        state_.book.blockers.push_back(blocker);
+    if (!state_.book.occludersDue) return;
+    state_.book.occluders.clear();
+    for (auto [i, entry] : state_.occluders.entries()) {
+        gpu::HeatOccluder occluder{};
+        components::placeHeatOccluder(entry.pose, entry.halfSize, occluder);
+        state_.book.occluders.push_back(occluder);
     }
     state_.book.unsent = true;
 }
@@ -241,7 +242,7 @@ void ExchangeSystem::latchPoses(uint32_t now) {
 // All of it from the latched records and the pairs that are known: the lists are those of another
 // world, or memory ended while they changed.
 void ExchangeSystem::rebuild() {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     keepPlanned();
     book.unsent = true;
     book.spreadKnown = false;
@@ -255,10 +256,10 @@ void ExchangeSystem::rebuild() {
     for (auto* slots : {&book.unsentSlots, &book.contactsDue, &book.seenDue, &book.waiting})
         slots->clear();  // each keeps its capacity
     for (auto [slot, object] : scene_.objects.entries()) {
-        const bool placed = object.remoteVersion != 0;
+        const bool placed = object.exchangeVersion != 0;
         const bool meets =
-            placed && object.remote.flags & gpu::kRemoteLive && slot <= Neighbours::kSlot;
-        object.remoteSent = !placed;
+            placed && object.remote.flags & gpu::kExchangeLive && slot <= Neighbours::kSlot;
+        object.exchangeSent = !placed;
         object.contactsDue = meets;
         object.seenDue = meets && context_.def.visibility;
         if (placed) book.unsentSlots.push_back(slot);
@@ -287,7 +288,7 @@ void ExchangeSystem::rebuild() {
 // The host's answers of saved pairs hold. An object without any was elsewhere since the host was
 // asked about it: it is asked when the world awakes, as it would have been.
 void ExchangeSystem::restoreSeen() {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     const auto before = [](const Seen& a, const Seen& b) {
         return std::tie(a.slots[0], a.slots[1]) < std::tie(b.slots[0], b.slots[1]);
     };
@@ -311,7 +312,7 @@ void ExchangeSystem::restoreSeen() {
 
 // Pairs of which the host has been asked since one of them was elsewhere, by slots.
 void ExchangeSystem::recordSeen(std::pmr::vector<Seen>& to) const {
-    const RemoteBook& book = state_.book;
+    const TransferState& book = state_.book;
     if (!context_.def.visibility) return;
     if (book.rebuild) {
         for (const Seen& seen : book.loadedSeen)
@@ -335,8 +336,8 @@ uint32_t ExchangeSystem::seenPart(const Object& from, const Object& to) const {
 }
 
 // In both directions between objects that moved and all their neighbours.
-void ExchangeSystem::askVisibility() {
-    RemoteBook& book = state_.book;
+void ExchangeSystem::queryVisibility() {
+    TransferState& book = state_.book;
     for (const uint32_t slot : book.seenDue) {
         const Object& object = scene_.objectAt(slot);
         for (const uint32_t entry : book.neighbours.of(slot)) {
@@ -387,7 +388,7 @@ void ExchangeSystem::linkPair(const Object& to, const Object& from,
 
 // Of objects that were latched since the last time. What memory refuses comes with the next call.
 void ExchangeSystem::findLinks(uint32_t now) {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     if (!(book.flags & FW_WORLD_CONTACT)) return;
     for (auto* lists : {&book.closeOf, &book.linksOf})
         if (lists->size() < scene_.objects.slotCount()) {
@@ -401,7 +402,7 @@ void ExchangeSystem::findLinks(uint32_t now) {
 
 // The contacts of one object with all that are so near.
 void ExchangeSystem::linkClose(Object& object, uint32_t now) {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     const uint64_t stamp = ++book.contactStamp;
     const auto meet = [&](uint32_t other) {
         if (mesh::gapOf(boxOf(object.remote), boxOf(scene_.objectAt(other).remote)) >
@@ -411,7 +412,7 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         const Object& b = object.slot < other ? scene_.objectAt(other) : object;
         PairContacts& pair = book.pairs[closePair(a.slot, b.slot)];
         pair.stamp = stamp;
-        if (pair.versions[0] == a.remoteVersion && pair.versions[1] == b.remoteVersion) return;
+        if (pair.versions[0] == a.exchangeVersion && pair.versions[1] == b.exchangeVersion) return;
         pair.versions[0] = pair.versions[1] = 0;  // until all of it is there
         // Objects that only shifted while they touch keep the tick of their first touch.
         const bool same = pair.ids[0].index1 != 0 && pair.ids[0].generation == a.id.generation &&
@@ -432,8 +433,8 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         pair.touches = !book.contacts.found[0].empty() || !book.contacts.found[1].empty();
         pair.ids[0] = a.id;
         pair.ids[1] = b.id;
-        pair.versions[0] = a.remoteVersion;
-        pair.versions[1] = b.remoteVersion;
+        pair.versions[0] = a.exchangeVersion;
+        pair.versions[1] = b.exchangeVersion;
         book.links.fit(book.linksOf[other]);
     };
     // Where all objects are latched as they stand now, the few that are so near are found among
@@ -442,8 +443,8 @@ void ExchangeSystem::linkClose(Object& object, uint32_t now) {
         const mesh::Box box = boxOf(object.remote);
         for (const uint32_t other : scene_.objectsNear(box, 0.001f * float(gpu::kContactGap))) {
             const Object& o = scene_.objectAt(other);
-            if (other != object.slot && o.remoteVersion != 0 && o.remote.flags & gpu::kRemoteLive &&
-                other <= Neighbours::kSlot)
+            if (other != object.slot && o.exchangeVersion != 0 &&
+                o.remote.flags & gpu::kExchangeLive && other <= Neighbours::kSlot)
                 meet(other);
         }
     } else {
@@ -479,7 +480,7 @@ void ExchangeSystem::addClose(uint32_t slot, uint32_t other, uint32_t pair) {
 
 // Their pair, which may be new.
 uint32_t ExchangeSystem::closePair(uint32_t a, uint32_t b) {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     const std::span<const CloseObject> list = book.close.of(book.closeOf[a]);
     if (const uint32_t at = closeIndex(list, b); at < list.size() && list[at].slot == b)
         return list[at].pair;
@@ -494,7 +495,7 @@ uint32_t ExchangeSystem::closePair(uint32_t a, uint32_t b) {
 
 // The two are apart, or one of them is gone.
 void ExchangeSystem::dropPair(uint32_t pair) noexcept {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     const auto entryOf = [&](const PairContacts& of, int k) {
         return closeIndex(book.close.of(book.closeOf[of.slots[k]]), of.slots[1 - k]);
     };
@@ -518,14 +519,14 @@ void ExchangeSystem::dropLinks(uint32_t to, uint32_t from) noexcept {
         return link.fromObject == from;
     });
     if (end == list.end()) return;
-    std::fill(end, list.end(), RemoteBook::noLink());
+    std::fill(end, list.end(), TransferState::noLink());
     state_.book.links.mark(place.first, place.count);
     place.count = uint32_t(end - list.begin());
 }
 
 void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
     if (fresh.empty()) return;
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     ListPlace& place = book.linksOf[to];
     std::sort(fresh.begin(), fresh.end(), before);
     const std::span<const gpu::ContactLink> list = book.links.of(place);
@@ -541,15 +542,15 @@ void ExchangeSystem::addLinks(uint32_t to, std::span<gpu::ContactLink> fresh) {
 void ExchangeSystem::forgetObject(const Object& object) noexcept {
     countGoverned(object, false);
     removeFromShield(object.slot);
-    RemoteBook& book = state_.book;
-    book.unsent |= object.remoteVersion != 0;
+    TransferState& book = state_.book;
+    book.unsent |= object.exchangeVersion != 0;
     const uint32_t slot = object.slot;
     const auto leave = [&](std::pmr::vector<uint32_t>& slots, bool in) {
         if (in || book.rebuild) std::erase(slots, slot);
     };
-    leave(book.due, object.remoteDue);
-    leave(book.unsentSlots, !object.remoteSent);
-    leave(book.waiting, object.remoteVersion != 0);
+    leave(book.due, object.exchangeDue);
+    leave(book.unsentSlots, !object.exchangeSent);
+    leave(book.waiting, object.exchangeVersion != 0);
     leave(book.contactsDue, object.contactsDue);
     leave(book.seenDue, object.seenDue);
     if (book.rebuild) {  // its lists are none
@@ -582,11 +583,11 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
         latchPoses(now);
         frame_.latched = true;
     }
-    planShield(step, awake);
+    planOcclusion(step, awake);
     if (!awake || !state_.book.unsent) return;
     if (frame_.flushed && now % gpu::kExchangeTicks != 0) return;
     keepPlanned();
-    askVisibility();
+    queryVisibility();
     findLinks(now);
     for (const uint32_t slot : state_.book.neighbours.changed()) {
         auto* owned = scene_.objects.at(slot);
@@ -598,21 +599,22 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
             continue;
         object.remote.neighbourFirst = list.first;
         object.remote.neighbourCount = list.count;
-        if (object.remoteVersion != 0) markUnsent(object);
+        if (object.exchangeVersion != 0) markUnsent(object);
     }
     if (frame_.used == frame_.tables.size())
-        frame_.tables.push_back(core::Owned<RemoteTables>::make(context_.memory, context_.memory));
-    RemoteTables& tables = *frame_.tables[frame_.used];
+        frame_.tables.push_back(
+            core::Owned<ExchangeTables>::make(context_.memory, context_.memory));
+    ExchangeTables& tables = *frame_.tables[frame_.used];
     tables.objects.clear();
     core::growTo(tables.objects, state_.book.unsentSlots.size());
     for (const uint32_t slot : state_.book.unsentSlots)
         tables.objects.push_back({slot, scene_.objectAt(slot).remote});
     state_.book.neighbours.pool().listChanges(tables.neighbourRanges);
     state_.book.links.listChanges(tables.linkRanges);
-    tables.blockers.assign(state_.book.blockers.begin(), state_.book.blockers.end());
+    tables.occluders.assign(state_.book.occluders.begin(), state_.book.occluders.end());
     tables.update = {tables.objects,         state_.book.neighbours.pool().all(),
                      tables.neighbourRanges, state_.book.links.all(),
-                     tables.linkRanges,      tables.blockers};
+                     tables.linkRanges,      tables.occluders};
     step.remote = &tables.update;
     ++frame_.used;
     frame_.flushed = true;
@@ -620,18 +622,18 @@ void ExchangeSystem::plan(gpu::StepPlan& step, uint32_t now, bool awake) {
 
 // After all that the frame reached was touched.
 void ExchangeSystem::commit(bool spreadFound, bool waitersTouched) noexcept {
-    if (frame_.shieldSent) state_.shield.unsent = false;
+    if (frame_.occlusionSent) state_.shield.unsent = false;
     if (frame_.latched) {
-        for (const uint32_t slot : state_.book.due) scene_.objectAt(slot).remoteDue = false;
+        for (const uint32_t slot : state_.book.due) scene_.objectAt(slot).exchangeDue = false;
         state_.book.due.clear();
-        state_.book.blockersDue = false;
+        state_.book.occludersDue = false;
     }
     state_.book.spreadKnown |= spreadFound;
     if (waitersTouched)
         std::erase_if(state_.book.waiting,
                       [&](uint32_t slot) { return scene_.objectAt(slot).touched; });
     if (!frame_.flushed) return;
-    for (const uint32_t slot : state_.book.unsentSlots) scene_.objectAt(slot).remoteSent = true;
+    for (const uint32_t slot : state_.book.unsentSlots) scene_.objectAt(slot).exchangeSent = true;
     state_.book.unsentSlots.clear();
     state_.book.neighbours.settle();
     state_.book.links.settle();
@@ -649,14 +651,14 @@ void ExchangeSystem::countGoverned(const Object& object, bool more) noexcept {
 
 void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) noexcept {
     const gpu::ObjectCounters& now = object.counters;
-    if (now.litTick != object.story.litTold) {
-        object.story.litTold = now.litTick;
+    if (now.litTick != object.lifecycle.litReported) {
+        object.lifecycle.litReported = now.litTick;
         ++object.changes;
-        const uint32_t giver = gpu::giverOf(now.litBy);
+        const uint32_t giver = gpu::igniterOf(now.litBy);
         // A slot may be another's since.
         const auto* by = giver < scene_.objects.slotCount() ? scene_.objects.at(giver) : nullptr;
         if (now.litTick != 0 && by && (*by)->firstFrame <= readback.frameIndex) {
-            const gpu::RemoteObject& box = object.remote;
+            const gpu::ExchangeObject& box = object.remote;
             const int low[3] = {box.turn0.w, box.turn1.w, box.turn2.w};
             float middle[3];
             for (int i = 0; i < 3; ++i)
@@ -666,26 +668,26 @@ void ExchangeSystem::onCounters(Object& object, const gpu::Readback& readback) n
                            scene_.objects.idOf(giver));
         }
     }
-    if (now.spots != object.story.spotsTold) {
+    if (now.spots != object.lifecycle.spotsReported) {
         float place[3];
         const uint32_t texel = now.spotTexel & ~gpu::kSpotFresh;
         scene_.texelPosition(object, std::min(texel, scene_.domainOf(object).texelCount() - 1),
                              place);
         context_.raise(FW_EVENT_SPOT_FIRE, &object, 0, readback.frameIndex, place,
-                       float(now.spots - object.story.spotsTold));
-        object.story.spotsTold = now.spots;
+                       float(now.spots - object.lifecycle.spotsReported));
+        object.lifecycle.spotsReported = now.spots;
         ++object.changes;
     }
 }
 
 void ExchangeSystem::beginFrame() noexcept {
     frame_.used = 0;
-    frame_.latched = frame_.flushed = frame_.shieldSent = false;
+    frame_.latched = frame_.flushed = frame_.occlusionSent = false;
 }
 
 void ExchangeSystem::markMoved(Object& object) noexcept {
-    if (object.remoteDue) return;  // at most once each: capacity was reserved at its creation
-    object.remoteDue = true;
+    if (object.exchangeDue) return;  // at most once each: capacity was reserved at its creation
+    object.exchangeDue = true;
     state_.book.due.push_back(object.slot);
 }
 
@@ -695,15 +697,15 @@ void ExchangeSystem::addObject(const Object& object) noexcept {
 }
 
 void ExchangeSystem::reserveSlots() {
-    RemoteBook& book = state_.book;
+    TransferState& book = state_.book;
     for (auto* slots :
          {&book.due, &book.unsentSlots, &book.waiting, &book.contactsDue, &book.seenDue})
         core::growTo(*slots, scene_.objects.slotCount());
 }
 
 void ExchangeSystem::checkShift(const double (&by)[3]) const {
-    for (auto [i, blocker] : state_.blockers.entries())
-        checkMoved(blocker.pose.translation, by, "blocker", i);
+    for (auto [i, occluder] : state_.occluders.entries())
+        checkMoved(occluder.pose.translation, by, "occluder", i);
     if (state_.shield.grid.shape.cells() != 0)
         checkMillimetres(state_.shield.grid.shape.origin, by, "heat shield", 0);
 }
@@ -717,12 +719,12 @@ std::pmr::vector<Seen> ExchangeSystem::recordedSeen() const {
 // The host's answers about sight hold; the lists of neighbours are built again.
 void ExchangeSystem::shiftOrigin(const double (&by)[3]) noexcept {
     for (auto [i, owned] : scene_.objects.entries())
-        if (owned.remoteVersion != 0) moveRecord(owned.remote, by);
-    RemoteBook& book = state_.book;
+        if (owned.exchangeVersion != 0) moveRecord(owned.remote, by);
+    TransferState& book = state_.book;
     book.rebuild = book.unsent = true;  // its grid is of the places before
-    for (auto [i, blocker] : state_.blockers.entries()) moveBy(blocker.pose.translation, by);
-    for (gpu::Blocker& blocker : book.blockers) {
-        gpu::ivec4* turns[] = {&blocker.turn0, &blocker.turn1, &blocker.turn2};
+    for (auto [i, occluder] : state_.occluders.entries()) moveBy(occluder.pose.translation, by);
+    for (gpu::HeatOccluder& occluder : book.occluders) {
+        gpu::ivec4* turns[] = {&occluder.turn0, &occluder.turn1, &occluder.turn2};
         for (int i = 0; i < 3; ++i) movePast(turns[i]->w, by[i]);
     }
     if (state_.shield.grid.shape.cells() == 0) return;
@@ -734,7 +736,7 @@ ExchangeSystem::Memory ExchangeSystem::memory() const noexcept {
     Memory bytes;
     bytes.neighbours = state_.book.neighbours.bytes();
     for (const auto& tables : frame_.tables)
-        bytes.neighbours += tables->objects.capacity() * sizeof(gpu::RemoteUpdate::Placed) +
+        bytes.neighbours += tables->objects.capacity() * sizeof(gpu::ExchangeUpdate::Placed) +
                             tables->neighbours.capacity() * sizeof(uint32_t);
     bytes.contacts = state_.book.links.bytes() + state_.book.close.bytes() +
                      state_.book.pairs.capacity() * sizeof(PairContacts);

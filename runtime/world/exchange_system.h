@@ -1,8 +1,8 @@
 // Heat between objects: poses become integers at fixed ticks, neighbours and contacts are found
 // where something moved, and the backend gets all of it with the step that begins there. Besides,
-// what stands between: blockers and the host's heat shield.
+// what stands between: occluders and the host's heat shield.
 #pragma once
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 #include "components/remote.h"
 #include "world/command.h"
 #include "world/neighbours.h"
@@ -17,15 +17,15 @@ constexpr uint32_t kHeatTransferModes =
 constexpr uint32_t kWorldFlags =
     kHeatTransferModes | FW_WORLD_NO_SPREAD | FW_WORLD_NO_DAMAGE | FW_WORLD_NO_HOLES;
 
-struct BlockerEntry {
+struct HeatOccluderEntry {
     components::Pose pose;
     float halfSize[3] = {};
 
     template <class A>
     void serialize(A& a) {
         a(pose, halfSize);
-        a.range("blocker's place", pose.translation, -1e6, 1e6);
-        a.range("blocker's half size", halfSize, 0, 30);
+        a.range("occluder's place", pose.translation, -1e6, 1e6);
+        a.range("occluder's half size", halfSize, 0, 30);
     }
 };
 
@@ -35,7 +35,7 @@ struct PairContacts {
     FwBurnableMeshId ids[2] = {};
     uint32_t since = 0;  // tick, while they touch
     bool touches = false;
-    uint64_t stamp = 0;  // RemoteBook::contactStamp of the last search that found them near
+    uint64_t stamp = 0;  // TransferState::contactStamp of the last search that found them near
 
     template <class A>
     void serialize(A& a) {
@@ -47,7 +47,7 @@ struct PairContacts {
 // An object whose box is near enough to touch.
 struct CloseObject {
     uint32_t slot = 0xFFFFFFFFu;
-    uint32_t pair = 0;  // of RemoteBook::pairs
+    uint32_t pair = 0;  // of TransferState::pairs
 };
 
 // The host's answer: how much of slots[0] a fire of slots[1] sees.
@@ -65,8 +65,8 @@ struct Seen {
 
 // Neighbours and contacts of latched objects. Kept across frames, so that a frame searches only for
 // what moved. A frame that fails leaves it stale at worst: the next one sends it again.
-struct RemoteBook {
-    explicit RemoteBook(std::pmr::memory_resource* given) : memory(given) {}
+struct TransferState {
+    explicit TransferState(std::pmr::memory_resource* given) : memory(given) {}
     std::pmr::memory_resource* memory;
     [[nodiscard]] static gpu::ContactLink noLink() noexcept {
         gpu::ContactLink link{};
@@ -80,7 +80,7 @@ struct RemoteBook {
     bool capped = false;    // and the number of burning tiles
     uint32_t governedObjects = 0, cappedObjects = 0;
     bool unsent = false;  // the backend does not know the latest
-    bool blockersDue = false;
+    bool occludersDue = false;
     bool warms = false;  // radiation or plumes were on at some time
     uint64_t fades = 0;  // tick until which heat received from switched-off modes fades
     std::pmr::vector<uint32_t> due{memory};          // slots to latch
@@ -102,40 +102,40 @@ struct RemoteBook {
     uint64_t contactStamp = 0;
     mesh::Contacts contacts{memory};                                            // scratch
     std::pmr::vector<gpu::ContactLink> pairLinks{memory}, mergedLinks{memory};  // scratch
-    std::pmr::vector<gpu::Blocker> blockers{memory};                            // latched
+    std::pmr::vector<gpu::HeatOccluder> occluders{memory};                      // latched
 };
 
-struct ShieldBook {
-    explicit ShieldBook(std::pmr::memory_resource* memory)
+struct HeatOcclusionState {
+    explicit HeatOcclusionState(std::pmr::memory_resource* memory)
         : grid(memory), commandSlots(memory), words(memory), fallen(memory) {}
-    components::HeatShield grid;
+    components::HeatOcclusion grid;
     std::pmr::vector<uint32_t> commandSlots;  // that commands of one shield named so far
     std::pmr::vector<uint32_t> words;         // as the backend gets it
     std::pmr::vector<uint8_t> fallen;         // scratch
-    gpu::ShieldUpdate update;
+    gpu::OcclusionUpdate update;
     bool unpacked = false;  // `words` are of another grid
     bool unsent = false;    // the backend does not know the latest
 };
 
-// The arrays that a RemoteUpdate of a frame points to.
-struct RemoteTables {
-    explicit RemoteTables(std::pmr::memory_resource* given) : memory(given) {}
+// The arrays that a ExchangeUpdate of a frame points to.
+struct ExchangeTables {
+    explicit ExchangeTables(std::pmr::memory_resource* given) : memory(given) {}
     std::pmr::memory_resource* memory;
-    std::pmr::vector<gpu::RemoteUpdate::Placed> objects{memory};
-    std::pmr::vector<gpu::RemoteUpdate::Range> neighbourRanges{memory}, linkRanges{memory};
+    std::pmr::vector<gpu::ExchangeUpdate::Placed> objects{memory};
+    std::pmr::vector<gpu::ExchangeUpdate::Range> neighbourRanges{memory}, linkRanges{memory};
     // Copies, where the lists change again in the same frame.
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<gpu::ContactLink> links{memory};
-    std::pmr::vector<gpu::Blocker> blockers{memory};
-    gpu::RemoteUpdate update;
+    std::pmr::vector<gpu::HeatOccluder> occluders{memory};
+    gpu::ExchangeUpdate update;
 };
 
 struct ExchangeState {
     explicit ExchangeState(std::pmr::memory_resource* memory)
-        : blockers("Blocker", memory), book(memory), shield(memory) {}
-    core::HandlePool<FwBlockerId, BlockerEntry> blockers;
-    RemoteBook book;
-    ShieldBook shield;
+        : occluders("HeatOccluder", memory), book(memory), shield(memory) {}
+    core::HandlePool<FwHeatOccluderId, HeatOccluderEntry> occluders;
+    TransferState book;
+    HeatOcclusionState shield;
 };
 
 class ExchangeSystem {
@@ -143,10 +143,10 @@ class ExchangeSystem {
     ExchangeSystem(const WorldContext& context, Scene& scene, const WindSystem& wind);
 
     void setFlags(uint32_t given);
-    void setHeatShield(const FwHeatShieldDef& def);  // of structSize 0: removes it
-    FwBlockerId addBlocker(const FwBlockerDef& def);
-    void moveBlocker(FwBlockerId id, const float transform[16]);
-    void removeBlocker(FwBlockerId id);
+    void setHeatOcclusion(const FwHeatOcclusionDef& def);  // of structSize 0: removes it
+    FwHeatOccluderId addHeatOccluder(const FwHeatOccluderDef& def);
+    void moveHeatOccluder(FwHeatOccluderId id, const float transform[16]);
+    void removeHeatOccluder(FwHeatOccluderId id);
 
     void beginFrame() noexcept;
     // awake: the step will run.
@@ -177,7 +177,7 @@ class ExchangeSystem {
     [[nodiscard]] uint64_t pairsExamined() const noexcept {
         return state_.book.neighbours.examined();
     }
-    [[nodiscard]] components::ShieldView shieldView();
+    [[nodiscard]] components::OcclusionView occlusionView();
     struct Memory {
         uint64_t neighbours = 0, contacts = 0;  // bytes
     };
@@ -191,7 +191,7 @@ class ExchangeSystem {
     void markUnsent(Object& object) noexcept;  // its record
     void rebuild();
     void keepPlanned();
-    void askVisibility();
+    void queryVisibility();
     uint32_t seenPart(const Object& from, const Object& to) const;
     void findLinks(uint32_t now);
     void linkClose(Object& object, uint32_t now);
@@ -207,18 +207,20 @@ class ExchangeSystem {
     void recordSeen(std::pmr::vector<Seen>& to) const;
     void restoreSeen();
     // shield.cpp
-    components::ShieldObject shieldObjectOf(uint32_t slot) noexcept;
-    void bakeHeatShield(const components::ShieldShape& shape, std::pmr::vector<uint32_t>& slots,
-                        std::pmr::vector<components::ShieldCell>& baked);
-    void recordShield(const components::HeatShield& made, std::span<const uint32_t> slots) noexcept;
+    components::OcclusionObject occlusionObjectOf(uint32_t slot) noexcept;
+    void bakeHeatOcclusion(const components::OcclusionGridShape& shape,
+                           std::pmr::vector<uint32_t>& slots,
+                           std::pmr::vector<components::OcclusionCell>& baked);
+    void uploadOcclusion(const components::HeatOcclusion& made,
+                         std::span<const uint32_t> slots) noexcept;
     void applyShield(const SetHeatShield& command);
     void applyShieldCells(const SetShieldCells& command);
     void applyShieldObject(const AddShieldObject& command);
-    void adoptShield(components::HeatShield& made) noexcept;  // takes its cells
-    void shieldChanged() noexcept;
+    void adoptOcclusion(components::HeatOcclusion& made) noexcept;  // takes its cells
+    void occlusionChanged() noexcept;
     void removeFromShield(uint32_t slot) noexcept;
-    void packHeatShield();
-    void planShield(gpu::StepPlan& step, bool awake);
+    void packHeatOcclusion();
+    void planOcclusion(gpu::StepPlan& step, bool awake);
 
     const WorldContext& context_;
     Scene& scene_;
@@ -227,9 +229,9 @@ class ExchangeSystem {
     // Of a frame: tables of its updates, of which `used` are planned.
     struct Frame {
         explicit Frame(std::pmr::memory_resource* memory) : tables(memory) {}
-        std::pmr::vector<core::Owned<RemoteTables>> tables;
+        std::pmr::vector<core::Owned<ExchangeTables>> tables;
         size_t used = 0;
-        bool latched = false, flushed = false, shieldSent = false;
+        bool latched = false, flushed = false, occlusionSent = false;
     };
     Frame frame_{context_.memory};
 };

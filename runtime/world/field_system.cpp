@@ -205,7 +205,7 @@ void FieldSystem::wetObjects(Field& field, uint32_t now) {
     for (const float side : data.size) far += side * side;
     const float wide = data.size[0] * float(kBlock) / float(width);
     const float tall = data.size[1] * float(kBlock) / float(height);
-    const bool card = data.shape == FW_FIELD_CARD;
+    const bool card = data.shape == FW_FIELD_BILLBOARD;
     FwIgnitionDef def{};
     def.kind = FW_WET;
     def.radius = std::max(0.75f * std::max(card ? wide : 3.1415927f * wide, tall),

@@ -1,5 +1,5 @@
 // Bodies that flames of volumetric fires flow around: the host's colliders, among them pictures of
-// depth, and the world's blockers as boxes. Cosmetic.
+// depth, and the world's occluders as boxes. Cosmetic.
 #include "world/exchange_system.h"
 #include "world/flame_system.h"
 
@@ -17,7 +17,7 @@ using components::checkValues;
 
 constexpr uint32_t kMaxFireColliders = 64;
 
-float askHost(void* user, const float point[3], float normal[3]) noexcept {
+float callHost(void* user, const float point[3], float normal[3]) noexcept {
     const auto& entry = *static_cast<const FireColliderEntry*>(user);
     const float asked[3] = {point[0] * entry.unitsPerMetre, point[1] * entry.unitsPerMetre,
                             point[2] * entry.unitsPerMetre};
@@ -103,7 +103,7 @@ void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEnt
         case volume::ColliderKind::Callback:
             if (!def.distance)
                 core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireColliderDef::distance is null.");
-            shape.distance = &askHost;
+            shape.distance = &callHost;
             shape.user = &entry;
             break;
         case volume::ColliderKind::Depth:
@@ -175,7 +175,7 @@ void FlameSystem::listShapes() noexcept {
         }
         if (pictures) pictures_ = uint32_t(shapes_.size());
     }
-    for (auto [i, entry] : exchange_.state().blockers.entries()) {
+    for (auto [i, entry] : exchange_.state().occluders.entries()) {
         volume::Collider box;
         box.kind = volume::ColliderKind::Box;
         for (int k = 0; k < 3; ++k) box.place[k] = float(entry.pose.translation[k]);

@@ -18,7 +18,7 @@ using components::VolumetricFire;
 constexpr double kFlux = 35000;        // W/m^2 that a flame gives to what it covers
 constexpr uint64_t kAgain = 3 * 4096;  // ticks until what it covers is lit once more
 constexpr uint32_t kAxisBalls = 4;     // along a flame
-constexpr float kLeastReach = 0.02f;   // m, of a ball
+constexpr float kMinReach = 0.02f;     // m, of a ball
 
 struct Ball {
     float place[3], radius;
@@ -30,7 +30,7 @@ uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind
     if (fire.pointCount > 0) {
         for (uint32_t i = 0; i < fire.pointCount; ++i) {
             const volume::ControlPoint& p = fire.points[i];
-            out[i] = {{p.position.x, p.position.y, p.position.z}, std::max(p.radius, kLeastReach)};
+            out[i] = {{p.position.x, p.position.y, p.position.z}, std::max(p.radius, kMinReach)};
         }
         return fire.pointCount;
     }
@@ -45,7 +45,7 @@ uint32_t ballsOf(const VolumetricFire& fire, const float up[3], const float wind
         length += along[i] * along[i];
     }
     length = std::max(std::sqrt(length), 1e-3f);
-    const float radius = std::max({0.5f * fire.diameter, 0.125f * height, kLeastReach});
+    const float radius = std::max({0.5f * fire.diameter, 0.125f * height, kMinReach});
     for (uint32_t k = 0; k < kAxisBalls; ++k) {
         const float at = height * (float(k) + 0.5f) / float(kAxisBalls);
         for (int i = 0; i < 3; ++i) out[k].place[i] = fire.position[i] + along[i] / length * at;

@@ -28,17 +28,17 @@ FlameSystem::FlameSystem(const WorldContext& context, Scene& scene, const WindSy
 void FlameSystem::reserve(uint32_t more) {
     size_t flames = more;
     for (auto [i, fire] : state_.fires.entries()) flames += fire.data.partCount;
-    const size_t room = burning_.findRoom(flames);
+    const size_t room = burning_.reserveFlames(flames);
     if (flames_.size() < room) flames_.resize(room);
     shapes_.reserve(kMaxShapes);
 }
 
 // Its state before its first frame: a host lights its scene with it in that frame, too.
-void FlameSystem::foresee(VolumetricFire& fire) noexcept {
+void FlameSystem::predictAhead(VolumetricFire& fire) noexcept {
     if (fire.state.lit) return;
     components::FireAir air;
     std::copy_n(context_.def.up, 3, air.up);
-    fire.state = burning_.foresee(fire, air);
+    fire.state = burning_.predictAhead(fire, air);
 }
 
 // The layer of its profile, with its texels on this side.
@@ -63,7 +63,7 @@ FwVolumetricFireId FlameSystem::create(const FwVolumetricFireDef& def) {
     const uint32_t layer = profileLayer(def);
     components::makeVolumetricFire(def, ownSeed, fire->data);
     fire->data.profile = layer;
-    foresee(fire->data);
+    predictAhead(fire->data);
     const FwVolumetricFireId id = state_.fires.create(std::move(fire));
     try {
         reserve(0);
@@ -88,7 +88,7 @@ void FlameSystem::move(FwVolumetricFireId id, const float position[3]) {
     const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
     if (burns) context_.recorder.mayChange();
     components::setFirePosition(fire, position);
-    foresee(fire);
+    predictAhead(fire);
     if (burns)
         context_.recorder.record(MoveFire{id.index1 - 1, {position[0], position[1], position[2]}});
 }
@@ -97,24 +97,24 @@ void FlameSystem::setPower(FwVolumetricFireId id, float power) {
     VolumetricFire& fire = state_.fires.get(id)->data;
     const bool burns = (fire.flags & FW_FIRE_IGNITES) != 0;
     if (burns) context_.recorder.mayChange();
-    reserve(components::mostParts(power, fire.diameter));
+    reserve(components::maxParts(power, fire.diameter));
     components::setFirePower(fire, power);
-    foresee(fire);
+    predictAhead(fire);
     if (burns) context_.recorder.record(SetFirePower{id.index1 - 1, power});
 }
 
 void FlameSystem::setPoints(FwVolumetricFireId id, const FwFirePoint* points, uint32_t count) {
     VolumetricFire& fire = state_.fires.get(id)->data;
-    reserve(components::mostParts(fire.power, fire.diameter));
+    reserve(components::maxParts(fire.power, fire.diameter));
     components::setFirePoints(fire, points, count, "points");
-    foresee(fire);
+    predictAhead(fire);
 }
 
 void FlameSystem::setTrack(FwVolumetricFireId id, const FwFireTrackDef* def) {
     VolumetricFire& fire = state_.fires.get(id)->data;
-    reserve(components::mostParts(fire.power, fire.diameter));
+    reserve(components::maxParts(fire.power, fire.diameter));
     components::setFireTrack(fire, def);
-    foresee(fire);
+    predictAhead(fire);
 }
 
 void FlameSystem::setHidden(FwVolumetricFireId id, bool hidden) {
@@ -164,11 +164,11 @@ void FlameSystem::destroyProfile(FwFireProfileId id) {
 
 // ---- questions --------------------------------------------------------------------------------
 
-void FlameSystem::ask(const float point[3], FwFireAnswer& answer) {
+void FlameSystem::ask(const float point[3], FwFireSample& answer) {
     components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     if (!burning_.now().empty()) listShapes();  // as they stand now
     const components::FireAnswer found =
-        components::askFires(burning_.now(), profiles_, walls(), volume::vecOf(point));
+        components::queryFires(burning_.now(), profiles_, walls(), volume::vecOf(point));
     answer.inside = found.air.inside ? 1 : 0;
     answer.temperature = found.air.kelvin;
     answer.heatFlux = found.air.heatFlux;
@@ -178,7 +178,7 @@ void FlameSystem::ask(const float point[3], FwFireAnswer& answer) {
             answer.fire = state_.fires.idOf(i);
 }
 
-void FlameSystem::push(const float centre[3], float radius, FwFirePush& push) {
+void FlameSystem::push(const float centre[3], float radius, FwFireForce& push) {
     components::checkLengths(centre, 3, "centre", -1e6f, 1e6f);
     components::checkLength(radius, "radius", 0.0f, 100.0f);
     if (!burning_.now().empty()) listShapes();

@@ -75,8 +75,8 @@ class FlameSystem {
     void setTier(FwVolumetricFireId id, uint32_t tier);
     void setTrack(FwVolumetricFireId id, const FwFireTrackDef* def);
     void fillState(FwVolumetricFireId id, FwVolumetricFireState& state);
-    void ask(const float point[3], FwFireAnswer& answer);
-    void push(const float centre[3], float radius, FwFirePush& push);
+    void ask(const float point[3], FwFireSample& answer);
+    void push(const float centre[3], float radius, FwFireForce& push);
     FwFlipbookId createFlipbook(const FwFlipbookDef& def);
     void destroyFlipbook(FwFlipbookId id);
     void setFlipbooks(FwFlipbookId fire, FwFlipbookId smoke);
@@ -114,13 +114,13 @@ class FlameSystem {
                 entry && (*entry)->shape.kind == volume::ColliderKind::HeightField)
                 visit((*entry)->shape);
     }
-    components::EmitterBooks flipbooksOf(const FwFireEmitterDef& def);
+    components::EmitterFlipbooks flipbooksOf(const FwFireEmitterDef& def);
     void countFlipbookUsers(const FwFireEmitterDef& def, int by) noexcept;
 
  private:
     friend class PersistenceSystem;
-    static constexpr uint32_t kMaxShapes = 64 + gpu::kMaxBlockers;  // colliders and blockers
-    void foresee(components::VolumetricFire& fire) noexcept;
+    static constexpr uint32_t kMaxShapes = 64 + gpu::kMaxHeatOccluders;  // colliders and occluders
+    void predictAhead(components::VolumetricFire& fire) noexcept;
     uint32_t profileLayer(const FwVolumetricFireDef& def);
     void igniteObjects(Fire& fire, uint32_t now);
     void sendFlipbooks(uint32_t slot, const book::Book* fresh);
@@ -135,11 +135,11 @@ class FlameSystem {
     core::HandlePool<FwFireProfileId, FireProfileEntry> profileIds_{"Fire profile",
                                                                     context_.memory};
     core::HandlePool<FwFlipbookId, FlipbookEntry> flipbooks_{"Flipbook", context_.memory};
-    FwFlipbookId flameBooks_[2] = {};  // of burning meshes' flames: fire's, smoke's
+    FwFlipbookId flameFlipbooks_[2] = {};  // of burning meshes' flames: fire's, smoke's
     core::HandlePool<FwFireColliderId, core::Owned<FireColliderEntry>> colliders_{"Fire collider",
                                                                                   context_.memory};
     std::pmr::vector<core::Owned<volume::Profile>> profiles_;  // by layer; null: none needed it
-    // Of a frame: pictures of depth, which flames alone see, colliders, blockers.
+    // Of a frame: pictures of depth, which flames alone see, colliders, occluders.
     std::pmr::vector<volume::Collider> shapes_{context_.memory};
     uint32_t pictures_ = 0;
     components::FireFlames burning_{context_.memory};

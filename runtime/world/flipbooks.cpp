@@ -9,26 +9,26 @@ namespace fw::world {
 
 // Of all that there are and `fresh` in `slot`; without what is there already where `fresh` is null.
 void FlameSystem::sendFlipbooks(uint32_t slot, const book::Book* fresh) {
-    const book::Book* all[gpu::kMaxBooks] = {};
+    const book::Book* all[gpu::kMaxFlipbooks] = {};
     uint32_t count = 0;
-    for (uint32_t i = 0; i < gpu::kMaxBooks; ++i) {
+    for (uint32_t i = 0; i < gpu::kMaxFlipbooks; ++i) {
         const FlipbookEntry* entry = i < flipbooks_.slotCount() ? flipbooks_.at(i) : nullptr;
         all[i] = i == slot ? fresh : entry ? entry->book.get() : nullptr;
         count += all[i] != nullptr;
     }
     if (count == 0) {
-        context_.backend.setBooks(0, 0, {}, {});
+        context_.backend.setFlipbooks(0, 0, {}, {});
         return;
     }
-    const book::Picture picture = book::layBooks(all, context_.memory);
-    context_.backend.setBooks(picture.width, picture.height,
-                              std::as_bytes(std::span(picture.texels)), picture.words);
+    const book::Picture picture = book::packFlipbooks(all, context_.memory);
+    context_.backend.setFlipbooks(picture.width, picture.height,
+                                  std::as_bytes(std::span(picture.texels)), picture.words);
 }
 
 FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
-    if (flipbooks_.live() >= gpu::kMaxBooks)
+    if (flipbooks_.live() >= gpu::kMaxFlipbooks)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u flipbooks are there; the limit is %u.",
-                   flipbooks_.live(), gpu::kMaxBooks);
+                   flipbooks_.live(), gpu::kMaxFlipbooks);
     components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
     components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
     components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);
@@ -42,13 +42,13 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
             core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFlipbookDef::cookedSize is %llu.",
                        static_cast<unsigned long long>(def.cookedSize));
         const auto* bytes = static_cast<const std::byte*>(def.cooked);
-        book::readBook({bytes, size_t(def.cookedSize)}, *book);
+        book::readFlipbook({bytes, size_t(def.cookedSize)}, *book);
     } else {
         if (def.cooked)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
                        def.preset);
-        book::readBook(book::ownBook(def.preset, context_.memory), *book);
+        book::readFlipbook(book::presetFlipbook(def.preset, context_.memory), *book);
     }
     const FwFlipbookId id = flipbooks_.create();
     try {
@@ -91,26 +91,27 @@ void FlameSystem::setFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
     const FwFlipbookId now[2] = {fire, smoke};
     for (int i = 0; i < 2; ++i) {
         if (now[i].index1) ++flipbooks_.get(now[i]).users;
-        if (flameBooks_[i].index1) --flipbooks_.get(flameBooks_[i]).users;
-        flameBooks_[i] = now[i];
+        if (flameFlipbooks_[i].index1) --flipbooks_.get(flameFlipbooks_[i]).users;
+        flameFlipbooks_[i] = now[i];
     }
-    context_.backend.setFlameBooks(bytes);
+    context_.backend.setTileFlipbooks(bytes);
 }
 
-components::EmitterBooks FlameSystem::flipbooksOf(const FwFireEmitterDef& def) {
-    components::EmitterBooks books;
+components::EmitterFlipbooks FlameSystem::flipbooksOf(const FwFireEmitterDef& def) {
+    components::EmitterFlipbooks books;
     for (uint32_t i = 0, at = 0; i < 3; ++i)
-        if (const uint32_t b =
-                flipbookByte(def.fireBooks[i], "FwFireEmitterDef::fireBooks", book::Kind::Fire)) {
+        if (const uint32_t b = flipbookByte(def.fireFlipbooks[i], "FwFireEmitterDef::fireFlipbooks",
+                                            book::Kind::Fire)) {
             books.fireEmits =
-                (at == 0 || books.fireEmits) && flipbooks_.get(def.fireBooks[i]).emits;
+                (at == 0 || books.fireEmits) && flipbooks_.get(def.fireFlipbooks[i]).emits;
             books.fire |= b << (8 * at++);
         }
     for (uint32_t i = 0, at = 0; i < 2; ++i)
-        if (const uint32_t b =
-                flipbookByte(def.smokeBooks[i], "FwFireEmitterDef::smokeBooks", book::Kind::Smoke))
+        if (const uint32_t b = flipbookByte(def.smokeFlipbooks[i],
+                                            "FwFireEmitterDef::smokeFlipbooks", book::Kind::Smoke))
             books.other |= b << (8 * at++);
-    books.spark = flipbookByte(def.sparkBook, "FwFireEmitterDef::sparkBook", book::Kind::Spark);
+    books.spark =
+        flipbookByte(def.sparkFlipbook, "FwFireEmitterDef::sparkFlipbook", book::Kind::Spark);
     return books;
 }
 
@@ -119,9 +120,9 @@ void FlameSystem::countFlipbookUsers(const FwFireEmitterDef& def, int by) noexce
     const auto count = [&](FwFlipbookId id) {
         if (id.index1) flipbooks_.at(id.index1 - 1)->users += uint32_t(by);
     };
-    for (const FwFlipbookId id : def.fireBooks) count(id);
-    for (const FwFlipbookId id : def.smokeBooks) count(id);
-    count(def.sparkBook);
+    for (const FwFlipbookId id : def.fireFlipbooks) count(id);
+    for (const FwFlipbookId id : def.smokeFlipbooks) count(id);
+    count(def.sparkFlipbook);
 }
 
 }  // namespace fw::world

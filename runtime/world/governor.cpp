@@ -8,13 +8,13 @@
 namespace fw::world {
 namespace {
 
-constexpr float kOver = 1.03f;      // of the budget: less is measurement
-constexpr float kAim = 0.95f;       // of the budget, when detail falls
-constexpr float kSmooth = 0.2f;     // share of a new measurement
-constexpr float kJump = 0.3f;       // a cost that is so far from the smooth one is another load ...
-constexpr float kSavesMost = 3.0f;  // of a single level
+constexpr float kOver = 1.03f;     // of the budget: less is measurement
+constexpr float kAim = 0.95f;      // of the budget, when detail falls
+constexpr float kSmooth = 0.2f;    // share of a new measurement
+constexpr float kJump = 0.3f;      // a cost that is so far from the smooth one is another load ...
+constexpr float kMaxSaves = 3.0f;  // of a single level
 
-float shareOf(const FrameCost& limit, const FrameCost& cost) noexcept {
+float unpackBendShare(const FrameCost& limit, const FrameCost& cost) noexcept {
     return std::max({limit.gpu > 0 ? cost.gpu / limit.gpu : 0.0f,
                      limit.cpu > 0 ? cost.cpu / limit.cpu : 0.0f,
                      limit.bytes > 0 ? float(cost.bytes / limit.bytes) : 0.0f});
@@ -38,7 +38,7 @@ void learn(float share, Governor& g) noexcept {
     if (high == low || !(share > 0) || !(g.shareBefore > 0)) return;
     const float ratio = g.level == low ? g.shareBefore / share : share / g.shareBefore;
     const float each = std::pow(std::max(ratio, 1.0f), 1.0f / float(low - high));
-    g.guess = std::min(each, kSavesMost);
+    g.guess = std::min(each, kMaxSaves);
     for (uint32_t k = high + 1; k <= low; ++k) g.saves[k] = g.guess;
 }
 
@@ -73,11 +73,11 @@ void govern(const FrameCost& limit, const FrameCost& spent, Governor& g) noexcep
         --g.wait;
         return;
     }
-    const float now = shareOf(limit, spent);
+    const float now = unpackBendShare(limit, spent);
     follow(spent.gpu, g.seen, g.cost.gpu);
     follow(spent.cpu, g.seen, g.cost.cpu);
     follow(spent.bytes, g.seen, g.cost.bytes);
-    const float share = shareOf(limit, g.cost);
+    const float share = unpackBendShare(limit, g.cost);
     g.overSum = now > kOver ? (g.over > 0 ? g.overSum : 0) + now : 0;
     g.over = now > kOver ? g.over + 1 : 0;
     if (g.seen < kDetailOverFrames) {
@@ -122,7 +122,7 @@ void BudgetSystem::fillState(FwBudgetState& state) const noexcept {
     state.level = governor_.level;
     state.levels = kDetailLevels;
     state.marchedFires = detail.marched;
-    state.volumeSteps = std::min(detail.volumeSteps, context_.def.volumeSteps);
+    state.rayStepCount = std::min(detail.rayStepCount, context_.def.rayStepCount);
     state.refinedTriangles = uint32_t(detail.triangles * float(context_.def.maxRefinedTriangles));
     state.gpuMilliseconds = governor_.cost.gpu;
     state.cpuMilliseconds = governor_.cost.cpu;

@@ -72,20 +72,20 @@ bool BurnSystem::lightsSomething(size_t first) const noexcept {
         }
         return wet;
     };
-    constexpr uint32_t kMostAsked = 64;  // of more texels that can burn one is taken to be dry
+    constexpr uint32_t kMaxQueried = 64;  // of more texels that can burn one is taken to be dry
     uint32_t asked = 0;
     for (size_t i = first; i < state_.pending.size(); ++i) {
         const PendingTexel& match = state_.pending[i];
         const Object& object = scene_.objectAt(match.object);
         if (match.texel == kAllTexels ? object.texels == 0 : !scene_.canBurn(object, match.texel))
             continue;
-        if (++asked > kMostAsked || !getsWet(match)) return true;
+        if (++asked > kMaxQueried || !getsWet(match)) return true;
     }
     return false;
 }
 
-void BurnSystem::explainNothingThere(const FwIgnitionDef& def, uint32_t texels,
-                                     std::span<char> text) noexcept {
+void BurnSystem::explainMiss(const FwIgnitionDef& def, uint32_t texels,
+                             std::span<char> text) noexcept {
     const float* at = def.position;
     char ball[128];
     std::snprintf(ball, sizeof ball,
@@ -176,7 +176,7 @@ uint32_t BurnSystem::igniteObject(Object& object, const FwIgnitionDef& def, uint
     if (def.kind != FW_IGNITE && def.radius > 0)
         radius = std::max({radius, 1.5f * domain.texelSide, domain.linkMax});
     const uint32_t water =
-        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kFilmMost;
+        def.water > 0 ? std::max(uint32_t(std::lround(def.water)), 1u) : gpu::kMaxFilm;
     const auto wet = [&] {
         if (def.kind == FW_WET || def.kind == FW_EXTINGUISH)
             emitters_.wetPatches(object, def,
@@ -259,7 +259,7 @@ void BurnSystem::pushTexels(FwBurnableMeshId id, uint32_t kind, std::span<const 
     scene_.found.clear();
     for (const uint32_t texel : texels)
         if (domain.real(texel)) scene_.found.push_back(texel);
-    addPending(object, kind, uint32_t(context_.clock.tick), gpu::kFilmMost, scene_.found);
+    addPending(object, kind, uint32_t(context_.clock.tick), gpu::kMaxFilm, scene_.found);
 }
 
 void BurnSystem::addPending(PendingTexel event) noexcept {

@@ -1,7 +1,7 @@
 // Jets of fire emitters: rays swept from the holder's side of the nozzle through colliders,
-// blockers, cells of the host's shield and burnable meshes. The first hit is heated when the stream
-// has flown there, nothing behind it. Jets depend on the host's numbers alone and become events,
-// the same on every backend. Particles use the same hits.
+// occluders, cells of the host's shield and burnable meshes. The first hit is heated when the
+// stream has flown there, nothing behind it. Jets depend on the host's numbers alone and become
+// events, the same on every backend. Particles use the same hits.
 #include "mesh/bake.h"
 #include "shared/exchange.h"
 #include "world/burn_system.h"
@@ -43,18 +43,18 @@ constexpr float kPattern[kRays][2] = {{0, 0},
                                       {-0.3090f, -0.9511f},
                                       {0.3090f, -0.9511f},
                                       {0.8090f, -0.5878f}};
-constexpr float kClose = 0.01f, kLeastStep = 0.02f, kFarStep = 1.0f;  // m
-constexpr uint32_t kMostSteps = 96;                                   // of a ray
-constexpr size_t kMostPoints = 64;    // that a ray heats at once, unless it would be too hot
-constexpr uint32_t kMostGrowths = 6;  // of where a ray's power goes, until all of it does
-constexpr float kOverlap = 0.1f;      // m that a parcel looks back: what moves into it is met
-constexpr float kNano = 1e9f;         // of W and m^2
-constexpr float kNearPatch = 0.45f;   // m within which fuel sticks to fuel
-constexpr float kPastReach = 1.15f;   // a few particles come farther than most
+constexpr float kClose = 0.01f, kMinStep = 0.02f, kFarStep = 1.0f;  // m
+constexpr uint32_t kMostSteps = 96;                                 // of a ray
+constexpr size_t kMaxPoints = 64;    // that a ray heats at once, unless it would be too hot
+constexpr uint32_t kMaxGrowths = 6;  // of where a ray's power goes, until all of it does
+constexpr float kOverlap = 0.1f;     // m that a parcel looks back: what moves into it is met
+constexpr float kNano = 1e9f;        // of W and m^2
+constexpr float kNearPatch = 0.45f;  // m within which fuel sticks to fuel
+constexpr float kPastReach = 1.15f;  // a few particles come farther than most
 
 uint32_t millimetres(float m) noexcept { return uint32_t(std::lround(std::max(m, 0.0f) * 1000)); }
 
-float leastScale(const components::Pose& pose) noexcept {
+float minScale(const components::Pose& pose) noexcept {
     return pose.scale * std::min({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
 }
 
@@ -69,7 +69,7 @@ float sweepShapes(std::span<const volume::Collider> shapes, vec3 from, vec3 way,
             normal = surface.normal;
             return at;
         }
-        at += std::max(surface.distance, kLeastStep);
+        at += std::max(surface.distance, kMinStep);
     }
     return std::min(at, most);
 }
@@ -93,7 +93,7 @@ bool within(const float from[3], const float way[3], const float low[3], const f
 // Half the angle that a jet takes, rad.
 float halfAngle(const FireEmitter& emitter) noexcept { return emitter.look.cone * 1.8f + 0.02f; }
 
-void jetWays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
+void jetRays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
     const vec3 along = volume::vecOf(emitter.direction);
     const vec3 across = std::abs(along.y) < 0.9f ? vec3(0, 1, 0) : vec3(1, 0, 0);
     vec3 r(along.y * across.z - along.z * across.y, along.z * across.x - along.x * across.z,
@@ -110,7 +110,7 @@ void jetWays(const FireEmitter& emitter, float (&ways)[kRays][3]) noexcept {
 }
 
 // m, object space.
-void restPlace(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) noexcept {
+void restPosition(const mesh::BurnDomain& domain, uint32_t texel, float (&out)[3]) noexcept {
     const mesh::TexelPosition& p = domain.texels[texel];
     const uint16_t units[3] = {p.x, p.y, p.z};
     for (int i = 0; i < 3; ++i) out[i] = domain.origin[i] + domain.quantum * float(units[i]);
@@ -126,8 +126,8 @@ bool alike(const mesh::BurnDomain& domain, uint32_t a, uint32_t b) noexcept {  /
 bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, uint32_t gate,
                 uint32_t texel, float far) noexcept {
     float a[3], b[3], sum = 0;
-    restPlace(domain, gate, a);
-    restPlace(domain, texel, b);
+    restPosition(domain, gate, a);
+    restPosition(domain, texel, b);
     for (int i = 0; i < 3; ++i) {
         const float d = (a[i] - b[i]) * pose.stretch[i] * pose.scale;
         sum += d * d;
@@ -137,10 +137,10 @@ bool aroundGate(const mesh::BurnDomain& domain, const components::Pose& pose, ui
 
 // m over which power is spread that is no more than the least wide takes.
 float footprintRadius(float least, float watts) noexcept {
-    return std::max(least, std::sqrt(watts / (3.14159265f * float(gpu::kFluxMost))));
+    return std::max(least, std::sqrt(watts / (3.14159265f * float(gpu::kMaxFlux))));
 }
 
-float mostScale(const components::Pose& pose) noexcept {
+float maxScale(const components::Pose& pose) noexcept {
     return pose.scale * std::max({std::abs(pose.stretch[0]), pose.stretch[1], pose.stretch[2]});
 }
 
@@ -162,7 +162,7 @@ void EmitterSystem::listJetTargets(const float from[3], float reach) noexcept {
         components::toWorld(pose, middle, at);
         for (int i = 0; i < 3; ++i) away += (at[i] - from[i]) * (at[i] - from[i]);
         const float far =
-            reach + std::sqrt(wide) + kFarStep + 4 * domain.texelSide * mostScale(pose);
+            reach + std::sqrt(wide) + kFarStep + 4 * domain.texelSide * maxScale(pose);
         if (object.skinMoved || away < far * far) jetSlots_.push_back(slot);
     }
 }
@@ -175,7 +175,7 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
     vec3 normal(-along);
     float nearest = sweepShapes(flames_.walls(), from, along, most, normal);
     if (const float cell =
-            components::sweepShield(exchange_.state().shield.grid, start, way, nearest);
+            components::sweepOcclusion(exchange_.state().shield.grid, start, way, nearest);
         cell < nearest) {
         nearest = cell;
         normal = -along;
@@ -186,13 +186,13 @@ float EmitterSystem::sweepJet(const float start[3], const float way[3], float mo
         const Object& object = scene_.objectAt(slot);
         const components::Pose& pose = object.data.pose;
         const mesh::BurnDomain& domain = scene_.domainOf(object);
-        const float least = leastScale(pose);
-        const float most_ = mostScale(pose);
+        const float least = minScale(pose);
+        const float most_ = maxScale(pose);
         // Closer than half a link between texels and it is struck; a stretched mesh's are longer
         // one way than the other.
         const float gap =
             std::clamp(0.55f * domain.linkMax, 0.75f * domain.texelSide, 4.0f * domain.texelSide);
-        const float close = std::max(gap * most_, kLeastStep);
+        const float close = std::max(gap * most_, kMinStep);
         float enter = 0, leave = nearest;
         if (!object.skinMoved) {
             float a[3], b[3], end[3], local[3];
@@ -268,30 +268,30 @@ void EmitterSystem::sweepJets(FireEmitter& emitter) noexcept {
         return;
     }
     float ways[kRays][3];
-    jetWays(emitter, ways);
+    jetRays(emitter, ways);
     for (uint32_t i = 0; i < kRays; ++i)
         (void)sweepJet(emitter.position, ways[i], kPastReach * emitter.look.reach, emitter.hits[i]);
 }
 
 // For the particles of a frame, and for the emitter's state.
-void EmitterSystem::shieldJet(FireEmitter& emitter, double now) noexcept {
+void EmitterSystem::updateJetObstacles(FireEmitter& emitter, double now) noexcept {
     sweepJets(emitter);
-    emitter.struck = 0;
-    emitter.freeWay = kPastReach * emitter.look.reach;
+    emitter.blockedRays = 0;
+    emitter.clearDistance = kPastReach * emitter.look.reach;
     for (uint32_t i = 0; i < kRays; ++i) {
         JetHit hit = emitter.hits[i];
         if (const components::JetHole& hole = emitter.holes[i];
             hit.met && hole.object.index1 != 0 && hole.object.index1 == hit.object.index1 &&
             hole.object.generation == hit.object.generation && hole.texel == hit.texel)
             passHole(emitter, hit);
-        components::JetShield shield;
+        components::JetObstacle shield;
         shield.met = hit.met;
         std::copy_n(hit.place, 3, shield.place);
         std::copy_n(hit.normal, 3, shield.normal);
         shield.radius = 0.10f + 0.6f * hit.distance * halfAngle(emitter);
-        components::takeShield(emitter, i, shield, now);
-        emitter.struck += hit.met ? 1u : 0u;
-        if (hit.met) emitter.freeWay = std::min(emitter.freeWay, hit.distance);
+        components::setJetObstacle(emitter, i, shield, now);
+        emitter.blockedRays += hit.met ? 1u : 0u;
+        if (hit.met) emitter.clearDistance = std::min(emitter.clearDistance, hit.distance);
     }
 }
 
@@ -384,7 +384,7 @@ void EmitterSystem::launchJet(const FireEmitter& emitter, JetParcel& parcel,
     parcel.most = millimetres(kPastReach * emitter.look.reach);
     parcel.flight = components::jetFlight(emitter.look);
     float ways[kRays][3];
-    jetWays(emitter, ways);
+    jetRays(emitter, ways);
     for (uint32_t i = 0; i < kRays; ++i) {
         JetRay& ray = parcel.rays[i];
         std::copy_n(ways[i], 3, ray.way);
@@ -452,7 +452,7 @@ bool EmitterSystem::flyRay(FireEmitter& emitter, const JetParcel& parcel, JetRay
     if (ray.gateCount < components::kJetGates) gate.holeTicks = gateTicks(hit, tick);
     uint64_t power = parcel.power;
     if (parcel.sticks > 0 && ray.gateCount == 0 && stands(hit, gate.holeTicks, tick))
-        power -= parcel.sticks - stickFuel(emitter, hit, parcel.sticks);
+        power -= parcel.sticks - attachFuel(emitter, hit, parcel.sticks);
     if (hit.object.index1 != 0) {
         gate.object = (*scene_.objects.find(hit.object))->slot;
         heatByJet(emitter, parcel, ray, hit, gate, tick, power);
@@ -472,16 +472,16 @@ void EmitterSystem::findFootprint(const Object& object, const JetHit& hit, float
     const mesh::BurnDomain& domain = scene_.domainOf(object);
     float point[3];
     if (object.skinMoved)  // what was near at rest still is
-        restPlace(domain, hit.texel, point);
+        restPosition(domain, hit.texel, point);
     else
         components::toObject(pose, hit.place, point);
-    const float least = leastScale(pose);
+    const float least = minScale(pose);
     scene_.found.clear();
     mesh::texelsNear(domain, point, radius / least, scene_.found);
     std::erase_if(scene_.found, [&](uint32_t texel) {
         if (!alike(domain, texel, hit.texel)) return true;
         float place[3], sum = 0;
-        restPlace(domain, texel, place);
+        restPosition(domain, texel, place);
         for (int i = 0; i < 3; ++i) {
             const float d = (place[i] - point[i]) * pose.stretch[i] * pose.scale;
             sum += d * d;
@@ -504,7 +504,7 @@ void EmitterSystem::heatByJet(FireEmitter& emitter, const JetParcel& parcel, con
     if (!components::hasHeat(object.data)) {
         if (!sure) return;  // it catches by our count alone, and we know of no hole
         emitter.heated += watts;
-        heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
+        heatStepThin(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), tick);
         return;
     }
     const uint64_t power = brought + (sure ? emitter.stream->kept : 0);
@@ -516,7 +516,7 @@ void EmitterSystem::heatByJet(FireEmitter& emitter, const JetParcel& parcel, con
     if (event.shut) event.gates[event.gateCount++] = gate;
     uint64_t left = 0;
     const bool full =
-        heatFootprint(object, hit, radius, power, tick, kMostPoints >> ray.gateCount, event, left);
+        heatFootprint(object, hit, radius, power, tick, kMaxPoints >> ray.gateCount, event, left);
     if (!sure) return;
     emitter.stream->kept = full ? 0 : left;  // what even all of them cannot take goes past
     emitter.heated += float(power - left) / kNano;
@@ -532,7 +532,7 @@ bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radiu
         return std::max<uint64_t>(uint64_t(std::llround(domain.areas[texel] * square * kNano)), 1);
     };
     uint64_t covered = 0;
-    for (uint32_t i = 0; i < kMostGrowths && covered * gpu::kFluxMost < power; ++i) {
+    for (uint32_t i = 0; i < kMaxGrowths && covered * gpu::kMaxFlux < power; ++i) {
         findFootprint(object, hit, radius);
         covered = 0;
         for (const uint32_t texel : scene_.found) covered += areaOf(texel);
@@ -541,7 +541,7 @@ bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radiu
     // Of very many a part at each exchange, in turn; as few as can take all of it.
     const size_t parts =
         std::min((scene_.found.size() + most - 1) / most,
-                 size_t(covered * gpu::kFluxMost / std::max(power * 5 / 4, uint64_t(1))));
+                 size_t(covered * gpu::kMaxFlux / std::max(power * 5 / 4, uint64_t(1))));
     if (parts > 1) {
         size_t kept = 0;
         for (size_t i = tick / gpu::kExchangeTicks % parts; i < scene_.found.size(); i += parts)
@@ -552,7 +552,7 @@ bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radiu
     for (const uint32_t texel : scene_.found) jetAreas_.push_back(areaOf(texel));
     jetFlux_.resize(scene_.found.size());
     burn_.reservePending(scene_.found.size());
-    left = components::shareJet(power, jetAreas_, jetFlux_);
+    left = components::updateJetShare(power, jetAreas_, jetFlux_);
     object.firstEvent = std::min(object.firstEvent, tick);
     PendingTexel event = like;
     event.object = object.slot;
@@ -563,13 +563,14 @@ bool EmitterSystem::heatFootprint(Object& object, const JetHit& hit, float radiu
         event.water = jetFlux_[i];
         burn_.addPending(event);
     }
-    return jetFlux_[0] >= gpu::kFluxMost;
+    return jetFlux_[0] >= gpu::kMaxFlux;
 }
 
 // ---- fuel that sticks -------------------------------------------------------------------------
 
 // Where it struck, to what sticks near there already if there is any. What has no place comes back.
-uint64_t EmitterSystem::stickFuel(FireEmitter& emitter, const JetHit& hit, uint64_t fuel) noexcept {
+uint64_t EmitterSystem::attachFuel(FireEmitter& emitter, const JetHit& hit,
+                                   uint64_t fuel) noexcept {
     JetPatch* nearest = nullptr;
     JetPatch* free = nullptr;
     float least = kNearPatch * kNearPatch;
@@ -639,12 +640,13 @@ void EmitterSystem::burnPatches(FireEmitter& emitter, uint32_t now) {
         const float watts = float(power) / kNano;
         const float radius = footprintRadius(components::kPatchRadius, watts);
         if (!components::hasHeat(object.data)) {
-            heatLite(emitter, object, hit, radius, watts / (3.14159265f * radius * radius), now);
+            heatStepThin(emitter, object, hit, radius, watts / (3.14159265f * radius * radius),
+                         now);
             emitter.heated += watts;
             continue;
         }
         uint64_t left = 0;
-        (void)heatFootprint(object, hit, radius, power, now, kMostPoints / 2, {}, left);
+        (void)heatFootprint(object, hit, radius, power, now, kMaxPoints / 2, {}, left);
         // The next exchange gives what no texel could take, if there is one.
         if (patch.left > 0) patch.fuel += left;
         emitter.heated += float(power - left) / kNano;
@@ -676,8 +678,8 @@ void EmitterSystem::wetPatches(const Object& object, const FwIgnitionDef& def, u
 }
 
 // An object without heat catches after the time that its material takes.
-void EmitterSystem::heatLite(FireEmitter& emitter, Object& object, const JetHit& hit, float radius,
-                             float flux, uint32_t now) {
+void EmitterSystem::heatStepThin(FireEmitter& emitter, Object& object, const JetHit& hit,
+                                 float radius, float flux, uint32_t now) {
     const uint32_t material = scene_.texelMaterial(object, hit.texel);
     if (!components::burns(object.data, material)) return;
     components::JetTouch* touch = nullptr;

@@ -21,7 +21,7 @@ bool BurnSystem::needsRecords(const Object& object, uint32_t now) const noexcept
     if (isActive(object)) return true;
     if (state_.counts.hot != 0 && components::hasHeat(object.data)) return true;
     const uint64_t last =
-        std::max<uint64_t>(object.counters.lastIgnition, object.story.lastStimulus);
+        std::max<uint64_t>(object.counters.lastIgnition, object.lifecycle.lastStimulus);
     return last != 0 && now <= last + 2 * (uint64_t(object.latch.window) + gpu::kStepTicks);
 }
 

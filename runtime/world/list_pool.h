@@ -112,7 +112,7 @@ class ListPool {
         for (uint32_t block = first / kBlock; block <= (first + count - 1) / kBlock; ++block)
             changed_[block / 64] |= uint64_t(1) << block % 64;
     }
-    void listChanges(std::pmr::vector<gpu::RemoteUpdate::Range>& out) const {
+    void listChanges(std::pmr::vector<gpu::ExchangeUpdate::Range>& out) const {
         out.clear();
         for (uint32_t word = 0; word < changed_.size(); ++word)
             for (uint64_t bits = changed_[word]; bits != 0; bits &= bits - 1) {

@@ -8,7 +8,7 @@ namespace fw::world {
 namespace {
 
 constexpr uint32_t kMostVertices = 16u << 20;
-constexpr uint32_t kMostIndices = 48u << 20;
+constexpr uint32_t kMaxIndices = 48u << 20;
 
 struct Input {
     std::pmr::vector<uint32_t> wide;  // 16-bit indices as 32-bit ones
@@ -33,10 +33,10 @@ Input makeInput(const FwMeshDef& def, std::pmr::memory_resource* memory) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwMeshDef::vertexCount is %u; the limits are [3, %u].", def.vertexCount,
                    kMostVertices);
-    if (def.indexCount < 3 || def.indexCount > kMostIndices || def.indexCount % 3 != 0)
+    if (def.indexCount < 3 || def.indexCount > kMaxIndices || def.indexCount % 3 != 0)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwMeshDef::indexCount is %u; it is a multiple of 3 in [3, %u].", def.indexCount,
-                   kMostIndices);
+                   kMaxIndices);
     if (def.indexSize != 2 && def.indexSize != 4)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwMeshDef::indexSize is %u; it is 2 or 4 bytes.",
                    def.indexSize);

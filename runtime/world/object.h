@@ -20,7 +20,7 @@ enum class InnerSkin : uint8_t { unknown, none, there };
 // Texels that the cut-outs of an object's images remove.
 struct GoneTexels {
     std::array<FwImageId, gpu::kMaterialsPerObject> images{};  // by material; null: no cut-out
-    std::pmr::vector<uint8_t> texels;                          // as components::makeGone
+    std::pmr::vector<uint8_t> texels;                          // as components::makeCutOutMask
     explicit GoneTexels(std::pmr::memory_resource* memory) : texels(memory) {}
 };
 
@@ -40,7 +40,7 @@ struct MeshEntry {
     core::Owned<mesh::Pieces> pieces;          // once an object asks what breaks
     uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
     // By depth, once an object is refined by the published scheme.
-    std::array<core::Owned<mesh::ArpModel>, gpu::kRefineDepth + 1> arps;
+    std::array<core::Owned<mesh::PatternModel>, gpu::kRefineDepth + 1> patternUses;
 };
 
 struct ImageEntry {
@@ -70,12 +70,12 @@ struct Forecast {
 
 struct BreakState {
     float share = 0, area = 0;  // as in its def; 0: not asked
-    bool shareTold = false;
+    bool shareReported = false;
     bool waits = false;  // some burning texels have not opened yet
 
     template <class A>
     void serialize(A& a) {
-        a(share, area, shareTold, waits);
+        a(share, area, shareReported, waits);
     }
 };
 
@@ -92,7 +92,7 @@ struct Breaks : BreakState {
 };
 
 // A frame whose readback is on its way: the count of steps and sleep follow from it.
-struct FrameNote {
+struct InFlightFrame {
     uint64_t frameIndex = 0, end = 0;  // tick
     uint64_t roomsStirred = 0;         // tick
     uint32_t steps = 0;
@@ -101,7 +101,7 @@ struct FrameNote {
 };
 
 // The course of an object's fire as of a readback, and what events have reported of it.
-struct Story {
+struct BurnLifecycle {
     bool active = false;   // its front or flames may still move
     bool sawFire = false;  // since the last IGNITED
     bool ignitionKnown = false;
@@ -116,18 +116,18 @@ struct Story {
     uint64_t lastBurning = 0;     // tick of the last readback with burning texels
     uint64_t firstIgnition = 0;   // tick of the ignition that started this fire
     float ignitionPoint[3] = {};  // m, object space
-    uint32_t litTold = 0;         // litTick of the last SPREAD_TO
-    uint32_t spotsTold = 0;
-    uint32_t mostIgnited = 0;
-    uint32_t clampsTold = 0;             // late clamps that an event reported
+    uint32_t litReported = 0;     // litTick of the last SPREAD_TO
+    uint32_t spotsReported = 0;
+    uint32_t maxIgnited = 0;
+    uint32_t clampsReported = 0;         // late clamps that an event reported
     uint64_t energy = 0, heatSteps = 0;  // 2^-20 J after so many heat steps
     float power = 0;                     // W, at pace 1; of objects with heat
 
     template <class A>
     void serialize(A& a) {
         a(active, sawFire, ignitionKnown, lastStimulus, lastDouse, douseCause, flames, wentOut,
-          halvedUntil, outCause, lastBurning, firstIgnition, ignitionPoint, litTold, spotsTold,
-          mostIgnited, clampsTold, energy, heatSteps, power);
+          halvedUntil, outCause, lastBurning, firstIgnition, ignitionPoint, litReported,
+          spotsReported, maxIgnited, clampsReported, energy, heatSteps, power);
     }
 };
 
@@ -146,7 +146,8 @@ struct Stimulus {
     uint64_t douse = 0;       // of `douses`: tick
     uint32_t douseCause = 0;  // FwExtinguishCause of that
     uint32_t from1 = 0;       // slot + 1 of the object whose burn is carried to this one; 0: none
-    core::Owned<Story> given{};  // of that object, if it is destroyed before the readback comes
+    core::Owned<BurnLifecycle>
+        given{};  // of that object, if it is destroyed before the readback comes
 };
 
 // The part of an object that a save has as it is.
@@ -156,9 +157,9 @@ struct ObjectState {
     uint32_t zoneWind = 0;              // that zones add where it is, packed
     bool touched = false;               // an event addressed it: it filters wind and latches
     bool carried = false;               // from another: its energy so far is none of its own power
-    bool remoteDue = false;      // pose or def changed since its latch: it is in RemoteBook::due
-    gpu::RemoteObject remote{};  // as other objects see it, latched at each exchange
-    Story story;
+    bool exchangeDue = false;  // pose or def changed since its latch: it is in TransferState::due
+    gpu::ExchangeObject remote{};  // as other objects see it, latched at each exchange
+    BurnLifecycle lifecycle;
     gpu::ObjectCounters counters{};  // as of the last readback
 };
 
@@ -180,15 +181,15 @@ struct Object : ObjectState {
     bool ignites = false;                 // some of those ignite it
     // As other objects see it, latched at each exchange.
     components::Governance governance;
-    uint32_t reach = 0;          // mm
-    uint32_t remoteVersion = 0;  // grows with every latch; 0: never placed
-    uint64_t planStamp = 0;      // of the plan whose latches hold it
-    size_t latchIndex = 0;       // in the latches of that plan
-    uint64_t restsUnder = 0;     // WindSystem::changes + 1 under which its latch rests; 0: none
-    bool remoteSent = true;      // the backend has the latched record; else it is in unsentSlots
-    bool contactsDue = false;    // it is in RemoteBook::contactsDue
-    bool seenDue = false;        // it is in RemoteBook::seenDue
-    uint32_t room1 = 0;          // slot + 1 of the room that it is in; 0: none
+    uint32_t reach = 0;            // mm
+    uint32_t exchangeVersion = 0;  // grows with every latch; 0: never placed
+    uint64_t planStamp = 0;        // of the plan whose latches hold it
+    size_t latchIndex = 0;         // in the latches of that plan
+    uint64_t sleepsUnder = 0;      // WindSystem::changes + 1 under which its latch rests; 0: none
+    bool exchangeSent = true;      // the backend has the latched record; else it is in unsentSlots
+    bool contactsDue = false;      // it is in TransferState::contactsDue
+    bool seenDue = false;          // it is in TransferState::seenDue
+    uint32_t room1 = 0;            // slot + 1 of the room that it is in; 0: none
     // As of the last readback.
     uint64_t countersFrame = 0;
     BurnMapCopy map;

@@ -20,7 +20,7 @@ void PersistenceSystem::checkFrame(float deltaTime) const {
             .after.tick;
     if (end > std::max(recording_->until, world_.context_.clock.tick))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "deltaTime is %g; the world follows a server's, and fwNet_TakeTurn says how "
+                   "deltaTime is %g; the world follows a server's, and fwNet_NextAction says how "
                    "far a frame may go.",
                    double(deltaTime));
 }

@@ -85,21 +85,22 @@ class PersistenceSystem {
     void commitTimeline(uint64_t before) noexcept;
     void commitSave(uint64_t frameIndex) noexcept;
     void onBurnMap(const gpu::BurnMap& map, const gpu::Readback& readback);
-    void takeSaves(const gpu::Readback& readback) noexcept;
+    void completeSaves(const gpu::Readback& readback) noexcept;
     void forgetTag(const Tag& tag, uint64_t frameIndex) noexcept;  // that an event reported
 
  private:
     [[nodiscard]] uint64_t assetOf(const Object& object) noexcept;
     [[nodiscard]] uint32_t windowOf(const Object& object) noexcept;
     void planSave();
-    [[nodiscard]] uint32_t unsavable() noexcept;  // a burning object's slot + 1; 0: there is none
+    [[nodiscard]] uint32_t
+    explainUnsavable() noexcept;  // a burning object's slot + 1; 0: there is none
     // timeline.cpp
     void planTimeline(uint64_t after) noexcept;
     void keepKeyframe() noexcept;
     void recordInTimeline(const Command& command) noexcept;
     void capture(Snapshot& to);
     void captureObject(Object& object, ObjectSnapshot& to) noexcept;
-    void takeSave(Save& save, const gpu::Readback& readback);
+    void completeSave(Save& save, const gpu::Readback& readback);
     void captureEvents(Save& save);
     static void forgetTag(Save& save, const Tag& tag, uint64_t frameIndex) noexcept;
     void planHashes(const ClockAdvance& time);

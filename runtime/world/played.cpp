@@ -19,14 +19,14 @@ namespace {
 constexpr uint32_t kBurnMagic = 0x42425746;  // "FWBB"
 constexpr uint32_t kBurnVersion = 1;
 constexpr size_t kBurnHead = 16;           // magic, version, checksum of the rest
-constexpr uint32_t kMostBurnSide = 4096;   // texels, as of a map
+constexpr uint32_t kMaxBurnSide = 4096;    // texels, as of a map
 constexpr float kSlowestPlay = 1.0f / 16;  // speeds
 constexpr float kFastestPlay = 16;
 
 uint32_t playRate(float speed) noexcept { return uint32_t(std::lround(speed * float(kPlayRate))); }
 
 // The most texels that catch in `steps` steps, wherever those begin.
-uint32_t mostAtOnce(const Burn& burn, const Play& play, uint32_t steps) noexcept {
+uint32_t maxAtOnce(const Burn& burn, const Play& play, uint32_t steps) noexcept {
     const uint64_t span = uint64_t(steps) * gpu::kStepTicks;
     uint32_t most = 0;
     for (auto from = burn.order.begin(), at = from; at != burn.order.end(); ++at) {
@@ -85,10 +85,10 @@ void readBurn(std::span<const std::byte> bytes, Burn& burn) {
     reader.number(burn.width);
     reader.number(burn.height);
     for (const uint32_t side : {burn.width, burn.height})
-        if (side == 0 || side > kMostBurnSide || side % 8 != 0)
+        if (side == 0 || side > kMaxBurnSide || side % 8 != 0)
             core::fail(FW_ERROR_BAD_DATA,
                        "The baked burn is of %u x %u texels; sides are multiples of 8, at most %u.",
-                       burn.width, burn.height, kMostBurnSide);
+                       burn.width, burn.height, kMaxBurnSide);
     burn.ticks.assign(size_t(burn.width) * burn.height, 0);
     if (!save::readPlane(reader.take(reader.left()), burn.width, {}, burn.ticks))
         core::fail(FW_ERROR_BAD_DATA, "The baked burn's plane of ticks is none.");
@@ -157,7 +157,7 @@ void BurnSystem::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick,
     // Its first texel catches in the step after the one that starts it in the backend.
     play.first = std::max(tick, uint32_t(context_.clock.tick) + gpu::kStepTicks);
     play.rate = playRate(speed);
-    play.most = mostAtOnce(burn, play, context_.def.maxStepsPerFrame);
+    play.most = maxAtOnce(burn, play, context_.def.maxStepsPerFrame);
     core::growTo(scene_.playing, scene_.playing.size() + 1);
     reservePlays(play.most);
     if (object.play.burn1 == 0) startPlay(object);
@@ -232,7 +232,7 @@ void BurnSystem::planPlays(uint32_t now, std::span<const Frame::Due> due) {
         };
         bool ends = play.ends || disturbed;
         if (play.began == 0 && !ends) {
-            push(gpu::kNoneTexel, gpu::kEventPlays, gpu::kNever);
+            push(gpu::kNoneTexel, gpu::kEventPlaybackSpan, gpu::kNever);
             play.began = end;
         } else if (play.began != 0) {
             const Burn& burn = **state_.burns.at(play.burn1 - 1);
@@ -241,12 +241,13 @@ void BurnSystem::planPlays(uint32_t now, std::span<const Frame::Due> due) {
             if (!disturbed)
                 for (auto at = catchFrom(burn, play, now); at != next; ++at) {
                     if (entry.lit == mesh::kNone) entry.lit = *at;
-                    push(*at, gpu::kEventPlay, uint32_t(play.tickOf(burn.ticks[*at])));
+                    push(*at, gpu::kEventPlayback, uint32_t(play.tickOf(burn.ticks[*at])));
                 }
             ends |= next == burn.order.end();
         }
         if (!ends) continue;
-        push(gpu::kNoneTexel, gpu::kEventPlays, end);  // of a burn that it played before, too
+        push(gpu::kNoneTexel, gpu::kEventPlaybackSpan,
+             end);  // of a burn that it played before, too
         play = {};
         entry.ended = end;
     }
@@ -276,7 +277,7 @@ void BurnSystem::settlePlays(Snapshot& saved) {
             core::fail(FW_ERROR_BAD_DATA,
                        "Burnable mesh %u of the save plays a baked burn as none can be.",
                        object.slot + 1);
-        play.most = mostAtOnce(**burn, play, context_.def.maxStepsPerFrame);
+        play.most = maxAtOnce(**burn, play, context_.def.maxStepsPerFrame);
         events += play.most + 2;
         ++count;
     }

@@ -83,17 +83,18 @@ void QuerySystem::objectState(FwBurnableMeshId id, FwObjectState& state) {
     state.frameIndex = object.countersFrame;
     if (!object.touched) state.frameIndex = context_.readbackFrame;
     state.texels = object.texels;
-    state.ignited = object.story.mostIgnited;
+    state.ignited = object.lifecycle.maxIgnited;
     state.burning = object.counters.burning;
     state.frontTiles = object.counters.frontTiles;
     state.refinedTriangles = object.counters.refined;
-    state.plays = object.play.burn1 != 0 ? 1 : 0;
+    state.playsBakedBurn = object.play.burn1 != 0 ? 1 : 0;
     state.burntFraction =
-        object.texels ? std::min(1.0f, float(object.story.mostIgnited) / float(object.texels))
+        object.texels ? std::min(1.0f, float(object.lifecycle.maxIgnited) / float(object.texels))
                       : 0.0f;
     state.burningArea = scene_.burningAreaOf(object);
     state.power = scene_.powerOf(object);
-    if (components::keepsBook(object.data)) state.energy = double(object.story.energy) / 1048576;
+    if (components::tracksBurntFuel(object.data))
+        state.energy = double(object.lifecycle.energy) / 1048576;
 }
 
 void QuerySystem::copyStates(std::pmr::vector<StateCopy>& to) {
@@ -123,7 +124,7 @@ void QuerySystem::copyStates(std::pmr::vector<StateCopy>& to) {
         if (!to[object->slot].touched) copy(object->slot, *object);
 }
 
-void QuerySystem::energyLedger(FwEnergyBook& book) noexcept {
+void QuerySystem::energyLedger(FwEnergyLedger& book) noexcept {
     // Of what flames give off (fluxFrom has the same share), in parts that add up.
     constexpr uint64_t kRadiatedPercent = 33;
     book.frameIndex = context_.readbackFrame;
@@ -133,8 +134,8 @@ void QuerySystem::energyLedger(FwEnergyBook& book) noexcept {
         const Object& object = *touched;
         book.burningArea += scene_.burningAreaOf(object);
         book.power += scene_.powerOf(object);
-        if (!components::keepsBook(object.data)) continue;
-        const uint64_t released = object.story.energy;
+        if (!components::tracksBurntFuel(object.data)) continue;
+        const uint64_t released = object.lifecycle.energy;
         const uint64_t radiated =
             released / 100 * kRadiatedPercent + released % 100 * kRadiatedPercent / 100;
         book.unburnt -= released;
@@ -305,8 +306,8 @@ void QuerySystem::onReadback(const gpu::Readback& readback) noexcept {
         if (ref.jet > 0) {
             const gpu::ProbeAnswer& answer = readback.answers[i];
             const gpu::HeatTexel x = gpu::unpackHeat({answer.heatX, answer.heatY});
-            const bool gone = answer.heat != 0 && gpu::gateLets(gpu::kEventGate, ref.holeTicks, x,
-                                                                code, readback.endTick);
+            const bool gone = answer.heat != 0 && gpu::gateOpens(gpu::kEventGate, ref.holeTicks, x,
+                                                                 code, readback.endTick);
             emitters_.onHole(ref.jet - 1, ref.ray,
                              {gone ? ref.object : FwBurnableMeshId{}, ref.texel});
         } else if (ref.isTag) {

@@ -62,14 +62,14 @@ class QuerySystem {
     // Of all burnable meshes, by slot, as objectState has them. `to` is that of an earlier call, or
     // empty: what never burnt is not read again.
     void copyStates(std::pmr::vector<StateCopy>& to);
-    void energyLedger(FwEnergyBook& ledger) noexcept;
+    void energyLedger(FwEnergyLedger& ledger) noexcept;
     FwQueryId requestPoint(FwBurnableMeshId id, const float position[3]);
     bool fetchPoint(FwQueryId id, FwPointState& state);  // false: not ready
     FwQueryId requestArrival(FwBurnableMeshId id, const float position[3]);
     bool fetchArrival(FwQueryId id, FwArrivalState& state);  // false: not ready
     void cancel(FwQueryId id) { state_.queries.destroy(id); }
-    void askSurroundings(const float point[3], FwSurroundings& out);
-    float askSight(const float from[3], const float to[3]);
+    void querySurroundings(const float point[3], FwSurroundings& out);
+    float querySight(const float from[3], const float to[3]);
     void makeSafetyMask(const float corner[3], const float columnStep[3], const float rowStep[3],
                         uint32_t columns, uint32_t rows, uint8_t* mask);
     // flamewright_debug.h

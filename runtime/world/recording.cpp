@@ -160,10 +160,10 @@ void BurnSystem::igniteObjects(const IgniteObjects& command) {
 void BurnSystem::addChange(Object& object, const TexelChange& change,
                            std::span<const uint32_t> texels) {
     checkCommandTick(change.tick);
-    if (change.kind > FW_EXTINGUISH || change.water > gpu::kFilmMost)
+    if (change.kind > FW_EXTINGUISH || change.water > gpu::kMaxFilm)
         core::fail(FW_ERROR_BAD_DATA,
                    "A command is of kind %u with %u g/m^2 of water; the limits are %u and %u.",
-                   change.kind, change.water, uint32_t(FW_EXTINGUISH), gpu::kFilmMost);
+                   change.kind, change.water, uint32_t(FW_EXTINGUISH), gpu::kMaxFilm);
     if (!texels.empty()) addPending(object, change.kind, change.tick, change.water, texels);
 }
 
@@ -187,9 +187,9 @@ void PersistenceSystem::apply(const Command& command) {
         [&](const SetPose& c) {
             world_.setTransform(idAt(world_.scene_.objects, c.slot), c.transform.matrix().data());
         },
-        [&](const MoveBlocker& c) {
-            world_.exchange_.moveBlocker(idAt(world_.exchange_.state_.blockers, c.slot),
-                                         c.transform.matrix().data());
+        [&](const MoveHeatOccluder& c) {
+            world_.exchange_.moveHeatOccluder(idAt(world_.exchange_.state_.occluders, c.slot),
+                                              c.transform.matrix().data());
         },
         [&](const MoveFire& c) {
             world_.flames_.move(idAt(world_.flames_.state_.fires, c.slot), c.position);
@@ -258,7 +258,7 @@ uint64_t PersistenceSystem::identity() noexcept {
     serializeRules(hasher, world_.context_.def);
     const uint32_t counts[] = {kSaveVersion,
                                world_.scene_.objects.live(),
-                               world_.exchange_.state_.blockers.live(),
+                               world_.exchange_.state_.occluders.live(),
                                world_.flames_.state_.fires.live(),
                                world_.emitters_.state_.emitters.live(),
                                world_.fields_.state_.fields.live(),

@@ -7,13 +7,13 @@ namespace fw::world {
 
 constexpr uint32_t kHashSteps = 8;    // an object's turn is at multiples of these
 constexpr uint32_t kHashRounds = 16;  // each has its turn once in so many; in more, if it is more
-constexpr uint32_t kMostHashes = 64;  // of a round than these
+constexpr uint32_t kMaxHashes = 64;   // of a round than these
 constexpr uint32_t kHashTicks = kHashSteps * gpu::kStepTicks;
 
-constexpr uint32_t kMostBlocks = 100;  // of tiles, of an object: each has a hash
+constexpr uint32_t kMaxBlocks = 100;  // of tiles, of an object: each has a hash
 
 constexpr uint32_t hashRounds(uint32_t slots) noexcept {
-    const uint32_t needed = (slots + kMostHashes - 1) / kMostHashes;
+    const uint32_t needed = (slots + kMaxHashes - 1) / kMaxHashes;
     return needed > kHashRounds ? needed : kHashRounds;
 }
 

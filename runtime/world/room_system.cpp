@@ -123,7 +123,7 @@ void RoomSystem::fillState(FwRoomId id, FwRoomState& state) {
     for (const uint32_t slot : scene_.objectsNear(boxOf(entry.room), 0))
         state.objects += scene_.objectAt(slot).room1 == id.index1 ? 1 : 0;
     state.oxygen = float(double(entry.air.oxygen) / 4294967296.0);
-    state.strength = float(gpu::roomStrength(entry.air.oxygen)) / float(gpu::kAirFull);
+    state.strength = float(gpu::burnStrengthOfOxygen(entry.air.oxygen)) / float(gpu::kAirFull);
     // J of a period, at pace 1.
     state.power = float(double(entry.air.drawn) * gpu::kTicksPerSecond / gpu::kRoomPeriod /
                         double(context_.def.paceFactor));

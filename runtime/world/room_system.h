@@ -14,7 +14,7 @@ struct RoomEntry {
     void serialize(A& a) {
         a(room, air.oxygen, air.power, air.flash, air.drawn, air.stirs);
         a.range("power of a room's fires", air.power, 0,
-                double(gpu::kFlashMost * (gpu::kRoomMeans - 1)));
+                double(gpu::kMaxFlash * (gpu::kRoomMeans - 1)));
     }
 };
 

@@ -193,7 +193,7 @@ uint32_t PersistenceSystem::windowOf(const Object& object) noexcept {
     return std::min(window, 1u << 24) + 2 * gpu::kStepTicks;
 }
 
-uint32_t PersistenceSystem::unsavable() noexcept {
+uint32_t PersistenceSystem::explainUnsavable() noexcept {
     for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
         if (auto* object = world_.scene_.objects.at(i);
             object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
@@ -202,7 +202,7 @@ uint32_t PersistenceSystem::unsavable() noexcept {
 }
 
 void PersistenceSystem::requestSave(SaveFor who) {
-    if (const uint32_t object1 = unsavable())
+    if (const uint32_t object1 = explainUnsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
                    object1);
@@ -271,12 +271,12 @@ void PersistenceSystem::capture(Snapshot& to) {
     to.order = world_.burn_.state_.order;
     std::copy_n(world_.wind_.state_.wind, 3, to.wind);
     to.windGrid = world_.wind_.state_.grid;
-    to.heatShield = world_.exchange_.state_.shield.grid;
+    to.heatOcclusion = world_.exchange_.state_.shield.grid;
     to.gusts = world_.wind_.state_.gusts;
     std::copy_n(world_.context_.origin.moved, 3, to.origin);
     to.flags = world_.exchange_.state_.book.flags | world_.exchange_.state_.book.objectFlags;
     to.warms = world_.exchange_.state_.book.warms;
-    to.blockersDue = world_.exchange_.state_.book.blockersDue;
+    to.occludersDue = world_.exchange_.state_.book.occludersDue;
     to.fades = world_.exchange_.state_.book.fades;
     to.gustsShown = world_.wind_.state_.gustsShown;
     captureEach(world_.scene_.objects, to.objects,
@@ -292,11 +292,11 @@ void PersistenceSystem::capture(Snapshot& to) {
     });
     to.seen.clear();
     world_.exchange_.recordSeen(to.seen);
-    to.latchedBlockers = world_.exchange_.state_.book.blockers;
+    to.latchedOccluders = world_.exchange_.state_.book.occluders;
     const auto copy = [](const auto& from, auto& made) {
         static_cast<std::remove_cvref_t<decltype(from)>&>(made) = from;
     };
-    captureEach(world_.exchange_.state_.blockers, to.blockers, copy);
+    captureEach(world_.exchange_.state_.occluders, to.occluders, copy);
     captureEach(world_.wind_.state_.zones, to.windZones, copy);
     captureEach(world_.rooms_.state_.rooms, to.rooms, copy);
     captureEach(world_.flames_.state_.fires, to.fires, [&](const auto& fire, FireSnapshot& made) {
@@ -341,19 +341,19 @@ void PersistenceSystem::captureObject(Object& object, ObjectSnapshot& to) noexce
     to.pose = object.data.pose;
     if (object.play.burn1 != 0)
         to.burnHash = (*world_.burn_.state_.burns.at(object.play.burn1 - 1))->hash;
-    to.placed = object.remoteVersion != 0;
+    to.placed = object.exchangeVersion != 0;
     to.remote.neighbourFirst = to.remote.neighbourCount = 0;
     to.filters = object.latch.filters;
     to.latched = object.latch.pose;
 }
 
 // With a readback, after the counters were taken.
-void PersistenceSystem::takeSaves(const gpu::Readback& readback) noexcept {
+void PersistenceSystem::completeSaves(const gpu::Readback& readback) noexcept {
     for (core::Owned<Save>& save : saves_) {
         if (!save || !save->pending || readback.frameIndex < save->frameIndex) continue;
         save->pending = false;
         try {
-            takeSave(*save, readback);
+            completeSave(*save, readback);
         } catch (...) {
             save->failed = true;
         }
@@ -361,7 +361,7 @@ void PersistenceSystem::takeSaves(const gpu::Readback& readback) noexcept {
     keepKeyframe();
 }
 
-void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
+void PersistenceSystem::completeSave(Save& save, const gpu::Readback& readback) {
     Snapshot& saved = save.snapshot;
     size_t touched = 0;
     bool whole = readback.frameIndex == save.frameIndex;
@@ -416,12 +416,12 @@ void PersistenceSystem::takeSave(Save& save, const gpu::Readback& readback) {
         object.lost = std::span(save.planes).subspan(end.image, end.all - end.image);
         from = end.all;
         object.carried = live.carried;
-        object.story = live.story;
+        object.lifecycle = live.lifecycle;
         object.counters = image.counters;
         object.counters.refined = 0;
         // Of what the backend alone knew at that frame.
         if (object.play.began != 0 &&
-            !gpu::playsAt(image.counters.playsUntil, uint32_t(saved.clock.tick)))
+            !gpu::isPlayingBack(image.counters.playsUntil, uint32_t(saved.clock.tick)))
             object.play = {};
     }
     for (Slotted<RoomEntry>& room : saved.rooms)  // its air goes on from what the frame left
@@ -464,7 +464,7 @@ void PersistenceSystem::captureEvents(Save& save) {
     }
     std::sort(found.begin(),
               found.end());  // readbacks of a device come later than the world's own events
-    for (size_t k = found.size() - std::min<size_t>(found.size(), kMostSavedEvents);
+    for (size_t k = found.size() - std::min<size_t>(found.size(), kMaxSavedEvents);
          k < found.size(); ++k) {
         const FwEvent& event = world_.context_.events.at(found[k].second);
         SavedEvent& saved = to.emplace_back();
@@ -486,7 +486,7 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
     checkRule(rules.maxHops, world_.context_.def.maxHops, "maxHops");
     checkRule(rules.maxBurningTiles, world_.context_.def.maxBurningTiles, "maxBurningTiles");
     checkSlots(saved.objects, world_.scene_.objects, "burnable mesh", "burnable meshes");
-    checkSlots(saved.blockers, world_.exchange_.state_.blockers, "blocker", "blockers");
+    checkSlots(saved.occluders, world_.exchange_.state_.occluders, "occluder", "occluders");
     checkSlots(saved.windZones, world_.wind_.state_.zones, "wind zone", "wind zones");
     checkSlots(saved.rooms, world_.rooms_.state_.rooms, "room", "rooms");
     checkSlots(saved.fires, world_.flames_.state_.fires, "volumetric fire", "volumetric fires");
@@ -520,8 +520,8 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
             check.range("kind of an event", event.kind, 0, gpu::kEventHeat);
     }
     checkLimit(saved.tags.size(), QuerySystem::kMaxTags, "tags");
-    checkLimit(saved.events.size(), kMostSavedEvents, "events");
-    checkLimit(saved.latchedBlockers.size(), gpu::kMaxBlockers, "latched blockers");
+    checkLimit(saved.events.size(), kMaxSavedEvents, "events");
+    checkLimit(saved.latchedOccluders.size(), gpu::kMaxHeatOccluders, "latched occluders");
     uint64_t before = 0;
     for (const Seen& seen : saved.seen) {
         const uint64_t pair = (uint64_t(seen.slots[0]) << 32 | seen.slots[1]) + 1;
@@ -529,8 +529,8 @@ void PersistenceSystem::checkSnapshot(Snapshot& saved) {
         before = pair;
     }
     check.require(components::plausible(saved.gusts, saved.clock.tick), "state of gusts");
-    for (const components::ShieldCell& cell : saved.heatShield.baked)
-        check.texel("a cell of the shield", cell.what & gpu::kShieldSlot, cell.texel);
+    for (const components::OcclusionCell& cell : saved.heatOcclusion.baked)
+        check.texel("a cell of the shield", cell.what & gpu::kOcclusionSlotMask, cell.texel);
     for (const Slotted<FireSnapshot>& fire : saved.fires)
         checkSame(((*world_.flames_.state_.fires.at(fire.slot))->data.flags & FW_FIRE_IGNITES) ==
                       fire.flags,
@@ -629,11 +629,11 @@ void PersistenceSystem::load(std::span<const std::byte> bytes) {
     world_.scene_.touched.reserve(world_.scene_.objects.slotCount());
     world_.scene_.playing.reserve(world_.scene_.objects.slotCount());
     world_.exchange_.state_.book.due.reserve(world_.scene_.objects.slotCount());
-    world_.exchange_.state_.book.blockers.reserve(saved.latchedBlockers.size());
+    world_.exchange_.state_.book.occluders.reserve(saved.latchedOccluders.size());
     uint32_t flames = 0;
     for (const Slotted<FireSnapshot>& from : saved.fires)
-        flames += components::mostParts(
-            from.power, (*world_.flames_.state_.fires.at(from.slot))->data.diameter);
+        flames += components::maxParts(from.power,
+                                       (*world_.flames_.state_.fires.at(from.slot))->data.diameter);
     world_.flames_.reserve(flames);
     world_.scene_.places.reserveMoves(world_.scene_.objects.live());
     world_.context_.backend.restore(restored, uint32_t(saved.clock.tick));
@@ -655,9 +655,9 @@ void PersistenceSystem::load(std::span<const std::byte> bytes) {
         }
     world_.wind_.state_.grid.shape = saved.windGrid.shape;
     world_.wind_.state_.grid.points.swap(saved.windGrid.points);
-    world_.exchange_.state_.shield.grid.shape = saved.heatShield.shape;
-    world_.exchange_.state_.shield.grid.solid.swap(saved.heatShield.solid);
-    world_.exchange_.state_.shield.grid.baked.swap(saved.heatShield.baked);
+    world_.exchange_.state_.shield.grid.shape = saved.heatOcclusion.shape;
+    world_.exchange_.state_.shield.grid.solid.swap(saved.heatOcclusion.solid);
+    world_.exchange_.state_.shield.grid.baked.swap(saved.heatOcclusion.baked);
     world_.exchange_.state_.shield.commandSlots.clear();
     world_.exchange_.state_.shield.unsent = world_.exchange_.state_.shield.unpacked = true;
     apply(saved, latches);
@@ -752,13 +752,13 @@ void PersistenceSystem::apply(const Snapshot& saved,
         saved.stats.receivers;
     world_.burn_.state_.counts.lateClamps = saved.stats.lateClamps;
     world_.exchange_.state_.book.unsent = true;
-    world_.exchange_.state_.book.blockersDue = saved.blockersDue;
-    world_.exchange_.state_.book.blockers.assign(saved.latchedBlockers.begin(),
-                                                 saved.latchedBlockers.end());
+    world_.exchange_.state_.book.occludersDue = saved.occludersDue;
+    world_.exchange_.state_.book.occluders.assign(saved.latchedOccluders.begin(),
+                                                  saved.latchedOccluders.end());
     world_.exchange_.state_.book.rebuild = true;
     world_.exchange_.state_.book.due.clear();
-    for (const auto& blocker : saved.blockers)
-        *world_.exchange_.state_.blockers.at(blocker.slot) = blocker;
+    for (const auto& occluder : saved.occluders)
+        *world_.exchange_.state_.occluders.at(occluder.slot) = occluder;
     world_.scene_.touched.clear();
     world_.scene_.playing.clear();
     for (size_t i = 0; i < saved.objects.size(); ++i)
@@ -782,7 +782,7 @@ void PersistenceSystem::apply(const Snapshot& saved,
             fire.data.pointCount = from.pointCount;
             components::setFirePosition(fire.data, from.position);
             components::setFirePower(fire.data, from.power);
-            world_.flames_.foresee(fire.data);
+            world_.flames_.predictAhead(fire.data);
         }
         for (size_t k = 0; k < from.touches.size(); ++k) {
             const bool seen = fire.touches[k].seen;
@@ -800,7 +800,7 @@ void PersistenceSystem::apply(const Snapshot& saved,
         if (emitter.def.power != from.power) components::setEmitterPower(emitter, from.power);
         emitter.births = {};  // particles in flight belong to another time
         emitter.births.warms = true;
-        emitter.lastShields = {};
+        emitter.lastObstacles = {};
         components::settleSparks(emitter, world_.emitters_.state_.time);
         emitter.swept = 0;
         emitter.touches = from.touches;
@@ -831,7 +831,7 @@ void PersistenceSystem::applyObject(const ObjectSnapshot& from, const components
     object.data.pose = from.pose;
     world_.context_.backend.setObjectWind(object.slot, object.zoneWind);
     world_.scene_.placeNow(object);
-    object.restsUnder = 0;
+    object.sleepsUnder = 0;
     object.room1 = world_.rooms_.roomOf(object);
     world_.rooms_.state_.met |= from.counters.air != 0;
     world_.scene_.sendPose(object);
@@ -853,24 +853,24 @@ void PersistenceSystem::applyObject(const ObjectSnapshot& from, const components
     }
     if (object.breaks) {  // it has not burnt, or is restored next
         object.breaks->lookCount = 0;
-        object.breaks->shareTold = object.breaks->waits = false;
+        object.breaks->shareReported = object.breaks->waits = false;
         std::fill(object.breaks->lost.begin(), object.breaks->lost.end(), false);
     }
     object.remote = {};
-    object.remoteSent = false;
-    object.remoteVersion = from.placed ? ++world_.exchange_.state_.book.version : 0;
-    if (from.remoteDue) world_.exchange_.state_.book.due.push_back(object.slot);
+    object.exchangeSent = false;
+    object.exchangeVersion = from.placed ? ++world_.exchange_.state_.book.version : 0;
+    if (from.exchangeDue) world_.exchange_.state_.book.due.push_back(object.slot);
     if (from.placed) {
         const mesh::BurnDomain& domain = world_.scene_.domainOf(object);
-        if (from.remoteDue) {
+        if (from.exchangeDue) {
             object.remote = from.remote;
         } else {
-            components::placeRemote(object.data.pose, domain, object.remote);
-            components::fillRemote(object.data, domain, object.governance, object.remote);
-            if (object.texels == 0) object.remote.flags &= ~gpu::kRemoteLive;
+            components::placeExchangeObject(object.data.pose, domain, object.remote);
+            components::fillExchangeObject(object.data, domain, object.governance, object.remote);
+            if (object.texels == 0) object.remote.flags &= ~gpu::kExchangeLive;
             object.remote.high.w = from.remote.high.w;
         }
-        object.reach = components::remoteReach(
+        object.reach = components::exchangeReach(
             object.data, domain, world_.scene_.meshes.at(object.data.meshSlot)->texelsOf);
     }
     object.carryEnd = 0;  // what the save carries is settled with its events
@@ -881,9 +881,9 @@ void PersistenceSystem::applyObject(const ObjectSnapshot& from, const components
         return;
     }
     world_.scene_.touched.push_back(&object);
-    if (object.story.ignitionKnown)
-        world_.context_.backend.startBoundary(object.slot, object.story.ignitionPoint,
-                                              uint32_t(object.story.firstIgnition));
+    if (object.lifecycle.ignitionKnown)
+        world_.context_.backend.startBoundary(object.slot, object.lifecycle.ignitionPoint,
+                                              uint32_t(object.lifecycle.firstIgnition));
 }
 
 }  // namespace fw::world

@@ -41,7 +41,7 @@ struct EmitterSnapshot {
         a.optional(stream);
         a.range("fire emitter's place", position, -1e6, 1e6);
         a.range("fire emitter's direction", direction, -1e6, 1e6);
-        a.range("fire emitter's power", power, 0, components::kMostPower);
+        a.range("fire emitter's power", power, 0, components::kMaxPower);
     }
 };
 
@@ -78,18 +78,18 @@ struct ObjectSnapshot : ObjectState {
 
     template <class A>
     void serialize(A& a) {
-        a(slot, asset, pose, firstEvent, play, zoneWind, placed, remoteDue);
+        a(slot, asset, pose, firstEvent, play, zoneWind, placed, exchangeDue);
         a.range("burnable mesh's place", pose.translation, -1e6, 1e6);
         if (play.burn1 != 0) a(burnHash);
         // A latched record follows from the pose, but for the wind that it was latched in.
-        if (placed && remoteDue) a(remote);
-        if (placed && !remoteDue) a(remote.high.w);
+        if (placed && exchangeDue) a(remote);
+        if (placed && !exchangeDue) a(remote.high.w);
         a(touched, carried);
         if (!touched) {
             a(counters.air);
             return;
         }
-        a(filters, latched, story, counters, findsBreaks);
+        a(filters, latched, lifecycle, counters, findsBreaks);
         if (findsBreaks) {
             a(breaks);
             a.blob("bytes of broken texels", lost);
@@ -127,14 +127,14 @@ void serializeRules(A& a, Def& def) {
 struct Snapshot {
     explicit Snapshot(std::pmr::memory_resource* memory)
         : windGrid(memory),
-          heatShield(memory),
+          heatOcclusion(memory),
           objects(memory),
           pending(memory),
           tags(memory),
           pairs(memory),
           seen(memory),
-          blockers(memory),
-          latchedBlockers(memory),
+          occluders(memory),
+          latchedOccluders(memory),
           windZones(memory),
           rooms(memory),
           fires(memory),
@@ -147,11 +147,11 @@ struct Snapshot {
     uint64_t steps = 0, droppedSteps = 0, order = 0;
     float wind[3] = {};
     components::WindGrid windGrid;
-    components::HeatShield heatShield;
+    components::HeatOcclusion heatOcclusion;
     components::Gusts gusts;
     double origin[3] = {};  // m, see OriginShifts::moved
     uint32_t flags = 0;
-    bool warms = false, blockersDue = false;
+    bool warms = false, occludersDue = false;
     uint64_t fades = 0;
     bool idle = true;  // nothing burns, and nobody has to hear of who moves
     uint64_t lastStimulus = 0;
@@ -163,8 +163,8 @@ struct Snapshot {
     std::pmr::vector<Tag> tags;
     std::pmr::vector<PairContacts> pairs;  // that touch
     std::pmr::vector<Seen> seen;
-    std::pmr::vector<Slotted<BlockerEntry>> blockers;
-    std::pmr::vector<gpu::Blocker> latchedBlockers;
+    std::pmr::vector<Slotted<HeatOccluderEntry>> occluders;
+    std::pmr::vector<gpu::HeatOccluder> latchedOccluders;
     std::pmr::vector<Slotted<components::WindZone>> windZones;
     std::pmr::vector<Slotted<RoomEntry>> rooms;
     std::pmr::vector<Slotted<FireSnapshot>> fires;
@@ -176,17 +176,17 @@ struct Snapshot {
     template <class A>
     void serialize(A& a) {
         serializeRules(a, rules);
-        a(clock, steps, droppedSteps, order, wind, flags, warms, blockersDue, fades, idle,
+        a(clock, steps, droppedSteps, order, wind, flags, warms, occludersDue, fades, idle,
           lastStimulus, gustsShown, roomsStirred, stats);
-        a.range("wind", wind, -double(fire::kMostWind), double(fire::kMostWind));
+        a.range("wind", wind, -double(fire::kMaxWind), double(fire::kMaxWind));
         a.list("burnable meshes", objects, 64);
         a.list("events that wait", pending, 32);
         a.list("tags", tags, 12);
         a.list("pairs that touch", pairs, 12);
         a.list("pairs whose sight is known", seen, 12);
-        a.list("blockers", blockers, 64);
-        a.list("latched blockers", latchedBlockers, 64);
-        a(windGrid, heatShield, gusts, origin);
+        a.list("occluders", occluders, 64);
+        a.list("latched occluders", latchedOccluders, 64);
+        a(windGrid, heatOcclusion, gusts, origin);
         a.range("origin", origin, -1e9, 1e9);
         a.list("wind zones", windZones, 108);
         a.list("rooms", rooms, 164);
@@ -235,7 +235,7 @@ struct Save {  // that is under way, and the last one
 
 // The whole file: a header, and what it sums up.
 constexpr uint32_t kSaveVersion = 9;
-constexpr uint32_t kMostSavedEvents = EventQueue::kCapacity;
+constexpr uint32_t kMaxSavedEvents = EventQueue::kCapacity;
 void writeSnapshot(const Snapshot& snapshot, std::pmr::vector<std::byte>& out);
 void readSnapshot(std::span<const std::byte> bytes, Snapshot& snapshot);  // throws
 

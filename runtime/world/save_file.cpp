@@ -112,7 +112,7 @@ void visitImage(A& a, Image& image, const mesh::BurnDomain& domain, uint32_t tic
         "ages of tiles", window + 1,
         [&](size_t i) {
             const uint32_t changed = image.tiles[i].lastChange;
-            return changed == gpu::kFarPast ? window + 1 : std::min(tick - changed, window);
+            return changed == gpu::kNeverChanged ? window + 1 : std::min(tick - changed, window);
         },
         [&](auto i, auto age) {
             if (age <= window) image.tiles[i].lastChange = tick - age;
@@ -141,8 +141,8 @@ void readImage(std::span<const std::byte> planes, const mesh::BurnDomain& domain
     for (uint32_t i = 0; i < store.heat.size(); ++i)
         if (!domain.real(i))
             store.heat[i] =
-                gpu::packHeat(gpu::heatRests(heat[domain.texels[i].materialFlags & 7], false));
-    store.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kFarPast, 0});
+                gpu::packHeat(gpu::unheatedTexel(heat[domain.texels[i].materialFlags & 7], false));
+    store.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kNeverChanged, 0});
     store.tileHeat.assign(tiles, gpu::TileHeat{});
     std::pmr::memory_resource* memory = store.ticks.get_allocator().resource();
     save::Reader reader(planes, kSaveName, memory);

@@ -22,7 +22,7 @@ BlockGrid gridOf(const mesh::BurnDomain& domain) noexcept {
     for (;; grid.side *= 2) {
         grid.across = (domain.tilesX + grid.side - 1) / grid.side;
         grid.down = (domain.tilesY + grid.side - 1) / grid.side;
-        if (grid.count() <= kMostBlocks) return grid;
+        if (grid.count() <= kMaxBlocks) return grid;
     }
 }
 
@@ -54,15 +54,15 @@ mesh::BurnDomain stripeOf(const mesh::BurnDomain& domain, const BlockGrid& grid,
     return stripe;
 }
 
-ImageStore takeBlocks(const ImageStore& whole, const mesh::BurnDomain& domain,
-                      const BlockGrid& grid, std::span<const uint32_t> blocks,
-                      std::pmr::memory_resource* memory) {
+ImageStore copyTileBlocks(const ImageStore& whole, const mesh::BurnDomain& domain,
+                          const BlockGrid& grid, std::span<const uint32_t> blocks,
+                          std::pmr::memory_resource* memory) {
     ImageStore part(memory);
     const size_t tiles = size_t(grid.side) * grid.side * blocks.size();
     const size_t texels = tiles * kTileSide * kTileSide;
     part.ticks.assign(texels, gpu::kInert);
     part.heat.assign(whole.heat.empty() ? 0 : texels, gpu::uvec2(0, 0));
-    part.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kFarPast, 0});
+    part.tiles.assign(tiles, gpu::TileState{gpu::kNever, 0, gpu::kNeverChanged, 0});
     part.tileHeat.assign(tiles, gpu::TileHeat{});
     eachCell(grid, blocks, kTileSide, domain.width, domain.height, [&](size_t to, size_t from) {
         part.ticks[to] = whole.ticks[from];
@@ -157,7 +157,7 @@ bool PersistenceSystem::writeBlocks(std::span<const std::byte> save, uint32_t sl
     writer.number(uint32_t(blocks.size()));
     for (const uint32_t block : blocks) writer.number(block);
     const mesh::BurnDomain stripe = stripeOf(domain, grid, blocks, world_.context_.memory);
-    const ImageStore taken = takeBlocks(store, domain, grid, blocks, world_.context_.memory);
+    const ImageStore taken = copyTileBlocks(store, domain, grid, blocks, world_.context_.memory);
     writeImage(imageOf(taken, object), stripe, uint32_t(saved.clock.tick), window, planes);
     object.planes = planes;
     writeSnapshot(part, out);

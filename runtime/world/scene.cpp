@@ -1,8 +1,8 @@
 // Materials, images, meshes, and where burnable meshes are.
 #include "world/scene.h"
 
+#include "components/appearance_table.h"
 #include "components/deform.h"
-#include "components/look_table.h"
 #include "core/growth.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
@@ -115,7 +115,7 @@ void Scene::countImages(const components::BurnableMesh& object, bool more) noexc
 }
 
 void Scene::countFuel(const Object& object, bool more) noexcept {
-    if (!components::keepsBook(object.data)) return;
+    if (!components::tracksBurntFuel(object.data)) return;
     ledgers += more ? 1u : ~0u;
     fuel += more ? object.fuel.energy : 0 - object.fuel.energy;
 }
@@ -224,7 +224,7 @@ std::span<const uint8_t> Scene::goneOf(const FwBurnableMeshDef& def, MeshEntry& 
     if (!mesh.gone || !std::equal(shown.begin(), shown.end(), mesh.gone->images.begin(), same)) {
         auto gone = core::Owned<GoneTexels>::make(context_.memory, context_.memory);
         gone->images = shown;
-        gone->texels = components::makeGone(*mesh.domain, pictures, context_.memory);
+        gone->texels = components::makeCutOutMask(*mesh.domain, pictures, context_.memory);
         mesh.gone = std::move(gone);
     }
     return mesh.gone->texels;
@@ -238,7 +238,7 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     const uint32_t bit = 1u << (def.refineDepth + (published ? 16 : 0));
     if (mesh.refinements & bit) return;
     mesh::RefineOptions options;
-    if (published) options = mesh::arpOptions(def.refineDepth);
+    if (published) options = mesh::patternOptions(def.refineDepth);
     options.depth = def.refineDepth;
     float wall = 0;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
@@ -247,15 +247,16 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
     std::array<mesh::RefineHoles, gpu::kMaterialsPerObject> holes;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
         if (components::burns(object, i))
-            holes[i] = components::holesOf(components::materialLook(object.materials[i].look));
+            holes[i] =
+                components::holesOf(components::materialLook(object.materials[i].appearance));
     const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, context_.memory);
-    core::Owned<mesh::ArpModel> arp;
+    core::Owned<mesh::PatternModel> pattern;
     if (published) {
-        arp = core::Owned<mesh::ArpModel>::make(context_.memory, context_.memory);
-        *arp = mesh::makeArpModel(*mesh.domain, model, def.refineDepth, context_.memory);
+        pattern = core::Owned<mesh::PatternModel>::make(context_.memory, context_.memory);
+        *pattern = mesh::makePatternModel(*mesh.domain, model, def.refineDepth, context_.memory);
     }
     context_.backend.createRefinement(slot, def.refineDepth, published, *mesh.domain, model, holes);
-    if (published) mesh.arps[def.refineDepth] = std::move(arp);
+    if (published) mesh.patternUses[def.refineDepth] = std::move(pattern);
     mesh.refinements |= bit;
 }
 
@@ -265,14 +266,14 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
 bool Scene::innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object) {
     constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
                                  FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
-                                 FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_Z_PASS;
+                                 FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_DEPTH_PEEL;
     const bool moves = components::deforms(object) && (object.flags & FW_BURNABLE_RECEDE) == 0;
     if ((object.flags & kOthers) != 0 || moves || !context_.backend.draws()) return false;
     if (mesh.innerSkin == InnerSkin::unknown) {
         float wall = 0;
         for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
             if (components::burns(object, i) &&
-                components::materialLook(object.materials[i].look).holeTime > 0)
+                components::materialLook(object.materials[i].appearance).holeTime > 0)
                 wall = std::max(wall, object.materials[i].thickness);
         if (!(wall > 0)) return false;
         wall = std::clamp(wall, 1e-4f, 0.5f);
@@ -286,16 +287,17 @@ bool Scene::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
 }
 
 // The boundary keeps up with the head of a fire that climbs.
-mesh::ArpSettings Scene::arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,
-                                     const components::BurnableMesh& object) const {
+mesh::PatternSettings Scene::patternSettings(const FwBurnableMeshDef& def,
+                                             const mesh::PatternModel& model,
+                                             const components::BurnableMesh& object) const {
     float speed = 0;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         if (!components::burns(object, i)) continue;
         const FwMaterialDef& m = object.materials[i];
         speed = std::max(speed, m.spreadRate * (1 + m.headGain * std::min(m.upGain, m.driveMax)));
     }
-    return mesh::arpSettings(model, def.heatPsi, def.heatStep,
-                             speed * context_.def.paceFactor / object.pose.scale);
+    return mesh::patternSettings(model, def.heatPsi, def.heatStep,
+                                 speed * context_.def.paceFactor / object.pose.scale);
 }
 
 uint32_t Scene::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {
@@ -332,7 +334,7 @@ void Scene::placeNow(const Object& object) {
     double low[3], high[3];
     // The host has moved its vertices: they may be anywhere.
     for (int i = 0; i < 3; ++i) low[i] = -(high[i] = object.skinMoved ? kFarthest : -kFarthest);
-    float longest = 0, shortest = components::kMostStretch;
+    float longest = 0, shortest = components::kMaxStretch;
     for (const float stretch : pose.stretch) {
         longest = std::max(longest, std::abs(stretch));
         shortest = std::min(shortest, std::abs(stretch));
@@ -440,7 +442,7 @@ float Scene::burningAreaOf(const Object& object) const noexcept {
 }
 
 float Scene::powerOf(const Object& object) const noexcept {
-    if (components::hasHeat(object.data)) return object.story.power;
+    if (components::hasHeat(object.data)) return object.lifecycle.power;
     return burningAreaOf(object) *
            components::powerPerArea(object.data, meshes.at(object.data.meshSlot)->texelsOf);
 }

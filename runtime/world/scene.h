@@ -71,13 +71,15 @@ class Scene {
     // Slot of the mesh in this shape: itself, one that is there, or a new one.
     uint32_t shapedSlot(uint32_t slot, const float shape[3]);
     void releaseShape(uint32_t slot) noexcept;
-    // As components::makeGone. Stands until the mesh's next object with other pictures is made.
+    // As components::makeCutOutMask. Stands until the mesh's next object with other pictures is
+    // made.
     std::span<const uint8_t> goneOf(const FwBurnableMeshDef& def, MeshEntry& mesh);
     bool innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object);
     void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                     const components::BurnableMesh& object);
-    mesh::ArpSettings arpSettings(const FwBurnableMeshDef& def, const mesh::ArpModel& model,
-                                  const components::BurnableMesh& object) const;
+    mesh::PatternSettings patternSettings(const FwBurnableMeshDef& def,
+                                          const mesh::PatternModel& model,
+                                          const components::BurnableMesh& object) const;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
     void countFuel(const Object& object, bool more) noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes

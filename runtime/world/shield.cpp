@@ -11,7 +11,7 @@ namespace fw::world {
 namespace {
 
 // Where it is, and as far around it as texels fill cells of it.
-mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
+mesh::Box boxOf(const components::OcclusionGridShape& shape) noexcept {
     mesh::Box box;
     for (size_t i = 0; i < 3; ++i) {
         const int64_t low = shape.origin[i], cell = shape.cell;
@@ -23,12 +23,12 @@ mesh::Box boxOf(const components::ShieldShape& shape) noexcept {
 
 }  // namespace
 
-components::ShieldObject ExchangeSystem::shieldObjectOf(uint32_t slot) noexcept {
+components::OcclusionObject ExchangeSystem::occlusionObjectOf(uint32_t slot) noexcept {
     const Object& object = scene_.objectAt(slot);
-    components::ShieldObject made;
+    components::OcclusionObject made;
     made.slot = slot;
     made.domain = &scene_.domainOf(object);
-    components::placeRemote(object.data.pose, *made.domain, made.place);
+    components::placeExchangeObject(object.data.pose, *made.domain, made.place);
     double longest = 0;
     for (const float s : object.data.pose.stretch) longest = std::max(longest, std::abs(double(s)));
     made.texelSide = uint32_t(
@@ -40,55 +40,56 @@ components::ShieldObject ExchangeSystem::shieldObjectOf(uint32_t slot) noexcept 
     return made;
 }
 
-void ExchangeSystem::bakeHeatShield(const components::ShieldShape& shape,
-                                    std::pmr::vector<uint32_t>& slots,
-                                    std::pmr::vector<components::ShieldCell>& baked) {
+void ExchangeSystem::bakeHeatOcclusion(const components::OcclusionGridShape& shape,
+                                       std::pmr::vector<uint32_t>& slots,
+                                       std::pmr::vector<components::OcclusionCell>& baked) {
     std::sort(slots.begin(), slots.end());
     slots.erase(std::unique(slots.begin(), slots.end()), slots.end());
-    std::pmr::vector<components::ShieldObject> objects(context_.memory);
-    for (const uint32_t slot : slots) objects.push_back(shieldObjectOf(slot));
-    components::bakeShield(shape, objects, baked);
+    std::pmr::vector<components::OcclusionObject> objects(context_.memory);
+    for (const uint32_t slot : slots) objects.push_back(occlusionObjectOf(slot));
+    components::bakeOcclusion(shape, objects, baked);
 }
 
-void ExchangeSystem::setHeatShield(const FwHeatShieldDef& def) {
+void ExchangeSystem::setHeatOcclusion(const FwHeatOcclusionDef& def) {
     context_.recorder.mayChange();
-    components::HeatShield made(context_.memory);
+    components::HeatOcclusion made(context_.memory);
     std::pmr::vector<uint32_t> slots(context_.memory);
     if (def.structSize != 0) {
-        made.shape = components::makeShieldShape(def);
+        made.shape = components::makeOcclusionGridShape(def);
         if (def.objectCount != 0 && !def.objects)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwHeatShieldDef::objects is null, and objectCount is %u.", def.objectCount);
+                       "FwHeatOcclusionDef::objects is null, and objectCount is %u.",
+                       def.objectCount);
         for (uint32_t i = 0; i < def.objectCount; ++i)
             slots.push_back((*scene_.objects.get(def.objects[i])).slot);
-        if (def.flags & FW_HEAT_SHIELD_ALL_OBJECTS) {
+        if (def.flags & FW_HEAT_OCCLUSION_ALL_OBJECTS) {
             const std::span<const uint32_t> near = scene_.objectsNear(boxOf(made.shape), 0);
             slots.insert(slots.end(), near.begin(), near.end());
         }
-        components::readShieldCells(def, made.shape, made.solid);
+        components::readOcclusionCells(def, made.shape, made.solid);
     }
-    bakeHeatShield(made.shape, slots, made.baked);
-    recordShield(made, slots);
-    adoptShield(made);
+    bakeHeatOcclusion(made.shape, slots, made.baked);
+    uploadOcclusion(made, slots);
+    adoptOcclusion(made);
 }
 
-void ExchangeSystem::adoptShield(components::HeatShield& made) noexcept {
+void ExchangeSystem::adoptOcclusion(components::HeatOcclusion& made) noexcept {
     state_.shield.grid.shape = made.shape;
     state_.shield.grid.solid.swap(made.solid);
     state_.shield.grid.baked.swap(made.baked);
-    shieldChanged();
+    occlusionChanged();
 }
 
 // Jets end at the host's cells, too.
-void ExchangeSystem::shieldChanged() noexcept {
+void ExchangeSystem::occlusionChanged() noexcept {
     state_.shield.unsent = state_.shield.unpacked = true;
     ++scene_.geometryVersion;
 }
 
 // The grid's shape, if it changed; then the words of the host's cells that changed; then all
 // objects.
-void ExchangeSystem::recordShield(const components::HeatShield& made,
-                                  std::span<const uint32_t> slots) noexcept {
+void ExchangeSystem::uploadOcclusion(const components::HeatOcclusion& made,
+                                     std::span<const uint32_t> slots) noexcept {
     if (!context_.recorder.records()) return;
     const bool stays = made.shape == state_.shield.grid.shape;
     if (!stays) context_.recorder.record(SetHeatShield{made.shape});
@@ -110,17 +111,17 @@ void ExchangeSystem::recordShield(const components::HeatShield& made,
 
 void ExchangeSystem::applyShield(const SetHeatShield& command) {
     context_.recorder.mayChange();
-    components::HeatShield made(context_.memory);
+    components::HeatOcclusion made(context_.memory);
     made.shape = command.shape;
     made.solid.assign(made.shape.words(), 0);
-    adoptShield(made);
+    adoptOcclusion(made);
     state_.shield.commandSlots.clear();
     context_.recorder.record(command);
 }
 
 void ExchangeSystem::applyShieldCells(const SetShieldCells& command) {
     context_.recorder.mayChange();
-    components::HeatShield& grid = state_.shield.grid;
+    components::HeatOcclusion& grid = state_.shield.grid;
     if (command.first >= grid.solid.size())
         core::fail(FW_ERROR_BAD_DATA, "A command is of word %u of the shield, which has %zu.",
                    command.first, grid.solid.size());
@@ -129,7 +130,7 @@ void ExchangeSystem::applyShieldCells(const SetShieldCells& command) {
                 grid.solid.begin() + std::ptrdiff_t(command.first));
     if (const uint32_t over = grid.shape.cells() % 32; over != 0)
         grid.solid.back() &= (1u << over) - 1;
-    shieldChanged();
+    occlusionChanged();
     context_.recorder.record(command);
 }
 
@@ -148,7 +149,7 @@ void ExchangeSystem::applyShieldObject(const AddShieldObject& command) {
     if (command.last) {
         std::pmr::vector<uint32_t> slots(context_.memory);
         slots.swap(state_.shield.commandSlots);
-        bakeHeatShield(state_.shield.grid.shape, slots, state_.shield.grid.baked);
+        bakeHeatOcclusion(state_.shield.grid.shape, slots, state_.shield.grid.baked);
         state_.shield.unsent = state_.shield.unpacked = true;
     }
     context_.recorder.record(command);
@@ -157,22 +158,23 @@ void ExchangeSystem::applyShieldObject(const AddShieldObject& command) {
 // The slot of a destroyed object may become another's.
 void ExchangeSystem::removeFromShield(uint32_t slot) noexcept {
     std::erase(state_.shield.commandSlots, slot);
-    const size_t gone = std::erase_if(
-        state_.shield.grid.baked,
-        [&](const components::ShieldCell& cell) { return (cell.what & gpu::kShieldSlot) == slot; });
+    const size_t gone =
+        std::erase_if(state_.shield.grid.baked, [&](const components::OcclusionCell& cell) {
+            return (cell.what & gpu::kOcclusionSlotMask) == slot;
+        });
     if (gone != 0) state_.shield.unsent = state_.shield.unpacked = true;
 }
 
-void ExchangeSystem::packHeatShield() {
-    if (state_.shield.unpacked) components::packShield(state_.shield.grid, state_.shield.words);
+void ExchangeSystem::packHeatOcclusion() {
+    if (state_.shield.unpacked) components::packOcclusion(state_.shield.grid, state_.shield.words);
     state_.shield.unpacked = false;
 }
 
 // For queries, which are answered at once while texels come some frames later: an object's cells
 // are there until half of it has burnt.
-components::ShieldView ExchangeSystem::shieldView() {
-    components::ShieldView view;
-    packHeatShield();
+components::OcclusionView ExchangeSystem::occlusionView() {
+    components::OcclusionView view;
+    packHeatOcclusion();
     if (state_.shield.grid.shape.cells() == 0) return view;
     state_.shield.fallen.assign(scene_.objects.slotCount(), 0);
     for (const Object* object : scene_.touched) {  // nothing of the others has burnt
@@ -188,16 +190,16 @@ components::ShieldView ExchangeSystem::shieldView() {
 }
 
 // awake: the step will run.
-void ExchangeSystem::planShield(gpu::StepPlan& step, bool awake) {
-    if (!awake || !state_.shield.unsent || frame_.shieldSent) return;
-    packHeatShield();
-    const components::ShieldShape& shape = state_.shield.grid.shape;
+void ExchangeSystem::planOcclusion(gpu::StepPlan& step, bool awake) {
+    if (!awake || !state_.shield.unsent || frame_.occlusionSent) return;
+    packHeatOcclusion();
+    const components::OcclusionGridShape& shape = state_.shield.grid.shape;
     state_.shield.update.origin = {shape.origin[0], shape.origin[1], shape.origin[2]};
     state_.shield.update.cell = shape.cell;
     state_.shield.update.counts = components::countsOf(shape);
     state_.shield.update.words = state_.shield.words;
     step.shield = &state_.shield.update;
-    frame_.shieldSent = true;
+    frame_.occlusionSent = true;
 }
 
 }  // namespace fw::world

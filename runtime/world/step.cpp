@@ -29,7 +29,7 @@ bool BurnSystem::keepsAwake() const noexcept {
 // Events of the frame that ends at a tick, by step.
 void BurnSystem::listDue(uint64_t end) {
     frame_.due.clear();
-    waitForCarries();
+    waitForTransfers();
     const uint64_t now = context_.clock.tick;
     for (const PendingTexel& event : state_.pending) {
         if (event.tick >= end) continue;
@@ -47,10 +47,10 @@ void BurnSystem::listLatches() noexcept {
     for (Object* object : scene_.touched) {
         // Where fire goes from object to object, many wait for it under a wind that they know.
         if (exchange_.isOn() && !wind_.hasGusts()) {
-            if (object->restsUnder == wind) continue;
+            if (object->sleepsUnder == wind) continue;
             if (components::atRest(object->data, scene_.domainOf(*object),
                                    wind_.driveInput(*object, context_.clock.tick), object->latch)) {
-                object->restsUnder = wind;
+                object->sleepsUnder = wind;
                 continue;
             }
         }
@@ -206,7 +206,7 @@ void BurnSystem::planGates(std::span<const Frame::Due> due, size_t firstEvent) {
 void BurnSystem::touchLatched(uint64_t frameIndex) noexcept {
     for (const Frame::LatchOf& entry : frame_.latches) {
         entry.object->latch = entry.latch;
-        entry.object->restsUnder = 0;
+        entry.object->sleepsUnder = 0;
     }
     const size_t touchedBefore = scene_.touched.size();
     for (const Frame::LatchOf& entry : frame_.latches) {

@@ -16,7 +16,7 @@
 namespace fw::world {
 namespace {
 
-constexpr uint32_t kMostMaskSide = 4096;
+constexpr uint32_t kMaxMaskSide = 4096;
 
 }  // namespace
 
@@ -27,7 +27,7 @@ components::SurroundingAir QuerySystem::listSources() {
     flames_.reserve(0);
     flames_.listShapes();  // as they stand now
     air.walls = flames_.walls();
-    air.shield = exchange_.shieldView();
+    air.shield = exchange_.occlusionView();
     sources_.clear();
     // A light stands a quarter of its flame above what burns (lights.comp).
     const auto add = [&](const FwLight& light) {
@@ -61,19 +61,19 @@ components::Surroundings QuerySystem::surroundingsAt(const components::Surroundi
     components::Surroundings at = components::surroundingsOf(sources_, here, point);
     if (flames_.burning().now().empty()) return at;
     const components::FireAnswer fires =
-        components::askFires(flames_.burning().now(), flames_.profiles(), air.walls, point);
+        components::queryFires(flames_.burning().now(), flames_.profiles(), air.walls, point);
     at.excess = std::max(at.excess, fires.air.kelvin - fire::kAmbient);
-    at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, components::kMostHeatFlux);
+    at.heatFlux = std::min(at.heatFlux + fires.air.heatFlux, components::kMaxHeatFlux);
     return at;
 }
 
-void QuerySystem::askSurroundings(const float point[3], FwSurroundings& out) {
+void QuerySystem::querySurroundings(const float point[3], FwSurroundings& out) {
     components::checkLengths(point, 3, "point", -1e6f, 1e6f);
     const components::Surroundings at = surroundingsAt(listSources(), volume::vecOf(point));
     out.heatFlux = at.heatFlux;
     out.temperature = fire::kAmbient + at.excess;
     out.smoke = at.smoke;
-    out.danger = components::dangerOf(at);
+    out.danger = components::spreadRiskOf(at);
     out.nearest = at.nearest;
     if (!at.source) return;
     for (int i = 0; i < 3; ++i) out.nearestPosition[i] = at.source->base[i];
@@ -81,7 +81,7 @@ void QuerySystem::askSurroundings(const float point[3], FwSurroundings& out) {
     out.nearestLight = at.source->id;
 }
 
-float QuerySystem::askSight(const float from[3], const float to[3]) {
+float QuerySystem::querySight(const float from[3], const float to[3]) {
     components::checkLengths(from, 3, "from", -1e6f, 1e6f);
     components::checkLengths(to, 3, "to", -1e6f, 1e6f);
     const components::SurroundingAir air = listSources();
@@ -94,17 +94,17 @@ void QuerySystem::makeSafetyMask(const float corner[3], const float columnStep[3
     components::checkLengths(corner, 3, "corner", -1e6f, 1e6f);
     components::checkLengths(columnStep, 3, "columnStep", -1e4f, 1e4f);
     components::checkLengths(rowStep, 3, "rowStep", -1e4f, 1e4f);
-    if (columns < 1 || columns > kMostMaskSide || rows < 1 || rows > kMostMaskSide)
+    if (columns < 1 || columns > kMaxMaskSide || rows < 1 || rows > kMaxMaskSide)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The mask has %u columns and %u rows; the limits are [1, %u] each.", columns,
-                   rows, kMostMaskSide);
+                   rows, kMaxMaskSide);
     const components::SurroundingAir air = listSources();
     for (uint32_t row = 0; row < rows; ++row)
         for (uint32_t column = 0; column < columns; ++column) {
             const components::vec3 point = volume::vecOf(corner) +
                                            volume::vecOf(columnStep) * float(column) +
                                            volume::vecOf(rowStep) * float(row);
-            const float danger = components::dangerOf(surroundingsAt(air, point));
+            const float danger = components::spreadRiskOf(surroundingsAt(air, point));
             mask[size_t{row} * columns + column] =
                 static_cast<uint8_t>(std::min(127.0f * danger, 255.0f));
         }

@@ -11,7 +11,7 @@
 namespace fw::world {
 namespace {
 
-constexpr uint64_t kLeastTimeline = uint64_t(1) << 16;   // bytes
+constexpr uint64_t kMinTimeline = uint64_t(1) << 16;     // bytes
 constexpr float kShortest = 1.0f / 32, kLongest = 3600;  // s between two keyframes
 
 uint64_t ticksOf(float seconds) noexcept {
@@ -74,19 +74,20 @@ void Timeline::restart(uint64_t now) noexcept {
 
 void PersistenceSystem::startTimeline(const FwTimelineDef& def) {
     components::checkValue(def.interval, "FwTimelineDef::interval", kShortest, kLongest);
-    components::checkValue(def.longest, "FwTimelineDef::longest", kShortest, kLongest);
-    if (def.reserved != 0 || def.longest < def.interval)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwTimelineDef::longest is %g s, below its interval of %g s, or reserved is %u, "
-                   "not zero.",
-                   double(def.longest), double(def.interval), def.reserved);
-    if (def.bytes < kLeastTimeline)
+    components::checkValue(def.maxInterval, "FwTimelineDef::maxInterval", kShortest, kLongest);
+    if (def.reserved != 0 || def.maxInterval < def.interval)
+        core::fail(
+            FW_ERROR_INVALID_ARGUMENT,
+            "FwTimelineDef::maxInterval is %g s, below its interval of %g s, or reserved is %u, "
+            "not zero.",
+            double(def.maxInterval), double(def.interval), def.reserved);
+    if (def.bytes < kMinTimeline)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwTimelineDef::bytes is %llu; at least %llu.",
                    static_cast<unsigned long long>(def.bytes),
-                   static_cast<unsigned long long>(kLeastTimeline));
+                   static_cast<unsigned long long>(kMinTimeline));
     auto timeline = core::Owned<Timeline>::make(world_.context_.memory, world_.context_.memory);
     timeline->apart = ticksOf(def.interval);
-    timeline->farthest = std::max(ticksOf(def.longest), timeline->apart);
+    timeline->farthest = std::max(ticksOf(def.maxInterval), timeline->apart);
     timeline->most = def.bytes;
     timeline->restart(world_.context_.clock.tick);
     requestSave(SaveFor::timeline);
@@ -107,7 +108,7 @@ void PersistenceSystem::planTimeline(uint64_t after) noexcept {
     if (!save || save->requested || save->pending || after < timeline.end) return;
     if (!timeline.keyframes.empty() && after < timeline.keyframes.back().tick + timeline.apart)
         return;
-    if (unsavable() != 0) return;
+    if (explainUnsavable() != 0) return;
     save->requested = true;
     save->ready = false;
 }
@@ -154,7 +155,7 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "The world keeps no timeline; fwWorld_StartTimeline first.");
     mayChange();
-    if (const uint32_t object1 = unsavable())
+    if (const uint32_t object1 = explainUnsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be sought.",
                    object1);
@@ -207,7 +208,7 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
 void PersistenceSystem::timelineState(FwTimelineState& state) {
     if (!timeline_) return;
     const Timeline& timeline = *timeline_;
-    state.moments = uint32_t(timeline.keyframes.size());
+    state.keyframes = uint32_t(timeline.keyframes.size());
     state.firstTick = timeline.keyframes.empty() ? timeline.end : timeline.keyframes.front().tick;
     state.endTick = timeline.end;
     state.bytes = timeline.bytes();

@@ -128,7 +128,8 @@ void WindSystem::updateObjects() noexcept {
 void WindSystem::updateObject(Object& object) noexcept {
     const uint32_t wind = localWindOf(object, context_.clock.tick);
     // In gusts others hear of it with each exchange; after the last one, once more.
-    const bool heard = hasGusts() || object.remoteVersion == 0 || int(wind) == object.remote.high.w;
+    const bool heard =
+        hasGusts() || object.exchangeVersion == 0 || int(wind) == object.remote.high.w;
     if (wind == object.zoneWind && heard) return;
     state_.kept |= wind != 0;
     object.zoneWind = wind;
@@ -244,7 +245,7 @@ void WindSystem::destroyZone(FwWindZoneId id) {
 
 void WindSystem::set(const float wind[3]) {
     context_.recorder.mayChange();
-    components::checkLengths(wind, 3, "wind", -fire::kMostWind, fire::kMostWind);
+    components::checkLengths(wind, 3, "wind", -fire::kMaxWind, fire::kMaxWind);
     if (!std::equal(state_.wind, state_.wind + 3, wind)) ++state_.changes;
     components::windChanges(state_.gusts, fire::windUnits(state_.wind), context_.clock.tick);
     std::copy_n(wind, 3, state_.wind);

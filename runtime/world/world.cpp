@@ -34,13 +34,13 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
                    double(length));
     for (float& value : def.up) value /= length;
     checkValue(def.paceFactor, "FwWorldDef::paceFactor", 0.1f, 1000.0f);
-    checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMostWind, fire::kMostWind);
+    checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMaxWind, fire::kMaxWind);
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
     checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, components::kMostLights);
     checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
-    checkLimit(def.volumeCell, "FwWorldDef::volumeCell", 1, 16);
-    checkLimit(def.volumeSteps, "FwWorldDef::volumeSteps", 6, 64);
+    checkLimit(def.volumePixelSize, "FwWorldDef::volumePixelSize", 1, 16);
+    checkLimit(def.rayStepCount, "FwWorldDef::rayStepCount", 6, 64);
     checkLimit(def.volumeOctaves, "FwWorldDef::volumeOctaves", 1, gpu::kFlameOctaves);
     checkLimit(def.reserved1, "FwWorldDef::reserved1", 0, 0);
     checkLimit(def.reserved2, "FwWorldDef::reserved2", 0, 0);
@@ -87,7 +87,7 @@ World::World(const FwWorldDef& def, gpu::Backend& backend, const core::Log& log,
 FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
     (void)scene_.meshes.get(given.mesh);
     const FwBurnableMeshDef def =
-        components::underSwitches(given, exchange_.state().book.objectFlags);
+        components::applyWorldFlags(given, exchange_.state().book.objectFlags);
     core::Owned<Object> owned = core::Owned<Object>::make(context_.memory, context_.memory);
     Object& object = *owned;
     object.data = components::makeBurnableMesh(def);
@@ -116,7 +116,7 @@ FwBurnableMeshId World::createBurnableMesh(const FwBurnableMeshDef& given) {
 // `gone`: texels that pictures cut out.
 void World::countObjectFuel(Object& object, const MeshEntry& mesh,
                             std::span<const uint8_t> gone) const {
-    if (!components::keepsBook(object.data)) return;
+    if (!components::tracksBurntFuel(object.data)) return;
     const mesh::BurnDomain& domain = *mesh.domain;
     std::array<uint32_t, gpu::kMaterialsPerObject> texelsOf = mesh.texelsOf;
     for (uint32_t i = 0; i < gone.size(); ++i)
@@ -153,8 +153,8 @@ void World::makeRecords(Object& object, MeshEntry& mesh, const FwBurnableMeshDef
         init.refineDepth = def.refineDepth;
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
         if (def.flags & FW_BURNABLE_REFINE_PUBLISHED) {
-            init.arpModel = mesh.arps[def.refineDepth].get();
-            init.arp = scene_.arpSettings(def, *init.arpModel, object.data);
+            init.patternModel = mesh.patternUses[def.refineDepth].get();
+            init.pattern = scene_.patternSettings(def, *init.patternModel, object.data);
         }
     }
     init.inner = scene_.innerSkin(mesh, init.mesh, object.data);
@@ -189,7 +189,7 @@ FwBurnableMeshId World::createOn(uint32_t meshSlot, const FwBurnableMeshDef& def
     checkValue(def.spreadChance, "FwBurnableMeshDef::spreadChance", 0.0f, 1.0f);
     checkValue(def.timeToLive, "FwBurnableMeshDef::timeToLive", 0.0f, 1e6f);
     object.governance = {def.spreadChance, def.maxHops, def.maxBurningTiles, def.timeToLive};
-    object.remoteDue = true;
+    object.exchangeDue = true;
     object.firstFrame = context_.lastFrame + 1;
     object.breaks = burn_.makeBreaks(def, mesh, gone);
     const FwBurnableMeshId id = scene_.objects.create(std::move(owned));
@@ -248,7 +248,7 @@ void World::setTransform(FwBurnableMeshId id, const float transform[16]) {
     const components::Pose before = object.data.pose;
     components::poseOnShape(object.data, components::makePose(transform, "transform"), "transform");
     scene_.placeNow(object);
-    object.restsUnder = 0;
+    object.sleepsUnder = 0;
     if (!(object.data.pose == before)) {
         ++scene_.geometryVersion;
         ++object.changes;
@@ -414,7 +414,7 @@ void World::applyReadback(const gpu::Readback& readback) {
         queries_.onBurnMap(**owned, map, readback);
     }
     burn_.settle(readback);
-    persistence_.takeSaves(readback);
+    persistence_.completeSaves(readback);
 }
 
 // ---- figures ----------------------------------------------------------------------------------
@@ -458,9 +458,9 @@ void World::stats(FwWorldStats& stats) noexcept {
 
 void World::setSwitches(uint32_t switches) {
     constexpr uint32_t kKnown = FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE | FW_DEBUG_NO_SEAM_WAKE |
-                                FW_DEBUG_WRONG_READERS | FW_DEBUG_NO_WIND_WAKE |
-                                FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL | FW_DEBUG_CROSSING |
-                                FW_DEBUG_NO_Z_PASS;
+                                FW_DEBUG_WRONG_DEPENDENTS | FW_DEBUG_NO_WIND_WAKE |
+                                FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL |
+                                FW_DEBUG_SELF_INTERSECTION | FW_DEBUG_NO_DEPTH_PEEL;
     if (switches & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
                    switches, kKnown);

@@ -67,7 +67,7 @@ FwBurnableMeshId placeBox(sample::FireHost& fire, FwBurnableMeshDef def, uint32_
     return object;
 }
 
-FwFlipbookId openBook(sample::FireHost& fire, uint32_t preset) {
+FwFlipbookId openFlipbook(sample::FireHost& fire, uint32_t preset) {
     FwFlipbookDef def = fwDefaultFlipbookDef();
     def.preset = preset;
     FwFlipbookId id{};
@@ -92,9 +92,9 @@ void addParticles(sample::FireHost& fire, FwBurnableMeshId object) {
     flames.temperature = 1500;
     flames.sparks = 0.02f;
     flames.smoke = 0;
-    flames.fireBooks[0] = openBook(fire, FW_FLIPBOOK_ROLL);
-    flames.fireBooks[1] = openBook(fire, FW_FLIPBOOK_PUFF);
-    flames.sparkBook = openBook(fire, FW_FLIPBOOK_SPARK);
+    flames.fireFlipbooks[0] = openFlipbook(fire, FW_FLIPBOOK_ROLL);
+    flames.fireFlipbooks[1] = openFlipbook(fire, FW_FLIPBOOK_PUFF);
+    flames.sparkFlipbook = openFlipbook(fire, FW_FLIPBOOK_SPARK);
     FwFireEmitterDef smoke = flames;
     smoke.maxParticles = 500;
     smoke.sparks = 0;
@@ -105,8 +105,8 @@ void addParticles(sample::FireHost& fire, FwBurnableMeshId object) {
     smoke.rate = 500 / (1.1f * smoke.life * (1 + smoke.smokeLife));
     smoke.size0 = 0.10f;
     smoke.size1 = 0.34f;
-    smoke.smokeBooks[0] = openBook(fire, FW_FLIPBOOK_SMOKE);
-    smoke.smokeBooks[1] = openBook(fire, FW_FLIPBOOK_HAZE);
+    smoke.smokeFlipbooks[0] = openFlipbook(fire, FW_FLIPBOOK_SMOKE);
+    smoke.smokeFlipbooks[1] = openFlipbook(fire, FW_FLIPBOOK_HAZE);
     for (const FwFireEmitterDef* def : {&flames, &smoke}) {
         FwFireEmitterId id{};
         fire.check(fwWorld_CreateFireEmitter(fire.world, def, &id), "fwWorld_CreateFireEmitter");

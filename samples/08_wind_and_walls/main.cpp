@@ -112,13 +112,13 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         // Occluders block radiation and flames; flames also flow around them.
         for (const Box& box : kWalls) {
             if (seenAlone) break;
-            FwBlockerDef def = fwDefaultBlockerDef();
+            FwHeatOccluderDef def = fwDefaultHeatOccluderDef();
             for (int i = 0; i < 3; ++i) {
                 def.transform[12 + i] = box.center[i];
                 def.halfSize[i] = box.half[i];
             }
-            FwBlockerId id{};
-            fire.check(fwWorld_AddBlocker(fire.world, &def, &id), "fwWorld_AddBlocker");
+            FwHeatOccluderId id{};
+            fire.check(fwWorld_AddHeatOccluder(fire.world, &def, &id), "fwWorld_AddHeatOccluder");
         }
         FwFireColliderId groundId{}, seenId{};
         if (!seenAlone) {
@@ -192,11 +192,11 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
                        "fwWorld_MoveVolumetricFire");
             sample::showStudio(frame, stage, studio, fire, view);
             // A game queries what its characters feel: here a hand beside the wall.
-            FwFireAnswer answer{};
+            FwFireSample answer{};
             answer.structSize = sizeof answer;
             const float hand[3] = {1.6f, 0.9f, 0};
-            fire.check(fwWorld_AskVolumetricFires(fire.world, hand, &answer),
-                       "fwWorld_AskVolumetricFires");
+            fire.check(fwWorld_SampleVolumetricFires(fire.world, hand, &answer),
+                       "fwWorld_SampleVolumetricFires");
             hottest = std::max(hottest, answer.heatFlux);
         }
 

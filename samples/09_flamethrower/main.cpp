@@ -73,7 +73,7 @@ const std::vector<Case>& cases() {
          {0, 0, 0.5f},  // the whole stream hits the wall
          {{{1.6f, 0.9f, 0}, {0.07f, 0.9f, 1.1f}}, behind},
          false},
-        {"the blocker burns",
+        {"the occluder burns",
          nozzle,
          ahead,
          still,

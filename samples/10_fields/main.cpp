@@ -20,12 +20,12 @@ struct Exhibit {
 };
 constexpr float kStone = 0.62f;  // m, height of the blocks
 constexpr Exhibit kExhibits[] = {
-    {FW_FIELD_FIRE, FW_FIELD_CARD, 64, -2.75f, -1.1f, 1.0f, 1.35f},
-    {FW_FIELD_FIRE, FW_FIELD_CARD, 32, -1.65f, -1.1f, 1.0f, 1.35f},
-    {FW_FIELD_SMOKE, FW_FIELD_CARD, 64, -0.55f, -1.1f, 1.2f, 1.7f},
-    {FW_FIELD_SMOKE, FW_FIELD_CARD, 32, 0.55f, -1.1f, 1.2f, 1.7f},
-    {FW_FIELD_WATER, FW_FIELD_CARD, 64, 1.65f, -1.1f, 1.1f, 1.3f},
-    {FW_FIELD_WATER, FW_FIELD_CARD, 32, 2.75f, -1.1f, 1.1f, 1.3f},
+    {FW_FIELD_FIRE, FW_FIELD_BILLBOARD, 64, -2.75f, -1.1f, 1.0f, 1.35f},
+    {FW_FIELD_FIRE, FW_FIELD_BILLBOARD, 32, -1.65f, -1.1f, 1.0f, 1.35f},
+    {FW_FIELD_SMOKE, FW_FIELD_BILLBOARD, 64, -0.55f, -1.1f, 1.2f, 1.7f},
+    {FW_FIELD_SMOKE, FW_FIELD_BILLBOARD, 32, 0.55f, -1.1f, 1.2f, 1.7f},
+    {FW_FIELD_WATER, FW_FIELD_BILLBOARD, 64, 1.65f, -1.1f, 1.1f, 1.3f},
+    {FW_FIELD_WATER, FW_FIELD_BILLBOARD, 32, 2.75f, -1.1f, 1.1f, 1.3f},
     {FW_FIELD_FIRE, FW_FIELD_SPHEROID, 64, -2.3f, 0.5f, 0.8f, 1.0f},
     {FW_FIELD_FIRE, FW_FIELD_DISPLACED, 32, -1.4f, 0.5f, 0.8f, 1.0f},
     {FW_FIELD_SMOKE, FW_FIELD_SPHEROID, 64, -0.45f, 0.5f, 0.85f, 0.95f},
@@ -41,13 +41,13 @@ FwParticleFieldDef defOf(const Exhibit& exhibit, const sample::FireHost& fire) {
     def.width = def.height = exhibit.cells;
     // Speeds are in cells per second, so half the cells take half the time.
     def.life *=
-        static_cast<float>(exhibit.cells) / (exhibit.shape == FW_FIELD_CARD ? 32.0f : 22.0f);
+        static_cast<float>(exhibit.cells) / (exhibit.shape == FW_FIELD_BILLBOARD ? 32.0f : 22.0f);
     def.position[0] = exhibit.x;
-    def.position[1] = exhibit.shape == FW_FIELD_CARD ? kStone : 0.03f;
+    def.position[1] = exhibit.shape == FW_FIELD_BILLBOARD ? kStone : 0.03f;
     def.position[2] = exhibit.z;
     def.size[0] = def.size[2] = exhibit.width;
     def.size[1] = exhibit.height;
-    if (exhibit.shape != FW_FIELD_CARD) def.sourceSize = 1;
+    if (exhibit.shape != FW_FIELD_BILLBOARD) def.sourceSize = 1;
     return def;
 }
 
@@ -125,7 +125,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
         sample::Stage stage(host, options, stageRequest, sample::framesOf(options, seconds));
         sample::Studio studio(host, stage, {0, 0, 0}, 1.6f);
         for (const Exhibit& exhibit : kExhibits)
-            if (exhibit.shape == FW_FIELD_CARD)
+            if (exhibit.shape == FW_FIELD_BILLBOARD)
                 studio.addBlock({exhibit.x, 0.5f * kStone, exhibit.z},
                                 {0.36f, 0.5f * kStone, 0.22f});
 

@@ -194,7 +194,7 @@ class Server : public Side {
             // The last that it says, to a client that is there.
             if (step == settings_.steps && message.empty() && follows()) {
                 message = hash();
-                check(fwNet_Tell(world_, message.data(), uint32_t(message.size())));
+                check(fwNet_SendMessage(world_, message.data(), uint32_t(message.size())));
                 leave(message);
                 heard = now;
             }
@@ -271,12 +271,12 @@ class Client : public Side {
             exchange(now, [&](uint16_t from, const void* packet, uint32_t size) {
                 if (from == settings_.port) (void)fwNet_Read(world_, {}, packet, size);
             });
-            FwNetTurn turn{};
+            FwNetAction turn{};
             turn.structSize = sizeof turn;
             for (;;) {
-                check(fwNet_TakeTurn(world_, &turn));
-                if (turn.kind == FW_TURN_WAIT) break;
-                if (turn.kind == FW_TURN_STEP) {
+                check(fwNet_NextAction(world_, &turn));
+                if (turn.kind == FW_NET_ACTION_WAIT) break;
+                if (turn.kind == FW_NET_ACTION_STEP) {
                     check(fwWorld_Step(world_, turn.deltaTime));
                     continue;
                 }

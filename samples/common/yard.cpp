@@ -94,7 +94,7 @@ YardState stateOf(FwWorld* world, const Yard& yard) {
         check(fwWorld_GetObjectState(world, id, &state), world);
         sum.burning += state.burning > 0 ? 1 : 0;
         sum.burnt += state.ignited > 0 && state.burning == 0 ? 1 : 0;
-        sum.plays += state.plays;
+        sum.plays += state.playsBakedBurn;
         sum.power += state.power;
     }
     return sum;

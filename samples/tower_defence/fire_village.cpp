@@ -192,7 +192,7 @@ void FireVillage::makeMaterials() {
         def.spreadRate *= spread;
         def.moisture += moisture;
         def.burnTime *= burning;
-        def.look = look;
+        def.appearance = look;
         check(fwWorld_CreateMaterial(world_, &def, &materials_[size_t(slot)]),
               "fwWorld_CreateMaterial");
     };

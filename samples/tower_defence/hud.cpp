@@ -314,7 +314,7 @@ void Board::drawFireNumbers() {
 // Shows where the fuel's energy went. The sum is computed from the displayed values.
 void Board::drawLedger() {
     if (!player.showsLedger) return;
-    const FwEnergyBook& ledger = fires.ledger;
+    const FwEnergyLedger& ledger = fires.ledger;
     const bool any = ledger.objects > 0;
     const Rect r{dp(12), dp(70), dp(262), any ? dp(204) : dp(128)};
     drawPanel(r);

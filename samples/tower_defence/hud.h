@@ -28,7 +28,7 @@ struct Player {
 struct FireNumbers {
     uint32_t burning = 0, caught = 0;  // objects
     float megawatts = 0, squareMetres = 0;
-    FwEnergyBook ledger{};  // of the whole world
+    FwEnergyLedger ledger{};  // of the whole world
 };
 
 // Requests of the player in this frame.

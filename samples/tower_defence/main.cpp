@@ -136,8 +136,8 @@ tower::FireNumbers countFires(const tower::FireVillage& fires, FwWorld* world, b
     tower::FireNumbers numbers{fires.burning(), fires.caught(), 0, 0, {}};
     numbers.ledger.structSize = sizeof numbers.ledger;
     if (ledger)
-        tower::checkFire(world, fwWorld_GetEnergyBook(world, &numbers.ledger),
-                         "fwWorld_GetEnergyBook");
+        tower::checkFire(world, fwWorld_GetEnergyLedger(world, &numbers.ledger),
+                         "fwWorld_GetEnergyLedger");
     for (const tower::Thing& thing : fires.things) {
         numbers.megawatts += 1e-6f * thing.state.power;
         numbers.squareMetres += thing.state.burningArea;

@@ -51,7 +51,7 @@ void arriveRow(uint work) {
     uvec4 bases = objectBases(item.w);
     uvec4 times = objectTimes(item.w);
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
-    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint floorTick = windowFloor(end - windowTicks(push.stepShift, times.y), times.x);
     uint materialBase = item.w * kMaterialsPerObject;
     uint x = uint(findLSB(chosen));
     uint last = uint(findMSB(chosen));
@@ -90,9 +90,9 @@ void arriveRow(uint work) {
                 mine - decodePosition(middle.place[0]), mine - decodePosition(right.place[0]));
             uint pending = kNever;
             uint late = 0u;
-            uint counts = frontSources(ring, 0xFFu, end, pending);
+            uint counts = countingSources(ring, 0xFFu, end, pending);
             uint future = pending;  // a source of the ring begins then and may correct the result
-            FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+            FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
             uint settledFrom = kNever;
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
                                           pending, settledFrom);
@@ -102,7 +102,7 @@ void arriveRow(uint work) {
             if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u && candidate >= floorTick &&
                 (isReceptive(t) || t <= end))
                 settled |= 1u << x;
-            uint decided = frontDecide(t, candidate, end, floorTick, pending, late);
+            uint decided = decideTick(t, candidate, end, floorTick, pending, late);
             uint known = isReceptive(t) ? candidate : kNever;
             if (decided != t) {
                 known = decided;
@@ -123,7 +123,7 @@ void arriveRow(uint work) {
     } while (x <= last);
     uint worldTile = run[item.x >> 3u].x;
     if (wake != kNever) atomicMin(tileState[worldTile].wake, wake);
-    uint marks = (ahead ? kTileAhead : 0u) | (uneven ? kTileUneven : 0u);
+    uint marks = (ahead ? kTilePendingUnknown : 0u) | (uneven ? kTileCorrected : 0u);
     if (marks != 0u) atomicOr(tileState[worldTile].flag, marks);
     uint at = (bases.y + item.z) >> 3u;
     settledRows[at] = (settledRows[at] & ~chosen) | settled;

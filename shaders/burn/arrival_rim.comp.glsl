@@ -38,7 +38,7 @@ void arrive(uint rimWork) {
     uvec4 bases = objectBases(object);
     uvec4 times = objectTimes(object);
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
-    uint floorTick = frontFloor(end - windowTicks(push.stepShift, times.y), times.x);
+    uint floorTick = windowFloor(end - windowTicks(push.stepShift, times.y), times.x);
     uint t = state[bases.y + texel];
     uint other[8] = rimRing(object, tile.w, lane);
     FrontRing ring;
@@ -52,7 +52,7 @@ void arrive(uint rimWork) {
     }
     uint pending = kNever;
     uint late = 0u;
-    uint counts = frontSources(ring, present, end, pending);
+    uint counts = countingSources(ring, present, end, pending);
     uint future = pending;  // a source of the ring begins then and may correct the result
     uvec2 me = texels[bases.x + texel];
     uint material = (me.y >> 16u) & 7u;
@@ -71,10 +71,10 @@ void arrive(uint rimWork) {
     }
     uint decided = t;
     if (counts != 0u) {
-        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+        FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
         uint settledFrom = kNever;
         uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false, pending, settledFrom);
-        decided = frontDecide(t, candidate, end, floorTick, pending, late);
+        decided = decideTick(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {
         pendingTick[bases.y + texel] = decided;
@@ -83,7 +83,7 @@ void arrive(uint rimWork) {
         atomicOr(maskWords[word], 1u << (lane & 31u));
         if (isReceptive(t)) atomicOr(maskWords[word + 2u], 1u << (lane & 31u));
         if (!isReceptive(t) || decided <= end - windowTicks(push.stepShift, times.y))
-            atomicOr(tileState[tile.x].flag, kTileUneven);
+            atomicOr(tileState[tile.x].flag, kTileCorrected);
     } else {
         uint next = isReceptive(t) ? pending : future;
         if (next != kNever) atomicMin(tileState[tile.x].wake, next);

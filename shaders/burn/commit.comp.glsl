@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_TILES readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_STATE writeonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_LISTS FW_READ_WRITE
@@ -49,7 +49,7 @@ void commitTile(uint slot) {
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, objects[object].substepShift);
     tileState[worldTile].lastChange = end;
     uint lit = uint(bitCount(mask.z) + bitCount(mask.w));
-    uint touched = (tileState[worldTile].flag & kTileUneven) != 0u ? kTileTouched : kTileNews;
+    uint touched = (tileState[worldTile].flag & kTileCorrected) != 0u ? kTileTouched : kTileLitBeside;
     uint bits = touched | (kTilePredict << push.predictParity);
     if (lit != 0u) {
         atomicAdd(objectCounters[object].ignited, lit);

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_TILES readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_STATE FW_READ_WRITE
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_LISTS FW_READ_WRITE
@@ -36,7 +36,7 @@ bool gatesLet(uint kind) {
         bool heats = more && (objects[at.object].flags & kObjectHeat) != 0u;
         HeatTexel x = unpackHeat(heat[objects[at.object].heatBase + (heats ? at.texel : 0u)]);
         uint t = state[objects[at.object].stateBase + at.texel];
-        lets = lets && (!more || (heats && gateLets(at.kind, at.tick, x, t, push.now)));
+        lets = lets && (!more || (heats && gateOpens(at.kind, at.tick, x, t, push.now)));
         more = more && (at.kind & kGateMore) != 0u;
     }
     return lets;
@@ -44,7 +44,7 @@ bool gatesLet(uint kind) {
 
 bool continuesRun(uint i, uint object, uint texel) {
     return i < push.count && events[i].object == object && events[i].texel == texel &&
-           eventKind(events[i].kind) != kEventPlays;
+           eventKind(events[i].kind) != kEventPlaybackSpan;
 }
 
 // True: the texel is a source now.
@@ -76,7 +76,7 @@ void applyRun(uint first, uint texel) {
         HeatTexel x = unpackHeat(had);
         do {
             uint kind_ = events[last].kind;
-            bool lets = !hasGates(kind_) || gatesLet(kind_);
+            bool lets = !eventHasGates(kind_) || gatesLet(kind_);
             uint was = now;
             if (lets)
                 now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick, push.now);
@@ -95,8 +95,8 @@ void applyRun(uint first, uint texel) {
 
     TexelPlace p = placeOfTexel(object, texel);
     bool lights = isSource(now) && !isSource(before);
-    if (asksOnly()) {
-        if (lights && byFlame) askToBurn(p.worldTile);
+    if (isRequestPass()) {
+        if (lights && byFlame) requestToBurn(p.worldTile);
         else if (lights) nowBurns(object, p.worldTile, push.now + kStepTicks);
         return;
     }
@@ -128,14 +128,14 @@ void carryTexel(uint i) {
     uint from = (events[i].kind >> kEventKindBits) - 1u;
     uint at = objects[object].stateBase + texel;
     uint before = state[at], now = state[objects[from].stateBase + events[i].tick];
-    if (asksOnly() || !carries(now, before)) return;
+    if (isRequestPass() || !carries(now, before)) return;
     TexelPlace p = placeOfTexel(object, texel);
     if ((objects[object].flags & kObjectHeat) != 0u) {
         uint heatAt = objects[object].heatBase + texel;
         HeatMaterial m = heatMaterial(materialOfTexel(object, texel));
         uvec2 had = heat[heatAt];
-        HeatTexel x = heatCarried(unpackHeat(heat[objects[from].heatBase + events[i].tick]), m);
-        now = wetState(now, heatClosed(x, m));
+        HeatTexel x = carriedTexel(unpackHeat(heat[objects[from].heatBase + events[i].tick]), m);
+        now = wetState(now, isBarrierByWater(x, m));
         uvec2 has = packHeat(x);
         if (has == had && now == before) return;
         recordCarriedEnergy(object, unpackHeat(had).fuel, x.fuel, m.energy);
@@ -153,7 +153,7 @@ void carryTexel(uint i) {
 
 bool addressesAll(uint i) {
     uint kind = eventKind(events[i].kind);
-    return events[i].texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+    return events[i].texel == kNoneTexel && kind != kEventGate && kind != kEventPlaybackSpan;
 }
 
 #ifdef FW_ALL_TEXELS
@@ -184,7 +184,7 @@ void main() {
         carryTexel(i);
         return;
     }
-    if (eventKind(events[i].kind) == kEventPlays) {
+    if (eventKind(events[i].kind) == kEventPlaybackSpan) {
         // both never occur in one step
         if (events[i].tick == kNever) atomicMax(objectCounters[object].playsUntil, kNever);
         else atomicMin(objectCounters[object].playsUntil, events[i].tick);

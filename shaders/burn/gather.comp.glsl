@@ -51,7 +51,7 @@ void gatherRow(uint slot, uint row) {
     uvec4 times = objectTimes(tile.y);
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, times.y);
     uint before = end - windowTicks(push.stepShift, times.y);
-    uint floorTick = frontFloor(before, times.x);
+    uint floorTick = windowFloor(before, times.x);
     bool woken = (tile.z & kRunWoken) != 0u;
     uint texel = (tile.z & ~kRunBits) + row * bases.w;
     uint at = bases.y + texel;
@@ -60,7 +60,7 @@ void gatherRow(uint slot, uint row) {
     uint own[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
     uint eligible = 0u;
     FW_UNROLL for (int i = 0; i < 8; ++i)
-        eligible |= frontEligible(own[i], floorTick) ? 1u << uint(i) : 0u;
+        eligible |= isFrontEligible(own[i], floorTick) ? 1u << uint(i) : 0u;
     if (eligible == 0u) return;
     uint rim = rimOfRow(tile.w, row);
     uint inner = eligible & ~rim;
@@ -78,7 +78,7 @@ void gatherRow(uint slot, uint row) {
                       stateQuads[(down >> 2u) + 1u], right ? state[down + 8u] : kInert, end);
         Row u = rowOf(left ? state[up - 1u] : kInert, stateQuads[up >> 2u],
                       stateQuads[(up >> 2u) + 1u], right ? state[up + 8u] : kInert, end);
-        // frontSources for eight texels at once: bit i is the texel in column i + 1.
+        // countingSources for eight texels at once: bit i is the texel in column i + 1.
         uint straight = m.sources | (m.sources >> 2u) | (u.sources >> 1u) | (d.sources >> 1u);
         uint openUp = ~(u.walls >> 1u);
         uint openDown = ~(d.walls >> 1u);
@@ -103,7 +103,7 @@ void gatherRow(uint slot, uint row) {
         FW_UNROLL for (int i = 0; i < 8; ++i)
             if ((quiet & (1u << uint(i))) != 0u)
                 pending = min(pending, min(min(column[i], column[i + 2]), min(d.future[i + 1], u.future[i + 1])));
-        if (pending != kNever) atomicOr(tileState[tile.x].flag, kTileAhead);
+        if (pending != kNever) atomicOr(tileState[tile.x].flag, kTilePendingUnknown);
         if (woken) {
             uvec4 pa = pendingQuads[at >> 2u];
             uvec4 pb = pendingQuads[(at >> 2u) + 1u];

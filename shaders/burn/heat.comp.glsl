@@ -12,7 +12,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_MATERIALS readonly
 #define FW_USE_TEXELS readonly
 #define FW_USE_TILES readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_STATE FW_READ_WRITE
 #define FW_USE_STATE_QUADS
 #define FW_USE_TILE_STATE FW_READ_WRITE
@@ -71,11 +71,11 @@ Row rowWork(TileRef tile, uint row, uint flux, uint turn) {
         uvec4 two = heatPairs[(heatAt >> 1u) + uint(i)];
         FW_UNROLL for (int k = 0; k < 2; ++k) {
             HeatTexel x = unpackHeat(k == 0 ? two.xy : two.zw);
-            uint work = workInTurn(heatWork(x, t[2 * i + k], flux, ambient), turn);
+            uint work = workThisStep(workOfTexel(x, t[2 * i + k], flux, ambient), turn);
             uint bit = 1u << uint(2 * i + k);
             r.todo |= (work & turn) != 0u ? bit : 0u;
-            r.dozes |= work == kWorkDozes ? bit : 0u;
-            r.rests |= work == kWorkRests ? bit : 0u;
+            r.dozes |= work == kWorkColdWater ? bit : 0u;
+            r.rests |= work == kWorkWarm ? bit : 0u;
             r.waits |= (work & turn) == 0u ? work : 0u;
         }
     }
@@ -128,7 +128,7 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
     uint left = kinds[thread >> 3u];
     do {
         uint kind = uint(findLSB(left)), material = object * kMaterialsPerObject + kind;
-        HeatMaterial own = heatInAir(heatMaterial(material), strength);
+        HeatMaterial own = materialInAir(heatMaterial(material), strength);
         uint air = materials[material].air;
         uint at = 0u;
         do {
@@ -141,15 +141,15 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
             uint chance = heatChance(texel, step);
             uint units = 0u;
             if ((item & kItemDozes) != 0u)
-                now = heatDozes(x, own, before, chance);
+                now = dryColdWater(x, own, before, chance);
             else
-                now = heatTexelStep(x, heatOver(own, (item & kItemRests) != 0u, comes.x), before,
+                now = heatTexelStep(x, heatMaterialOver(own, (item & kItemRests) != 0u, comes.x), before,
                                     push.now, comes.x, comes.y != 0u, air, chance, units);
             bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
             bool lights = real && isSource(now) && !isSource(before);
-            bool writes = !asksOnly() && !(held && lights);
+            bool writes = !isRequestPass() && !(held && lights);
             sum.bits |= lights && !writes ? kWorkAlways << 16u : 0u;
-            sum.bits += lights && asksOnly() ? 1u : 0u;
+            sum.bits += lights && isRequestPass() ? 1u : 0u;
             if (real && writes) {
                 uint low, high;
                 umulExtended(units, own.energy, high, low);
@@ -163,7 +163,7 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
                 }
                 sum.bits += lights ? 1u : 0u;
                 sum.bits += isSource(before) && !isSource(now) ? 0x100u : 0u;
-                sum.bits |= heatWork(x, now, comes.x, ambient) << 16u;
+                sum.bits |= workOfTexel(x, now, comes.x, ambient) << 16u;
             }
             at += 8u;
         } while (at < count);
@@ -175,7 +175,7 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
 void finishTile(uint worldTile, TileRef tile, uint slot) {
     uint object = tile.object;
     uvec2 changed = uvec2(tileChanged[slot * 2u], tileChanged[slot * 2u + 1u]);
-    uint lit = 0u, gone = 0u, work = fluxWork(tileHeat[worldTile].flux), low = 0u, high = 0u;
+    uint lit = 0u, gone = 0u, work = workOfFlux(tileHeat[worldTile].flux), low = 0u, high = 0u;
     float watts = 0.0;
     for (uint k = slot * 8u; k < slot * 8u + 8u; ++k) {
         uint changes = threadChanges[k];
@@ -186,8 +186,8 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
         high += threadHigh[k] + (low < threadLow[k] ? 1u : 0u);
         watts += threadWatts[k];
     }
-    if (asksOnly()) {
-        if (lit != 0u) askToBurn(worldTile);
+    if (isRequestPass()) {
+        if (lit != 0u) requestToBurn(worldTile);
         return;
     }
     if (work != 0u) {
@@ -208,12 +208,12 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
     }
     tileState[worldTile].lastChange = push.now;
     predictTouch(push.predictParity, worldTile);
-    touchReaders(object, tile.local, changed);
+    touchDependents(object, tile.local, changed);
 }
 
 uint turnOf(uint worldTile, TileRef tile) {
     bool warm = (tileState[worldTile].flag & kTileWarm) != 0u;
-    return heatTurn(warm, tile.object, tile.local, tileHeat[worldTile].flux, push.now);
+    return workDue(warm, tile.object, tile.local, tileHeat[worldTile].flux, push.now);
 }
 
 // Takes a tile of the list: it runs, waits, or is gone.
@@ -221,10 +221,10 @@ void takeTile(uint worldTile) {
     TileRef tile = tileRef(worldTile);
     bool alive = tile.alive && (objects[tile.object].flags & kObjectHeat) != 0u;
     if (!alive) {
-        if (!asksOnly()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
+        if (!isRequestPass()) atomicAnd(tileState[worldTile].flag, ~(kTileHot | kTileWarm));
     } else if (turnOf(worldTile, tile) == 0u) {
-        if (!asksOnly()) stays[atomicAdd(staying, 1u)] = worldTile;  // not due
-    } else if (!asksOnly() || !mayBurn(worldTile)) {
+        if (!isRequestPass()) stays[atomicAdd(staying, 1u)] = worldTile;  // not due
+    } else if (!isRequestPass() || !mayBurn(worldTile)) {
         runs[atomicAdd(running, 1u)] = worldTile;
     }
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_TEXELS readonly
 #define FW_USE_NORMALS readonly
 #define FW_USE_SLOWNESS readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_TILES readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
@@ -39,7 +39,7 @@ Column columnAt(uint texel, uvec4 bases) {
     return c;
 }
 
-uint hop(uint time, uvec2 place, ivec3 mine, FrontPrep p) {
+uint hop(uint time, uvec2 place, ivec3 mine, FrontDrive p) {
     uint reach = time + (uint(linkCost((mine - decodePosition(place)) * 8, p)) >> 4u);
     return hasTime(time) ? reach : kNever;
 }
@@ -73,7 +73,7 @@ void predictRow(uint work) {
                     held = material;
                     m = burnMaterial(materialBase + held);
                 }
-                FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+                FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
                 ivec3 mine = decodePosition(middle.place[1]);
                 now = min(hop(middle.time[0], middle.place[0], mine, p), hop(middle.time[2], middle.place[2], mine, p));
                 FW_UNROLL for (int i = 0; i < 3; ++i)

@@ -5,7 +5,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_TILES readonly
 #define FW_USE_TILE_WORDS
 #define FW_USE_STATE_QUADS

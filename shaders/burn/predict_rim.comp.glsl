@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_NORMALS readonly
 #define FW_USE_SLOWNESS readonly
 #define FW_USE_LINKS readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_TILES readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
 #define FW_USE_COUNTERS FW_READ_WRITE
@@ -39,7 +39,7 @@ void predictTexel(uint rimWork) {
     if (now == kNever) {
         uvec2 me = texels[bases.x + texel];
         uint other[8] = rimRing(object, sizes.x + worldTile - objects[object].worldTileBase, lane);
-        FrontPrep p = frontPrep(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+        FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
             burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
         FW_UNROLL for (int k = 0; k < 8; ++k) {
             if (other[k] != kNoneTexel) {

@@ -25,8 +25,8 @@ layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4
 bool light(uint object, int x, int y, uint at) {
     uint end = push.now + kStepTicks;
     uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX + uint(x >> 3);
-    if (asksOnly() && !mayBurn(worldTile)) askToBurn(worldTile);
-    if (asksOnly() || !mayBurn(worldTile)) return false;
+    if (isRequestPass() && !mayBurn(worldTile)) requestToBurn(worldTile);
+    if (isRequestPass() || !mayBurn(worldTile)) return false;
     state[at] = end;
     atomicAdd(objectCounters[object].ignited, 1u);
     nowBurns(object, worldTile, end);

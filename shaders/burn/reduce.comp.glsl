@@ -1,5 +1,5 @@
 // Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without
-// burnt-out tiles. 64 list entries per group. kSwitchShows: BurnTiles only; after a load the first
+// burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the first
 // frame shows flames while counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
@@ -37,7 +37,7 @@ void reduceTile(uint worldTile, uint parity) {
     uvec3 position = uvec3(0u);
     ivec3 normal = ivec3(0);
     float power = 0.0, whole = 0.0;
-    bool shows = (push.switches & kSwitchShows) != 0u;
+    bool shows = (push.switches & kSwitchDisplayOnly) != 0u;
     bool heats = (objects[object].flags & kObjectHeat) != 0u;
     uint heatBase = objects[object].heatBase;
     for (uint lane = 0u; tile.alive && lane < 64u; ++lane) {

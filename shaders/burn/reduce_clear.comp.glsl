@@ -4,16 +4,16 @@
 layout(local_size_x = 64) in;
 #define FW_USE_PUSH
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_EXCHANGE_OBJECTS
 #define FW_USE_SOURCES writeonly
 #include "lib/buffers.glsl"
 
 void main() {
     uint object = gl_GlobalInvocationID.x;
     if (object >= push.count) return;
-    uint count = objectCounters[object].burningTiles != 0u ? remoteObjects[object].sourceCount : 0u;
+    uint count = objectCounters[object].burningTiles != 0u ? exchangeObjects[object].sourceCount : 0u;
     for (uint i = 0u; i < count; ++i) {
-        uint source = remoteObjects[object].sourceBase + i;
+        uint source = exchangeObjects[object].sourceBase + i;
         sources[source].power = 0u;
         sources[source].texels = 0u;
         sources[source].tiles = 0u;

@@ -27,14 +27,14 @@ void resetTile(uint local, uint lane) {
     uvec2 packedTexel = texels[objects[object].texelBase + texel];
     uint slow = slownessAt(objects[object].slowBase, texel);
     uint material = object * kMaterialsPerObject + ((packedTexel.y >> 16u) & 7u);
-    bool burns = texelBurns(packedTexel.y >> 16u, slow, materials[material].flags);
+    bool burns = canTexelBurn(packedTexel.y >> 16u, slow, materials[material].flags);
     uint at = objects[object].stateBase + texel;
     uint code = burns ? kNever : kInert;
     if ((objects[object].flags & kObjectHeat) != 0u) {
         HeatMaterial m = heatMaterial(material);
-        HeatTexel x = heatRests(m, burns);
+        HeatTexel x = unheatedTexel(m, burns);
         heat[objects[object].heatBase + texel] = packHeat(x);
-        code = wetState(code, heatClosed(x, m));
+        code = wetState(code, isBarrierByWater(x, m));
     }
     state[at] = code;
     predict[at] = code;
@@ -43,7 +43,7 @@ void resetTile(uint local, uint lane) {
         uint worldTile = objects[object].worldTileBase + local;
         tileState[worldTile].wake = kNever;
         tileState[worldTile].flag = 0u;
-        tileState[worldTile].lastChange = kFarPast;
+        tileState[worldTile].lastChange = kNeverChanged;
         tileState[worldTile].object = object;
         tileHeat[worldTile] = TileHeat(0u, 0u);
         tileFire[worldTile] = 0.0;

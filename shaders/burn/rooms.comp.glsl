@@ -29,16 +29,16 @@ void main() {
             drawnLow = low;
             drawnHigh = high;
         }
-        uint joules = energySince(low, high, drawnLow, drawnHigh);
+        uint joules = takeWholeJoules(low, high, drawnLow, drawnHigh);
         objectCounters[slot].drawnLow = drawnLow;
         objectCounters[slot].drawnHigh = drawnHigh;
         if (joules != 0u) atomicAdd(ofRoom[room - 1u], joules);
     }
     barrier();
     RoomAir air = roomAir[thread];
-    roomBreathes(air, rooms[thread], ofRoom[thread], push.now);
+    stepRoomAir(air, rooms[thread], ofRoom[thread], push.now);
     roomAir[thread] = air;
-    ofRoom[thread] = roomStrength(air.oxygen);
+    ofRoom[thread] = burnStrengthOfOxygen(air.oxygen);
     barrier();
     for (uint slot = thread; slot < push.count; slot += kMaxRooms) {
         uint room = roomOf(slot);

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_RUN writeonly
 #define FW_USE_MASKS writeonly
 #define FW_USE_WAKE_GROUPS readonly
-#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_EXCHANGE_OBJECTS
 #define FW_USE_OBJECT_COUNTERS readonly
 #include "lib/buffers.glsl"
 #include "shared/front.h"
@@ -37,38 +37,38 @@ void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews | kTileAhead | kTileUneven);
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside | kTilePendingUnknown | kTileCorrected);
 }
 
 void schedule(uint worldTile, bool dense) {
     TileRef tile = tileRef(worldTile);
     uint flag = tileState[worldTile].flag;
     if (!tile.alive) {
-        tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews);
+        tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside);
         return;
     }
     if (dense && (objects[tile.object].flags & kObjectPublished) != 0u) return;
     uint shift = objects[tile.object].substepShift;
-    bool wanted = takesPart(push.iteration, push.stepShift, shift);
+    bool wanted = runsInIteration(push.iteration, push.stepShift, shift);
     if (!wanted) {
         if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
         return;
     }
     // Loops: devices without branches would also load under an `if`.
-    for (bool plays = (push.switches & kSwitchPlays) != 0u; plays; plays = false) {
-        if (playsAt(objectCounters[tile.object].playsUntil, push.now)) {  // due once it goes live
+    for (bool plays = (push.switches & kSwitchPlayback) != 0u; plays; plays = false) {
+        if (isPlayingBack(objectCounters[tile.object].playsUntil, push.now)) {  // due once it goes live
             if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
             return;
         }
     }
     for (bool governed = (push.switches & kSwitchGoverned) != 0u; governed; governed = false) {
         if (stoppedAt(objectCounters[tile.object].stopTick, push.now)) {
-            tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileNews);
+            tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside);
             return;
         }
-        if (holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.tilesMost,
-                      objectCounters[tile.object].burningTiles, remoteObjects[tile.object].flags,
-                      remoteObjects[tile.object].tilesMost)) {
+        if (holdsTile(flag, counters[kRowBurn + push.burnParity].listCount, push.maxTiles,
+                      objectCounters[tile.object].burningTiles, exchangeObjects[tile.object].flags,
+                      exchangeObjects[tile.object].maxTiles)) {
             if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
             return;
         }
@@ -76,11 +76,11 @@ void schedule(uint worldTile, bool dense) {
     uint wake = tileState[worldTile].wake;
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, shift);
     bool touched = dense || (flag & kTileTouched) != 0u;
-    bool litBeside = (flag & kTileNews) != 0u;
+    bool litBeside = (flag & kTileLitBeside) != 0u;
     if (touched || litBeside || wake <= end) {
         bool inTime = wake > end - windowTicks(push.stepShift, shift);
         uint why = litBeside ? kRunLitBeside : inTime ? kRunWoken : 0u;
-        if (touched || (flag & kTileAhead) != 0u) why = 0u;
+        if (touched || (flag & kTilePendingUnknown) != 0u) why = 0u;
         runTile(worldTile, tile, flag, why);
     } else if (wake != kNever) {
         frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);

@@ -11,7 +11,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_QUADS
 #define FW_USE_MATERIALS readonly
 #define FW_USE_TEXELS readonly
-#define FW_USE_READERS readonly
+#define FW_USE_DEPENDENTS readonly
 #define FW_USE_TILES readonly
 #define FW_USE_STATE readonly
 #define FW_USE_TILE_STATE FW_READ_WRITE
@@ -65,13 +65,13 @@ uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
 // Distance that a neighbour offers.
 uint offer(uint worldTile) {
     uint flag = tileState[worldTile].flag;
-    if (tileState[worldTile].lastChange == kFarPast) return kFar;  // it burns soon, or is known
+    if (tileState[worldTile].lastChange == kNeverChanged) return kFar;  // it burns soon, or is known
     return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
 }
 
 // Can the tile fall?
 bool concerns(uint worldTile, TileRef ref) {
-    return ref.alive && tileState[worldTile].lastChange != kFarPast &&
+    return ref.alive && tileState[worldTile].lastChange != kNeverChanged &&
            (objectPlaces(ref.object).w & (kObjectNoHoles | kObjectPublished)) == 0u;
 }
 

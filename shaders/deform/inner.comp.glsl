@@ -4,7 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_COATS
+#define FW_USE_DEFORM_EMBEDDINGS
 #define FW_USE_SHOWN
 #include "lib/deform_buffers.glsl"
 FW_BUFFER(FW_BIND_VERTICES, readonly, MeshVerticesBuffer, uvec4, meshVertices);

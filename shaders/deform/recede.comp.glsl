@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_STATE readonly
-#define FW_USE_DEFORM_NODES
+#define FW_USE_DEFORM_PARTICLES
 #define FW_USE_SHOWN
 #define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
@@ -63,7 +63,7 @@ void main() {
             uvec4 seen = soft(seenAt);
             float way = unpackPathLength(wayBits(soft(placeAt)));
             if (item.reset) {
-                way = kReachNone;
+                way = kNoPath;
                 for (uint i = 0u; i < bases.w; ++i) {
                     vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                     vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
@@ -73,10 +73,10 @@ void main() {
                     way = min(way, max(away, 0.0));
                 }
                 bool sheet = (bases.z & kDeformShell) != 0u;
-                softOut[placeAt] = uvec4(sheet ? softPlace(place, packWay(way, false)) : rest.xyz, 0u);
+                softOut[placeAt] = uvec4(sheet ? softPlace(place, packPathLength(way, false)) : rest.xyz, 0u);
             }
         // Bend shares from before it slept belong to another bending set.
-            softOut[seenAt] = uvec4(packFacts(burnt, way == 0.0), 0u, item.reset || item.woke ? uvec2(0u) : seen.zw);
+            softOut[seenAt] = uvec4(packParticleFacts(burnt, way == 0.0), 0u, item.reset || item.woke ? uvec2(0u) : seen.zw);
             if (!item.reset) place = shown(vertex).xyz;
             // Recession since the last frame, in equal parts for the steps.
             float steps = float(push.parity >> 1u);

@@ -6,7 +6,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_QUADS
-#define FW_USE_DEFORM_NODES
+#define FW_USE_DEFORM_PARTICLES
 #define FW_USE_SHOWN
 #define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
@@ -24,7 +24,7 @@ void main() {
     vec3 blows = push.wind.xyz + 0.001 * vec3(unpackWind(objectQuads[facts2.y * 10u + 9u].w));
     vec3 wind = toObject(facts2, blows) / scale;
     vec4 height = heightHere(facts2);
-    uint way = push.parity >> 1u, echoed = (way + kArmWays - 1u) % kArmWays;
+    uint way = push.parity >> 1u, echoed = (way + kBendSets - 1u) % kBendSets;
 
     uint last = min(item.end, sizes.y);
     uint number = item.number;
@@ -46,7 +46,7 @@ void main() {
         uvec4 self = soft(places + number);
         vec3 x = placeOf(self);
         uvec4 ties = soft(own + kSoftLinkCache * sizes.y);
-        float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kReachNone;
+        float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kNoPath;
         bool pinned = pinnedOf(ties.w) != 0u;
         // Both ends of a link use the same length.
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
@@ -59,21 +59,21 @@ void main() {
         uint turn = 0u, turns = nodeTurns(facts.y);
         do {  // the neighbours
             uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y);
-            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
-                uint k = turn * kDeformLinks + i;
+            FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
+                uint k = turn * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
                 uvec4 there = soft(places + (two[i] & kDeformLinkIndex));
                 vec3 y = placeOf(there), arm = y - x;
                 bool holds = (ties.x >> k & 1u) != 0u;
                 // A particle with a parted link is not whole and gives no share.
-                bending -= holds ? shareOf(there.w) : vec3(0.0);
+                bending -= holds ? unpackBendShare(there.w) : vec3(0.0);
                 nearSum += holds ? arm : vec3(0.0);
                 nearSquares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 turned += cross(before, arm);
                 if (k == 0u) first = arm;
                 before = arm;
                 float theirs = float(ties.y >> (4u * k) & 15u);
-                vec3 p = linkPush(x, y, rest * (1.0 - shrunk * (mine + theirs)),
+                vec3 p = linkCorrection(x, y, rest * (1.0 - shrunk * (mine + theirs)),
                                   (ties.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
                 reach = holds ? min(reach, unpackPathLength(wayBits(there)) + rest) : reach;
@@ -88,61 +88,61 @@ void main() {
             uvec4 arms = deformNode(at + (kParticleBends + way) * sizes.y);
             uvec4 echo = deformNode(at + (kParticleBends + echoed) * sizes.y);
             rise = uintBitsToFloat(arms.w);
-            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+            FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 float rest = unpackHalf2x16(arms.z)[i];
                 vec3 arm = placeOf(soft(places + (arms[i] & kDeformLinkIndex))) - x;
-                bool holds = (ties.x >> (kLinkCacheBends + way * kDeformLinks + i) & 1u) != 0u &&
-                             dot(arm, arm) <= kArmTears * kArmTears * rest * rest;
+                bool holds = (ties.x >> (kLinkCacheBends + way * kLinksPerPass + i) & 1u) != 0u &&
+                             dot(arm, arm) <= kBendTears * kBendTears * rest * rest;
                 sum += holds ? arm : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 // Corrections requested by the last step's set; particles without constraints
                 // request none.
                 uvec4 there = soft(seenAt + (echo[i] & kDeformLinkIndex));
                 uint share = item.parity == 0u ? there.z : there.w;
-                bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? shareOf(share) : vec3(0.0);
+                bending -= unpackHalf2x16(echo.z)[i] > 0.0 ? unpackBendShare(share) : vec3(0.0);
             }
         }
 
-        if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
+        if ((facts.y & kParticleClosed) != 0u) turned += cross(before, first);
         float size = length(turned);
         vec3 normal = size > 1e-18 ? turned / size : up;
         curl *= curlSide(normal, up) * scale * charred;
         float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
         vec3 b = bendOf(nearSum * mean, normal, uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
-                        stiff * kBendRelax, (facts.y & kNodeEven) != 0u);
-        uint nearShare = packShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
-        bending += shareOf(nearShare) * count;
+                        stiff * kBendRelax, (facts.y & kParticleEven) != 0u);
+        uint nearShare = packBendShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        bending += unpackBendShare(nearShare) * count;
         if (reaches) {
-            uint ends = ties.z >> (way * kDeformLinks * 4u);
-            float across = armCurl(float(ends & 15u) / kCharredSteps, float(ends >> 4u & 15u) / kCharredSteps);
-            b = bendOf(sum * 0.5, normal, rise + kArmCurls * across * curlRise(curl, squares.x * 0.5), 2.0,
-                       armFirm(stiff, charred, across), (facts.y & kNodeArmsEven << way) != 0u);
-            uint armShare = packShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
-            bending += shareOf(armShare) * 2.0;
+            uint ends = ties.z >> (way * kLinksPerPass * 4u);
+            float across = bendCurl(float(ends & 15u) / kCharredSteps, float(ends >> 4u & 15u) / kCharredSteps);
+            b = bendOf(sum * 0.5, normal, rise + kBendCurl * across * curlRise(curl, squares.x * 0.5), 2.0,
+                       bendStiffness(stiff, charred, across), (facts.y & kParticleBendsEven << way) != 0u);
+            uint armShare = packBendShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
+            bending += unpackBendShare(armShare) * 2.0;
             if (item.parity == 0u) softOut[seenAt + number].w = armShare;
             else softOut[seenAt + number].z = armShare;
         }
 
         float was = unpackPathLength(wayBits(self));
-        if (was == 0.0 && !pinned) was = kReachNone;
+        if (was == 0.0 && !pinned) was = kNoPath;
         bool knew = (wayBits(self) & kPathKnown) != 0u;
-        bool known = knew || reachKnown(reach, was);
-        reach = pinned ? 0.0 : reachNext(reach, was, knew);
+        bool known = knew || isPathKnown(reach, was);
+        reach = pinned ? 0.0 : nextPath(reach, was, knew);
 
         uint shownAt = (bases.x + facts.x) * kShownQuads;
         vec3 last_ = shown(shownAt).xyz;
         vec3 moved = x + links * relaxAt(kLinkRelax, push.step) + bending * (relaxAt(1.0, push.step) / kBendUnit);
         // Limits the distance to the nearest pin to the path length over holding links.
-        if (reach < 0.5 * kReachNone) {
+        if (reach < 0.5 * kNoPath) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
-            float away = length(moved - anchor.xyz), most = reach * kReachSlack + anchor.w;
+            float away = length(moved - anchor.xyz), most = reach * kPathSlack + anchor.w;
             if (away > most) moved = anchor.xyz + (moved - anchor.xyz) * (most / away);
         }
         float above = dot(height.xyz, moved) + height.w - ground;
         bool down = above < 0.0;
         if (down) moved -= up * (above / scale);
 
-        vec3 velocity = noFasterThan((moved - last_) / push.step, kFastest / scale);
+        vec3 velocity = limitSpeed((moved - last_) / push.step, kFastest / scale);
         velocity *= down ? 0.5 : sheetDamping(charred, push.step);
         vec3 air = wind * gustAt(x, scale, push.wind.w) + up * (updraftAt(burnt) / scale);
         float slowed = drag * (1.0 + 2.0 * charred) * push.step;
@@ -153,7 +153,7 @@ void main() {
         if (pinned) moved = next = x;  // fixed from the start
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packWay(reach, known)), nearShare);
+        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packPathLength(reach, known)), nearShare);
         number += 64u;
     } while (number < last);
 }

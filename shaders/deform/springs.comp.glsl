@@ -4,7 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_NODES
+#define FW_USE_DEFORM_PARTICLES
 #define FW_USE_SHOWN
 #define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
@@ -33,7 +33,7 @@ void main() {
         do {
             uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y),
                   over = deformNode(at + (kParticleFarLinks + turn) * sizes.y);
-            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
+            FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint other = two[i] & kDeformLinkIndex;
                 float rest = unpackHalf2x16(two.z)[i];
                 vec3 y = uintBitsToFloat(soft(places + other).xyz);
@@ -47,7 +47,7 @@ void main() {
                 pull += rest > 0.0 ? springPull(x, y, rest, stiffness) : vec3(0.0);
             }
         } while (++turn < turns);
-        if ((facts.y & kNodeClosed) != 0u) turned += cross(before, first);
+        if ((facts.y & kParticleClosed) != 0u) turned += cross(before, first);
         float size = length(turned);
         vec3 normal = size > 1e-18 ? turned / size : vec3(0.0);
 

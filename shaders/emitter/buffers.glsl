@@ -7,7 +7,7 @@
 
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 #ifdef FW_EMITTER_LOOKS
-layout(std430, set = 0, binding = FW_BIND_LOOKS) readonly buffer AppearancesBuffer { MaterialLook looks[]; };
+layout(std430, set = 0, binding = FW_BIND_APPEARANCES) readonly buffer AppearancesBuffer { MaterialAppearance looks[]; };
 #endif
 #ifdef FW_EMITTER_FLAMES
 layout(std430, set = 0, binding = FW_BIND_FLAMES) FW_EMITTER_FLAMES buffer FlamesBuffer { FlameQuad flameQuad[]; };
@@ -16,15 +16,15 @@ layout(std430, set = 0, binding = FW_BIND_FLAMES) FW_EMITTER_FLAMES buffer Flame
 layout(std430, set = 0, binding = FW_BIND_DRAW_ARGS) FW_EMITTER_DRAW_ARGS buffer ArgsBuffer { uint drawArgs[]; };
 #endif
 #ifdef FW_EMITTER_BOOKS
-#include "shared/book.h"
-layout(std430, set = 0, binding = FW_BIND_BOOKS) readonly buffer FlipbooksBuffer { uint books[]; };
+#include "shared/flipbook.h"
+layout(std430, set = 0, binding = FW_BIND_FLIPBOOKS) readonly buffer FlipbooksBuffer { uint books[]; };
 
 // Makes a flipbook (`book` - 1; 0: none) show a quad. True: it loops. life, age, own: as
 // flipbookTime's.
 bool showByBook(inout FlameQuad quad, uint book, float life, float age, float own) {
     if (book == 0u) return false;
-    uint at = (book - 1u) * kBookRecordWords;
-    bool loops = (books[at + 6u] & kBookLoops) != 0u;
+    uint at = (book - 1u) * kFlipbookRecordWords;
+    bool loops = (books[at + 6u] & kFlipbookLoops) != 0u;
     quad.phase = flipbookTime(loops, uintBitsToFloat(books[at + 8u]), life, age, own);
     quad.kind |= book << kQuadFlipbookShift;
     return loops;

@@ -27,7 +27,7 @@ layout(local_size_x = 64) in;
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
-const float kLeastPixels = 20.0;  // of a flame's height
+const float kMinPixels = 20.0;  // of a flame's height
 const float kMaxMerged = 1.6;    // height factor of merged flames
 const float kMaxClear = 0.9;     // half widths, see clearance
 
@@ -50,7 +50,7 @@ vec3 clearance(BurnObject object, vec3 place, vec3 normal) {
 }
 
 void emit(FlameQuad quad) {
-    uint slot = atomicAdd(drawArgs[kFlameTiles], 1u);
+    uint slot = atomicAdd(drawArgs[kFlameTileQuads], 1u);
     if (slot < min(view.flameCapacity, kFlameCapacity)) flameQuad[slot] = quad;
 }
 
@@ -78,7 +78,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         float age = float(view.now - t) + view.ambientGround.w;
         if (age < ago) continue;  // it caught later
         uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
-        MaterialLook look = looks[materials[material].look];
+        MaterialAppearance look = looks[materials[material].look];
         float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
         // Thin materials burn at hole edges while the hole grows.
         if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
@@ -116,10 +116,10 @@ void main() {
         vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
         vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
         float likely = flameLength(near, around);
-        // Merges flames below kLeastPixels: fewer and larger.
+        // Merges flames below kMinPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
         float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
-        likely *= clamp(kLeastPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
+        likely *= clamp(kMinPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
         float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames still has a row of them.
@@ -132,7 +132,7 @@ void main() {
 
         for (uint k = 0u; k < 4u; ++k) {
             bool smoke = k == 3u;
-            MaterialLook mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
+            MaterialAppearance mainLook = looks[materials[tile.object * kMaterialsPerObject].look];
             float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
@@ -150,7 +150,7 @@ void main() {
                              smoothstep(0.0, 1.0, foot.left);
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
-            MaterialLook look = looks[materials[foot.material].look];
+            MaterialAppearance look = looks[materials[foot.material].look];
             uvec2 packedTexel = texels[object.texelBase + foot.texel];
             vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
                                                                packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);

@@ -223,9 +223,9 @@ void placeLights(uint me, uint hiding, uint lights) {
 
 void main() {
     uint me = gl_LocalInvocationID.x;
-    uint tiles = min(drawArgs[kFlameTiles], min(push.tiles, view.flameCapacity));
-    uint hiding = tiles + min(drawArgs[kFlameParticles], push.particles);
-    uint lights = min(drawArgs[kFlameLights], push.lights);
+    uint tiles = min(drawArgs[kFlameTileQuads], min(push.tiles, view.flameCapacity));
+    uint hiding = tiles + min(drawArgs[kFlameParticleQuads], push.particles);
+    uint lights = min(drawArgs[kFlameEmissiveQuads], push.lights);
     if (hiding <= push.few)  // gpu/passes/draw_order.h decides
         sortFew(me, hiding, tiles);
     else
@@ -238,9 +238,9 @@ void main() {
         drawArgs[0] = 6u * count;  // vertices
         drawArgs[1] = 1u;
         drawArgs[2] = drawArgs[3] = 0u;
-        drawArgs[kFlameLightDraw] = 6u * lights;
-        drawArgs[kFlameLightDraw + 1u] = 1u;
-        drawArgs[kFlameLightDraw + 2u] = 6u * (push.tiles + push.particles);
-        drawArgs[kFlameLightDraw + 3u] = 0u;
+        drawArgs[kFlameEmissiveDraw] = 6u * lights;
+        drawArgs[kFlameEmissiveDraw + 1u] = 1u;
+        drawArgs[kFlameEmissiveDraw + 2u] = 6u * (push.tiles + push.particles);
+        drawArgs[kFlameEmissiveDraw + 3u] = 0u;
     }
 }

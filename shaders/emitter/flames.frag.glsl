@@ -17,8 +17,8 @@ layout(location = 2) flat in uint inKind;
 layout(location = 3) flat in float inWidth;
 layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 
-#ifdef FW_BOOKS
-#include "shared/book.h"
+#ifdef FW_FLIPBOOKS
+#include "shared/flipbook.h"
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
 // for every quad.
 layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
@@ -36,12 +36,12 @@ vec4 bookTexel(vec2 at, vec2 uv) {
 vec2 bookMotionAt(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.zw, vec2(0.5), inSizes.zw - 0.5);
     vec2 size = vec2(textureSize(bookPicture, 0));
-    return bookMotion(textureLod(bookPicture, (at + p) / size, 0.0).rg, inBetween.y);
+    return decodeFlipbookMotion(textureLod(bookPicture, (at + p) / size, 0.0).rg, inBetween.y);
 }
-vec4 showBook(vec2 uv) {
+vec4 sampleFlipbook(vec2 uv) {
     vec2 before = bookBefore(uv, bookMotionAt(inMotions.xy, uv), inBetween.x);
-    vec2 after = bookAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
-    return bookMix(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
+    vec2 after = flipbookUvAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
+    return mixFlipbookTexels(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
 }
 const float kBookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
 const float kBookHides = 1.05;  // coverage relative to brightness, matching volumes
@@ -165,10 +165,10 @@ void main() {
         soot *= sootLeft(kelvin);
         hides = sootHides(kelvin);
     }
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
     bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
-    vec4 frame = showBook(uv);
+    vec4 frame = sampleFlipbook(uv);
     if (booked) {
         soot = frame.y;
         kelvin = inState.z + kBookSpan * (frame.x - 0.5);
@@ -187,7 +187,7 @@ void main() {
         alpha = body * opacity;
         // Thinner towards the light: it faces the light.
         float billow = 0.9 * (1.1 * (length(c + ahead) - r) + 6.0 * (n1.r - aheadNoise));
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
         if (booked) {
             alpha = frame.z * opacity;
             vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
@@ -203,7 +203,7 @@ void main() {
     }
     if (spark) {
         float body = saturate(1.6 * (1.0 - r * r)) * opacity;
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
         if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
         // Compressed: the true radiance falls a thousandfold during the flight.

@@ -5,7 +5,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define FW_EMITTER_FLAMES readonly
 #define FW_EMITTER_DRAW_ARGS readonly
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
 #define FW_EMITTER_BOOKS
 #endif
 #include "emitter/buffers.glsl"
@@ -20,15 +20,15 @@ layout(location = 2) flat out uint outKind;
 layout(location = 3) flat out float outWidth;  // m, half width
 layout(location = 4) flat out vec2 outSun;     // light direction in the quad's plane
 
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
 layout(location = 5) flat out vec4 outFrames;   // texel of the frame before and of the frame after
 layout(location = 6) flat out vec4 outMotions;  // the same of their motion
 layout(location = 7) flat out vec4 outSizes;    // texels of a frame, of its motion
 layout(location = 8) flat out vec2 outBetween;  // blend weight, largest motion
 
-BookRecord bookOf(uint i) {
-    uint at = i * kBookRecordWords;
-    BookRecord b;
+FlipbookRecord bookOf(uint i) {
+    uint at = i * kFlipbookRecordWords;
+    FlipbookRecord b;
     b.at = books[at];
     b.size = books[at + 1u];
     b.motionAt = books[at + 2u];
@@ -36,28 +36,28 @@ BookRecord bookOf(uint i) {
     b.frames = books[at + 4u];
     b.columns = books[at + 5u];
     b.flags = books[at + 6u];
-    b.motionMost = uintBitsToFloat(books[at + 7u]);
+    b.maxMotion = uintBitsToFloat(books[at + 7u]);
     return b;
 }
 vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
 
 // Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame.
 // pixels: width on the screen.
-vec2 openBook(FlameQuad quad, vec2 place, float pixels) {
+vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
-    BookRecord b = bookOf(book);
-    BookPlace p = bookPlace(quad.phase, b.frames, (b.flags & kBookLoops) != 0u);
+    FlipbookRecord b = bookOf(book);
+    FlipbookPlace p = flipbookPlaceAt(quad.phase, b.frames, (b.flags & kFlipbookLoops) != 0u);
     vec2 texels = halves(b.size);
-    uint level = bookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
-    uint smaller = books[book * kBookRecordWords + kFlipbookLevelWord + level];
+    uint level = flipbookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
+    uint smaller = books[book * kFlipbookRecordWords + kFlipbookLevelWord + level];
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
-    outFrames = vec4(vec2(bookCell(b, p.before)), vec2(bookCell(b, p.after)));
-    outMotions = vec4(vec2(bookMotionCell(b, p.before)), vec2(bookMotionCell(b, p.after)));
+    outFrames = vec4(vec2(flipbookFrameOrigin(b, p.before)), vec2(flipbookFrameOrigin(b, p.after)));
+    outMotions = vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
     outSizes = vec4(halves(b.size), halves(b.motionSize));
-    outBetween = vec2(p.part, b.motionMost);
-    uint rect = kBookRects + 2u * (book * kMostBookFrames + p.before);
+    outBetween = vec2(p.part, b.maxMotion);
+    uint rect = kFlipbookRects + 2u * (book * kMaxFlipbookFrames + p.before);
     // A texel of a mip covers more than the occupied texels of mip 0.
     vec2 wider = vec2(float((1u << level) - 1u)) / texels;
     vec2 low = max(halves(books[rect]) / texels - wider, vec2(0.0));
@@ -99,10 +99,10 @@ void main() {
         place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }
-#ifdef FW_BOOKS
+#ifdef FW_FLIPBOOKS
     outFrames = outMotions = outSizes = vec4(0.0);
     outBetween = vec2(0.0);
-    if ((quad.kind >> kQuadFlipbookShift & 0xFFu) != 0u) place = openBook(quad, place, pixels);
+    if ((quad.kind >> kQuadFlipbookShift & 0xFFu) != 0u) place = openFlipbook(quad, place, pixels);
 #endif
     vec3 toEye = -mix(view.forward.xyz, normalize(middle), perspective);
     bool smoke = (quad.kind & 3u) == kQuadSmoke;

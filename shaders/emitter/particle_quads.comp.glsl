@@ -37,7 +37,7 @@ ParticleEmitter emitterOf(uint i) {
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
-    float shows = shareShows(view.quads.x, particleHash(seed + 311u));
+    float shows = shownShare(view.quads.x, particleHash(seed + 311u));
     float size = particleSize(e, t, age, p.speedPath.w, t.own) * view.quads.y;
     vec3 place = p.placeAge.xyz, v = p.speedPath.xyz;
     vec3 toEye = view.eye.xyz - place;
@@ -102,14 +102,14 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
 
     // Emissive quads have separate places: they are not sorted.
     if (fire && (e.flags & kEmitterEmits) != 0u) {
-        uint light = atomicAdd(drawArgs[kFlameLights], 1u);
+        uint light = atomicAdd(drawArgs[kFlameEmissiveQuads], 1u);
         quad.kind |= kQuadEmits;
         if (light < push.lights) flameQuad[push.firstQuad + push.quads + light] = quad;
         fire = false;
     }
     uint count = (fire ? 1u : 0u) + (smokes ? 1u : 0u);
     uint first = 0u;
-    if (count > 0u) first = atomicAdd(drawArgs[kFlameParticles], count);
+    if (count > 0u) first = atomicAdd(drawArgs[kFlameParticleQuads], count);
     if (fire && first < push.quads) flameQuad[push.firstQuad + first] = quad;
     if (fire) ++first;
     if (smokes && first < push.quads) flameQuad[push.firstQuad + first] = smoke;

@@ -45,7 +45,7 @@ ParticleEmitter emitterOf(uint i) {
     e.seed = emitters[i].seed;
     e.flags = emitters[i].flags;
     e.steps = emitters[i].steps;
-    e.shieldCount = emitters[i].shieldCount;
+    e.obstacleCount = emitters[i].obstacleCount;
     return e;
 }
 
@@ -162,11 +162,11 @@ void flies(ParticleEmitter e, uint i, inout Flight f) {
         vec4 middle = emitters[i].shields[2u * k];
         vec3 n = emitters[i].shields[2u * k + 1u].xyz;
         float share = particleMeets(from, f.p.placeAge.xyz, middle, n, reach);
-        bool first = k < e.shieldCount && share < least;
+        bool first = k < e.obstacleCount && share < least;
         least = first ? share : least;
         disc = first ? middle : disc;
         normal = first ? n : normal;
-    } while (++k < e.shieldCount);
+    } while (++k < e.obstacleCount);
     float above = particleAbove(e, f.p);
     if (least <= 1.0 || particleLands(e, f.p, size, above))
         f.p = particleMet(e, f.traits, f.p, f.seed, from, least, disc, normal, size, above);
@@ -199,7 +199,7 @@ void main() {
     memoryBarrier();  // words written above are read as texels below
     // A jet's particles all test obstacles; others only when they reach the ground: a bit per
     // iteration marks those.
-    bool jet = e.shieldCount > 0u;
+    bool jet = e.obstacleCount > 0u;
     uint met = 0u, turn = jet ? turns - 1u : 0u;
     do {
         Flight f = flightOf(e, own + turn * 64u);

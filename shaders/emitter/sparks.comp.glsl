@@ -6,7 +6,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS readonly
 #define FW_USE_BURN_TILES readonly
 #include "lib/buffers.glsl"
-#include "shared/book.h"
+#include "shared/flipbook.h"
 #include "shared/spark.h"
 layout(std430, set = 0, binding = FW_BIND_SPARKS) readonly buffer SparksBuffer { SparkSource sources[]; };
 #define FW_EMITTER_FLAMES writeonly
@@ -72,13 +72,13 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.axisWidth = vec4(along, wide);
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
     quad.opacity = sparkFades(a) * strength * smoothstep(kNearFade, kNearFade + 0.8, far) *
-                   shareShows(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
+                   shownShare(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
     quad.phase = s.book != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
     quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadFlipbookShift | kQuadSpark;
     // Hides sparks that would be wide on the screen.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
-    uint first = atomicAdd(drawArgs[kFlameLights], 1u);
+    uint first = atomicAdd(drawArgs[kFlameEmissiveQuads], 1u);
     if (first < push.quads) flameQuad[push.firstQuad + first] = quad;
 }
 

@@ -16,13 +16,13 @@ uint linkTick(uint i, out uint by) {
     uint texel = contacts[i].fromTexel;
     by = 0u;
     uint hops = hopsOf(objectCounters[from].litBy);
-    if ((remoteObjects[from].flags & kRemoteLive) == 0u || objectCounters[from].burning == 0u ||
-        !mayGive(remoteObjects[from], hops, push.hopsMost))
+    if ((exchangeObjects[from].flags & kExchangeLive) == 0u || objectCounters[from].burning == 0u ||
+        !mayTransfer(exchangeObjects[from], hops, push.hopsMost))
         return kNever;
     uint tick = contactTick(state[objects[from].stateBase + texel], materials[materialOfTexel(from, texel)].flameTicks,
                             contacts[i].delay, contacts[i].since, push.now);
-    if (tick == kNever || !mayJump(push.seed, from, contacts[i].object, objectCounters[from].litTick,
-                 bothChances(push.chance, remoteObjects[from].chance)))
+    if (tick == kNever || !mayReach(push.seed, from, contacts[i].object, objectCounters[from].litTick,
+                 multiplyChances(push.chance, exchangeObjects[from].chance)))
         return kNever;
     by = litBy(hops, from);
     return tick;
@@ -36,7 +36,7 @@ void main() {
     if (object == kNoneTexel) return;  // padding between two objects' links
     if (first > 0u && contacts[first - 1u].object == object && contacts[first - 1u].texel == texel)
         return;
-    if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;
+    if ((exchangeObjects[object].flags & kExchangeLive) == 0u) return;
     uint best = kNever;
     uint by = 0u;
     uint i = first;

@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
 #include "lib/light_uses.glsl"
-#define FW_USE_REMOTE_TILES
+#define FW_USE_EXCHANGE_TILES
 #define FW_USE_SOURCES readonly
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
@@ -19,7 +19,7 @@ uint nearestLane(uint object, uint corner, ivec3 at, uint axis) {
         uint texel = corner + (lane >> 3u) * objects[object].width + (lane & 7u);
         if (state[objects[object].stateBase + texel] == kInert) continue;
         ivec3 p = decodePosition(texels[objects[object].texelBase + texel]);
-        uint beside = besidePlace(remoteObjects[object], p, at, axis);
+        uint beside = besidePlace(exchangeObjects[object], p, at, axis);
         if (beside < nearest) {
             nearest = beside;
             found = lane;
@@ -34,8 +34,8 @@ void land(FireSource source) {
     uint tile;
     uint object = landsOn(ember.landing, axis, tile);
     if (tile == kNoneTexel) return;
-    uint chance = bothChances(emberLights(ember.energy, remoteObjects[object].catches),
-                              bothChances(push.chance, remoteObjects[source.object].chance));
+    uint chance = multiplyChances(emberLights(ember.energy, exchangeObjects[object].catches),
+                              multiplyChances(push.chance, exchangeObjects[source.object].chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;
     uint tilesX = objects[object].tilesX;
     uint corner = tile / tilesX * 8u * objects[object].width + tile % tilesX * 8u;

@@ -7,20 +7,20 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECTS readonly
 #define FW_USE_BURN_TILES readonly
-#define FW_USE_REMOTE_OBJECTS
-#define FW_USE_REMOTE_TILES
+#define FW_USE_EXCHANGE_OBJECTS
+#define FW_USE_EXCHANGE_TILES
 #define FW_USE_SOURCES FW_READ_WRITE
 #include "lib/buffers.glsl"
 
 void sumTile(uint i) {
     uint object = burnTiles[i].object;
-    if ((remoteObjects[object].flags & kRemoteLive) == 0u) return;
+    if ((exchangeObjects[object].flags & kExchangeLive) == 0u) return;
     uint texels = burnTiles[i].texels;
-    RemoteTile tile = remoteTiles[objects[object].tileBase + burnTiles[i].tile];
+    ExchangeTile tile = exchangeTiles[objects[object].tileBase + burnTiles[i].tile];
     uint material = tileMaterial(tile);
-    uint power = material < 4u ? remoteObjects[object].power0[material & 3u]
-                               : remoteObjects[object].power1[material & 3u];
-    uint source = remoteObjects[object].sourceBase + tileCell(tile);
+    uint power = material < 4u ? exchangeObjects[object].power0[material & 3u]
+                               : exchangeObjects[object].power1[material & 3u];
+    uint source = exchangeObjects[object].sourceBase + tileCell(tile);
     ivec3 middle = tileMiddle(tile);
     atomicAdd(sources[source].power, texels * power);
     atomicAdd(sources[source].texels, texels);

@@ -6,13 +6,13 @@ layout(local_size_x = 64) in;
 #define FW_USE_EXCHANGE_PUSH
 #define FW_USE_COUNTERS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_EXCHANGE_OBJECTS
 #define FW_USE_SOURCES FW_READ_WRITE
 #define FW_USE_NEIGHBOURS
 #include "lib/buffers.glsl"
 
 void settle(uint slot, uint hops, bool gives, uint strength) {
-    RemoteObject o = remoteObjects[slot];
+    ExchangeObject o = exchangeObjects[slot];
     for (uint cell = 0u; cell < o.sourceCount; ++cell) {
         uint at = o.sourceBase + cell;
         if (!gives) {
@@ -25,7 +25,7 @@ void settle(uint slot, uint hops, bool gives, uint strength) {
         s.object = slot;
         s.hops = hops;
         s.ember = 0u;
-        if ((push.flags & kRemoteEmbers) != 0u && s.watts != 0u)
+        if ((push.flags & kExchangeEmbers) != 0u && s.watts != 0u)
             s.ember = emberOf(push.seed, slot, cell, push.now, s.power, push.brands);
         sources[at] = s;
     }
@@ -33,23 +33,23 @@ void settle(uint slot, uint hops, bool gives, uint strength) {
 
 void main() {
     uint slot = gl_GlobalInvocationID.x;
-    if (slot >= push.count || (remoteObjects[slot].flags & kRemoteLive) == 0u) return;
+    if (slot >= push.count || (exchangeObjects[slot].flags & kExchangeLive) == 0u) return;
     ObjectCounters c = objectCounters[slot];
-    noteFire(c, remoteObjects[slot], push);
+    recordFire(c, exchangeObjects[slot], push);
     objectCounters[slot].litBy = c.litBy;
     objectCounters[slot].litTick = c.litTick;
     objectCounters[slot].stopTick = c.stopTick;
     objectCounters[slot].spotTexel = c.spotTexel;
-    objectCounters[slot].held = heldBits(counters[kRowBurn + push.burnParity].runCount, push.tilesMost, c.burningTiles,
-                 remoteObjects[slot].tilesMost, c.stopTick, push.now);
+    objectCounters[slot].held = heldBits(counters[kRowBurn + push.burnParity].runCount, push.maxTiles, c.burningTiles,
+                 exchangeObjects[slot].maxTiles, c.stopTick, push.now);
     for (bool once = c.burning != 0u; once; once = false) {
         uint hops = hopsOf(c.litBy);
-        bool gives = mayGive(remoteObjects[slot], hops, push.hopsMost);
+        bool gives = mayTransfer(exchangeObjects[slot], hops, push.hopsMost);
         settle(slot, hops, gives, airStrength(c.air));
-        uint warms = gives && (push.flags & (kRemoteRadiation | kRemotePlume)) != 0u
-                         ? remoteObjects[slot].neighbourCount : 0u;
+        uint warms = gives && (push.flags & (kExchangeRadiation | kExchangePlume)) != 0u
+                         ? exchangeObjects[slot].neighbourCount : 0u;
         for (uint n = 0u; n < warms; ++n)
-            atomicMax(objectCounters[neighbours[remoteObjects[slot].neighbourFirst + n] & 0xFFFFFFu].until,
-                      push.now + kExchangeTurns * kExchangeTicks);
+            atomicMax(objectCounters[neighbours[exchangeObjects[slot].neighbourFirst + n] & 0xFFFFFFu].until,
+                      push.now + kExchangeRounds * kExchangeTicks);
     }
 }

@@ -5,7 +5,7 @@
 layout(local_size_x = 64) in;
 #include "lib/light_uses.glsl"
 #define FW_USE_BURN_TILES readonly
-#define FW_USE_REMOTE_TILES
+#define FW_USE_EXCHANGE_TILES
 #define FW_USE_MATERIALS readonly
 #include "lib/buffers.glsl"
 #include "lib/lists.glsl"
@@ -32,9 +32,9 @@ void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         uint object = burnTiles[i].object;
-        if ((remoteObjects[object].flags & kRemoteLive) == 0u) continue;
+        if ((exchangeObjects[object].flags & kExchangeLive) == 0u) continue;
         uint tile = burnTiles[i].tile;
-        uvec4 links = remoteTiles[objects[object].tileBase + tile].parts;
+        uvec4 links = exchangeTiles[objects[object].tileBase + tile].parts;
         for (uint block = 0u; block < 4u; ++block)
             if (links[block] != kNoneTexel) lightFrom(object, tile, links[block], block);
     }

@@ -7,7 +7,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_COUNTERS FW_READ_WRITE
 #define FW_USE_OBJECTS readonly
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_EXCHANGE_OBJECTS
 #define FW_USE_SOURCES readonly
 #define FW_USE_NEIGHBOURS
 #define FW_USE_RECEIVERS writeonly
@@ -16,20 +16,20 @@ layout(local_size_x = 64) in;
 // Does the neighbour of a table entry give fire to this object?
 bool gives(uint slot, uint entry) {
     uint from = entry & 0xFFFFFFu;
-    return (entry >> 24u) != 0u && (remoteObjects[from].flags & kRemoteLive) != 0u &&
+    return (entry >> 24u) != 0u && (exchangeObjects[from].flags & kExchangeLive) != 0u &&
            objectCounters[from].burning != 0u &&
-           mayGive(remoteObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
-           mayJump(push.seed, from, slot, objectCounters[from].litTick,
-                   bothChances(push.chance, remoteObjects[from].chance));
+           mayTransfer(exchangeObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
+           mayReach(push.seed, from, slot, objectCounters[from].litTick,
+                   multiplyChances(push.chance, exchangeObjects[from].chance));
 }
 
 // Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry`
 // and a `weight`.
 #define FW_EACH_SOURCE(statement)                                                                     \
-    for (uint n = 0u; n < remoteObjects[slot].neighbourCount; ++n) {                                  \
-        uint entry = neighbours[remoteObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
+    for (uint n = 0u; n < exchangeObjects[slot].neighbourCount; ++n) {                                  \
+        uint entry = neighbours[exchangeObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
         if (!gives(slot, entry)) continue;                                                            \
-        uint base = remoteObjects[from].sourceBase, end = base + remoteObjects[from].sourceCount;     \
+        uint base = exchangeObjects[from].sourceBase, end = base + exchangeObjects[from].sourceCount;     \
         for (uint source = base; source < end; ++source) {                                            \
             uint weight = sourceWeight(sources[source], middle);                                      \
             if (weight == 0u) continue;                                                               \
@@ -41,7 +41,7 @@ bool gives(uint slot, uint entry) {
 uint weightBits[32];
 uint countSources(uint slot, ivec3 middle) {
     uint count = 0u;
-    FW_EACH_SOURCE(weightBits[topBit(weight)] += 1u; ++count;)
+    FW_EACH_SOURCE(weightBits[highestBit(weight)] += 1u; ++count;)
     return count;
 }
 
@@ -65,7 +65,7 @@ void gather(uint slot) {
         counters[kRowExchange].runZ = 1u;
     }
     receivers[at * kReceiverWords] = slot;
-    ivec3 middle = boxMiddle(remoteObjects[slot]);
+    ivec3 middle = boxMiddle(exchangeObjects[slot]);
     FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;
     uint count = countSources(slot, middle);
     // Least power of two above which few enough sources lie.
@@ -81,7 +81,7 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= push.count) return;
     for (bool warm = objectCounters[slot].until >= push.now; warm; warm = false)
-        if ((remoteObjects[slot].flags & kRemoteLive) != 0u && (objects[slot].flags & kObjectHeat) != 0u) {
+        if ((exchangeObjects[slot].flags & kExchangeLive) != 0u && (objects[slot].flags & kObjectHeat) != 0u) {
             objectCounters[slot].held |= kHeldWarm;
             gather(slot);
         }

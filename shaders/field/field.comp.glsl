@@ -53,7 +53,7 @@ Seen seenAt(Row row, uint y) {
     uint all = within ? kNoLimit : border;
     Seen s;
     FW_UNROLL for (uint j = 0u; j < 6u; ++j) {
-        uint full = row.cell[j] & kFieldCellMost;
+        uint full = row.cell[j] & kMaxFieldCell;
         s.full[j] = full * (spread & 0x1FFFu);
         s.room[j] = fieldRoom(full) | border;
     }
@@ -211,7 +211,7 @@ void main() {
                         under.n[j - 1] += d;
                         under.x[j - 1] += d * (x0 & 0x7FFFu);
                         under.y[j - 1] += d * ((y0 - whole) & 0x7FFFu);
-                        stays = (stays - (s3 >> 15u)) & kFieldCellMost;
+                        stays = (stays - (s3 >> 15u)) & kMaxFieldCell;
                         sums.n[j - 1] += stays;
                         sums.x[j - 1] += stays * (x0 & 0x7FFFu);
                         sums.y[j - 1] += stays * flat_;

@@ -43,7 +43,7 @@ void main() {
     uint quad = uint(gl_VertexIndex) / 6u, corner = uint(gl_VertexIndex) % 6u;
     corner = corner < 3u ? corner : 6u - corner;  // 0 1 2, 3 2 1
     vec2 turn = vec2((corner & 1u) != 0u ? 1.0 : 0.0, corner >= 2u ? 1.0 : 0.0);
-    bool card = d.shape == kFieldCard;
+    bool card = d.shape == kFieldBillboard;
 
     vec3 foot = d.place.xyz - view.eye.xyz;
     vec3 middle = foot + d.up.xyz * (0.5 * d.size.y);

@@ -44,7 +44,7 @@ void main() {
     uint part = gl_WorkGroupID.x % kFieldShowGroups;
     width = d.width;
     height = d.height;
-    ring = d.shape != kFieldCard ? 1u : 0u;
+    ring = d.shape != kFieldBillboard ? 1u : 0u;
     uint count = width * height, share = (count + kFieldShowGroups - 1u) / kFieldShowGroups;
     uint end = min((part + 1u) * share, count);
     float between = d.place.w;

@@ -3,7 +3,7 @@
 #ifndef FW_LIB_BUFFERS_GLSL
 #define FW_LIB_BUFFERS_GLSL
 #include "shared/burn.h"
-#if defined(FW_USE_REMOTE_OBJECTS) || defined(FW_USE_EXCHANGE_PUSH)
+#if defined(FW_USE_EXCHANGE_OBJECTS) || defined(FW_USE_EXCHANGE_PUSH)
 #include "shared/exchange.h"
 #endif
 #ifdef FW_USE_HEAT_MATERIALS
@@ -70,8 +70,8 @@ uint slownessAt(uint base, uint texel) {
 FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
 FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinkQuadsBuffer, uvec4, linkQuads);
 #endif
-#ifdef FW_USE_READERS
-FW_BUFFER(FW_BIND_READERS, FW_USE_READERS, DependentsBuffer, uint, readers);
+#ifdef FW_USE_DEPENDENTS
+FW_BUFFER(FW_BIND_DEPENDENTS, FW_USE_DEPENDENTS, DependentsBuffer, uint, readers);
 #endif
 #ifdef FW_USE_TILES
 // Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
@@ -201,11 +201,11 @@ FW_BUFFER(FW_BIND_HOT_LISTS, FW_USE_HOT_LISTS, HotListsBuffer, uvec2, hotLists);
 FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
 #endif
 
-#ifdef FW_USE_REMOTE_OBJECTS
-FW_BUFFER(FW_BIND_REMOTE_OBJECTS, readonly, ExchangeObjectsBuffer, RemoteObject, remoteObjects);
+#ifdef FW_USE_EXCHANGE_OBJECTS
+FW_BUFFER(FW_BIND_EXCHANGE_OBJECTS, readonly, ExchangeObjectsBuffer, ExchangeObject, exchangeObjects);
 #endif
-#ifdef FW_USE_REMOTE_TILES
-FW_BUFFER(FW_BIND_REMOTE_TILES, readonly, ExchangeTilesBuffer, RemoteTile, remoteTiles);
+#ifdef FW_USE_EXCHANGE_TILES
+FW_BUFFER(FW_BIND_EXCHANGE_TILES, readonly, ExchangeTilesBuffer, ExchangeTile, exchangeTiles);
 #endif
 #ifdef FW_USE_SOURCES
 FW_BUFFER(FW_BIND_SOURCES, FW_USE_SOURCES, SourcesBuffer, FireSource, sources);
@@ -216,11 +216,11 @@ FW_BUFFER(FW_BIND_NEIGHBOURS, readonly, NeighboursBuffer, uint, neighbours);
 #ifdef FW_USE_CONTACTS
 FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
 #endif
-#ifdef FW_USE_BLOCKERS
-FW_BUFFER(FW_BIND_BLOCKERS, readonly, HeatOccludersBuffer, Blocker, blockers);
+#ifdef FW_USE_HEAT_OCCLUDERS
+FW_BUFFER(FW_BIND_HEAT_OCCLUDERS, readonly, HeatOccludersBuffer, HeatOccluder, occluders);
 #endif
-#ifdef FW_USE_SHIELD
-FW_BUFFER(FW_BIND_SHIELD, readonly, OcclusionBuffer, uint, shield);
+#ifdef FW_USE_HEAT_OCCLUSION
+FW_BUFFER(FW_BIND_HEAT_OCCLUSION, readonly, OcclusionBuffer, uint, shield);
 #endif
 #ifdef FW_USE_ROOMS
 #include "shared/room.h"

@@ -37,6 +37,6 @@ void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
         return;
     }
     tileState[p.worldTile].lastChange = push.now;
-    touchReaders(object, p.local, p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
+    touchDependents(object, p.local, p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
 }
 #endif

@@ -24,16 +24,16 @@ void readBeforeWritten() {}
 
 FW_BUFFER(FW_BIND_DEFORM_OBJECTS, readonly, DeformObjectsBuffer, uvec4, deformObjects);
 FW_BUFFER(FW_BIND_DEFORM_GROUPS, readonly, DeformGroupsBuffer, uvec2, deformGroups);
-#ifdef FW_USE_DEFORM_NODES
-FW_QUADS(FW_BIND_DEFORM_NODES, readonly, DeformParticlesBuffer, nodeQuads);
+#ifdef FW_USE_DEFORM_PARTICLES
+FW_QUADS(FW_BIND_DEFORM_PARTICLES, readonly, DeformParticlesBuffer, nodeQuads);
 uvec4 deformNode(uint quad) { return FW_QUAD(nodeQuads, quad); }
 // Loops over links test at their end. All particles of a run have the same number of passes, so no
 // lane leaves early.
-uint nodeTurns(uint flags) { return flags >> kNodeTurnsShift & 7u; }
-uint nodeArms(uint flags) { return (flags & kNodeHasArms) != 0u ? 1u : 0u; }  // 0 or 1 additional passes
+uint nodeTurns(uint flags) { return flags >> kParticlePassesShift & 7u; }
+uint nodeArms(uint flags) { return (flags & kParticleHasBends) != 0u ? 1u : 0u; }  // 0 or 1 additional passes
 #endif
-#ifdef FW_USE_DEFORM_COATS
-FW_QUADS(FW_BIND_DEFORM_COATS, readonly, DeformEmbeddingsBuffer, coatQuads);
+#ifdef FW_USE_DEFORM_EMBEDDINGS
+FW_QUADS(FW_BIND_DEFORM_EMBEDDINGS, readonly, DeformEmbeddingsBuffer, coatQuads);
 uvec4 deformCoat(uint quad) { return FW_QUAD(coatQuads, quad); }
 #endif
 #ifdef FW_USE_SHOWN
@@ -48,8 +48,8 @@ FW_BUFFER(FW_BIND_SHOWN, writeonly, ShownWordsBuffer, uint, shownWords);
 #endif
 
 #ifdef FW_USE_SOFT
-// Per particle: two positions, each with the path length to a pin and a bend share (packShare); the
-// link cache; facts for neighbours (packFacts) and two bend shares for constraint ends; nearest pin
+// Per particle: two positions, each with the path length to a pin and a bend share (packBendShare); the
+// link cache; facts for neighbours (packParticleFacts) and two bend shares for constraint ends; nearest pin
 // point with its radius.
 FW_QUADS(FW_BIND_SOFT, FW_READ_WRITE, SoftBuffer, softQuads);
 #ifdef FW_TEXELS
@@ -59,12 +59,12 @@ uvec4 soft(uint quad) { return FW_QUAD(softQuads, quad); }
 const uint kSoftLinkCache = 2u, kSoftFacts = 3u, kSoftAnchor = 4u;
 uvec3 softPlace(vec3 place, uint way) {
     uvec3 p = floatBitsToUint(place);
-    return uvec3(packPlace(p.x, way, kWayLow), packPlace(p.y, way >> 5u, kWayLow),
-                 packPlace(p.z, way >> 10u, kWayHigh));
+    return uvec3(packPathBits(p.x, way, kPathLowMask), packPathBits(p.y, way >> 5u, kPathLowMask),
+                 packPathBits(p.z, way >> 10u, kPathHighMask));
 }
-vec3 placeOf(uvec4 quad) { return uintBitsToFloat(quad.xyz & ~uvec3(kWayLow, kWayLow, kWayHigh)); }
+vec3 placeOf(uvec4 quad) { return uintBitsToFloat(quad.xyz & ~uvec3(kPathLowMask, kPathLowMask, kPathHighMask)); }
 uint wayBits(uvec4 quad) {
-    return (quad.x & kWayLow) | (quad.y & kWayLow) << 5u | (quad.z & kWayHigh) << 10u;
+    return (quad.x & kPathLowMask) | (quad.y & kPathLowMask) << 5u | (quad.z & kPathHighMask) << 10u;
 }
 // First word of the link cache: holding links, below bit 8; pinned neighbours, below 16; holding
 // bending constraints, two per set, below 24. Then charred shares of neighbours and of constraint

@@ -5,7 +5,7 @@
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
 
 Ember emberFrom(FireSource source) {
-    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) + unpackWind(uint(remoteObjects[source.object].high.w));
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) + unpackWind(uint(exchangeObjects[source.object].high.w));
     return flyingEmber(source, source.ember, worldUp(), wind);
 }
 
@@ -15,8 +15,8 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
     tile = kNoneTexel;
     int top = kNoTop;
     for (uint slot = 0u; slot < push.count; ++slot) {
-        if ((remoteObjects[slot].flags & kRemoteLive) == 0u) continue;
-        int here = topBelow(remoteObjects[slot], at, axis);
+        if ((exchangeObjects[slot].flags & kExchangeLive) == 0u) continue;
+        int here = topBelow(exchangeObjects[slot], at, axis);
         if (here > top) {
             top = here;
             object = slot;
@@ -29,7 +29,7 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
         base = objects[object].tileBase;
     }
     for (uint i = 0u; i < tiles; ++i) {
-        uint miss = landingMiss(remoteObjects[object], remoteTiles[base + i], at, top, axis);
+        uint miss = landingMiss(exchangeObjects[object], exchangeTiles[base + i], at, top, axis);
         if (miss < least) {
             least = miss;
             tile = i;
@@ -40,9 +40,9 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
 
 // Range of sources of a burning slot.
 uvec2 sourcesOf(uint slot) {
-    bool burns = (remoteObjects[slot].flags & kRemoteLive) != 0u && objectCounters[slot].burning != 0u;
-    uint first = remoteObjects[slot].sourceBase;
-    return uvec2(first, burns ? first + remoteObjects[slot].sourceCount : first);
+    bool burns = (exchangeObjects[slot].flags & kExchangeLive) != 0u && objectCounters[slot].burning != 0u;
+    uint first = exchangeObjects[slot].sourceBase;
+    return uvec2(first, burns ? first + exchangeObjects[slot].sourceCount : first);
 }
 bool sendsEmber(uint at) { return sources[at].ember != 0u && sources[at].watts != 0u; }
 

@@ -11,8 +11,8 @@ bool lightTexel(uint object, uint texel, uint tick, uint by) {
     if (!shares && !isReceptive(before)) return false;
     TexelPlace p = placeOfTexel(object, texel);
     if (!mayCatch(objectCounters[object].held, tileState[p.worldTile].flag)) return false;
-    if (asksOnly() && !mayBurn(p.worldTile)) askToBurn(p.worldTile);
-    if (asksOnly() || !mayBurn(p.worldTile)) return false;
+    if (isRequestPass() && !mayBurn(p.worldTile)) requestToBurn(p.worldTile);
+    if (isRequestPass() || !mayBurn(p.worldTile)) return false;
     if (!shares) shares = atomicCompSwap(state[at], before, tick) != before;
     litFrom(object, by);
     if (shares) return true;

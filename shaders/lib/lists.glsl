@@ -98,7 +98,7 @@ void addEnergy(uint object, uint low, uint high) {
 #endif
 
 #if defined(FW_USE_BURN_LISTS) && defined(FW_USE_PREDICT_LISTS) && defined(FW_USE_TILE_STATE)
-#include "shared/grant.h"
+#include "shared/burn_budget.h"
 // Where burning tiles are limited, no tile is lit that is not on the burn list. A lighting pass
 // runs twice: first it requests tiles, then it lights those that `grant` put on the list in
 // between; all else stays unchanged. Requests use storage that is free meanwhile: the predict list
@@ -107,11 +107,11 @@ void addEnergy(uint object, uint low, uint high) {
 const uint kRequested = 0xFFFFFFF0u;  // exceeds any world tile
 const uint kRequestFitsObject = 1u;       // + these: fits the object's limit, the world's
 const uint kRequestAllocated = 2u;
-bool asksOnly() { return (push.switches & kSwitchAsks) != 0u; }
+bool isRequestPass() { return (push.switches & kSwitchRequests) != 0u; }
 bool mayBurn(uint worldTile) {
     return (push.switches & kSwitchCapped) == 0u || (tileState[worldTile].flag & kTileBurning) != 0u;
 }
-void askToBurn(uint worldTile) {
+void requestToBurn(uint worldTile) {
     uint had = push.burnParity == 0u ? atomicExchange(burnB[worldTile], kRequested)
                                      : atomicExchange(burnA[worldTile], kRequested);
     if (had == kRequested) return;
@@ -121,7 +121,7 @@ void askToBurn(uint worldTile) {
 }
 #endif
 
-#ifdef FW_USE_READERS
+#ifdef FW_USE_DEPENDENTS
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
     // kFrontRingX and Y packed in words: `k` is not constant, and devices index arrays slowly.
@@ -130,9 +130,9 @@ uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
     return x < 0 || y < 0 || x >= tilesX || y >= tilesY ? kNoneTexel : uint(y * tilesX + x);
 }
 // r-th dependent tile over seams. The switches serve the tests.
-uint dependentTile(uint object, uint readerStart, uint r) {
-    uint reader = readers[objects[object].readerBase + readerStart + r];
-    return (push.switches & kSwitchWrongReaders) != 0u ? 0u : reader;
+uint dependentTile(uint object, uint dependentStart, uint r) {
+    uint reader = readers[objects[object].dependentBase + dependentStart + r];
+    return (push.switches & kSwitchWrongDependents) != 0u ? 0u : reader;
 }
 #if defined(FW_USE_LISTS) && defined(FW_USE_TILES) && defined(FW_USE_OBJECTS)
 // Touches the tiles beside a tile, and over seams, that depend on its texels of `mask`.
@@ -142,7 +142,7 @@ void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uin
     uint tileY = divide(local, tilesX);
     uint tileX = local - tileY * tilesX;
     int tilesY = int(objects[object].height >> 3u);
-    for (uint beside = neighboursOf(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
+    for (uint beside = dependentNeighbours(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
         uint other = besideTile(int(tilesX), tilesY, int(tileX), int(tileY), uint(findLSB(beside)));
         if (other != kNoneTexel) touchTile(parity, row, worldTileBase + other, bits);
     }
@@ -154,7 +154,7 @@ void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uin
 }
 // Texels of this mask of a tile changed between iterations: touches the tile and all tiles that
 // depend on them.
-void touchReaders(uint object, uint local, uvec2 mask) {
+void touchDependents(uint object, uint local, uvec2 mask) {
     touchTile(push.parity, push.row, objects[object].worldTileBase + local, kTileTouched);
     touchBeside(push.parity, push.row, object, local, mask, kTileTouched);
 }

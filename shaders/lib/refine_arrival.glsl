@@ -35,7 +35,7 @@ RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float r
     vec4 low = refined[object].burnSeconds0;
     vec4 high = refined[object].burnSeconds1;
     float seconds = material < 4u ? low[material & 3u] : high[material & 3u];
-    vec4 v = refineEvaluate(slot, own, behind, refined[object].now, seconds, recede);
+    vec4 v = evaluateSlot(slot, own, behind, refined[object].now, seconds, recede);
     behind = min(behind, refined[object].now + abs(seconds));
     return RefineVertex(v.x, v.y, v.z, v.w);
 }

@@ -58,11 +58,11 @@ FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer,
 FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
 FW_BUFFER(FW_BIND_GRADIENT, FW_USE_PREDICT, GradientBuffer, uint, gradient);
 #endif
-#ifdef FW_USE_ARP
-#include "shared/arp.h"
-FW_BUFFER(FW_BIND_ARP_GROUPS, readonly, PatternGroupsBuffer, uvec2, groups);
-FW_BUFFER(FW_BIND_ARP_LIST, readonly, PatternListBuffer, uint, arpList);
-layout(push_constant) uniform Push { ArpPush push; };
+#ifdef FW_USE_PATTERN
+#include "shared/reference_pattern.h"
+FW_BUFFER(FW_BIND_PATTERN_GROUPS, readonly, PatternGroupsBuffer, uvec2, groups);
+FW_BUFFER(FW_BIND_PATTERN_LIST, readonly, PatternListBuffer, uint, patternList);
+layout(push_constant) uniform Push { PatternPush push; };
 #else
 layout(push_constant) uniform Push { RefinePush push; };
 

@@ -36,7 +36,7 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
-bool hasPerPixelHoles(uint object) { return (refined[object].flags & kRefineIsTold) != 0u; }
+bool hasPerPixelHoles(uint object) { return (refined[object].flags & kRefineHasPerPixelHoles) != 0u; }
 
 bool isGone(uint object, float hole) { return hole <= refined[object].now; }
 
@@ -192,7 +192,7 @@ void cutGroup(uint object, uint triangle, bool lost) {
         for (uint v = 0u; v < 3u; ++v) {
             drawn[v] = refineDrawVertex(t, packed.x, codes[v]);
             slots_[v] = slotOf(object, drawn[v]);
-            fields[v] = refineField(vertices[refined[object].vertices + slots_[v]].hole, now);
+            fields[v] = secondsToHole(vertices[refined[object].vertices + slots_[v]].hole, now);
             solid |= fields[v] > 0.0 ? 1u << v : 0u;
         }
         uint border = 0u;

@@ -31,11 +31,11 @@ float wanted(uint object, uint item, float bias) {
     uint at = refined[object].items + item;
     float target = items[at].target;
     if (target == 0.0 || bias == 0.0) return target;
-    return refineBiased(target, bias, refineSpread(spreadId(item, refined[object].edgeCount),
+    return biasedLevel(target, bias, levelLossOrder(spreadId(item, refined[object].edgeCount),
                                      heat[at] >> kRefineHeatShift));
 }
 
-float leastBias() {
+float minBias() {
     return push.budget == 0u ? 0.0 : float(work[kRefineWorkBias]) * kRefineBiasStep;
 }
 
@@ -50,15 +50,15 @@ void count(uint object, uint triangle) {
     for (int k = 0; k < 4; ++k) {
         uint at = refined[object].items + own[k];
         target[k] = items[at].target;
-        spread[k] = refineSpread(spreadId(own[k], edgeCount), heat[at] >> kRefineHeatShift);
+        spread[k] = levelLossOrder(spreadId(own[k], edgeCount), heat[at] >> kRefineHeatShift);
     }
     uint sums = sumsOf(object), k = 0u;
     bool more = target != vec4(0.0);
     while (more) {  // until a bias leaves nothing
         float bias = float(k) * kRefineBiasStep;
         uvec4 top;
-        for (int i = 0; i < 4; ++i) top[i] = refineTop(refineBiased(target[i], bias, spread[i]));
-        uint sum = refineCount(refinePack(top.x, top.y, top.z, refineFit(top.x, top.y, top.z, top.w))) - 1u;
+        for (int i = 0; i < 4; ++i) top[i] = topLevel(biasedLevel(target[i], bias, spread[i]));
+        uint sum = refineCount(refinePack(top.x, top.y, top.z, fitInterior(top.x, top.y, top.z, top.w))) - 1u;
         if ((k & 1u) == 0u)
             atomicAdd(levels[sums + (k >> 1u)].x, sum);
         else
@@ -120,7 +120,7 @@ void aim(uint object, uint item) {
                 lod = max(lod, edgeLod(object, edges[refined[object].meshEdges + t.edge[e]]));
             depth = float(refineInteriorDepth(t.flags));
         }
-        refineAim(s, warm, lod, depth, refined[object].now, kRefineCool);
+        setRefineTarget(s, warm, lod, depth, refined[object].now, kRefineCool);
         awake = 0u;
     }
     items[at] = s;
@@ -131,7 +131,7 @@ void move(uint object, uint item) {
     RefineLevel s = items[at];
     float before = s.level;
     float now = refined[object].now;
-    refineMove(s, wanted(object, item, leastBias()), now, refined[object].dt, kRefineRate, kRefineGrace);
+    moveRefineLevel(s, wanted(object, item, minBias()), now, refined[object].dt, kRefineRate, kRefineGrace);
     items[at] = s;
     if (s.level == before && now - s.lastHot >= kRefineCool) return;
     heat[at] |= kRefineMoving;
@@ -146,10 +146,10 @@ void pack(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint base = refined[object].items;
     uint own = base + refined[object].edgeCount + triangle;
-    uint a = refineTop(items[base + t.edge[0]].level);
-    uint b = refineTop(items[base + t.edge[1]].level);
-    uint c = refineTop(items[base + t.edge[2]].level);
-    uint m = refineFit(a, b, c, refineTop(items[own].level));
+    uint a = topLevel(items[base + t.edge[0]].level);
+    uint b = topLevel(items[base + t.edge[1]].level);
+    uint c = topLevel(items[base + t.edge[2]].level);
+    uint m = fitInterior(a, b, c, topLevel(items[own].level));
     uint packed = refinePack(a, b, c, m);
     uint at = refined[object].triangles + triangle;
     bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u || levels[at].x != packed;
@@ -162,7 +162,7 @@ void pack(uint object, uint triangle) {
         work[push.placeJobs + 2u * job] = object;
         work[push.placeJobs + 2u * job + 1u] = triangle;
         float level = items[own].level;
-        if (refineTop(level) != m || refineAge(level, m) >= 1.0) return;
+        if (topLevel(level) != m || levelMorphAge(level, m) >= 1.0) return;
         job = atomicAdd(work[kRefineWorkMorph + 3u], 1u);
         atomicMax(work[kRefineWorkMorph], min(job / 2u + 1u, kMaxGroups));
         work[morphJobs() + 2u * job] = object;

@@ -64,12 +64,12 @@ void edgeLane(uint object, uint e) {
     uint item = refined[object].items + e;
     RefineEdge edge = edges[refined[object].meshEdges + e];
     float level = items[item].level;
-    uint l = refineTop(level), steps = 1u << l;
+    uint l = topLevel(level), steps = 1u << l;
     uint fate = fateOf(object, vertices[refined[object].vertices + edge.low].hole) |
                 fateOf(object, vertices[refined[object].vertices + edge.high].hole);
     for (uint i = 1u; i < steps; ++i) fate |= evaluate(object, refineEdgeSlot(edge, i, l));
     atomicOr(heat[item], fate);
-    float age = refineAge(level, l);
+    float age = levelMorphAge(level, l);
     steps = l == 0u || age >= 1.0 ? 0u : steps;
     for (uint i = 1u; i < steps; i += 2u)
         morph(object, refineEdgeSlot(edge, i, l), placeOf(object, refineEdgeSlot(edge, i - 1u, l)),
@@ -103,7 +103,7 @@ void morphInterior(uint object, uint triangle, uint lane) {
     uint packed = levels[refined[object].triangles + triangle].x;
     uint m = refineInterior(packed);
     float level = items[refined[object].items + refined[object].edgeCount + triangle].level;
-    float age = refineAge(level, m);
+    float age = levelMorphAge(level, m);
     uint n = 1u << m;
     uint count = refineInnerCount(m);
     for (uint k = lane; k < count; k += 32u) {

@@ -4,7 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_ARP
+#define FW_USE_PATTERN
 #define FW_USE_TRIANGLES readonly
 #define FW_USE_SLOTS readonly
 #define FW_USE_VERTICES FW_READ_WRITE
@@ -21,22 +21,22 @@ void place(uint object, uint s) {
 }
 
 void name(uint object, uint entry) {
-    uint word = arpList[refined[object].items + entry];
-    if (word == kArpNothing) return;
-    RefineTriangle t = triangles[refined[object].meshTriangles + arpCoarse(word)];
+    uint word = patternList[refined[object].items + entry];
+    if (word == kPatternEmpty) return;
+    RefineTriangle t = triangles[refined[object].meshTriangles + patternCoarse(word)];
     uint depth = refineInteriorDepth(t.flags);
-    bool finest = arpHalvings(word) == depth;
+    bool finest = patternHalvings(word) == depth;
     uint drawn[3];
     uint gone = 0u;
     for (uint k = 0u; k < (finest ? 3u : 6u); ++k) {
-        uvec2 c = arpPoint(word, depth, k);
-        uint vertex = arpDrawVertex(t, c.x, c.y);
+        uvec2 c = patternPoint(word, depth, k);
+        uint vertex = patternDrawVertex(t, c.x, c.y);
         uint slot = meshVertices[(refined[object].meshDraws + vertex) * 3u + 2u].w;
         bool open = vertices[refined[object].vertices + slot].hole <= refined[object].now;
         gone |= open ? 1u << k : 0u;
         if (k < 3u) drawn[k] = vertex;
     }
-    bool consumed = arpConsumed(gone, finest);
+    bool consumed = isPatternConsumed(gone, finest);
     uint to = refined[object].indices + entry * 3u;
     indices[to] = drawn[0];
     indices[to + 1u] = consumed ? drawn[0] : drawn[1];

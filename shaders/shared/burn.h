@@ -12,7 +12,7 @@
 #define FW_BIND_NORMALS 3     // uint[]: signed 11:11:10 (per mesh)
 #define FW_BIND_SLOWNESS 4    // uint[]: two u16 Q7 factors per word (per mesh or per object)
 #define FW_BIND_LINKS 5       // uint[]: 8 texel indices per rim record (per mesh)
-#define FW_BIND_READERS 6     // uint[]: dependent tiles (per mesh)
+#define FW_BIND_DEPENDENTS 6     // uint[]: dependent tiles (per mesh)
 #define FW_BIND_TILES 7       // TileStatic as 2 x uvec4 (per mesh)
 #define FW_BIND_STATE 8       // uint[]: ignition tick or code (per object)
 #define FW_BIND_TILE_STATE 9  // TileState[] (per object)
@@ -42,28 +42,28 @@
 #define FW_BIND_FLAMES 31     // FlameQuad[]
 #define FW_BIND_DRAW_ARGS 32  // uint[]: indirect draw of the flames, their order; see kFlameOrder
 #define FW_BIND_VIEW 33       // uniform ViewParams
-#define FW_BIND_LOOKS 34      // MaterialLook[]
+#define FW_BIND_APPEARANCES 34      // MaterialAppearance[]
 #define FW_BIND_HEAT 35       // uvec2[]: packed HeatTexel; objects with kObjectHeat
 #define FW_BIND_TILE_HEAT 36  // TileHeat[] (per object): heat that other objects send to a tile
 #define FW_BIND_HEAT_MATERIALS 37  // HeatMaterial[], 8 per object slot
 #define FW_BIND_HOT_LISTS 38  // uvec2[]: hot tiles, list A in x, list B in y
 #define FW_BIND_TILE_FIRE 39  // float[] (per object): W of a tile's thick fuel in the last heat step
-#define FW_BIND_REMOTE_OBJECTS 40  // RemoteObject[], by object slot: see exchange.h
-#define FW_BIND_REMOTE_TILES 41    // RemoteTile[] (per mesh)
+#define FW_BIND_EXCHANGE_OBJECTS 40  // ExchangeObject[], by object slot: see exchange.h
+#define FW_BIND_EXCHANGE_TILES 41    // ExchangeTile[] (per mesh)
 #define FW_BIND_SOURCES 42    // FireSource[] (per object)
 #define FW_BIND_NEIGHBOURS 43 // uint[]: object slot | visible share, of 255, << 24
 #define FW_BIND_CONTACTS 44   // ContactLink[]
-#define FW_BIND_BLOCKERS 45   // Blocker[kMaxBlockers]
+#define FW_BIND_HEAT_OCCLUDERS 45   // HeatOccluder[kMaxHeatOccluders]
 #define FW_BIND_RECEIVERS 46  // uint[kReceiverWords] per object slot
 #define FW_BIND_ROOMS 47      // Room[kMaxRooms]: see room.h
 #define FW_BIND_SHOWN 48          // ShownVertex[]: replaces the mesh's position and normal (per object); also vertex input
-#define FW_BIND_DEFORM_NODES 49   // DeformNode[] (per mesh)
-#define FW_BIND_DEFORM_COATS 50   // DeformCoat[] (per mesh)
+#define FW_BIND_DEFORM_PARTICLES 49   // DeformParticle[] (per mesh)
+#define FW_BIND_DEFORM_EMBEDDINGS 50   // DeformEmbedding[] (per mesh)
 #define FW_BIND_DEFORM_OBJECTS 51 // DeformObject[], by object slot
 #define FW_BIND_DEFORM_GROUPS 52  // uvec2[]: object slot, first of 64 particles or vertices
 #define FW_BIND_SOFT 53           // vec4[]: 3 per shown vertex of a sheet: position, position, normal and bend
 #define FW_BIND_ROOM_AIR 54          // RoomAir[kMaxRooms]
-#define FW_BIND_SHIELD 55     // uint[]: heat-occlusion grid, see exchange.h
+#define FW_BIND_HEAT_OCCLUSION 55     // uint[]: heat-occlusion grid, see exchange.h
 #define FW_BIND_SKIN_TEXELS 56    // uvec4[]: three vertices and two unorm16 weights per texel (per mesh)
 #define FW_BIND_SKIN_SOURCES 57   // uint[]: host vertex of each drawn vertex (per mesh)
 #define FW_BIND_SKIN_GIVEN 58     // uint[]: copies of the hosts' vertex buffers (per object)
@@ -85,8 +85,8 @@
 #define FW_BIND_VERTICES 74   // mesh::RenderVertex[], as three uvec4 (per mesh)
 #define FW_BIND_REFINE_CUTS 75      // vertices along holes (per object), see kRefineCut... in refine.h
 #define FW_BIND_REFINE_CUT_DRAWS 76 // uint[]: indirect draws, 8 per object slot
-#define FW_BIND_ARP_GROUPS 77       // uvec2[]: object slot, first of 64 slots or listed triangles
-#define FW_BIND_ARP_LIST 78         // uint[]: drawn triangles of the reference pattern
+#define FW_BIND_PATTERN_GROUPS 77       // uvec2[]: object slot, first of 64 slots or listed triangles
+#define FW_BIND_PATTERN_LIST 78         // uint[]: drawn triangles of the reference pattern
 #define FW_BIND_VOLUMES 90          // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91      // uint[]: marched flames of a view, see volume_draw.h
 #define FW_BIND_VOLUME_WORK 92      // VolumeWork[]: result of the probe per flame
@@ -101,7 +101,7 @@
 #define FW_BIND_EMITTERS 120         // ParticleEmitter[]: fire emitters of the frame, see particle.h
 #define FW_BIND_EMITTER_GROUPS 121   // uvec2[]: emitter, first ring slot of the group
 #define FW_BIND_PARTICLES 122        // Particle[]: rings of all emitters
-#define FW_BIND_BOOKS 123            // uint[]: flipbooks, see book.h
+#define FW_BIND_FLIPBOOKS 123            // uint[]: flipbooks, see book.h
 #define FW_BIND_COUNT 124
 
 FW_SHARED_BEGIN
@@ -142,13 +142,13 @@ FW_SHARED_CONST uint kObjectRoomShift = 16u;   // 8 bits: index of its room, plu
 // TileState::flag
 FW_SHARED_CONST uint kTileListed = 1u;       // in the front list
 FW_SHARED_CONST uint kTileTouched = 2u;      // an input changed: due now
-FW_SHARED_CONST uint kTileNews = 0x80000u;   // due only because neighbouring texels just caught
-FW_SHARED_CONST uint kTileUneven = 0x100000u; // a texel of this run was corrected, not just lit
+FW_SHARED_CONST uint kTileLitBeside = 0x80000u;   // due only because neighbouring texels just caught
+FW_SHARED_CONST uint kTileCorrected = 0x100000u; // a texel of this run was corrected, not just lit
 FW_SHARED_CONST uint kTileBurning = 4u;      // in the burn list
 FW_SHARED_CONST uint kTilePredict = 8u;      // in the predict list A; << 1: in B
-FW_SHARED_CONST uint kTileAhead = 128u;      // `wake` may be something other than a known arrival
+FW_SHARED_CONST uint kTilePendingUnknown = 128u;      // `wake` may be something other than a known arrival
 FW_SHARED_CONST uint kTileHot = 32u;         // in the hot list
-FW_SHARED_CONST uint kTileWarm = 64u;        // and takes part in every heat step, see heatTurn
+FW_SHARED_CONST uint kTileWarm = 64u;        // and takes part in every heat step, see workDue
 // Cosmetic, written by `support`: facts of the tile's texels, results, and the distance to a support.
 FW_SHARED_CONST uint kTileSidesShift = 8u;   // 4 bits: the surface continues over that side
 FW_SHARED_CONST uint kTileSpent = 0x1000u;   // all its texels burn or have burnt
@@ -172,14 +172,14 @@ FW_SHARED_CONST uint kRowIteration = 7u;     // + iteration of the frame
 FW_SHARED_CONST uint kSwitchDense = 1u;
 FW_SHARED_CONST uint kSwitchShuffle = 2u;
 FW_SHARED_CONST uint kSwitchNoSeamWake = 4u;
-FW_SHARED_CONST uint kSwitchWrongReaders = 8u;
+FW_SHARED_CONST uint kSwitchWrongDependents = 8u;
 FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
 FW_SHARED_CONST uint kSwitchRefineFull = 64u;
 FW_SHARED_CONST uint kSwitchCrossing = 128u;
 FW_SHARED_CONST uint kSwitchNoZPass = 256u;
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;  // internal: an object or the world limits its fire
-FW_SHARED_CONST uint kSwitchPlays = 0x80000u;     // internal: an object may play a baked burn
-FW_SHARED_CONST uint kSwitchShows = 0x100000u;    // internal: `reduce` writes BurnTiles only
+FW_SHARED_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
+FW_SHARED_CONST uint kSwitchDisplayOnly = 0x100000u;    // internal: `reduce` writes BurnTiles only
 
 // TexelEvent::kind, as FwIgnitionKind
 FW_SHARED_CONST uint kEventIgnite = 0u;
@@ -192,10 +192,10 @@ FW_SHARED_CONST uint kEventHeat = 4u;
 // Internal: a texel on a jet's path, stored unordered after the batch's other events. Changes nothing. tick: from
 // ignition until the texel gives way.
 FW_SHARED_CONST uint kEventGate = 5u;
-// Baked burn: kEventPlay lights the texel if its object plays back. kEventPlays (texel: kNoneTexel) starts playback
+// Baked burn: kEventPlayback lights the texel if its object plays back. kEventPlaybackSpan (texel: kNoneTexel) starts playback
 // (tick: kNever) or ends it at `tick` at the latest.
-FW_SHARED_CONST uint kEventPlay = 6u;
-FW_SHARED_CONST uint kEventPlays = 7u;
+FW_SHARED_CONST uint kEventPlayback = 6u;
+FW_SHARED_CONST uint kEventPlaybackSpan = 7u;
 // Copies the state of another object's texel; tick: that texel. Its object slot plus 1 is stored above kEventKindBits.
 // No other event of the step addresses either object.
 FW_SHARED_CONST uint kEventCarry = 8u;
@@ -211,7 +211,7 @@ struct BurnObject {   // offsets and constants of one object
     uint width;       // texels, a multiple of 8
     uint worldTileBase;  // into tileState; a world tile id = worldTileBase + local tile
     uint linkBase;    // into links, in records
-    uint readerBase;  // into readers
+    uint dependentBase;  // into readers
     uint flags;
     uint tileBase;    // into tiles (per mesh)
     uint height;      // texels
@@ -359,7 +359,7 @@ struct StepPush {     // push constants of the simulation passes
     uint object;      // reset, published: slot
     uint publishedParity;  // plane that is read
     uint hotParity;   // hot list that is read (other passes: appended to)
-    uint tilesMost;   // limit of the world's burning tiles, with kSwitchGoverned
+    uint maxTiles;   // limit of the world's burning tiles, with kSwitchGoverned
     uint reserved0; uint reserved1; uint reserved2;
 };
 FW_SHARED_SIZE(StepPush, 64)
@@ -374,15 +374,15 @@ FW_SHARED_FN bool isReceptive(uint t) { return t == kNever || t == kOut; }
 FW_SHARED_FN bool isBarrier(uint t) { return t == kInert || t == kWet || t == kOutWet; }
 
 FW_SHARED_FN uint eventKind(uint kind) { return kind & ((1u << kEventKindBits) - 1u); }
-FW_SHARED_FN bool hasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
+FW_SHARED_FN bool eventHasGates(uint kind) { return (kind >> kEventKindBits) != 0u; }
 
 // A disturbance lowers `playsUntil` to the end of the step or exchange, so all work of one step sees the same value in
 // any order.
-FW_SHARED_FN bool playsAt(uint playsUntil, uint now) { return playsUntil > now; }
+FW_SHARED_FN bool isPlayingBack(uint playsUntil, uint now) { return playsUntil > now; }
 // The event's kind for an object that does or does not play back.
 FW_SHARED_FN uint playedKind(uint kind, uint playsUntil, uint now) {
     uint k = eventKind(kind);
-    return k != kEventPlay ? k : playsAt(playsUntil, now) ? kEventIgnite : kEventGate;
+    return k != kEventPlayback ? k : isPlayingBack(playsUntil, now) ? kEventIgnite : kEventGate;
 }
 
 // State of a texel after one event. now: start tick of the step.

@@ -14,11 +14,11 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kDeformTexels = 16u;     // texels sampled in a particle's ring: k of eq. (9)
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a particle
-FW_SHARED_CONST uint kDeformLinks = 2u;       // links read at a time
-FW_SHARED_CONST uint kDeformTurns = 4u;       // passes over the links: kDeformRing in all
-FW_SHARED_CONST uint kArmWays = 4u;           // bending sets: two directions, long and short; each step uses one
+FW_SHARED_CONST uint kLinksPerPass = 2u;       // links read at a time
+FW_SHARED_CONST uint kDeformLinkPasses = 4u;       // passes over the links: kDeformRing in all
+FW_SHARED_CONST uint kBendSets = 4u;           // bending sets: two directions, long and short; each step uses one
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
-FW_SHARED_CONST uint kDeformParticleQuads = 20u;  // quads of a DeviceNode; offsets of its parts:
+FW_SHARED_CONST uint kDeformParticleQuads = 20u;  // quads of a DeviceParticle; offsets of its parts:
 FW_SHARED_CONST uint kParticleLinks = 1u;          // neighbours, one quad per pass
 FW_SHARED_CONST uint kParticleBends = 5u;          // bending constraints, one quad per set
 FW_SHARED_CONST uint kParticleRest = 9u;
@@ -39,22 +39,22 @@ FW_SHARED_CONST uint kDeformItem = 0x0FFFFFFFu;
 FW_SHARED_CONST uint kDeformLinkIndex = 0xFFFFFFu; // particle index of a link
 FW_SHARED_CONST uint kSoftQuads = 5u;         // quads per particle: see lib/deform_buffers.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // ticks of a step: 1/128 s
-FW_SHARED_CONST uint kMostSoftSteps = 6u;     // steps of a frame; a longer frame drops the rest
+FW_SHARED_CONST uint kMaxSoftSteps = 6u;     // steps of a frame; a longer frame drops the rest
 
 // DeformObject::flags
 FW_SHARED_CONST uint kDeformRecede = 1u;      // tier A: recedes along its offset, no forces
 FW_SHARED_CONST uint kDeformShell = 2u;       // tier B: a thin sheet
 FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: mass-spring model of the reference
 
-// DeformNode::flags, above the material (bits 0..7)
-FW_SHARED_CONST uint kNodeClosed = 0x100u;    // its ring of neighbours closes
-FW_SHARED_CONST uint kNodeEven = 0x200u;      // at rest it lies in the middle of its neighbours, seen along the normal
-FW_SHARED_CONST uint kNodeArmsEven = 0x400u;  // and of its first bending set; << 1: of its second ...
-FW_SHARED_CONST uint kNodeHasArms = 0x4000u;    // it, or another particle of its run, has bending constraints
-FW_SHARED_CONST uint kNodeRingShift = 16u;    // number of neighbours: bits 16..19
-FW_SHARED_CONST uint kNodeTurnsShift = 20u;   // link passes of its run: bits 20..22
+// DeformParticle::flags, above the material (bits 0..7)
+FW_SHARED_CONST uint kParticleClosed = 0x100u;    // its ring of neighbours closes
+FW_SHARED_CONST uint kParticleEven = 0x200u;      // at rest it lies in the middle of its neighbours, seen along the normal
+FW_SHARED_CONST uint kParticleBendsEven = 0x400u;  // and of its first bending set; << 1: of its second ...
+FW_SHARED_CONST uint kParticleHasBends = 0x4000u;    // it, or another particle of its run, has bending constraints
+FW_SHARED_CONST uint kParticleRingShift = 16u;    // number of neighbours: bits 16..19
+FW_SHARED_CONST uint kParticlePassesShift = 20u;   // link passes of its run: bits 20..22
 
-struct DeformNode {       // constant, per mesh
+struct DeformParticle {       // constant, per mesh
     uint vertex;                 // vertex that stores its state, from the mesh's first
     uint flags;                  // material, kNode...
     float rise;                  // m from it to the mean of its neighbours, along the rest normal
@@ -69,17 +69,17 @@ struct DeformNode {       // constant, per mesh
     float outX; float outY; float outZ; // direction of recession: -1 along every face's normal where possible
     float limit;                 // m, largest recession
     uint arms[8];                // bending partners behind and ahead, per set; or kNoneTexel
-    float armLength[8];          // m
-    float armRise[4];            // m, as `rise`, of each pair
+    float bendLength[8];          // m
+    float bendRise[4];            // m, as `rise`, of each pair
 };
-FW_SHARED_SIZE(DeformNode, 288)
+FW_SHARED_SIZE(DeformParticle, 288)
 
 struct DeviceLinks {      // one link pass
     uint first; uint second;     // particles; the link's odds (linkOdds) above bit 23
     uint lengths;                // m, half floats; 0: no link
     float rise;                  // m, of bending constraints
 };
-struct DeviceNode {       // a DeformNode on the device: quad by quad, each for all particles of the mesh
+struct DeviceParticle {       // a DeformParticle on the device: quad by quad, each for all particles of the mesh
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
     DeviceLinks arms[4];
@@ -89,9 +89,9 @@ struct DeviceNode {       // a DeformNode on the device: quad by quad, each for 
     float outX; float outY; float outZ; float limit;
     uint reserved[4];
 };
-FW_SHARED_SIZE(DeviceNode, 320)
+FW_SHARED_SIZE(DeviceParticle, 320)
 
-struct DeformCoat {       // constant, per drawn vertex: how its normal follows; device: quad by quad
+struct DeformEmbedding {       // constant, per drawn vertex: how its normal follows; device: quad by quad
     uint node;            // vertex that stores its particle's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;
@@ -99,7 +99,7 @@ struct DeformCoat {       // constant, per drawn vertex: how its normal follows;
     float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
     float longest;        // m^2 at rest, longest distance to a ring vertex
 };
-FW_SHARED_SIZE(DeformCoat, 64)
+FW_SHARED_SIZE(DeformEmbedding, 64)
 
 struct ShownVertex {      // drawn instead of mesh::RenderVertex's position and normal
     float x; float y; float z;   // m, object space
@@ -127,7 +127,7 @@ FW_SHARED_SIZE(DeformMaterial, 32)
 struct DeformObject {     // per object slot
     uint nodeBase;        // into the nodes
     uint nodeCount;
-    uint coatBase;        // into the coats
+    uint embeddingBase;        // into the embeddings
     uint vertexCount;
     uint shownBase;       // into the shown vertices
     uint stateBase;       // as BurnObject
@@ -207,7 +207,7 @@ FW_SHARED_FN float recession(float burnt, float depth, float limit) {
 FW_SHARED_CONST float kThinnestWall = 0.15f;
 
 // Rotates the rest normal `n` as its faces rotated from `a` to `b`; all unit.
-FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
+FW_SHARED_FN vec3 rotateNormal(vec3 n, vec3 a, vec3 b) {
     float c = dot(a, b);
     if (c > 0.9999995f) return n;
     if (c < -0.99f) return b;  // inverted: the shortest rotation is not defined
@@ -218,21 +218,21 @@ FW_SHARED_FN vec3 turnedNormal(vec3 n, vec3 a, vec3 b) {
 
 // ---- sheets: position-based dynamics, Jacobi: each particle corrects itself by its neighbours' last state
 
-FW_SHARED_CONST float kReachNone = 60000.0f;  // m along unburnt links to a pin: no path known
+FW_SHARED_CONST float kNoPath = 60000.0f;  // m along unburnt links to a pin: no path known
 // A known path to a pin that grew has either been replaced by another one, which the next steps find, or is gone and
 // neighbours report it to each other in circles. It grows faster than such circles, so a falling piece is not held back
 // and a held piece yields little.
 FW_SHARED_CONST float kPathGrowth = 1.03f;
-FW_SHARED_FN bool reachKnown(float way, float before) { return way <= before * 1.004f; }
-FW_SHARED_FN float reachNext(float way, float before, bool known) {
-    return minF(known && !reachKnown(way, before) ? way * kPathGrowth : way, kReachNone);
+FW_SHARED_FN bool isPathKnown(float way, float before) { return way <= before * 1.004f; }
+FW_SHARED_FN float nextPath(float way, float before, bool known) {
+    return minF(known && !isPathKnown(way, before) ? way * kPathGrowth : way, kNoPath);
 }
-FW_SHARED_CONST float kReachSlack = 1.001f;   // tolerance of half-float storage
+FW_SHARED_CONST float kPathSlack = 1.001f;   // tolerance of half-float storage
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // packed bends, per m
 FW_SHARED_CONST float kCharredSteps = 15.0f;  // resolution of the charred share that neighbours see
 // The link cache is updated every kLinkCacheSteps steps: fire takes seconds.
 FW_SHARED_CONST uint kLinkCacheSteps = 4u;
-FW_SHARED_FN bool tiesAt(uint way) { return way % kLinkCacheSteps == 0u; }
+FW_SHARED_FN bool updatesLinkCache(uint way) { return way % kLinkCacheSteps == 0u; }
 // Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4 times the second
 // factor. With velocities this is stable below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
@@ -257,7 +257,7 @@ FW_SHARED_FN float charredShare(float burnt) {
 }
 
 // State that neighbours read: burnt share (8 bits), charred share (4 bits), pinned (1 bit).
-FW_SHARED_FN uint packFacts(float burnt, bool pinned) {
+FW_SHARED_FN uint packParticleFacts(float burnt, bool pinned) {
     return uint(burnt * 255.0f) | uint(charredShare(burnt) * kCharredSteps + 0.5f) << 8u |
            (pinned && burnt <= kPinBurns ? 1u << 12u : 0u);
 }
@@ -267,23 +267,23 @@ FW_SHARED_FN uint pinnedOf(uint facts) { return (facts >> 12u) & 1u; }
 
 // The path length to a pin is stored in the low bits of the position: an error of a millionth.
 FW_SHARED_CONST uint kPathKnown = 0x8000u;  // the path once had this length
-FW_SHARED_FN uint packWay(float way, bool known) {
+FW_SHARED_FN uint packPathLength(float way, bool known) {
     return (packHalf2x16(vec2(way, 0.0f)) & 0x7FFFu) | (known ? kPathKnown : 0u);
 }
 FW_SHARED_FN float unpackPathLength(uint bits) { return unpackHalf2x16(bits & 0x7FFFu).x; }
-FW_SHARED_CONST uint kWayLow = 31u;   // mask of the bits in x and y
-FW_SHARED_CONST uint kWayHigh = 63u;  // mask of the bits in z
-FW_SHARED_FN uint packPlace(uint word, uint bits, uint mask) {
+FW_SHARED_CONST uint kPathLowMask = 31u;   // mask of the bits in x and y
+FW_SHARED_CONST uint kPathHighMask = 63u;  // mask of the bits in z
+FW_SHARED_FN uint packPathBits(uint word, uint bits, uint mask) {
     return ((word + (mask + 1u) / 2u) & ~mask) | (bits & mask);
 }
 
 // Share of a bend correction for each neighbour, stored once per particle. Half floats, shortened to 11, 11 and 10
 // bits, so that all neighbours see the same value.
-FW_SHARED_FN uint packShare(vec3 share) {
+FW_SHARED_FN uint packBendShare(vec3 share) {
     uint xy = packHalf2x16(vec2(share.x, share.y)), z = packHalf2x16(vec2(share.z, 0.0f));
     return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u | (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
 }
-FW_SHARED_FN vec3 shareOf(uint bits) {
+FW_SHARED_FN vec3 unpackBendShare(uint bits) {
     vec2 xy = unpackHalf2x16((bits & 0x7FFu) << 5u | (bits & 0x3FF800u) << 10u);
     return vec3(xy.x, xy.y, unpackHalf2x16((bits >> 22u) << 6u).x);
 }
@@ -302,7 +302,7 @@ FW_SHARED_FN float sheetDamping(float charred, float dt) {
 // A burnt ring stretched beyond this square ratio has torn: no skin is left between its ends.
 FW_SHARED_CONST float kTornSquare = 2.6f;  // of squared rest lengths
 FW_SHARED_CONST float kTornOffset = 1000.0f; // s of appearance time
-FW_SHARED_FN float tornLead(float square, float longest, float burnt) {
+FW_SHARED_FN float tornOffset(float square, float longest, float burnt) {
     return burnt > 0.5f && square > kTornSquare * longest ? kTornOffset : 0.0f;
 }
 
@@ -318,7 +318,7 @@ FW_SHARED_FN float updraftAt(float burnt) {
 }
 
 // Correction of x towards rest length from y. share: 1/2, or 1 if y is pinned.
-FW_SHARED_FN vec3 linkPush(vec3 x, vec3 y, float rest, float share) {
+FW_SHARED_FN vec3 linkCorrection(vec3 x, vec3 y, float rest, float share) {
     vec3 d = y - x;
     float l = length(d);
     return d * (share * (l - rest) / maxF(l, 1e-9f));
@@ -335,17 +335,17 @@ FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
 // therefore has a partner at a fixed distance behind and one ahead, in two directions, whose middle is its target.
 // Partners are mutual. Short sets damp the waves that long sets cannot see. A step uses one set. A particle whose
 // constraints have parted has none.
-FW_SHARED_CONST float kArmRelax = 0.17f;
-FW_SHARED_CONST float kArmTears = 1.1f;  // stretch at which a constraint parts
-FW_SHARED_CONST float kArmCurls = 1.4f;  // relative to a ring of the same reach
+FW_SHARED_CONST float kBendSetRelax = 0.17f;
+FW_SHARED_CONST float kBendTears = 1.1f;  // stretch at which a constraint parts
+FW_SHARED_CONST float kBendCurl = 1.4f;  // relative to a ring of the same reach
 // Curl acts across a burning edge, not along it, since a sheet cannot do both. Its strength follows from the charred
 // shares behind and ahead. Material charred on both sides has no shape to keep.
-FW_SHARED_FN float armCurl(float behind, float ahead) {
+FW_SHARED_FN float bendCurl(float behind, float ahead) {
     float d = ahead - behind;
     return minF(4.0f * d * d, 1.0f);
 }
-FW_SHARED_FN float armFirm(float stiff, float charred, float across) {
-    return kArmRelax * stiff * (1.0f - charred * (1.0f - across));
+FW_SHARED_FN float bendStiffness(float stiff, float charred, float across) {
+    return kBendSetRelax * stiff * (1.0f - charred * (1.0f - across));
 }
 
 // Correction for the neighbours' mean to lie `rise` above the particle. An even particle takes all of it (the gradient
@@ -364,7 +364,7 @@ FW_SHARED_FN float curlRise(float curl, float square) {
     return rise > most ? most : (rise < -most ? -most : rise);
 }
 
-FW_SHARED_FN vec3 noFasterThan(vec3 v, float most) {
+FW_SHARED_FN vec3 limitSpeed(vec3 v, float most) {
     float square = dot(v, v);
     return square > most * most ? v * (most * inversesqrt(square)) : v;
 }
@@ -383,7 +383,7 @@ FW_SHARED_CONST float kSpringDamping = 0.08f;  // of the velocity, per step
 
 // Eq. (4): force of one spring per unit mass.
 FW_SHARED_FN vec3 springPull(vec3 x, vec3 y, float rest, float stiffness) {
-    return linkPush(x, y, rest, stiffness);
+    return linkCorrection(x, y, rest, stiffness);
 }
 // Eqs. (5) to (8): recession by `depth` within one step of dt, as an acceleration.
 FW_SHARED_FN vec3 decayPull(vec3 normal, float depth, float dt) {

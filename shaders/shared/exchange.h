@@ -12,14 +12,14 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
 FW_SHARED_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
 FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
-FW_SHARED_CONST uint kExchangeTurns = kRests;   // exchanges until all tiles of a receiver have been updated
+FW_SHARED_CONST uint kExchangeRounds = kSleepSteps;   // exchanges until all tiles of a receiver have been updated
 FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
 FW_SHARED_CONST uint kSourceGrid = 4u;          // cells along the longest side of an object, for its sources
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most
-FW_SHARED_CONST uint kMaxBlockers = 64u;
-FW_SHARED_CONST uint kShieldSide = 256u;        // cells along an axis of the occlusion grid, at most
-FW_SHARED_CONST uint kShieldCells = 2097152u;   // cells of the grid, at most
-FW_SHARED_CONST uint kShieldBaked = 262144u;    // cells filled by objects, at most
+FW_SHARED_CONST uint kMaxHeatOccluders = 64u;
+FW_SHARED_CONST uint kMaxOcclusionSide = 256u;        // cells along an axis of the occlusion grid, at most
+FW_SHARED_CONST uint kMaxOcclusionCells = 2097152u;   // cells of the grid, at most
+FW_SHARED_CONST uint kMaxBakedOcclusionCells = 262144u;    // cells filled by objects, at most
 FW_SHARED_CONST uint kReceiverWords = 66u;  // slot; number of sources; then source | visible share, of 255, << 24
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
 FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
@@ -29,16 +29,16 @@ FW_SHARED_CONST uint kContactGap = 50u;         // mm that a flame bridges
 FW_SHARED_CONST uint kChanceOne = 65536u;       // probability 1
 
 // ExchangePush::flags, as FwWorldFlags.
-FW_SHARED_CONST uint kRemoteRadiation = 1u;
-FW_SHARED_CONST uint kRemotePlume = 2u;
-FW_SHARED_CONST uint kRemoteContact = 4u;
-FW_SHARED_CONST uint kRemoteEmbers = 8u;
-// RemoteObject::flags
-FW_SHARED_CONST uint kRemoteLive = 1u;
-FW_SHARED_CONST uint kRemoteGives = 2u;         // its fire may reach other objects
-FW_SHARED_CONST uint kRemoteTwoSided = 4u;      // both sides receive
+FW_SHARED_CONST uint kExchangeRadiation = 1u;
+FW_SHARED_CONST uint kExchangePlume = 2u;
+FW_SHARED_CONST uint kExchangeContact = 4u;
+FW_SHARED_CONST uint kExchangeEmbers = 8u;
+// ExchangeObject::flags
+FW_SHARED_CONST uint kExchangeLive = 1u;
+FW_SHARED_CONST uint kExchangeGives = 2u;         // its fire may reach other objects
+FW_SHARED_CONST uint kExchangeTwoSided = 4u;      // both sides receive
 
-struct RemoteObject {  // object data of the exchange, latched at a step's start, all integers
+struct ExchangeObject {  // object data of the exchange, latched at a step's start, all integers
     ivec4 row0;        // world mm = w + (xyz . position >> shift); position: mesh units
     ivec4 row1;
     ivec4 row2;
@@ -57,13 +57,13 @@ struct RemoteObject {  // object data of the exchange, latched at a step's start
     uint chance;       // probability of each jump to another object, of kChanceOne
     uint hopsMost;     // passes fire on only below this many jumps; kNoneTexel: no limit
     uint lifeTicks;    // ticks from ignition until its front stops; kNoneTexel: never
-    uint tilesMost;    // limit of its burning tiles; kNoneTexel: no limit
+    uint maxTiles;    // limit of its burning tiles; kNoneTexel: no limit
     uint catches;      // embers: damping by its moisture, Q8
     uint texelArea;    // mm^2
 };
-FW_SHARED_SIZE(RemoteObject, 192)
+FW_SHARED_SIZE(ExchangeObject, 192)
 
-struct RemoteTile {    // one tile of a mesh, as source and receiver
+struct ExchangeTile {    // one tile of a mesh, as source and receiver
     uint xy;           // middle of its texels, position units
     uint z;            // z | source cell << 16 | material << 24
     uint normal;       // mean normal, signed 11:11:10
@@ -71,7 +71,7 @@ struct RemoteTile {    // one tile of a mesh, as source and receiver
     uvec4 parts;       // per 4 x 4 block: source lane and target texel of a link to another part of the mesh,
                        // see partFrom; kNoneTexel: none
 };
-FW_SHARED_SIZE(RemoteTile, 32)
+FW_SHARED_SIZE(ExchangeTile, 32)
 FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // limit of a link's target texel
 
 struct FireSource {    // fire in one cell of an object
@@ -91,13 +91,13 @@ struct FireSource {    // fire in one cell of an object
 };
 FW_SHARED_SIZE(FireSource, 64)
 
-struct Blocker {       // box that stops radiation, plumes and embers
+struct HeatOccluder {       // box that stops radiation, plumes and embers
     ivec4 turn0;       // xyz: row of its rotation, world to box, Q12; w: middle, mm
     ivec4 turn1;
     ivec4 turn2;
     uvec4 size;        // xyz: half of its sides, mm, [0, 30000]; w: 1 = in place
 };
-FW_SHARED_SIZE(Blocker, 64)
+FW_SHARED_SIZE(HeatOccluder, 64)
 
 struct ContactLink {   // texel that another object's texel may light across a gap
     uint object;       // slot that catches
@@ -128,19 +128,19 @@ struct ExchangePush {  // push constants of the passes that exchange
     int windZ;
     uint chance;       // of the world, of kChanceOne
     uint hopsMost;
-    uint tilesMost;
+    uint maxTiles;
     uint lifeTicks;
     uint seed;
-    uint blockers;
+    uint occluders;
     uint brands;       // embers per 1/16 W and exchange, Q32
     uint ambient;      // 1/16 K
     uint hotParity;
     uint warms;        // 1: an object may be heated by others
-    int shieldX;       // low corner of the occlusion grid, mm
-    int shieldY;
-    int shieldZ;
-    uint shieldCell;   // cell side, mm; 0: no grid
-    uint shieldCounts; // cells along x | y << 10 | z << 20
+    int occlusionX;       // low corner of the occlusion grid, mm
+    int occlusionY;
+    int occlusionZ;
+    uint occlusionCell;   // cell side, mm; 0: no grid
+    uint occlusionCounts; // cells along x | y << 10 | z << 20
     uint reserved0;
     uint reserved1;
     uint reserved2;
@@ -153,16 +153,16 @@ FW_SHARED_FN int dotRow(ivec4 row, ivec3 p) { return row.x * p.x + row.y * p.y +
 FW_SHARED_FN ivec3 dotRows(ivec4 row0, ivec4 row1, ivec4 row2, ivec3 p) {
     return ivec3(dotRow(row0, p), dotRow(row1, p), dotRow(row2, p));
 }
-FW_SHARED_FN ivec3 remotePlace(FW_IN(RemoteObject) o, ivec3 p) {
+FW_SHARED_FN ivec3 toWorldMm(FW_IN(ExchangeObject) o, ivec3 p) {
     return ivec3(o.row0.w, o.row1.w, o.row2.w) + (dotRows(o.row0, o.row1, o.row2, p) >> int(o.shift));
 }
 // Q12. n: normal in Q14.
-FW_SHARED_FN ivec3 remoteTurn(FW_IN(RemoteObject) o, ivec3 n) { return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14; }
-FW_SHARED_FN ivec3 tileMiddle(FW_IN(RemoteTile) t) {
+FW_SHARED_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) { return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14; }
+FW_SHARED_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
 }
-FW_SHARED_FN uint tileCell(FW_IN(RemoteTile) t) { return (t.z >> 16u) & 0xFFu; }
-FW_SHARED_FN uint tileMaterial(FW_IN(RemoteTile) t) { return t.z >> 24u; }
+FW_SHARED_FN uint tileCell(FW_IN(ExchangeTile) t) { return (t.z >> 16u) & 0xFFu; }
+FW_SHARED_FN uint tileMaterial(FW_IN(ExchangeTile) t) { return t.z >> 24u; }
 
 FW_SHARED_FN bool isWithinExchangeRange(ivec3 d) {
     return d.x <= kExchangeFar && d.x >= -kExchangeFar && d.y <= kExchangeFar &&
@@ -171,17 +171,17 @@ FW_SHARED_FN bool isWithinExchangeRange(ivec3 d) {
 FW_SHARED_FN uint absolute(int v) { return uint(v < 0 ? -v : v); }
 
 // Does the segment from a to b, without its ends, intersect the box?
-FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
+FW_SHARED_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
     if (k.size.w == 0u) return false;
     ivec3 c = ivec3(k.turn0.w, k.turn1.w, k.turn2.w);
     ivec3 d = (b - a) / 2;
     ivec3 m = a - c + d;
-    uint far = mostOf(mostOf(absolute(m.x), absolute(m.y)), absolute(m.z));
-    uint reach = mostOf(mostOf(absolute(d.x), absolute(d.y)), absolute(d.z));
+    uint far = maxU(maxU(absolute(m.x), absolute(m.y)), absolute(m.z));
+    uint reach = maxU(maxU(absolute(d.x), absolute(d.y)), absolute(d.z));
     if (far > 131071u || reach > 65535u) return false;
     // The last 6 cm at each end do not count, so a box does not block what is attached to it.
     uint length = isqrtNear(squaredLength(d / 4)) * 4u;
-    uint spare = leastOf(60u, length / 2u);
+    uint spare = minU(60u, length / 2u);
     int kept = length == 0u ? 0 : int(divide((length - spare) << 12u, length));  // Q12
     d = (d / 4 * kept) / 1024;
     // In the box's frame, 4 mm a unit: products stay below 2^31.
@@ -199,15 +199,15 @@ FW_SHARED_FN bool blockerCuts(FW_IN(Blocker) k, ivec3 a, ivec3 b) {
 // Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those that objects fill
 // and the number of such cells before these. Then two words for each of them: object key and texel. A cell of an object
 // is solid while that texel stands.
-FW_SHARED_CONST uint kShieldStays = 0x80000000u;  // | slot | material << 24: it never gives way
-FW_SHARED_CONST uint kShieldSlot = 0xFFFFFFu;
+FW_SHARED_CONST uint kOcclusionPermanent = 0x80000000u;  // | slot | material << 24: it never gives way
+FW_SHARED_CONST uint kOcclusionSlotMask = 0xFFFFFFu;
 
 FW_SHARED_FN uint occlusionSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
-FW_SHARED_FN uint shieldWords(uint counts) {  // of one bit per cell
+FW_SHARED_FN uint occlusionWords(uint counts) {  // of one bit per cell
     return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) + 31u) >> 5u;
 }
 
-struct ShieldWalk {  // visits the cells that a segment crosses, face by face, to 3 mm
+struct OcclusionWalk {  // visits the cells that a segment crosses, face by face, to 3 mm
     bool within;     // within the grid and the segment
     uint cell;       // current cell
     uint whole;      // mm, length of the segment
@@ -245,8 +245,8 @@ FW_SHARED_FN uint occlusionEntry(int begins, int d, int size) {
     return divide(outside << 14u, absolute(d));
 }
 
-FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
-    ShieldWalk w;
+FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
+    OcclusionWalk w;
     w.within = false;
     w.cell = 0u;
     w.whole = 0u;
@@ -257,16 +257,16 @@ FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
     w.ahead = uvec3(1u, 1u, 1u);
     w.way = uvec3(0u, 0u, 0u);
     ivec3 d = b - a;
-    if (g.shieldCell == 0u || !isWithinExchangeRange(d)) return w;
-    ivec3 low = ivec3(g.shieldX, g.shieldY, g.shieldZ);
+    if (g.occlusionCell == 0u || !isWithinExchangeRange(d)) return w;
+    ivec3 low = ivec3(g.occlusionX, g.occlusionY, g.occlusionZ);
     ivec3 off = a / 2 - low / 2;  // halves: positions and grid may be 3e9 mm apart
-    uint far = mostOf(mostOf(absolute(off.x), absolute(off.y)), absolute(off.z));
+    uint far = maxU(maxU(absolute(off.x), absolute(off.y)), absolute(off.z));
     if (far > 1500000u) return w;
     ivec3 s = a - low;
-    int side = int(g.shieldCell);
-    ivec3 n = ivec3(int(occlusionSide(g.shieldCounts, 0u)), int(occlusionSide(g.shieldCounts, 1u)),
-                    int(occlusionSide(g.shieldCounts, 2u)));
-    uint enters = mostOf(mostOf(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
+    int side = int(g.occlusionCell);
+    ivec3 n = ivec3(int(occlusionSide(g.occlusionCounts, 0u)), int(occlusionSide(g.occlusionCounts, 1u)),
+                    int(occlusionSide(g.occlusionCounts, 2u)));
+    uint enters = maxU(maxU(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
                          occlusionEntry(s.z, d.z, n.z * side));
     if (enters > 16384u) return w;
     int t = int(enters);
@@ -287,7 +287,7 @@ FW_SHARED_FN ShieldWalk shieldWalk(FW_IN(ExchangePush) g, ivec3 a, ivec3 b) {
 }
 
 // Moves to the next cell. Products of a length and a distance ahead stay below 2^31.
-FW_SHARED_FN void shieldStep(FW_INOUT(ShieldWalk) w, uint side) {
+FW_SHARED_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
     bool alongX = w.ahead.x * w.way.y < w.ahead.y * w.way.x;
     uint ahead = alongX ? w.ahead.x : w.ahead.y, way = alongX ? w.way.x : w.way.y;
     bool alongZ = w.ahead.z * way < ahead * w.way.z;
@@ -311,7 +311,7 @@ FW_SHARED_FN void shieldStep(FW_INOUT(ShieldWalk) w, uint side) {
     }
 }
 
-struct ShieldEnds {  // objects at both ends, and the distance within which their own cells do not count
+struct OcclusionEnds {  // objects at both ends, and the distance within which their own cells do not count
     uint from;       // slot
     uint to;
     uint fromSpare;  // mm
@@ -319,35 +319,35 @@ struct ShieldEnds {  // objects at both ends, and the distance within which thei
 };
 // Is the current cell too near to an end? Everything within one cell of an end is, so what supports a fire does not
 // block it. slot: owner of the cell; kNoneTexel: the host, which counts as either end.
-FW_SHARED_FN bool shieldSpares(FW_IN(ShieldWalk) w, FW_IN(ShieldEnds) e, uint slot, uint side) {
+FW_SHARED_FN bool isNearWalkEnd(FW_IN(OcclusionWalk) w, FW_IN(OcclusionEnds) e, uint slot, uint side) {
     uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
     uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
     uint to = slot == e.to || slot == kNoneTexel ? e.toSpare : side;
     return at < from || w.whole < at + to + side / 2u;
 }
-FW_SHARED_FN ShieldEnds emberEnds(FW_IN(FireSource) s, uint to, uint side) {
-    ShieldEnds e;
+FW_SHARED_FN OcclusionEnds emberOcclusionEnds(FW_IN(FireSource) s, uint to, uint side) {
+    OcclusionEnds e;
     e.from = s.object;
     e.to = to;
-    e.fromSpare = side * 2u + leastOf(s.diameter / 2u, 1000u);
+    e.fromSpare = side * 2u + minU(s.diameter / 2u, 1000u);
     e.toSpare = side * 2u;
     return e;
 }
 // From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a grazing angle
 // crosses many cells of its own surface.
-FW_SHARED_FN ShieldEnds shieldEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal, uint side) {
-    ShieldEnds e = emberEnds(s, to, side);
+FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal, uint side) {
+    OcclusionEnds e = emberOcclusionEnds(s, to, side);
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return e;
     uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
-    uint leaves = divide(side * isqrtNear(squaredLength(d)), mostOf(over, 1u));  // mm until one cell above it
-    e.toSpare = mostOf(e.toSpare, leastOf(leaves + leaves / 2u, side * 6u));
+    uint leaves = divide(side * isqrtNear(squaredLength(d)), maxU(over, 1u));  // mm until one cell above it
+    e.toSpare = maxU(e.toSpare, minU(leaves + leaves / 2u, side * 6u));
     return e;
 }
 
 // ---- flames
 
-FW_SHARED_FN uint topBit(uint x) {  // of x > 0
+FW_SHARED_FN uint highestBit(uint x) {  // of x > 0
 #ifdef __cplusplus
     uint bit = 0u;
     while ((x >> bit) > 1u) ++bit;
@@ -365,7 +365,7 @@ FW_SHARED_FN uint power04(uint x) {
         x >>= 5u;
         fours += 2u;
     }
-    uint k = topBit(x);
+    uint k = highestBit(x);
     uint f = ((x << 15u) >> k) & 0x7FFFu;  // Q15
     uint rest = k % 5u;
     // 2^(0.4 rest), Q12
@@ -376,25 +376,25 @@ FW_SHARED_FN uint power04(uint x) {
 
 // Diameter in mm of a disc of `area` mm^2.
 FW_SHARED_FN uint fireDiameter(uint area) {
-    return isqrtNear(leastOf(mulShift(area, 83443u, 16u), 0xFFFC0000u));
+    return isqrtNear(minU(mulShift(area, 83443u, 16u), 0xFFFC0000u));
 }
 // Flame height in mm (Heskestad); a wide weak fire counts as many small ones. scale: power04(watts).
 FW_SHARED_FN uint flameHeight(uint scale, uint diameter) {
     uint tall = mulShift(scale, 3796u, 16u);
     uint less = diameter + diameter / 50u;
-    return mostOf(tall - leastOf(less, tall), tall / 3u);
+    return maxU(tall - minU(less, tall), tall / 3u);
 }
 
 // Turns sums into a source in the world. An empty source stays empty.
-FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(RemoteObject) o) {
+FW_SHARED_FN void settleSource(FW_INOUT(FireSource) s, FW_IN(ExchangeObject) o) {
     s.watts = s.tiles == 0u ? 0u : s.power >> 4u;
     if (s.watts == 0u) return;
     ivec3 middle = ivec3(int(divide(s.sumX, s.tiles) * 4u), int(divide(s.sumY, s.tiles) * 4u),
                          int(divide(s.sumZ, s.tiles) * 4u));
-    ivec3 at = remotePlace(o, middle);
+    ivec3 at = toWorldMm(o, middle);
     s.scale = power04(s.watts);
-    s.diameter = fireDiameter(mulShift(leastOf(s.texels, 0x7FFFFFu) << 8u, o.texelArea, 8u));
-    s.place = ivec4(at.x, at.y, at.z, int(leastOf(flameHeight(s.scale, s.diameter), 30000u)));
+    s.diameter = fireDiameter(mulShift(minU(s.texels, 0x7FFFFFu) << 8u, o.texelArea, 8u));
+    s.place = ivec4(at.x, at.y, at.z, int(minU(flameHeight(s.scale, s.diameter), 30000u)));
 }
 
 FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
@@ -406,21 +406,21 @@ FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
 FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return 0u;
-    uint length = mostOf(isqrtNear(squaredLength(d)), 1u);
+    uint length = maxU(isqrtNear(squaredLength(d)), 1u);
     int along = (normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z;  // Q10
     if (along <= 0 && !both) return 0u;
-    uint cosine = leastOf(divide(absolute(along), length) >> 2u, 256u);
-    uint far = mostOf(length, nearest);
+    uint cosine = minU(divide(absolute(along), length) >> 2u, 256u);
+    uint far = maxU(length, nearest);
     return pointFlux(watts, kRadiantShare, cosine, divide(far * far + 50u, 100u));
 }
 
 // W/m^2 that a flame sends to a surface there.
 FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 normal, bool both) {
-    uint nearest = mostOf(s.diameter, kNearest) / 2u;
+    uint nearest = maxU(s.diameter, kNearest) / 2u;
     ivec3 middle = alongFlame(s, up, 4);
     ivec3 d = middle - at;
     if (!isWithinExchangeRange(d)) return 0u;
-    uint size = mostOf(s.diameter, uint(s.place.w)) * 2u;
+    uint size = maxU(s.diameter, uint(s.place.w)) * 2u;
     bool row = size >= 65535u || squaredLength(d) <= size * size;  // near: four points along the flame
     // A loop, not a branch: a software device would execute both sides of a branch.
     uint part = row ? s.watts / 4u : s.watts, sum = 0u;
@@ -429,13 +429,13 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
         sum += fluxFrom(alongFlame(s, up, eighths), part, nearest, at, normal, both);
         eighths += apart;
     } while (eighths < end);
-    return leastOf(sum, kFluxMost);
+    return minU(sum, kMaxFlux);
 }
 
 // K above ambient on a plume's axis, z mm above its base: McCaffrey's three zones.
 FW_SHARED_FN uint plumeRise(uint z, uint scale) {
     if (scale == 0u) return 0u;
-    uint q = divide(leastOf(z, 65535u) * 4057u, scale);  // 1/1000 of z / Q^0.4
+    uint q = divide(minU(z, 65535u) * 4057u, scale);  // 1/1000 of z / Q^0.4
     if (q < 80u) return 800u;
     if (q < 200u) return divide(63000u, q);
     uint rise = 315u << 8u;  // Q8, falls with the power 5/3: factor 0.315 an octave
@@ -463,14 +463,14 @@ FW_SHARED_FN FlameFrame flameFrame(FW_IN(FireSource) s, ivec3 up, ivec3 at) {
     if (!f.near) return f;
     f.above = (up.x * d.x + up.y * d.y + up.z * d.z) / 4096;
     uint square = squaredLength(d), high = absolute(f.above) * absolute(f.above);
-    f.beside2 = square - leastOf(high, square);
+    f.beside2 = square - minU(high, square);
     return f;
 }
 
 // W/m^2 from a plume to a surface at `heat`, 1/16 K; ambient: 1/16 K.
 FW_SHARED_FN uint plumeFlux(FW_IN(FireSource) s, FW_IN(FlameFrame) f, uint heat, uint ambient) {
     uint width = (uint(f.above) * 492u) / 4096u + s.diameter / 2u;  // mm: 0.12 z + D/2
-    width = leastOf(mostOf(width, 10u), 20000u);
+    width = minU(maxU(width, 10u), 20000u);
     uint square = width * width, flux = 0u;
     // A loop costs nothing where no plume arrives.
     for (bool within = f.near && f.above > 0 && f.beside2 < square * 9u; within; within = false) {
@@ -489,7 +489,7 @@ FW_SHARED_FN bool flameLights(FW_IN(FireSource) s, FW_IN(FlameFrame) f) {
     return f.beside2 <= reach * reach;
 }
 
-FW_SHARED_FN ivec3 boxMiddle(FW_IN(RemoteObject) o) {
+FW_SHARED_FN ivec3 boxMiddle(FW_IN(ExchangeObject) o) {
     ivec3 low = ivec3(o.turn0.w, o.turn1.w, o.turn2.w);
     return low + (ivec3(o.high.x, o.high.y, o.high.z) - low) / 2;
 }
@@ -504,10 +504,10 @@ FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient
     Received r;
     FlameFrame f = flameFrame(s, up, at);
     uint flux = 0u;
-    if ((flags & kRemoteRadiation) != 0u) flux += radiantFlux(s, up, at, normal, both);
-    if ((flags & kRemotePlume) != 0u) flux += plumeFlux(s, f, ambient, ambient);
-    r.flux = divide(leastOf(flux, kFluxMost) * leastOf(seen, 255u), 255u);
-    r.pilot = (flags & (kRemoteRadiation | kRemotePlume)) != 0u && flameLights(s, f) ? 1u : 0u;
+    if ((flags & kExchangeRadiation) != 0u) flux += radiantFlux(s, up, at, normal, both);
+    if ((flags & kExchangePlume) != 0u) flux += plumeFlux(s, f, ambient, ambient);
+    r.flux = divide(minU(flux, kMaxFlux) * minU(seen, 255u), 255u);
+    r.pilot = (flags & (kExchangeRadiation | kExchangePlume)) != 0u && flameLights(s, f) ? 1u : 0u;
     return r;
 }
 
@@ -515,26 +515,26 @@ FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient
 FW_SHARED_FN uint sourceWeight(FW_IN(FireSource) s, ivec3 at) {
     ivec3 d = ivec3(s.place.x, s.place.y, s.place.z) - at;
     if (s.watts == 0u || !isWithinExchangeRange(d)) return 0u;
-    uint square = mostOf(divide(squaredLength(d), 100u), 100u);
-    return divide(leastOf(s.watts, 0xFFFFFFu) << 8u, square) + 1u;
+    uint square = maxU(divide(squaredLength(d), 100u), 100u);
+    return divide(minU(s.watts, 0xFFFFFFu) << 8u, square) + 1u;
 }
 
 // ---- ignition rules
 
-FW_SHARED_FN uint bothChances(uint a, uint b) { return mulShift(a, b, 16u); }
+FW_SHARED_FN uint multiplyChances(uint a, uint b) { return mulShift(a, b, 16u); }
 FW_SHARED_FN bool drawn(uint hash, uint chance) { return (hash >> 16u) < chance; }
 FW_SHARED_FN uint mixed(uint a, uint b) { return hash32(a ^ (hash32(b) + 0x9E3779B9u)); }
 
 // Decided once per pair and fire. caught: tick at which the source object was found alight.
-FW_SHARED_FN bool mayJump(uint seed, uint from, uint to, uint caught, uint chance) {
+FW_SHARED_FN bool mayReach(uint seed, uint from, uint to, uint caught, uint chance) {
     return drawn(mixed(mixed(mixed(seed, from), to), caught), chance);
 }
-FW_SHARED_FN bool mayGive(FW_IN(RemoteObject) o, uint hops, uint maxWorldHops) {
-    return (o.flags & kRemoteGives) != 0u && hops < leastOf(o.hopsMost, maxWorldHops);
+FW_SHARED_FN bool mayTransfer(FW_IN(ExchangeObject) o, uint hops, uint maxWorldHops) {
+    return (o.flags & kExchangeGives) != 0u && hops < minU(o.hopsMost, maxWorldHops);
 }
 
 // Updates an object's lit and stop ticks at an exchange.
-FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o, FW_IN(ExchangePush) rules) {
+FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o, FW_IN(ExchangePush) rules) {
     c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
         // An object that heats it may light it by the next exchange.
@@ -542,7 +542,7 @@ FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o, FW
         c.litTick = 0u;
         c.stopTick = 0u;
     } else if (c.litTick == 0u) {
-        uint life = leastOf(o.lifeTicks, rules.lifeTicks);
+        uint life = minU(o.lifeTicks, rules.lifeTicks);
         c.litTick = rules.now;
         c.stopTick = life > 0xF0000000u ? 0u : rules.now + life;
     }
@@ -551,10 +551,10 @@ FW_SHARED_FN void noteFire(FW_INOUT(ObjectCounters) c, FW_IN(RemoteObject) o, FW
 // Key of the object that lit another: fewest jumps win, then the lowest slot, in any order. 0: none yet.
 FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
 FW_SHARED_FN uint litBy(uint hops, uint from) {
-    return ~((leastOf(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
+    return ~((minU(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
 }
 FW_SHARED_FN uint hopsOf(uint by) { return (by == 0u || by == kLitByHand) ? 0u : (~by) >> 24u; }
-FW_SHARED_FN uint giverOf(uint by) {  // slot, or kNoneTexel
+FW_SHARED_FN uint igniterOf(uint by) {  // slot, or kNoneTexel
     return (by == 0u || by == kLitByHand) ? kNoneTexel : (~by) & 0xFFFFFFu;
 }
 
@@ -563,7 +563,7 @@ FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && 
 FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
                             uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
-    return burning >= maxWorld || ((objectFlags & kRemoteLive) != 0u && objectBurning >= maxObject);
+    return burning >= maxWorld || ((objectFlags & kExchangeLive) != 0u && objectBurning >= maxObject);
 }
 // kHeld bits of an object at an exchange.
 FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject, uint stopTick, uint now) {
@@ -579,7 +579,7 @@ FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
 // before, so texels lit in the current one do not count, in any order.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
-    uint begins = mostOf(t, since);
+    uint begins = maxU(t, since);
     uint arrives = begins + delay;
     if (arrives > now || !flames(t, arrives, flameTicks)) return kNever;
     return arrives + kExchangeTicks < now ? now : arrives;
@@ -601,7 +601,7 @@ FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
 }
 // Tick of the exchange that finds fire at the target.
 FW_SHARED_FN uint partArrives(uint t, uint delay) {
-    uint arrives = mostOf(t + delay, t + kExchangeTicks + 1u);
+    uint arrives = maxU(t + delay, t + kExchangeTicks + 1u);
     return (arrives + kExchangeTicks - 1u) / kExchangeTicks * kExchangeTicks;
 }
 
@@ -623,7 +623,7 @@ FW_SHARED_FN ivec3 acrossUp(ivec3 p, uint axis) {
 }
 // Height of an object's top below a position, mm; kNoTop: the position is beside or under it.
 FW_SHARED_CONST int kNoTop = -2147483647;
-FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
+FW_SHARED_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
     ivec3 low = acrossUp(ivec3(o.turn0.w, o.turn1.w, o.turn2.w), axis);
     ivec3 high = acrossUp(ivec3(o.high.x, o.high.y, o.high.z), axis);
     ivec3 p = acrossUp(at, axis);
@@ -635,18 +635,18 @@ FW_SHARED_FN int topBelow(FW_IN(RemoteObject) o, ivec3 at, uint axis) {
 }
 // How badly a tile matches a landing position, [0, kMisses]: least wins.
 FW_SHARED_CONST uint kMisses = 16383u;
-FW_SHARED_FN uint landingMiss(FW_IN(RemoteObject) o, FW_IN(RemoteTile) tile, ivec3 at, int top, uint axis) {
+FW_SHARED_FN uint landingMiss(FW_IN(ExchangeObject) o, FW_IN(ExchangeTile) tile, ivec3 at, int top, uint axis) {
     if (tile.texels == 0u) return kMisses;
-    int facing = heightOf(remoteTurn(o, decodeNormal(tile.normal)), axis);
-    if ((o.flags & kRemoteTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
+    int facing = heightOf(turnToWorld(o, decodeNormal(tile.normal)), axis);
+    if ((o.flags & kExchangeTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
     if (facing < 512) return kMisses;
-    ivec3 p = remotePlace(o, tileMiddle(tile));
+    ivec3 p = toWorldMm(o, tileMiddle(tile));
     ivec3 d = acrossUp(p - at, axis);
     if (absolute(d.x) > 2000u || absolute(d.y) > 2000u || absolute(d.z) > 2000u) return kMisses;
     uint beside = isqrtNear(squaredLength(d));
     int below = top - heightOf(p, axis);
     uint miss = beside * 2u + uint(below < 0 ? 0 : (below > 16000 ? 16000 : below)) / 2u;
-    return leastOf(miss, kMisses);
+    return minU(miss, kMisses);
 }
 
 struct Ember {
@@ -670,8 +670,8 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
     uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
     uint thick = (a & 3u);
     uint falls = thick == 0u ? 1410u : thick == 1u ? 2000u : thick == 2u ? 2450u : 2830u;  // mm/s
-    uint loft = leastOf((mostOf(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
-    uint seconds = leastOf(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
+    uint loft = minU((maxU(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
+    uint seconds = minU(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
     e.flight = seconds;
     // Lateral spread: a quarter of the loft. Wind carries it 28 m at most.
     int spread = int(loft / 4u) + int(s.diameter / 2u);
@@ -695,8 +695,8 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
 }
 
 // Horizontal distance of a texel from a position, mm, [0, 65535].
-FW_SHARED_FN uint besidePlace(FW_IN(RemoteObject) o, ivec3 position, ivec3 at, uint axis) {
-    ivec3 p = remotePlace(o, position);
+FW_SHARED_FN uint besidePlace(FW_IN(ExchangeObject) o, ivec3 position, ivec3 at, uint axis) {
+    ivec3 p = toWorldMm(o, position);
     ivec3 d = acrossUp(p - at, axis);
     return isWithinExchangeRange(d) ? isqrtNear(squaredLength(d)) : 65535u;
 }
@@ -708,8 +708,8 @@ FW_SHARED_FN bool besideLane(uint lane, uint other) {
 
 // Ignition probability of kChanceOne: 1 - exp(-E / 200 J), damped by moisture.
 FW_SHARED_FN uint emberLights(uint energy, uint catches) {
-    uint unlit = halvings(leastOf(energy, 4000u) * 473u);  // Q16: log2(e) / 200
-    return ((65536u - leastOf(unlit, 65536u)) * leastOf(catches, 256u)) >> 8u;
+    uint unlit = halvings(minU(energy, 4000u) * 473u);  // Q16: log2(e) / 200
+    return ((65536u - minU(unlit, 65536u)) * minU(catches, 256u)) >> 8u;
 }
 
 FW_SHARED_END

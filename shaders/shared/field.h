@@ -11,14 +11,14 @@
 FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kFieldSources = 4u;         // of a field
-FW_SHARED_CONST uint kFieldSideMost = 256u;      // cells
-FW_SHARED_CONST uint kFieldCellMost = 32767u;    // particles of a cell
+FW_SHARED_CONST uint kMaxFieldSide = 256u;      // cells
+FW_SHARED_CONST uint kMaxFieldCell = 32767u;    // particles of a cell
 FW_SHARED_CONST uint kFieldCellFull = 16384u;    // above it no more are emitted
 FW_SHARED_CONST uint kFieldAll = 32768u;         // Q15, share of all of a cell's particles
 FW_SHARED_CONST int kFieldStill = 128;           // byte of a mean motion of 0
 FW_SHARED_CONST int kFieldSpeed = 120;           // byte difference of one cell per step
 FW_SHARED_CONST uint kFieldWallCell = 0x8080FFFFu;  // word of a wall cell
-FW_SHARED_CONST uint kFieldSpreadMost = 4096u;   // Q15: an eighth; twice as much is unstable
+FW_SHARED_CONST uint kMaxFieldSpread = 4096u;   // Q15: an eighth; twice as much is unstable
 
 FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
 FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
@@ -45,7 +45,7 @@ struct FieldRules {      // of one field
     uint inertia;        // Q8, weight of the cell's mean motion
     uint chaos;          // Q8, weight of a random direction, shared by 4 x 4 cells and 4 steps
 
-    uint spread;         // Q15, [0, kFieldSpreadMost]: share of a difference that diffuses to each neighbour
+    uint spread;         // Q15, [0, kMaxFieldSpread]: share of a difference that diffuses to each neighbour
     uint memory;         // Q7, share of its motion that a particle keeps per step
     uint death;          // Q16, share that dies per step
     uint seed;
@@ -72,7 +72,7 @@ FW_SHARED_SIZE(FieldPush, 16)
 FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) { return n | (motion.x << 16u) | (motion.y << 24u); }
 FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
 FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }  // all ones for a wall
-FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kFieldCellMost; }
+FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kMaxFieldCell; }
 
 // Unit vector of direction k, Q7.
 FW_SHARED_FN ivec2 fieldDirection(uint k) {
@@ -226,7 +226,7 @@ FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint r
 FW_SHARED_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
 
 // Flow that a cell of n particles takes per direction, Q15: an eighth of its free capacity.
-FW_SHARED_FN uint fieldRoom(uint n) { return ((kFieldCellMost - n) << 12u) & ~32767u; }
+FW_SHARED_FN uint fieldRoom(uint n) { return ((kMaxFieldCell - n) << 12u) & ~32767u; }
 
 // Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a cell of this motion:
 // memory and displacement. Q7.

@@ -6,7 +6,7 @@
 
 FW_SHARED_BEGIN
 FW_SHARED_CONST uint kFieldShowGroups = 8u;  // per field, by rows
-FW_SHARED_CONST uint kFieldCard = 0u;        // FieldDraw::shape, as FwFieldShape
+FW_SHARED_CONST uint kFieldBillboard = 0u;        // FieldDraw::shape, as FwFieldShape
 FW_SHARED_CONST uint kFieldSpheroid = 1u;
 FW_SHARED_CONST uint kFieldDisplaced = 2u;
 FW_SHARED_CONST uint kFieldAround = 32u;     // quads around a spheroid; kFieldUp: along its axis
@@ -25,7 +25,7 @@ struct FieldDraw {
     uint shown;
     uint width;          // cells
     uint height;
-    uint shape;          // kFieldCard ...
+    uint shape;          // kFieldBillboard ...
     float tall;          // cells, mean height of the particles
     uint seed;
 };

@@ -25,9 +25,9 @@ FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.
 FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
 FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
 FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
-FW_SHARED_CONST uint kFarPast = 0x80000000u;      // TileState::lastChange of a tile that never changed
+FW_SHARED_CONST uint kNeverChanged = 0x80000000u;      // TileState::lastChange of a tile that never changed
 
-struct FrontPrep {  // slowness of one texel: A * (1 - e.v)
+struct FrontDrive {  // slowness of one texel: A * (1 - e.v)
     uint A;         // Q22 ticks per 1/8 position unit
     ivec3 e;        // Q14
 };
@@ -39,7 +39,7 @@ struct FrontRing {  // the ring of a texel
 };
 
 // Can a texel with these material flags (texel word >> 16) burn?
-FW_SHARED_FN bool texelBurns(uint materialFlags, uint slowness, uint burnFlags) {
+FW_SHARED_FN bool canTexelBurn(uint materialFlags, uint slowness, uint burnFlags) {
     return (materialFlags & kTexelReal) != 0u && slowness != 0u && (burnFlags & 1u) != 0u;
 }
 
@@ -102,8 +102,8 @@ FW_SHARED_FN ivec3 decodePosition(uvec2 texel) {
 }
 
 // Spread law at one texel. normal: Q14; noise: Q7 slowness factor, not 0.
-FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
-    FrontPrep p;
+FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMaterial) m) {
+    FrontDrive p;
     ivec3 drive = ivec3(m.driveX, m.driveY, m.driveZ);
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
     uint s0 = mulShift(m.sigma0, noise, 7u);
@@ -146,13 +146,13 @@ FW_SHARED_FN FrontPrep frontPrep(ivec3 normal, uint noise, FW_IN(BurnMaterial) m
 }
 
 // Travel time, 1/16 ticks, over a link in 1/8 units. square, along: the link's square and its product with p.e.
-FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontPrep) p) {
+FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontDrive) p) {
     int y = int((isqrtNear(square) << 14u) - along);
     uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
     return int(t < uint(kFrontTimeMax) ? t : uint(kFrontTimeMax));
 }
 // link8: own position minus the source's, 1/8 units.
-FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontPrep) p) {
+FW_SHARED_FN int linkCost(ivec3 link8, FW_IN(FrontDrive) p) {
     return travelTime(squaredLength(link8), uint(dotInt(link8, p.e)), p);
 }
 
@@ -165,7 +165,7 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
 // Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way. Arrival is convex along
 // it: if the slope does not outweigh the delay of b, a alone is best. l: length of a, 1/8 units.
 FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
-FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
+FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
     if (l == 0u) return kPairFalls;
     // Change of distance over the whole segment at this rate: side . a / |a|, in whole units.
@@ -180,7 +180,7 @@ FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontPrep) p) {
 
 // Best arrival over the segment between two sources: three weights, one parabola step, one more. The ends cost ga and
 // gb.
-FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontPrep) p) {
+FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontDrive) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
     uint bb = squaredLength(b) * 64u, bd = uint(dotInt(b, d)) * 32u, dd = squaredLength(d) * 4u;
@@ -223,7 +223,7 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW
 // Sources of the ring that count: burning by the window's end, and not diagonals cut off by two barriers. Bit k of
 // `present`: the ring has a k-th texel. `wake` is lowered to the tick of a coming source; it matters for receptive
 // texels only, here and in frontArrival.
-FW_SHARED_FN uint frontSources(FW_IN(FrontRing) ring, uint present, uint windowEnd, FW_INOUT(uint) wake) {
+FW_SHARED_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint windowEnd, FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
@@ -264,7 +264,7 @@ ivec3 pickLink(FrontRing ring, int k) {
 // texel is dropped. `wake` is then lowered to the tick after which it cannot count again under another wind: until then
 // the texel's tile stays listed. settles: also computes `settledFrom`, the tick from which another source of this ring
 // would not change the result; kNever: unknown. It needs all eight links.
-FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPrep) p,
+FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontDrive) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
                                bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
     int cost[8];
@@ -342,16 +342,16 @@ FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontPr
     return base + (uint(best + int(hash32(texel) & 15u)) >> 4u);
 }
 
-FW_SHARED_FN uint frontFloor(uint now, uint window) { return now > window ? now - window : 0u; }
+FW_SHARED_FN uint windowFloor(uint now, uint window) { return now > window ? now - window : 0u; }
 
 // May this texel still change? It is receptive, or young enough for a correction.
-FW_SHARED_FN bool frontEligible(uint t, uint floorTick) {
+FW_SHARED_FN bool isFrontEligible(uint t, uint floorTick) {
     return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
 }
 
 // State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending arrival. late: 1 if the
 // candidate came too late and was moved to the window's floor.
-FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floorTick,
+FW_SHARED_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorTick,
                               FW_INOUT(uint) wake, FW_OUT(uint) late) {
     late = 0u;
     bool fresh = isReceptive(t);
@@ -370,7 +370,7 @@ FW_SHARED_FN uint frontDecide(uint t, uint candidate, uint windowEnd, uint floor
 
 // Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in every 2^(stepShift -
 // shift)-th iteration.
-FW_SHARED_FN bool takesPart(uint k, uint stepShift, uint shift) {
+FW_SHARED_FN bool runsInIteration(uint k, uint stepShift, uint shift) {
     uint skip = stepShift - (shift < stepShift ? shift : stepShift);
     return (k & ((1u << skip) - 1u)) == 0u;
 }
@@ -385,13 +385,13 @@ FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift)
 }
 
 // Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that may still be
-// corrected is younger than the window, so its tile changed since. Unsigned: kFarPast is far in the past.
-FW_SHARED_FN bool latchTouches(bool listed, uint lastChange, uint now, uint window) {
+// corrected is younger than the window, so its tile changed since. Unsigned: kNeverChanged is far in the past.
+FW_SHARED_FN bool latchReaches(bool listed, uint lastChange, uint now, uint window) {
     return listed || now - lastChange <= window + kStepTicks;
 }
 
 // Grid neighbours of a tile that depend on a texel of this mask (lane = y * 8 + x), one bit each.
-FW_SHARED_FN uint neighboursOf(uint maskLow, uint maskHigh) {
+FW_SHARED_FN uint dependentNeighbours(uint maskLow, uint maskHigh) {
     uint all = maskLow | maskHigh;
     bool right = (all & 0x80808080u) != 0u;
     bool left = (all & 0x01010101u) != 0u;

@@ -16,20 +16,20 @@ FW_SHARED_CONST uint kBoiling = 5970u;          // 373 K, 1/16 K
 FW_SHARED_CONST uint kPyrolysisBegins = 6770u;  // 423 K: thick fuel begins to consume itself,
 FW_SHARED_CONST uint kPyrolysisSpan = 4800u;    // full rate 300 K above
 FW_SHARED_CONST uint kScorchBegins = 7568u;     // 473 K: begins to darken
-FW_SHARED_CONST uint kFluxMost = 500000u;       // W/m^2, incoming or net: beyond any fire
-FW_SHARED_CONST uint kFilmMost = 1023u;         // g/m^2
-FW_SHARED_CONST uint kMoistMost = 255u;         // 1/128 kg/kg
-FW_SHARED_CONST uint kSoaksOut = 3u;            // steps of flaming under a film before the flame dies, minus one
-FW_SHARED_CONST uint kLukewarm = 16u;           // 1/16 K from ambient that still count as asleep
+FW_SHARED_CONST uint kMaxFlux = 500000u;       // W/m^2, incoming or net: beyond any fire
+FW_SHARED_CONST uint kMaxFilm = 1023u;         // g/m^2
+FW_SHARED_CONST uint kMaxMoist = 255u;         // 1/128 kg/kg
+FW_SHARED_CONST uint kSoakSteps = 3u;            // steps of flaming under a film before the flame dies, minus one
+FW_SHARED_CONST uint kSleepTolerance = 16u;           // 1/16 K from ambient that still count as asleep
 FW_SHARED_CONST uint kColdWaterSteps = 32u;              // steps from one update to the next of a tile that only has cold water
 // Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to char, and a flux too
 // small to heat it much (wood needs 10 kW/m^2 to catch).
 FW_SHARED_CONST uint kSleepShift = 3u;
-FW_SHARED_CONST uint kRests = 1u << kSleepShift;
+FW_SHARED_CONST uint kSleepSteps = 1u << kSleepShift;
 FW_SHARED_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
 // The longer interval below a flux of noon sun.
 FW_SHARED_CONST uint kLongSleepShift = 5u;
-FW_SHARED_CONST uint kNapFlux = 1024u;          // W/m^2
+FW_SHARED_CONST uint kLongSleepFlux = 1024u;          // W/m^2
 
 // HeatTexel::phase
 FW_SHARED_CONST uint kPhaseFresh = 0u;
@@ -51,9 +51,9 @@ FW_SHARED_CONST uint kHeatLacksShift = 8u;      // 9 bits, Q8: reduction of burn
 struct HeatTexel {
     uint fuel;     // kFuelFull .. 0
     uint heat;     // temperature, 1/16 K, [0, 65535]
-    uint film;     // g/m^2 of water on the surface, [0, kFilmMost]
-    uint soaked;   // steps of flaming under a film, [0, kSoaksOut]
-    uint moist;    // 1/128 kg/kg of water inside, [0, kMoistMost]
+    uint film;     // g/m^2 of water on the surface, [0, kMaxFilm]
+    uint soaked;   // steps of flaming under a film, [0, kSoakSteps]
+    uint moist;    // 1/128 kg/kg of water inside, [0, kMaxMoist]
     uint charred;  // [0, 255]: scorched to burnt; cosmetic
     uint epoch;    // re-ignitions, modulo 4
     uint phase;
@@ -65,8 +65,8 @@ struct HeatMaterial {     // one material for one step length and pace, baked by
     uint convects;        // W/m^2/K, Q8
     uint ownFlux;         // W/m^2 of feedback from its own flame
     uint inertia;         // thick: pi/2 * k rho c / dt, W^2/m^4/K^2; thin: 0
-    uint capacityLeast;   // rho c depth / dt, W/m^2/K, Q8, of the thinnest skin; thin: of the sheet
-    uint capacityMost;    // of the full thickness
+    uint minCapacity;   // rho c depth / dt, W/m^2/K, Q8, of the thinnest skin; thin: of the sheet
+    uint maxCapacity;    // of the full thickness
     uint ambient;         // 1/16 K
     uint burnRate;        // thick: fuel units per step, Q16, hot and uncharred, in still air
     uint charSpan;        // Q16 halvings of that rate under the char of all its fuel
@@ -74,13 +74,13 @@ struct HeatMaterial {     // one material for one step length and pace, baked by
     uint ignitesAt;       // 1/16 K, piloted ignition
     uint ignitesAlone;    // 1/16 K, spontaneous ignition
     uint diesAt;          // 1/16 K: below, the flame dies
-    uint filmMost;        // g/m^2; more runs off
+    uint maxFilm;        // g/m^2; more runs off
     uint filmFlux;        // W/m^2 that evaporate 1 g/m^2 in a step
     uint moistFlux;       // W/m^2 that evaporate one unit of moisture in a step
     uint moistDies;       // moisture of extinction, 1/128
     uint flags;
     uint airDries;        // g/m^2 of film that dry per step in cold air, Q16
-    uint moistAtRest;     // 1/128
+    uint moistureAtRest;     // 1/128
     uint burnTicks;       // thin: ticks that a whole texel flames
     uint energy;          // of a fuel unit of one texel, 2^-20 J
     float watts;          // thick: W per fuel unit and step (cosmetic)
@@ -104,8 +104,8 @@ FW_SHARED_FN HeatTexel unpackHeat(uvec2 words) {
     return x;
 }
 
-FW_SHARED_FN uint leastOf(uint a, uint b) { return a < b ? a : b; }
-FW_SHARED_FN uint mostOf(uint a, uint b) { return a > b ? a : b; }
+FW_SHARED_FN uint minU(uint a, uint b) { return a < b ? a : b; }
+FW_SHARED_FN uint maxU(uint a, uint b) { return a > b ? a : b; }
 
 // n / d, rounded up with the odds of the remainder: unbiased over many draws. n + d < 2^32.
 FW_SHARED_FN uint divideByChance(uint n, uint d, uint chance) {
@@ -144,7 +144,7 @@ FW_SHARED_FN uint halvings(uint x) {
 // Share of the full pyrolysis rate at this temperature, Q12.
 FW_SHARED_FN uint pyrolysis(uint heat) {
     if (heat <= kPyrolysisBegins) return 0u;
-    uint y = leastOf(divide((heat - kPyrolysisBegins) << 12u, kPyrolysisSpan), 4096u);
+    uint y = minU(divide((heat - kPyrolysisBegins) << 12u, kPyrolysisSpan), 4096u);
     return (((y * y) >> 12u) * (12288u - 2u * y)) >> 12u;
 }
 
@@ -153,10 +153,10 @@ FW_SHARED_FN uint thinFuel(uint age, uint burnTicks) {
     if (age >= burnTicks) return 0u;
     uint shift = 0u;
     while ((burnTicks >> shift) >= 65536u) shift += 1u;
-    uint y = leastOf(divide((age >> shift) << 15u, mostOf(burnTicks >> shift, 1u)), 32768u);  // Q15
+    uint y = minU(divide((age >> shift) << 15u, maxU(burnTicks >> shift, 1u)), 32768u);  // Q15
     uint square = (y * y) >> 15u;
     uint gone = (square * (98304u - 2u * y)) >> 15u;  // Q15
-    return kFuelFull - leastOf(gone * 2u, kFuelFull);
+    return kFuelFull - minU(gone * 2u, kFuelFull);
 }
 // Age at which this much fuel is left: a re-lit sheet continues from there.
 FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
@@ -174,19 +174,19 @@ FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
 FW_SHARED_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2) {
     uint sent = mulShift(power, share, 16u);  // W per sr
     uint whole = divide(sent, distance2);     // W/cm^2
-    if (whole >= 0x10000u) return cosine == 0u ? 0u : kFluxMost;
+    if (whole >= 0x10000u) return cosine == 0u ? 0u : kMaxFlux;
     uint rest = sent - whole * distance2;
     uint part = distance2 < 0x100000u ? divide(rest << 12u, distance2) : divide(rest, distance2 >> 12u);
-    return leastOf(mulShift((whole << 12u) + part, 10000u * cosine, 20u), kFluxMost);
+    return minU(mulShift((whole << 12u) + part, 10000u * cosine, 20u), kMaxFlux);
 }
 
 // Adds water; more than the material's film runs off.
-FW_SHARED_FN void heatWets(FW_INOUT(HeatTexel) x, uint grams, FW_IN(HeatMaterial) m) {
-    x.film = leastOf(x.film + leastOf(grams, kFilmMost), leastOf(m.filmMost, kFilmMost));
+FW_SHARED_FN void wetTexel(FW_INOUT(HeatTexel) x, uint grams, FW_IN(HeatMaterial) m) {
+    x.film = minU(x.film + minU(grams, kMaxFilm), minU(m.maxFilm, kMaxFilm));
 }
 
 // The material in air of this burning strength (airStrength): it consumes and heats itself less.
-FW_SHARED_FN HeatMaterial heatInAir(FW_IN(HeatMaterial) m, uint strength) {
+FW_SHARED_FN HeatMaterial materialInAir(FW_IN(HeatMaterial) m, uint strength) {
     HeatMaterial weak = m;
     weak.ownFlux = (m.ownFlux * strength) >> 8u;
     weak.burnRate = mulShift(m.burnRate, strength, 8u);
@@ -199,23 +199,23 @@ FW_SHARED_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= k
 // Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow; ash has a quarter of
 // that. rise: 1/16 K from ambient; size: W/m^2, net flux.
 FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint rise, uint size) {
-    uint least = m.capacityLeast >> (x.phase == kPhaseBurnt ? 2u : 0u);
+    uint least = m.minCapacity >> (x.phase == kPhaseBurnt ? 2u : 0u);
     if (m.inertia == 0u || x.phase == kPhaseBurnt || (x.film != 0u && x.heat > kBoiling)) return least;
-    uint reach = divide(rise << 12u, mostOf(size, 1u));  // K per W/m^2, Q16
-    return leastOf(mostOf(mulShift(m.inertia, reach, 8u), m.capacityLeast), m.capacityMost);
+    uint reach = divide(rise << 12u, maxU(size, 1u));  // K per W/m^2, Q16
+    return minU(maxU(mulShift(m.inertia, reach, 8u), m.minCapacity), m.maxCapacity);
 }
 // W/m^2/K, Q8, against a change of temperature: capacity and losses, linearly implicit.
 FW_SHARED_FN uint heatResistance(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint capacity) {
-    return mostOf(capacity + m.convects + mulShift(radiationSlope(x.heat), m.radiates, 8u), 1u);
+    return maxU(capacity + m.convects + mulShift(radiationSlope(x.heat), m.radiates, 8u), 1u);
 }
 // Water takes `spare` W/m^2 beyond boiling: first the film, then the moisture. Returns what it took.
 FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spare, uint chance,
                           FW_OUT(uint) evaporated) {
-    evaporated = x.film == 0u ? 0u : leastOf(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
+    evaporated = x.film == 0u ? 0u : minU(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
     x.film -= evaporated;
     uint spent = evaporated * m.filmFlux;
     if (x.moist == 0u || spent >= spare) return spent;
-    uint units = leastOf(divideByChance(spare - spent, m.moistFlux, hash32(chance + 1u)), x.moist);
+    uint units = minU(divideByChance(spare - spent, m.moistFlux, hash32(chance + 1u)), x.moist);
     x.moist -= units;
     return spent + units * m.moistFlux;
 }
@@ -231,31 +231,31 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     bool flaming = x.phase == kPhaseBurning;
 
     // Balance, W/m^2.
-    uint coming = ((leastOf(flux, kFluxMost) * m.absorbs) >> 8u) + (flaming ? m.ownFlux : 0u);
+    uint coming = ((minU(flux, kMaxFlux) * m.absorbs) >> 8u) + (flaming ? m.ownFlux : 0u);
     int above = int(x.heat) - int(m.ambient);
     int net = int(coming) + int(mulShift(radiation(m.ambient), m.radiates, 8u)) -
               int(mulShift(radiation(x.heat), m.radiates, 8u)) - ((int(m.convects) * above) >> 12);
-    int most = int(kFluxMost);
+    int most = int(kMaxFlux);
     net = net > most ? most : (net < -most ? -most : net);
     uint size = uint(net < 0 ? -net : net);
 
     uint rise = uint(above < 0 ? -above : above);
     uint resists = heatResistance(x, m, skinCapacity(x, m, rise, size));
     uint change = divideByChance(size << 12u, resists, chance);
-    uint heat = net < 0 ? x.heat - leastOf(change, x.heat) : leastOf(x.heat + change, 65535u);
+    uint heat = net < 0 ? x.heat - minU(change, x.heat) : minU(x.heat + change, 65535u);
 
     if (heat > kBoiling && (x.film | x.moist) != 0u) {
-        uint spare = leastOf(mulShift(heat - kBoiling, resists, 12u), 0x7FFFFFFu);  // W/m^2
+        uint spare = minU(mulShift(heat - kBoiling, resists, 12u), 0x7FFFFFFu);  // W/m^2
         bool wet = x.film != 0u;
         uint spent = boilOff(x, m, spare, chance, evaporated);
         if (wet && x.film == 0u) result |= kHeatDries;
-        uint cooled = divide(leastOf(spent, 0x7FFFFFFu) << 5u, mostOf(resists >> 7u, 1u));
-        heat = (x.film | x.moist) != 0u ? kBoiling : mostOf(heat - leastOf(cooled, heat), kBoiling);
+        uint cooled = divide(minU(spent, 0x7FFFFFFu) << 5u, maxU(resists >> 7u, 1u));
+        heat = (x.film | x.moist) != 0u ? kBoiling : maxU(heat - minU(cooled, heat), kBoiling);
     }
     x.heat = heat;
     if (x.film != 0u) {
         uint dried = (m.airDries >> 16u) + ((m.airDries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
-        x.film -= leastOf(dried, x.film);
+        x.film -= minU(dried, x.film);
         if (x.film == 0u) result |= kHeatDries;
     }
 
@@ -265,18 +265,18 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
             uint bare = halvings(mulShift(m.charSpan, gone, 16u));
             uint share = m.charFloor + (((65536u - m.charFloor) * (bare >> 1u)) >> 15u);  // Q16
             uint rate = mulShift(mulShift(m.burnRate, pyrolysis(heat) * air, 20u), share, 16u);
-            burnt = leastOf((rate >> 16u) + ((rate & 0xFFFFu) > (chance >> 16u) ? 1u : 0u), x.fuel);
+            burnt = minU((rate >> 16u) + ((rate & 0xFFFFu) > (chance >> 16u) ? 1u : 0u), x.fuel);
             x.fuel -= burnt;
         }
         x.soaked = x.film != 0u ? x.soaked + 1u : 0u;
         if (x.fuel == 0u) {
             x.phase = kPhaseBurnt;
             result |= kHeatBurnsOut;
-        } else if (heat < m.diesAt || x.soaked > kSoaksOut || isSmothered(m)) {
+        } else if (heat < m.diesAt || x.soaked > kSoakSteps || isSmothered(m)) {
             x.phase = kPhaseOut;
             result |= kHeatExtinguishes;
         }
-        x.soaked = leastOf(x.soaked, kSoaksOut);
+        x.soaked = minU(x.soaked, kSoakSteps);
     } else {
         x.soaked = 0u;
         bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
@@ -288,16 +288,16 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
         }
     }
 
-    uint scorch = heat <= kScorchBegins ? 0u : leastOf((heat - kScorchBegins) / 24u, 160u);
+    uint scorch = heat <= kScorchBegins ? 0u : minU((heat - kScorchBegins) / 24u, 160u);
     uint eaten = (kFuelFull - x.fuel) >> 8u;
-    if ((m.flags & kHeatBurns) != 0u) x.charred = mostOf(x.charred, mostOf(scorch, eaten));
+    if ((m.flags & kHeatBurns) != 0u) x.charred = maxU(x.charred, maxU(scorch, eaten));
     return result;
 }
 
 // ---- A texel and its state in the front. A texel under water, or too damp, is a barrier (kWet, kOutWet)
 // exactly while it is that.
 
-FW_SHARED_FN bool heatClosed(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
+FW_SHARED_FN bool isBarrierByWater(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
     return x.film != 0u || x.moist >= m.moistDies;
 }
 FW_SHARED_FN uint wetState(uint t, bool closed) {
@@ -307,13 +307,13 @@ FW_SHARED_FN uint wetState(uint t, bool closed) {
 }
 
 // An unheated texel. Material that cannot burn counts as burnt.
-FW_SHARED_FN HeatTexel heatRests(FW_IN(HeatMaterial) m, bool burns) {
+FW_SHARED_FN HeatTexel unheatedTexel(FW_IN(HeatMaterial) m, bool burns) {
     HeatTexel x;
     x.fuel = kFuelFull;
     x.heat = m.ambient;
     x.film = 0u;
     x.soaked = 0u;
-    x.moist = m.moistAtRest;
+    x.moist = m.moistureAtRest;
     x.charred = 0u;
     x.epoch = 0u;
     x.phase = burns ? kPhaseFresh : kPhaseBurnt;
@@ -322,30 +322,30 @@ FW_SHARED_FN HeatTexel heatRests(FW_IN(HeatMaterial) m, bool burns) {
 
 // A jet gives `flux` W/m^2 for one step, in addition to the step itself: first to the water, then to the skin.
 FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
-    uint size = (leastOf(flux, kFluxMost) * m.absorbs) >> 8u;
+    uint size = (minU(flux, kMaxFlux) * m.absorbs) >> 8u;
     uint rise = x.heat > m.ambient ? x.heat - m.ambient : 0u;
     uint resists = heatResistance(x, m, skinCapacity(x, m, rise, size));
-    uint heat = leastOf(x.heat + divideByChance(size << 12u, resists, chance), 65535u);
+    uint heat = minU(x.heat + divideByChance(size << 12u, resists, chance), 65535u);
     if (heat > kBoiling && (x.film | x.moist) != 0u) {
-        uint spare = leastOf(mulShift(heat - kBoiling, resists, 12u), 0x7FFFFFFu);  // W/m^2
+        uint spare = minU(mulShift(heat - kBoiling, resists, 12u), 0x7FFFFFFu);  // W/m^2
         uint evaporated;
         boilOff(x, m, spare, chance, evaporated);
-        heat = mostOf(leastOf(heat, kBoiling), x.heat);
+        heat = maxU(minU(heat, kBoiling), x.heat);
     }
     x.heat = heat;
 }
 
 // Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change the answer: neither
 // phase nor ignition of a burnt-out texel changes.
-FW_SHARED_FN bool gateLets(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
+FW_SHARED_FN bool gateOpens(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
     bool gone = x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now && now - t >= holeTicks;
     return gone == ((gateKind & kGateShut) == 0u);
 }
 
 // State copied from a texel of another object; the material is the receiver's.
-FW_SHARED_FN HeatTexel heatCarried(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m) {
+FW_SHARED_FN HeatTexel carriedTexel(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m) {
     HeatTexel x = from;
-    x.film = leastOf(x.film, leastOf(m.filmMost, kFilmMost));
+    x.film = minU(x.film, minU(m.maxFilm, kMaxFilm));
     return x;
 }
 // Can states be copied between these texels? Both can burn, or neither can.
@@ -355,40 +355,40 @@ FW_SHARED_FN bool carries(uint from, uint to) { return from != kInert && to != k
 // the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of the step.
 FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind, uint tick, uint now) {
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
-    if (kind == kEventWet) heatWets(x, tick, m);
+    if (kind == kEventWet) wetTexel(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
     if (kind == kEventHeat) {
         applyJetHeat(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
-        t = wetState(t, heatClosed(x, m));
-        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u && !heatClosed(x, m);
+        t = wetState(t, isBarrierByWater(x, m));
+        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u && !isBarrierByWater(x, m);
         return ready && x.heat >= m.ignitesAt ? applyEvent(t, kEventIgnite, now, now) : t;
     }
     if (kind == kEventExtinguish && isSource(t) && x.phase != kPhaseBurnt) {
         if (x.phase == kPhaseBurning) x.phase = kPhaseOut;
-        x.heat = leastOf(x.heat, m.diesAt);
+        x.heat = minU(x.heat, m.diesAt);
         t = kOut;
     }
-    return wetState(t, heatClosed(x, m));
+    return wetState(t, isBarrierByWater(x, m));
 }
 
 // Random number per texel and step; `step`: a hash of the step's tick.
 FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
 
-// How often heat steps update a texel: never (0), at intervals if it has cold water (kWorkDozes) or is only warm
-// (kWorkRests), or always (kWorkAlways).
-FW_SHARED_CONST uint kWorkDozes = 1u;
-FW_SHARED_CONST uint kWorkRests = 2u;
+// How often heat steps update a texel: never (0), at intervals if it has cold water (kWorkColdWater) or is only warm
+// (kWorkWarm), or always (kWorkAlways).
+FW_SHARED_CONST uint kWorkColdWater = 1u;
+FW_SHARED_CONST uint kWorkWarm = 2u;
 FW_SHARED_CONST uint kWorkAlways = 4u;
-FW_SHARED_FN uint fluxWork(uint flux) {
-    return flux == 0u ? 0u : flux < kSleepFlux ? kWorkRests : kWorkAlways;
+FW_SHARED_FN uint workOfFlux(uint flux) {
+    return flux == 0u ? 0u : flux < kSleepFlux ? kWorkWarm : kWorkAlways;
 }
-FW_SHARED_FN uint heatWork(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
+FW_SHARED_FN uint workOfTexel(FW_IN(HeatTexel) x, uint t, uint flux, uint ambient) {
     uint off = x.heat > ambient ? x.heat - ambient : ambient - x.heat;
-    bool warm = off > kLukewarm || flux != 0u;
+    bool warm = off > kSleepTolerance || flux != 0u;
     bool flames = x.phase == kPhaseBurning || (isSource(t) && x.phase != kPhaseBurnt);
     if (flames || x.heat > kPyrolysisBegins || flux >= kSleepFlux || (warm && x.film != 0u))
         return kWorkAlways;
-    return x.film != 0u ? kWorkDozes : warm ? kWorkRests : 0u;
+    return x.film != 0u ? kWorkColdWater : warm ? kWorkWarm : 0u;
 }
 
 // One heat step at tick `now` of a texel with state t. Returns the new state. burnt: fuel units.
@@ -399,19 +399,19 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     if (fresh) {
         x.epoch = (x.epoch + (x.phase == kPhaseOut ? 1u : 0u)) & 3u;
         x.phase = kPhaseBurning;
-        x.heat = mostOf(x.heat, m.ignitesAt);
+        x.heat = maxU(x.heat, m.ignitesAt);
     }
     // Bad air slows its clock: consumption, appearance, and the front's wait for it.
     uint passes = kHeatSteps * kStepTicks;
     uint waits = (passes * airDeficit(m)) >> 8u;
-    if (lit && x.phase == kPhaseBurning) t += leastOf(waits, now - t);
+    if (lit && x.phase == kPhaseBurning) t += minU(waits, now - t);
     uint gone = 0u;
     if (lit && x.phase == kPhaseBurning && (m.flags & kHeatThick) == 0u) {
     // A re-lit sheet continues with the fuel it has.
         uint age = thinAge(x.fuel, x.epoch != 0u ? m.burnTicks : 0u);
         uint next = thinFuel(age + passes - waits, m.burnTicks);
         uint left = thinFuel(now - t, m.burnTicks);
-        left = leastOf(x.epoch != 0u ? leastOf(left, next) : left, x.fuel);
+        left = minU(x.epoch != 0u ? minU(left, next) : left, x.fuel);
         gone = x.fuel - left;
         x.fuel = left;
     }
@@ -420,36 +420,36 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
     burnt += gone;
     if ((result & kHeatExtinguishes) != 0u) t = kOut;
     if ((result & kHeatIgnites) != 0u) t = now;
-    t = wetState(t, heatClosed(x, m));
+    t = wetState(t, isBarrierByWater(x, m));
     // Exact return to ambient, so no trace of a past fire is kept or sent.
-    if (heatWork(x, t, flux, m.ambient) == 0u) x.heat = m.ambient;
+    if (workOfTexel(x, t, flux, m.ambient) == 0u) x.heat = m.ambient;
     return t;
 }
 
 // The material over all steps of a sleep interval at once; a burning texel takes one step.
-FW_SHARED_FN uint sleepShift(uint flux) { return flux < kNapFlux ? kLongSleepShift : kSleepShift; }
-FW_SHARED_FN HeatMaterial heatOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
+FW_SHARED_FN uint sleepShift(uint flux) { return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift; }
+FW_SHARED_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
     uint shift = rests ? sleepShift(flux) : 0u;
     HeatMaterial long_ = m;
-    long_.inertia = m.inertia == 0u ? 0u : mostOf(m.inertia >> shift, 1u);
-    long_.capacityLeast = m.capacityLeast >> shift;
-    long_.capacityMost = m.capacityMost >> shift;
-    long_.filmFlux = mostOf(m.filmFlux >> shift, 1u);
-    long_.moistFlux = mostOf(m.moistFlux >> shift, 1u);
+    long_.inertia = m.inertia == 0u ? 0u : maxU(m.inertia >> shift, 1u);
+    long_.minCapacity = m.minCapacity >> shift;
+    long_.maxCapacity = m.maxCapacity >> shift;
+    long_.filmFlux = maxU(m.filmFlux >> shift, 1u);
+    long_.moistFlux = maxU(m.moistFlux >> shift, 1u);
     long_.airDries = m.airDries << shift;
     return long_;
 }
 // The same for cold water, once in kColdWaterSteps steps.
-FW_SHARED_FN uint heatDozes(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
+FW_SHARED_FN uint dryColdWater(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint chance) {
     uint dries = m.airDries * kColdWaterSteps;
     uint dried = (dries >> 16u) + ((dries & 0xFFFFu) > (chance & 0xFFFFu) ? 1u : 0u);
-    x.film -= leastOf(dried, x.film);
-    return wetState(t, heatClosed(x, m));
+    x.film -= minU(dried, x.film);
+    return wetState(t, isBarrierByWater(x, m));
 }
 
-// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of kRests steps ends,
+// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of kSleepSteps steps ends,
 // so the interval has one flux. Where a change alters the interval, some steps count twice or never, equally often.
-FW_SHARED_FN bool restEnds(uint tile, uint flux, uint now) {
+FW_SHARED_FN bool sleepEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
     return ((turn - tile) & ((1u << sleepShift(flux)) - 1u)) == 0u;
 }
@@ -457,14 +457,14 @@ FW_SHARED_FN bool coldWaterTurn(uint object, uint tile, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + hash32(object * 0x9E3779B9u + tile);
     return (turn & (kColdWaterSteps - 1u)) == 0u;
 }
-FW_SHARED_FN uint heatTurn(bool warm, uint object, uint tile, uint flux, uint now) {
-    return (warm ? kWorkAlways : 0u) | (restEnds(tile, flux, now) ? kWorkRests : 0u) |
-           (coldWaterTurn(object, tile, now) ? kWorkDozes : 0u);
+FW_SHARED_FN uint workDue(bool warm, uint object, uint tile, uint flux, uint now) {
+    return (warm ? kWorkAlways : 0u) | (sleepEnds(tile, flux, now) ? kWorkWarm : 0u) |
+           (coldWaterTurn(object, tile, now) ? kWorkColdWater : 0u);
 }
 // Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an ordinary one. The
 // texel is due if (work & turn) is not 0.
-FW_SHARED_FN uint workInTurn(uint work, uint turn) {
-    return work == kWorkDozes && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
+FW_SHARED_FN uint workThisStep(uint work, uint turn) {
+    return work == kWorkColdWater && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
 }
 
 FW_SHARED_END

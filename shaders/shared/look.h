@@ -38,7 +38,7 @@ FW_SHARED_CONST float kLookTextureSide = 512.0f;
 FW_SHARED_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
 FW_SHARED_CONST float kCrumpleSlopeRange = 48.0f; // per tile, at texel value 1
 
-struct MaterialLook {        // zero switches a feature off
+struct MaterialAppearance {        // zero switches a feature off
     float spreadRate;        // m/s at which the seconds below were tuned
     float warpLarge;         // m, raggedness of the front, features of about 60 mm
     float warpSmall;         // m, features of about 8 mm
@@ -100,7 +100,7 @@ struct MaterialLook {        // zero switches a feature off
     float flame;             // flame height relative to wood
     float smoke;             // smoke relative to wood
 };
-FW_SHARED_SIZE(MaterialLook, 224)
+FW_SHARED_SIZE(MaterialAppearance, 224)
 
 struct ViewParams {          // uniform block, one per view
     vec4 clip0;              // columns of camera-relative world to clip space
@@ -127,7 +127,7 @@ FW_SHARED_SIZE(ViewParams, 240)
 
 // Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1, with a short fade so
 // that no item pops.
-FW_SHARED_FN float shareShows(float share, float own) {
+FW_SHARED_FN float shownShare(float share, float own) {
     float shows = (share - own) * 12.0f + share;
     return shows < 0.0f ? 0.0f : shows > 1.0f ? 1.0f : shows;
 }
@@ -135,7 +135,7 @@ FW_SHARED_FN float shareShows(float share, float own) {
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
 FW_SHARED_CONST float kWhiteLuminance = 40.0f;
 
-FW_SHARED_CONST uint kLookRows = 16u; // of the appearance table
+FW_SHARED_CONST uint kAppearanceRows = 16u; // of the appearance table
 
 // kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their corners: no point is
 // farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most kColdReach.
@@ -165,7 +165,7 @@ struct SurfaceDraw {
     uint places;             // with kDrawPlaced: first refined position
     uint inner;              // offset to its position on the inner skin; 0: none
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
-    float filmMost;          // g/m^2 of water that the surface holds; 0: no heat buffer
+    float maxFilm;          // g/m^2 of water that the surface holds; 0: no heat buffer
     float now;               // with kDrawPlaced: s on the clock of its holes
     float nearness;          // with kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach
 };
@@ -183,7 +183,7 @@ FW_SHARED_CONST uint kDrawThick = 0x100000u;
 // Holes are cut out of the triangles: vertices hold the time until each point burns through.
 FW_SHARED_CONST uint kDrawCut = 0x200000u;
 // Walls along open edges without cut triangles: texels hold the time until each point burns through.
-FW_SHARED_CONST uint kDrawTold = 0x400000u;
+FW_SHARED_CONST uint kDrawPerPixelHoles = 0x400000u;
 // Placed vertices on the inner skin.
 FW_SHARED_CONST uint kDrawInner = 0x800000u;
 // Share of a wall by which refined faces recede; the rest is char, visible at rims.
@@ -194,7 +194,7 @@ struct FlameQuad {
     vec4 axisWidth;          // unit, foot to tip; w: half width m
     float opacity;           // [0, 1]
     float phase;             // s of scroll, offset by the seed; kQuadFire: its life, [0, 1]; with a flipbook:
-                             // bookPlace's time
+                             // flipbookPlaceAt's time
     float kelvin;            // K of the hottest part; kQuadSmoke: share lit by fire, [0, 1]
     uint kind;               // kQuad... | seed << 2 | flipbook + 1 << 18 (0: none) | kQuadEmits
 };
@@ -211,14 +211,14 @@ FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuad
 // Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are first those of
 // burning tiles (at most kFlameCapacity), then of particles, then emissive ones: sparks, and flipbook fire that hides
 // nothing. Emissive quads are not sorted but placed between those that hide, farthest first.
-FW_SHARED_CONST uint kFlameTiles = 4u;       // word: requested quads of tiles
-FW_SHARED_CONST uint kFlameParticles = 5u;   // word: quads of particles that hide
-FW_SHARED_CONST uint kFlameLights = 6u;      // word: emissive quads
-FW_SHARED_CONST uint kFlameLightDraw = 8u;   // words: draw arguments of the emissive quads, in buffer order
+FW_SHARED_CONST uint kFlameTileQuads = 4u;       // word: requested quads of tiles
+FW_SHARED_CONST uint kFlameParticleQuads = 5u;   // word: quads of particles that hide
+FW_SHARED_CONST uint kFlameEmissiveQuads = 6u;      // word: emissive quads
+FW_SHARED_CONST uint kFlameEmissiveDraw = 8u;   // words: draw arguments of the emissive quads, in buffer order
 FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
-FW_SHARED_CONST uint kMostQuads = 65536u;    // of all
-FW_SHARED_CONST uint kMostFewQuads = 2048u;  // capacity of the sort in shared memory
+FW_SHARED_CONST uint kMaxQuads = 65536u;    // of all
+FW_SHARED_CONST uint kMaxFewQuads = 2048u;  // capacity of the sort in shared memory
 
 // Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are as thin as a pixel
 // and are drawn at full resolution.
@@ -230,7 +230,7 @@ struct SortPush {
     uint tiles;      // quads of tiles, at most
     uint particles;  // of particles, at most
     uint lights;     // of those that emit alone, at most
-    uint few;        // to sort, <= kMostFewQuads: more use the radix sort
+    uint few;        // to sort, <= kMaxFewQuads: more use the radix sort
 };
 FW_SHARED_SIZE(SortPush, 16)
 

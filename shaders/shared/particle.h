@@ -12,8 +12,8 @@ FW_SHARED_BEGIN
 // allocated or freed, and every device makes the same particles.
 FW_SHARED_CONST uint kParticleGroup = 1024u;  // ring slots that a group of 64 threads handles
 FW_SHARED_CONST uint kMaxEmitters = 256u;
-FW_SHARED_CONST float kMostParticleStep = 0.0334f;  // s; longer frames take several steps
-FW_SHARED_CONST uint kMostParticleSteps = 32u;
+FW_SHARED_CONST float kMaxParticleStep = 0.0334f;  // s; longer frames take several steps
+FW_SHARED_CONST uint kMaxParticleSteps = 32u;
 
 FW_SHARED_CONST float kEddyField = 4096.0f;  // m: when the world's origin shifts, eddies shift along, modulo this
 FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
@@ -50,7 +50,7 @@ struct ParticleEmitter {  // one emitter in one frame
     uint seed;
     uint flags;
     uint steps;      // of this frame
-    uint shieldCount;
+    uint obstacleCount;
     uint books;      // flipbooks of fire: one byte each, + 1; 0: end
     uint otherBooks; // flipbooks of smoke (two), the same
     uint object;     // slot + 1 of the burning mesh whose flaming tiles spawn it; 0: none
@@ -263,7 +263,7 @@ FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, 
     return s * (1.0f + 0.5f * particleUnit((a - 1.0f) / 2.0f));
 }
 
-// State `dt` later, at most kMostParticleStep. now: s, cosmetic.
+// State `dt` later, at most kMaxParticleStep. now: s, cosmetic.
 FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now, float dt) {
     float a = p.placeAge.w / t.life, torn = smoothstep(0.15f, 0.6f, a);
     vec3 up = vec3(e.up), v = vec3(p.speedPath), at = vec3(p.placeAge);

@@ -25,7 +25,7 @@ FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels
 }
 
 // Updates the heat times and sets the target. cool: s that a level outlives its heat.
-FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now, float cool) {
+FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now, float cool) {
     if ((heat & kRefineHot) != 0u) s.lastHot = now;
     if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
     bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
@@ -33,10 +33,10 @@ FW_SHARED_FN void refineAim(FW_INOUT(RefineLevel) s, uint heat, float lod, float
 }
 
 // Order in which items lose levels: burning items last, then by number.
-FW_SHARED_FN float refineSpread(uint id, uint heat) {
+FW_SHARED_FN float levelLossOrder(uint id, uint heat) {
     return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * float(hash32(id) >> 8u) / 16777216.0f;
 }
-FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
+FW_SHARED_FN float biasedLevel(float target, float bias, float spread) {
     float less = bias - spread;
     float level = target - (less > 0.0f ? less : 0.0f);
     return level > 0.0f ? level : 0.0f;
@@ -44,20 +44,20 @@ FW_SHARED_FN float refineBiased(float target, float bias, float spread) {
 FW_SHARED_CONST uint kRefineBiases = 16u;
 FW_SHARED_CONST float kRefineBiasStep = 0.4f;
 
-FW_SHARED_FN uint refineTop(float level) {
+FW_SHARED_FN uint topLevel(float level) {
     float l = level > 1e-4f ? level - 1e-4f : 0.0f;
     int whole = int(l);
     return uint(float(whole) < l ? whole + 1 : whole);
 }
 // Morph progress of the points of the top level from the middle of their parents.
-FW_SHARED_FN float refineAge(float level, uint top) {
+FW_SHARED_FN float levelMorphAge(float level, uint top) {
     float f = level - float(top) + 1.0f;
     return f < 1.0f ? f : 1.0f;
 }
 
 // Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per s. grace: s of
 // burning after which a surface is no longer flat.
-FW_SHARED_FN void refineMove(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate, float grace) {
+FW_SHARED_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate, float grace) {
     float step = rate * dt;
     bool flatStill = now - s.burningSince < grace;
     if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
@@ -94,7 +94,7 @@ FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
 }
 
 // When a wall burns through: `through` s after it is lit from one side; from both, when the fronts meet.
-FW_SHARED_FN float refineHole(float a, float b, float through) {
+FW_SHARED_FN float burnThroughTime(float a, float b, float through) {
     float one = a < b ? a : b;
     if (one >= kRefineNever) return kRefineNever;
     float alone = one + through;
@@ -106,12 +106,12 @@ FW_SHARED_FN float refineHole(float a, float b, float through) {
 }
 
 // burnSeconds: of a wall of full thickness; negative: it never opens. recede: share of the slot's reach, [0, 1).
-FW_SHARED_FN vec4 refineEvaluate(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
+FW_SHARED_FN vec4 evaluateSlot(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
                                  float burnSeconds, float recede) {
     vec3 rest = vec3(s.x, s.y, s.z);
     float seconds = burnSeconds < 0.0f ? -burnSeconds : burnSeconds;
     float through = seconds * float(s.reach >> 16u) * (1.0f / 4096.0f);
-    float hole = burnSeconds < 0.0f ? kRefineNever : refineHole(arrival, opposite, through);
+    float hole = burnSeconds < 0.0f ? kRefineNever : burnThroughTime(arrival, opposite, through);
     float burnt = 0.0f;
     if (arrival < now) burnt = through > 0.0f ? (now - arrival) / through : 1.0f;
     burnt = burnt < recede ? burnt : recede;

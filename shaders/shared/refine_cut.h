@@ -10,7 +10,7 @@ FW_SHARED_BEGIN
 // ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon on the solid side.
 
 // s to the hole.
-FW_SHARED_FN float refineField(float hole, float now) {
+FW_SHARED_FN float secondsToHole(float hole, float now) {
     float f = hole - now;
     return f < kRefineUnlit ? f : kRefineUnlit;
 }
@@ -82,7 +82,7 @@ FW_SHARED_FN uint refineCutDrawn(FW_IN(RefineCut) cut, uint k, bool inner, bool 
 FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
     return room * (first < triangles ? first : triangles) / triangles;
 }
-FW_SHARED_CONST uint kRefineCutMost = 1u << 14u;  // cut triangles of an object
+FW_SHARED_CONST uint kMaxRefineCut = 1u << 14u;  // cut triangles of an object
 // Last word of a cut vertex, a float: s to the hole, 0 at the hole; for walls one of:
 FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
 FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin

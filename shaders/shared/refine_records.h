@@ -130,7 +130,7 @@ FW_SHARED_CONST uint kRefineIsActive = 1u;
 FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing is initialised yet
 FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
 FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all triangles are emitted again
-FW_SHARED_CONST uint kRefineIsTold = 32u;  // cut, but coarser than its size requires: corners miss holes, and
+FW_SHARED_CONST uint kRefineHasPerPixelHoles = 32u;  // cut, but coarser than its size requires: corners miss holes, and
                                            // per-pixel holes are used
 FW_SHARED_CONST uint kRefineIsCounted = 16u;  // counts against the budget in every frame
 
@@ -188,7 +188,7 @@ FW_SHARED_FN uint refineNext(uint e) { return e == 2u ? 0u : e + 1u; }
 FW_SHARED_FN uint refineBefore(uint e) { return e == 0u ? 2u : e - 1u; }
 
 // Least interior level >= m that these sides can be joined to.
-FW_SHARED_FN uint refineFit(uint l0, uint l1, uint l2, uint m) {
+FW_SHARED_FN uint fitInterior(uint l0, uint l1, uint l2, uint m) {
     uint most = l0 > l1 ? l0 : l1;
     most = most > l2 ? most : l2;
     if (most >= 2u) return m > 2u ? m : 2u;

@@ -38,10 +38,10 @@ struct RoomAir {  // state
 };
 FW_SHARED_SIZE(RoomAir, 32)
 FW_SHARED_CONST uint kRoomMeans = 8u;
-FW_SHARED_CONST uint kFlashMost = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
+FW_SHARED_CONST uint kMaxFlash = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
 
 // Whole J that an object's fire released since `drawn`; the remainder waits there. Both in 2^-20 J.
-FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_INOUT(uint) drawnHigh) {
+FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow, FW_INOUT(uint) drawnHigh) {
     uint restLow = low - drawnLow;
     uint restHigh = high - drawnHigh - (low < drawnLow ? 1u : 0u);
     uint joules = (restHigh << 12u) | (restLow >> 20u);
@@ -53,7 +53,7 @@ FW_SHARED_FN uint energySince(uint low, uint high, FW_INOUT(uint) drawnLow, FW_I
 
 // Updates the mean and the flashover state. A flashover is reported again only after the mean fell to half.
 FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
-    air.power += (joules < kFlashMost ? joules : kFlashMost);
+    air.power += (joules < kMaxFlash ? joules : kMaxFlash);
     air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);
     bool over = (air.flash & 1u) != 0u;
     uint most = room.flashes * (kRoomMeans - 1u);
@@ -64,7 +64,7 @@ FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint 
 }
 
 // One period of a room, up to `now`, in which fires gave off so many J.
-FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
+FW_SHARED_FN void stepRoomAir(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     if (air.epoch != room.epoch) {  // it starts
         air.oxygen = room.starts;
         air.power = room.power;
@@ -87,7 +87,7 @@ FW_SHARED_FN void roomBreathes(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint jou
 }
 
 // Burning strength, Q8.
-FW_SHARED_FN uint roomStrength(uint oxygen) {
+FW_SHARED_FN uint burnStrengthOfOxygen(uint oxygen) {
     if (oxygen <= minKAir) return 0u;
     uint strength = divide(oxygen - minKAir, kAirStep);
     return strength < kAirFull ? strength : kAirFull;

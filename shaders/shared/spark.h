@@ -12,9 +12,9 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST float kSparkTurn = 2.5f;     // s
 FW_SHARED_CONST uint kSparkKeys = 12u;       // of a source's path: one cycle, and the running step
 FW_SHARED_CONST float kSparkKeyStep = 0.25f; // s
-FW_SHARED_CONST uint kMostSparks = 2048u;    // slots of a source
+FW_SHARED_CONST uint kMaxSparks = 2048u;    // slots of a source
 FW_SHARED_CONST uint kTileSparks = 8u;       // slots of a burning tile
-FW_SHARED_CONST uint kMostTileSparks = 1024u; // quads of all burning tiles of a source
+FW_SHARED_CONST uint kMaxTileSparks = 1024u; // quads of all burning tiles of a source
 FW_SHARED_CONST uint kSparkGroups = 4u;      // of 64 threads, per source
 FW_SHARED_CONST uint kSparkLegs = 3u;        // a flight and two bounces
 FW_SHARED_CONST uint kSparkLooks = 8u;       // collision samples per leg
@@ -59,7 +59,7 @@ FW_SHARED_CONST uint kSparkCells = 8u;         // of a row
 FW_SHARED_CONST float kSparkCellSide = 1.0f;   // m
 
 struct SparkPush {
-    uint quads;      // visible, at most; all emissive (kFlameLights)
+    uint quads;      // visible, at most; all emissive (kFlameEmissiveQuads)
     uint firstQuad;  // first of them
     uint burnRow;    // as ParticlePush
     uint reserved;

@@ -57,7 +57,7 @@ FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) { return base.x + base.y 
 // middle of the part on the flame's side. So ground in the plane never hides it, and objects in front do. whole, cut:
 // those depths; the nearest counts, or the farthest if turn is -1.
 struct DepthTest { float whole; float cut; float turn; };
-FW_SHARED_FN DepthTest volumeTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
+FW_SHARED_FN DepthTest makeDepthTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
     DepthTest test;
     test.whole = depthOfMetres(clip, front + 0.5f * deep);
     float end = clamp(depthOfMetres(clip, front + (0.5f - 0.5f * base.w) * deep), 0.0f, 1.0f);
@@ -71,14 +71,14 @@ FW_SHARED_FN float testedDepth(DepthTest test) {
 }
 // Negative where the base plane cuts the slab; linear over the view.
 FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 at) {
-    DepthTest test = volumeTest(base, clip, front, deep, at);
+    DepthTest test = makeDepthTest(base, clip, front, deep, at);
     return test.turn * (test.cut - test.whole);
 }
 
-// Splits a quad into two polygons along a line. Returns the place of vertex [0, kVolumeSplit) in the unit square. over:
+// Splits a quad into two polygons along a line. Returns the place of vertex [0, kVolumeSplitVertices) in the unit square. over:
 // negative on the first polygon's side, at 0 0, 1 0, 1 1 and 0 1.
-FW_SHARED_CONST uint kVolumeSplit = 18u;  // three triangles each, some degenerate
-FW_SHARED_FN vec2 volumeSplit(vec4 over, uint vertex) {
+FW_SHARED_CONST uint kVolumeSplitVertices = 18u;  // three triangles each, some degenerate
+FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     float side = vertex < 9u ? 1.0f : -1.0f;
     uint fan = vertex < 9u ? vertex : vertex - 9u;
     uint turn = fan / 3u;
@@ -102,8 +102,8 @@ FW_SHARED_FN vec2 volumeSplit(vec4 over, uint vertex) {
     return at;
 }
 
-FW_SHARED_CONST uint kVolumeTile = 8u;          // march pixels per side; a workgroup marches a tile
-FW_SHARED_CONST uint kVolumeCellWords = 4u;     // per march pixel and slab: half floats red and green, blue and alpha;
+FW_SHARED_CONST uint kMarchTileSide = 8u;          // march pixels per side; a workgroup marches a tile
+FW_SHARED_CONST uint kMarchPixelWords = 4u;     // per march pixel and slab: half floats red and green, blue and alpha;
                                                 // packSlabRange; unused
 
 // Indirect arguments of a flame's march and draw, one tile each. Zeroed before the probe.
@@ -120,13 +120,13 @@ FW_SHARED_CONST uint kMarchTileList = 2u;          // marched tiles
 FW_SHARED_CONST uint kMarchQuarterSide = 4u;       // march pixels per side of a tile's quarter; per quarter, by marchQuarter:
 FW_SHARED_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
 FW_SHARED_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
-FW_SHARED_CONST uint kVolumeTileWords = 12u;    // pixels begin after whole texels of these
+FW_SHARED_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
 FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // quarter x, y
 
 // Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a small flame; its ray
-// passes through its middle (but see volumeShift). A flame's march pixels are tiles from its origin, row by row over
+// passes through its middle (but see marchRayShift). A flame's march pixels are tiles from its origin, row by row over
 // all tiles, slab by slab. Samples lie in planes across the view, equally many per slab.
-struct VolumeMarch {
+struct MarchPush {
     vec4 rayX;            // w: m, width of a march pixel at depth 1 (perspective)
     vec4 rayY;            // w: m along the view, between samples
     vec4 rayO;            // w: m along the view, near distance of the nearest slab
@@ -141,11 +141,11 @@ struct VolumeMarch {
     uint encoding;        // FwOutputEncoding of the target
     uint flame;           // index in VolumeWork
     uint apart;           // march pixels between rays of the probe: 1, 2, 4
-    uint perPixel;        // as VolumeComposite's
-    uint least;           // least samples per ray, see volumeCloser; 0: no minimum
+    uint perPixel;        // as CompositePush's
+    uint least;           // least samples per ray, see sampleRefinement; 0: no minimum
     uint reserved0; uint reserved1;
 };
-FW_SHARED_SIZE(VolumeMarch, 112)
+FW_SHARED_SIZE(MarchPush, 112)
 
 // n / d, exact below 2^22: software devices divide integers lane by lane.
 FW_SHARED_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
@@ -153,16 +153,16 @@ FW_SHARED_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / f
 // Sample refinement where only `few` (> 0) samples are worth a march. A thin flame would otherwise appear as a row of
 // beads, as it alternately meets and misses the samples.
 FW_SHARED_CONST uint kVolumeClosest = 4u;
-FW_SHARED_FN uint volumeCloser(uint few, uint least) {
+FW_SHARED_FN uint sampleRefinement(uint few, uint least) {
     uint closer = quotient22(least + few / 2u, few);
     return closer < 1u ? 1u : closer < kVolumeClosest ? closer : kVolumeClosest;
 }
 
 // Probe workgroups per row; each covers the march pixels of eight rays.
-FW_SHARED_FN uint volumeProbeBlocks(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
+FW_SHARED_FN uint probeBlockCount(uint tiles, uint apart) { return (tiles + apart - 1u) / apart; }
 
 // Push constants of the composite pass.
-struct VolumeComposite {
+struct CompositePush {
     vec4 place;           // x, y of the view: xy + zw * march pixels from the origin
     vec4 clip;            // as VolumeDraw's
     float front; float deep;
@@ -175,15 +175,15 @@ struct VolumeComposite {
     vec4 window;          // low x, y, high x, y, march pixels from the origin: a finer march shows the flame there
     vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(VolumeComposite, 112)
+FW_SHARED_SIZE(CompositePush, 112)
 
 // Billboard impostor: a flame that is marched once and shown for several frames. Tiles of one slab with a constant
 // world size per march pixel. Words: tile data, then march pixels.
-FW_SHARED_CONST uint kCardTiles = 128u;         // at most
-FW_SHARED_CONST uint kCardWords = kCardTiles * (kVolumeTileWords + kVolumeTile * kVolumeTile * kVolumeCellWords);
+FW_SHARED_CONST uint kMaxImpostorTiles = 128u;         // at most
+FW_SHARED_CONST uint kImpostorWords = kMaxImpostorTiles * (kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords);
 
 // Push constants of the impostor pass.
-struct VolumeCard {
+struct VolumeImpostor {
     vec4 place;           // x, y of the view: xy + zw * its march pixel's x + (upX, upY) * its y
     vec4 clip;            // as VolumeDraw's
     float front; float deep;
@@ -195,10 +195,10 @@ struct VolumeCard {
     uint reserved0;
     vec4 base;            // as VolumeDraw's
 };
-FW_SHARED_SIZE(VolumeCard, 96)
+FW_SHARED_SIZE(VolumeImpostor, 96)
 
 // Push constants of a flame that is drawn as slices of its lattice, see volume_slices.h.
-struct VolumeSlices {
+struct SlicesPush {
     vec4 clip;            // as VolumeDraw's
     float front;          // m along the view, near distance of the nearest slice
     float spacing;        // m along the view, per slice
@@ -206,17 +206,17 @@ struct VolumeSlices {
     float from; float to; // see passesDither
     uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(VolumeSlices, 48)
+FW_SHARED_SIZE(SlicesPush, 48)
 FW_SHARED_CONST uint kVolumeSlices = 96u;       // per flame, at most
 
 // Push constants of the haze over a flame.
-struct VolumeHaze {
+struct HazePush {
     vec4 rect;            // VolumeDraw::rect of the hot column
     vec4 rayX; vec4 rayY; vec4 rayO; vec4 clip;
     float strength;       // [0, 8]
     uint reserved0; uint reserved1; uint reserved2;
 };
-FW_SHARED_SIZE(VolumeHaze, 96)
+FW_SHARED_SIZE(HazePush, 96)
 
 // Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors that share a range
 // interleave; blended over each other, both would be too faint.
@@ -231,14 +231,14 @@ FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
 // Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical neighbours differ by half
 // a step: an upright tongue may be one march pixel wide and would appear dashed otherwise. The phase is constant over
 // frames, so a frame needs no history.
-FW_SHARED_FN float volumePhase(uint x, uint y) {
+FW_SHARED_FN float marchSamplePhase(uint x, uint y) {
     uint quarter = (x & 1u) | (2u * (y & 1u));
     return 0.085f + 0.25f * float(quarter);
 }
 
 // Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame is then sampled at
 // as many places as it has march pixels.
-FW_SHARED_FN vec2 volumeShift(uint x, uint y) {
+FW_SHARED_FN vec2 marchRayShift(uint x, uint y) {
     float across = 0.61803399f * float(y);
     float along = 0.61803399f * float(x);
     return vec2(across - floor(across) - 0.5f, along - floor(along) - 0.5f);
@@ -246,7 +246,7 @@ FW_SHARED_FN vec2 volumeShift(uint x, uint y) {
 
 // Weight of the march pixel `step` (-1, 0, 1) from the nearest, `off` [-0.5, 0.5] beyond its middle. Even and odd ones
 // weigh the same for any pixel position, so all four phases count alike and no grain shows.
-FW_SHARED_FN float volumeWeight(int step, float off) {
+FW_SHARED_FN float neighbourWeight(int step, float off) {
     return step == 0 ? 0.5f : 0.25f + 0.5f * float(step) * off;
 }
 
@@ -264,7 +264,7 @@ float slabShareNearer(uint lies, float cut) {
 }
 // Share of its light on the flame's side of the base, `cut` slabs beyond this slab's front; side: VolumeDraw::base.w. A
 // march pixel's own ray has no light beyond, so all counts until the base is nearer than its first eighth.
-float volumeBeside(uint lies, float cut, float side) {
+float slabShareBeside(uint lies, float cut, float side) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     float end = side < 0.0 ? ends.y : ends.x;
     return clamp(side * (cut - end) / max(0.125 * (ends.y - ends.x), 5e-3), 0.0, 1.0);
@@ -273,12 +273,12 @@ float volumeBeside(uint lies, float cut, float side) {
 
 // Sample footprint, m, for rays of which perPixel^2 cover a pixel: finer than a ray's share, since the pixel averages
 // many rays; a single ray uses its own width.
-FW_SHARED_FN float volumeFine(float pixel, uint perPixel) {
+FW_SHARED_FN float sampleFootprint(float pixel, uint perPixel) {
     return perPixel > 1u ? 0.25f * pixel / float(perPixel) : pixel;
 }
 
 // Number of samples of a ray over `metres`.
-FW_SHARED_FN float volumeSteps(float metres, float spacing, uint most) {
+FW_SHARED_FN float rayStepCount(float metres, float spacing, uint most) {
     return clamp(floor(metres / spacing) + 1.0f, 4.0f, float(most));
 }
 FW_SHARED_END

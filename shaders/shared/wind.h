@@ -8,7 +8,7 @@ FW_SHARED_BEGIN
 
 FW_SHARED_CONST uint kWindBits = 10u;
 FW_SHARED_CONST int kWindZero = 512;
-FW_SHARED_CONST int kWindMost = 511;
+FW_SHARED_CONST int kMaxWind = 511;
 
 // mm/s. A word of 0 is no wind.
 FW_SHARED_FN ivec3 unpackWind(uint word) {

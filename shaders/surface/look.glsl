@@ -46,7 +46,7 @@ struct Skin {  // shading input
 
 // Displaces the lookup of the ignition time, so raggedness does not depend on speed. Also returns
 // its two noise samples, which the unburnt detail uses.
-vec2 frontWarp(vec2 d, float pixel, MaterialLook m, out vec4 coarse, out vec4 fine) {
+vec2 frontWarp(vec2 d, float pixel, MaterialAppearance m, out vec4 coarse, out vec4 fine) {
     pixel = max(pixel, m.blur);
     coarse = noiseAt(d, 4.0, pixel);
     fine = noiseAt(d, 17.0, pixel);
@@ -59,13 +59,13 @@ float limitGlow(float kelvin, Site s) {
 }
 
 // Delay of a hole by noise and unburnt detail, s.
-float holeDelay(vec4 grown, vec4 fine, float delay, MaterialLook m) {
+float holeDelay(vec4 grown, vec4 fine, float delay, MaterialAppearance m) {
     float n = (grown.r - 0.5) * 1.8 + m.holeFine * ((grown.a - 0.5) * 0.8 + (fine.r - 0.5) * 0.8);
     n = n < 0.0 ? n : 0.45 * n;  // short upper tail: fewer floating islands
     return m.holeVariation * n + 1.5 * m.jitter * delay;
 }
 
-// Burn-through offset, s, by the opposite wall, lit `other` s ago; as refineHole: when one wall has
+// Burn-through offset, s, by the opposite wall, lit `other` s ago; as burnThroughTime: when one wall has
 // burnt through, or where both fronts meet.
 float burnThroughOffset(float a, float other, float through) {
     if (other <= -0.999 * through) return 0.0;
@@ -74,7 +74,7 @@ float burnThroughOffset(float a, float other, float through) {
 }
 
 // Distance to the rim of the hole, m; negative: gone.
-float holeEdge(float a, Site s, MaterialLook m) {
+float holeEdge(float a, Site s, MaterialAppearance m) {
     if (m.holeTime <= 0.0) return 1.0;
     // A cut rim is smooth: its glow gets patches. Far away it is as wide as the noise makes other
     // rims.
@@ -86,7 +86,7 @@ float holeEdge(float a, Site s, MaterialLook m) {
 
 // x: 0 block .. 1 crack; y: m to the crack; z: random per block; w: pillow. c: texel of the char
 // layer.
-vec4 charCracks(float a, Site s, MaterialLook m, vec4 c) {
+vec4 charCracks(float a, Site s, MaterialAppearance m, vec4 c) {
     float random = s.coarse.a;
     float open1 = smoothstep(m.charTime * 0.6, m.crackTime, a - m.crackTime * 0.15 * random);
     float open2 = smoothstep(m.crackTime * 0.6, m.crackTime * 2.2, a);
@@ -102,7 +102,7 @@ vec4 charCracks(float a, Site s, MaterialLook m, vec4 c) {
 }
 
 // Paint film: 1 intact .. 0 peeled off in flakes.
-float paintFilm(float a, vec4 flakes, MaterialLook m) {
+float paintFilm(float a, vec4 flakes, MaterialAppearance m) {
     float left = 1.0 - 1.15 * smoothstep(-0.25 * m.charTime, 1.6 * m.charTime, a);
     return smoothstep(-0.03, 0.03, left - (0.55 * flakes.r + 0.45 * flakes.a));
 }
@@ -123,7 +123,7 @@ vec3 soaked(vec3 albedo, float k) {
 }
 
 // Gloss of a water film: porous material shines only under standing water.
-float wetShine(Site s, MaterialLook m) {
+float wetShine(Site s, MaterialAppearance m) {
     return mix(m.wetGloss, max(m.wetGloss, 0.7), smoothstep(0.75, 1.0, s.water));
 }
 
@@ -132,7 +132,7 @@ vec3 sooted(vec3 albedo, float soot) {
     return albedo * mix(vec3(1.0), vec3(0.07, 0.065, 0.06), soot);
 }
 
-Skin burningSkin(Site s, MaterialLook m) {
+Skin burningSkin(Site s, MaterialAppearance m) {
     Skin o;
     float a = s.age - m.jitter * s.delay;
     float x = a / s.slow;
@@ -277,7 +277,7 @@ Skin burningSkin(Site s, MaterialLook m) {
 }
 
 // Surface without fire nearby: burningSkin's result at low cost.
-Skin freshSkin(Site s, MaterialLook m) {
+Skin freshSkin(Site s, MaterialAppearance m) {
     Skin o;
     o.albedo = soaked(s.base, m.wetDark * s.water) * (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water);
     o.rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);

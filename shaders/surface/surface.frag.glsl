@@ -25,7 +25,7 @@ layout(set = 0, binding = FW_BIND_HEAT, std430) readonly buffer Heat { uint heat
 layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
     BurnLight lights[kSurfaceLights];
 };
-layout(set = 0, binding = FW_BIND_LOOKS, std140) uniform Looks { MaterialLook looks[kLookRows]; };
+layout(set = 0, binding = FW_BIND_APPEARANCES, std140) uniform Looks { MaterialAppearance looks[kAppearanceRows]; };
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
@@ -190,8 +190,8 @@ vec2 wetnessAt(vec2 uv) {
     ivec2 limit = lastTexel();
     vec2 sum = vec2(0.0);
     float total = 1e-6, least = 1.0, most = 0.0;
-    bool plane = draw.filmMost > 0.0;
-    float perGram = 1.5 / max(draw.filmMost, 1.0);
+    bool plane = draw.maxFilm > 0.0;
+    float perGram = 1.5 / max(draw.maxFilm, 1.0);
     int taps = (draw.flags & kDrawWet) != 0u ? 5 : 0;
     for (int i = 0; i < taps; ++i) {
         ivec2 o2 = i < 4 ? ivec2((i & 1) * 4 - 2, (i >> 1) * 4 - 2) : ivec2(0);
@@ -286,7 +286,7 @@ float zigzag(float x) { return abs(fract(x) - 0.5) * 4.0 - 1.0; }
 
 void main() {
     if (kCold && inSootOffset.x > 0.0) discard;
-    MaterialLook look = looks[min(draw.look, kLookRows - 1u)];
+    MaterialAppearance look = looks[min(draw.look, kAppearanceRows - 1u)];
     if ((draw.flags & kObjectNoHoles) != 0u) look.holeTime = 0.0;
     // The rim uses the host's thickness, within the range of the appearance.
     if (draw.thickness > 0.0)
@@ -463,7 +463,7 @@ void main() {
     site.nearness = draw.nearness;
     // Walls on borders have no rim. Where corners are too far apart to know a hole between them,
     // texels do.
-    if (wall && !rim) site.left = (draw.flags & kDrawTold) != 0u ? -1.0 : 1000.0;
+    if (wall && !rim) site.left = (draw.flags & kDrawPerPixelHoles) != 0u ? -1.0 : 1000.0;
     if (rim) {
         // Burnt-through char; the rim's glow fades inwards.
         site.age = max(site.age, look.holeTime);

@@ -73,13 +73,13 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     spans.xz = max(spans.xz, vec2(beyond * base));
     spans.yw = min(spans.yw, vec2(base + beyond * 1e9));
 #endif
-    float pixel = volumeFine(view.eye.w * along.perMetre, draw.perPixel);
+    float pixel = sampleFootprint(view.eye.w * along.perMetre, draw.perPixel);
     vec2 slab = inSlab * perDepth;
 
     RayTube tube = rayTube(f, spans, from, direction, draw.intervals | inZero);
     FlameChord chord = tube.chord;
     float metres = spans.x < spans.y ? chord.gap * max(chord.last - chord.first, 0.0) : 0.0;
-    float steps = volumeSteps(metres, draw.spacing, draw.mostSteps);
+    float steps = rayStepCount(metres, draw.spacing, draw.mostSteps);
     float stride = metres / steps;
     float begin = metres > 0.0 ? chord.from + chord.gap * chord.first : 0.0;
     // A sample belongs to one slab.
@@ -123,9 +123,9 @@ void main() {
     uint k = 0u;
     do {  // the same number of iterations for all
         uvec2 cell = first + uvec2(k % side, k / side);
-        vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? volumeShift(cell.x, cell.y) : vec2(0.0))) /
+        vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? marchRayShift(cell.x, cell.y) : vec2(0.0))) /
                        float(side) - 0.5;
-        sum += shownAlong(f, off, volumePhase(cell.x, cell.y));
+        sum += shownAlong(f, off, marchSamplePhase(cell.x, cell.y));
         k += 1u;
     } while (k < side * side);
     outColor = sum / float(side * side);

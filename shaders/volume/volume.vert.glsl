@@ -1,5 +1,5 @@
 #version 450
-// One slab of a volumetric flame: its screen bounds as two polygons, see volumeTest. Instances go
+// One slab of a volumetric flame: its screen bounds as two polygons, see makeDepthTest. Instances go
 // from far to near.
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
@@ -22,10 +22,10 @@ void main() {
                      baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zy),
                      baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.zw),
                      baseSide(draw.base, draw.clip, near, draw.deep, draw.rect.xw));
-    vec2 place = mix(draw.rect.xy, draw.rect.zw, volumeSplit(over, vertex));
+    vec2 place = mix(draw.rect.xy, draw.rect.zw, splitQuadVertex(over, vertex));
     outRay = draw.rayO.xyz + place.x * draw.rayX.xyz + place.y * draw.rayY.xyz;
     outZero = vertex >> 31u;
     outBase = volumeBaseDepth(draw.base, place);
-    float depth = testedDepth(volumeTest(draw.base, draw.clip, near, draw.deep, place));
+    float depth = testedDepth(makeDepthTest(draw.base, draw.clip, near, draw.deep, place));
     gl_Position = vec4(place, depth, 1.0);
 }

@@ -7,7 +7,7 @@
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 
-layout(push_constant) uniform Push { VolumeComposite draw; };
+layout(push_constant) uniform Push { CompositePush draw; };
 
 layout(location = 0) centroid in vec2 inCell;
 layout(location = 1) flat in uint inWords;
@@ -37,7 +37,7 @@ void add(uint at, float weight, inout vec4 color, inout float through) {
     weight *= slabShareNearer(cell.z, cut);
 #else
     // March pixels smaller than a pixel have bases of their own.
-    weight *= inPerPixel > 1u ? 1.0 : volumeBeside(cell.z, cut, inBase.y);
+    weight *= inPerPixel > 1u ? 1.0 : slabShareBeside(cell.z, cut, inBase.y);
 #endif
     color += weight * cellColor(cell);
 }
@@ -46,7 +46,7 @@ void main() {
     outColor = vec4(0.0);
     bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
     if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
-    uint pitch = kVolumeCellWords * kVolumeTile * draw.tilesX;
+    uint pitch = kMarchPixelWords * kMarchTileSide * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0;
 #ifdef FW_SOFT
@@ -56,9 +56,9 @@ void main() {
 #endif
     if (inPerPixel > 1u) {
         uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;
-        uint row = inWords + pitch * first.y + kVolumeCellWords * first.x;
+        uint row = inWords + pitch * first.y + kMarchPixelWords * first.x;
         for (uint y = 0u; y < inPerPixel; ++y) {
-            for (uint x = 0u; x < inPerPixel; ++x) add(row + kVolumeCellWords * x, 1.0, color, through);
+            for (uint x = 0u; x < inPerPixel; ++x) add(row + kMarchPixelWords * x, 1.0, color, through);
             row += pitch;
         }
     } else {
@@ -69,8 +69,8 @@ void main() {
             uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
             FW_UNROLL
             for (int x = -1; x <= 1; ++x) {
-                uint column = kVolumeCellWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
-                add(row + column, volumeWeight(x, off.x) * volumeWeight(y, off.y), color, through);
+                uint column = kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
+                add(row + column, neighbourWeight(x, off.x) * neighbourWeight(y, off.y), color, through);
             }
         }
     }

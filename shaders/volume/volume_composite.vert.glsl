@@ -5,7 +5,7 @@
 #include "shared/volume_draw.h"
 
 layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
-layout(push_constant) uniform Push { VolumeComposite draw; };
+layout(push_constant) uniform Push { CompositePush draw; };
 
 layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first
 layout(location = 1) flat out uint outWords;  // first of the slab
@@ -49,17 +49,17 @@ void main() {
             if (y > 0) reach.w = may ? reach.w : 0;
         }
     }
-    outCells = ivec4(at, at) * int(kVolumeTile) + reach + ivec4(0, 0, ivec2(kVolumeTile - 1u));
-    vec2 cell = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kVolumeTile);
+    outCells = ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
+    vec2 cell = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kMarchTileSide);
     outCell = cell - 0.5;
-    uint cells = tiles * kVolumeTile * kVolumeTile;
-    outWords = draw.samples + kVolumeCellWords * cells * slab;
+    uint cells = tiles * kMarchTileSide * kMarchTileSide;
+    outWords = draw.samples + kMarchPixelWords * cells * slab;
     float front = draw.front + draw.deep * float(slab);
     outPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
     outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
     vec2 place = draw.place.xy + draw.place.zw * cell;
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
-    float depth = testedDepth(volumeTest(draw.base, draw.clip, front, draw.deep, place));
+    float depth = testedDepth(makeDepthTest(draw.base, draw.clip, front, draw.deep, place));
     gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);
 }

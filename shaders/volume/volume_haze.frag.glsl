@@ -9,7 +9,7 @@
 
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 1, binding = 0) uniform sampler2D sceneColor;
-layout(push_constant) uniform Push { VolumeHaze draw; };
+layout(push_constant) uniform Push { HazePush draw; };
 
 layout(location = 0) centroid in vec3 inRay;
 layout(location = 1) centroid in vec4 inBend;

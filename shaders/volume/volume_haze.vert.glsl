@@ -9,7 +9,7 @@
 
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
-layout(push_constant) uniform Push { VolumeHaze draw; };
+layout(push_constant) uniform Push { HazePush draw; };
 
 layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
 layout(location = 1) centroid out vec4 outBend;  // deflection per m behind the column; m along the ray to the column

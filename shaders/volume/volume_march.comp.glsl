@@ -13,7 +13,7 @@ layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; 
 layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) buffer Rays { uint rays[]; };
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
-layout(push_constant) uniform Push { VolumeMarch march; };
+layout(push_constant) uniform Push { MarchPush march; };
 
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
@@ -32,7 +32,7 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
     half_ = min(half_, min(middle, 1.0 - middle));  // within the slab, around the same middle
     vec2 reach = vec2(middle - half_, middle + half_);
-    uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
+    uint at = march.samples + kMarchPixelWords * (march.cells * s + cell);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
     rays[at + 2u] = packSlabRange(reach, 1.0 - before.a);
@@ -40,7 +40,7 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
 }
 
 void nothing(uint s, uint cell, float through) {
-    uint at = march.samples + kVolumeCellWords * (march.cells * s + cell);
+    uint at = march.samples + kMarchPixelWords * (march.cells * s + cell);
     rays[at] = rays[at + 1u] = 0u;
     rays[at + 2u] = packSlabRange(vec2(0.0, 1.0), through);
 }
@@ -51,7 +51,7 @@ void main() {
     FlameRecord f = flame.record;
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
-    uint tiles = march.cells / (kVolumeTile * kVolumeTile);
+    uint tiles = march.cells / (kMarchTileSide * kMarchTileSide);
     uint tile = rays[march.tiles + kMarchTileList * tiles + gl_WorkGroupID.x];
     uint slabs = march.slabs | zero, turns = march.turns | zero;
     uint all = slabs * turns;
@@ -66,7 +66,7 @@ void main() {
     begin = burns ? begin : all / 2u;
     end = burns ? end : begin + 1u;
 
-    uint closer = burns ? volumeCloser(end - begin, march.least) : 1u;
+    uint closer = burns ? sampleRefinement(end - begin, march.least) : 1u;
     // Finer samples start and end closer to the probe's range.
     begin = begin * closer + (begin > 0u ? closer / 2u : 0u);
     end = end * closer - (end < all ? closer / 2u : 0u);
@@ -74,16 +74,16 @@ void main() {
     turns *= closer;
 
     uint row = quotient22(tile, march.tilesX);
-    uvec2 place = uvec2(tile - row * march.tilesX, row) * kVolumeTile + in_;
-    uint cell = place.y * (march.tilesX * kVolumeTile) + place.x;
+    uvec2 place = uvec2(tile - row * march.tilesX, row) * kMarchTileSide + in_;
+    uint cell = place.y * (march.tilesX * kMarchTileSide) + place.x;
     place += uvec2(march.originX, march.originY);
-    vec2 at_ = vec2(place) + (march.perPixel > 1u ? volumeShift(place.x, place.y) : vec2(0.0));
+    vec2 at_ = vec2(place) + (march.perPixel > 1u ? marchRayShift(place.x, place.y) : vec2(0.0));
     ViewRay way = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
     vec3 from = way.from, direction = way.direction;
     float perDepth = way.perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
-    float phase = volumePhase(place.x, place.y);
+    float phase = marchSamplePhase(place.x, place.y);
     float pixel = march.rayX.w * way.perMetre;
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
     float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
@@ -157,7 +157,7 @@ void main() {
     }
 
     // First and last column, first and last row of the tile.
-    uint edges = (in_.x == 0u ? 1u : 0u) | (in_.x == kVolumeTile - 1u ? 2u : 0u) |
-                 (in_.y == 0u ? 4u : 0u) | (in_.y == kVolumeTile - 1u ? 8u : 0u);
+    uint edges = (in_.x == 0u ? 1u : 0u) | (in_.x == kMarchTileSide - 1u ? 2u : 0u) |
+                 (in_.y == 0u ? 4u : 0u) | (in_.y == kMarchTileSide - 1u ? 8u : 0u);
     if (bits != 0u) atomicOr(rays[march.tiles + tile], bits | (edges << kVolumeSlabs));
 }

@@ -12,7 +12,7 @@ layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame 
 layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) buffer Rays { uint rays[]; };
 layout(set = 0, binding = FW_BIND_VOLUME_WORK, std430) buffer Work { VolumeWork work[]; };
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
-layout(push_constant) uniform Push { VolumeMarch march; };
+layout(push_constant) uniform Push { MarchPush march; };
 
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
@@ -25,8 +25,8 @@ void main() {
     FlameRecord f = flame.record;
     uint zero = gl_GlobalInvocationID.x >> 31u;
     addZero(f, zero);
-    uint tilesY = march.cells / (kVolumeTile * kVolumeTile * march.tilesX);
-    uint blocksX = volumeProbeBlocks(march.tilesX, march.apart);
+    uint tilesY = march.cells / (kMarchTileSide * kMarchTileSide * march.tilesX);
+    uint blocksX = probeBlockCount(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
     uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
     uint row = quotient22(gl_WorkGroupID.x, blocksX);
@@ -83,7 +83,7 @@ void main() {
     bool fire = farthest >= 0.0;
     uint end = 1u + (fire ? uint(min(farthest + 2.0, most)) : 0u);
     uint begin = fire ? uint(most - max(nearest - 1.0, 0.0)) : 0u;
-    uint tiles = march.cells / (kVolumeTile * kVolumeTile);
+    uint tiles = march.cells / (kMarchTileSide * kMarchTileSide);
     if (all(lessThan(at, kMarchQuarterSide * uvec2(quarters))) && (fire || smokes)) {
         // Its own quarter tile and the eight around it.
         for (uint j = 0u; j < 9u; ++j) {

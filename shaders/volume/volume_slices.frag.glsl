@@ -10,7 +10,7 @@ layout(constant_id = 0) const uint kEncoding = 0u;
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(set = 2, binding = 0) uniform sampler2DArray profiles;
-layout(push_constant) uniform Push { VolumeSlices draw; };
+layout(push_constant) uniform Push { SlicesPush draw; };
 
 layout(location = 0) centroid in vec4 inPlace;
 layout(location = 1) centroid in vec3 inOff;
@@ -42,7 +42,7 @@ void main() {
     float stride = draw.spacing * perDepth;
     float pixel = view.eye.w * (perspective ? inDepth : 1.0);
     // Sampled at a random depth in the slice, different among four pixels, to hide layers.
-    float later = draw.spacing * (volumePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
+    float later = draw.spacing * (marchSamplePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
     vec4 place = inPlace + later * inSlope;
     FlamePlace at;
     at.p = place.xy;

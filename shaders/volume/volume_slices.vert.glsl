@@ -8,7 +8,7 @@
 
 layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
-layout(push_constant) uniform Push { VolumeSlices draw; };
+layout(push_constant) uniform Push { SlicesPush draw; };
 
 #define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_slices.h"

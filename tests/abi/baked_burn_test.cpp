@@ -116,17 +116,17 @@ TEST(BakedBurn, CatchesAtBakedTicksWithoutAFront) {
         Boards boards(FW_BACKEND_CPU, 1, flags);
         ASSERT_EQ(boards.ticks().size(), baked.ticks.size());
         boards.play(boards.give(baked.bytes), 0.5f);
-        EXPECT_EQ(1u, boards.state().plays);
+        EXPECT_EQ(1u, boards.state().playsBakedBurn);
         uint64_t ran = 0;
         uint32_t before = 0;
-        for (uint32_t i = 0; i < kAll && boards.state().plays; ++i) {
+        for (uint32_t i = 0; i < kAll && boards.state().playsBakedBurn; ++i) {
             boards.run(1);
-            if (boards.state().plays) ran += boards.stats().runTiles;
+            if (boards.state().playsBakedBurn) ran += boards.stats().runTiles;
             EXPECT_GE(boards.state().ignited, before);
             before = boards.state().ignited;
         }
         EXPECT_EQ(0u, ran);
-        EXPECT_EQ(0u, boards.state().plays);
+        EXPECT_EQ(0u, boards.state().playsBakedBurn);
         EXPECT_EQ(baked.lit, before);
         const std::vector<uint32_t> map = boards.ticks();
         for (size_t i = 0; i < map.size(); ++i)
@@ -277,7 +277,7 @@ TEST(BakedBurn, GoesLiveWhenDisturbed) {
         Boards boards(FW_BACKEND_CPU, 2);
         boards.ok(fwWorld_PlayBurn(boards.world, boards.ids[0], boards.give(baked.bytes), 0, 1));
         boards.run(60);
-        ASSERT_EQ(1u, boards.state().plays) << one.name;
+        ASSERT_EQ(1u, boards.state().playsBakedBurn) << one.name;
         EXPECT_EQ(0u, boards.stats().runTiles) << one.name;
         one.does(boards);
         uint64_t ran = 0;
@@ -285,7 +285,7 @@ TEST(BakedBurn, GoesLiveWhenDisturbed) {
             boards.run(1);
             ran += boards.stats().runTiles;
         }
-        EXPECT_EQ(one.disturbs ? 0u : 1u, boards.state().plays) << one.name;
+        EXPECT_EQ(one.disturbs ? 0u : 1u, boards.state().playsBakedBurn) << one.name;
         EXPECT_EQ(one.disturbs, boards.heard[FW_EVENT_WENT_LIVE] == 1) << one.name;
         EXPECT_EQ(one.disturbs, ran > 0) << one.name;
     }
@@ -303,7 +303,7 @@ TEST(BakedBurn, BothBackendsAgree) {
         }
         cpu.run(40), device.run(10, 4.0f / 32);
         EXPECT_EQ(cpu.hash(), device.hash()) << one.name << ", played";
-        EXPECT_EQ(1u, device.state().plays) << one.name;
+        EXPECT_EQ(1u, device.state().playsBakedBurn) << one.name;
         one.does(cpu), one.does(device);
         for (uint32_t part = 0; part < 3; ++part) {
             cpu.run(36), device.run(12, 3.0f / 32);
@@ -325,15 +325,15 @@ TEST(BakedBurn, ContinuesFromASave) {
         (void)other.give(baked.bytes);
         other.run(9);
         other.ok(fwWorld_Load(other.world, save.data(), save.size()));
-        EXPECT_EQ(1u, other.state().plays);
+        EXPECT_EQ(1u, other.state().playsBakedBurn);
         EXPECT_EQ(save, other.save());
         for (Boards* boards : {&first, &other}) {
             boards->run(40);
             boards->touch(FW_WET, 0.3f, 0.2f, 0.05f);
             boards->run(60);
         }
-        EXPECT_EQ(0u, other.state(0).plays);
-        EXPECT_EQ(1u, other.state(1).plays);
+        EXPECT_EQ(0u, other.state(0).playsBakedBurn);
+        EXPECT_EQ(1u, other.state(1).playsBakedBurn);
         EXPECT_EQ(first.hash(), other.hash());
     }
 }
@@ -341,26 +341,26 @@ TEST(BakedBurn, ContinuesFromASave) {
 TEST(BakedBurn, IsRecordedInCommandLogs) {
     const Baked baked = bakeBoard(kAll);
     Boards first(FW_BACKEND_CPU, 2), other(FW_BACKEND_CPU, 2);
-    first.ok(fwWorld_StartLog(first.world));
+    first.ok(fwWorld_StartCommandLog(first.world));
     first.run(5);
     first.play(first.give(baked.bytes), 0.1f, 2);
     first.run(50);
     first.ok(fwWorld_StopBurn(first.world, first.ids[1]));
     first.run(45);
     uint64_t size = 0;
-    first.ok(fwWorld_FetchLog(first.world, nullptr, &size));
+    first.ok(fwWorld_FetchCommandLog(first.world, nullptr, &size));
     Bytes log(size);
-    first.ok(fwWorld_FetchLog(first.world, log.data(), &size));
+    first.ok(fwWorld_FetchCommandLog(first.world, log.data(), &size));
     (void)other.give(baked.bytes);
-    other.ok(fwWorld_OpenLog(other.world, log.data(), log.size()));
+    other.ok(fwWorld_OpenCommandLog(other.world, log.data(), log.size()));
     float seconds = 1;
     while (seconds > 0) {
-        other.ok(fwWorld_PlayLog(other.world, 100 * 128, &seconds));
+        other.ok(fwWorld_PlayCommandLog(other.world, 100 * 128, &seconds));
         if (seconds > 0) other.ok(fwWorld_Step(other.world, seconds));
     }
     EXPECT_EQ(first.stats().tick, other.stats().tick);
     EXPECT_EQ(first.hash(), other.hash());
-    EXPECT_EQ(0u, other.state(1).plays);
+    EXPECT_EQ(0u, other.state(1).playsBakedBurn);
 }
 
 TEST(BakedBurn, RefusesInvalidData) {

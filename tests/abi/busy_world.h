@@ -59,10 +59,10 @@ class BusyWorld : public HostedWorld {
         putAt(fieldDef.position, 0.9f, 0.0f, 0.5f);
         fieldDef.width = fieldDef.height = 32;
         ok(fwWorld_CreateParticleField(world, &fieldDef, &field));
-        FwBlockerDef wall = fwDefaultBlockerDef();
+        FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
         place(wall.transform, 1.0f, 0.3f, 0.25f, 0);
         put(wall.halfSize, 0.3f, 0.3f, 0.01f);
-        ok(fwWorld_AddBlocker(world, &wall, &blocker));
+        ok(fwWorld_AddHeatOccluder(world, &wall, &occluder));
         FwWindZoneDef swirl = fwDefaultWindZoneDef();
         swirl.shape = FW_WIND_SPHERE;
         swirl.flow = FW_WIND_VORTEX;
@@ -125,7 +125,7 @@ class BusyWorld : public HostedWorld {
     FwFireEmitterId jet{};
     FwVolumetricFireId fire{};
     FwParticleFieldId field{};
-    FwBlockerId blocker{};
+    FwHeatOccluderId occluder{};
     FwWindZoneId zones[2] = {};
     FwRoomId room{};
     double origin[3] = {};  // m
@@ -193,7 +193,7 @@ class BusyWorld : public HostedWorld {
     }
     // Heat occluders: a post away from the objects, a hill below some, and two of the objects.
     void shield(uint32_t frame) {
-        FwHeatShieldDef cells = fwDefaultHeatShieldDef();
+        FwHeatOcclusionDef cells = fwDefaultHeatOcclusionDef();
         putAt(cells.origin, -0.5f, -0.6f, -0.5f);
         cells.counts[0] = 60;
         cells.counts[1] = 20;
@@ -210,7 +210,7 @@ class BusyWorld : public HostedWorld {
         const FwBurnableMeshId walls[] = {ids[1 % ids.size()], ids[7 % ids.size()]};
         cells.objects = walls;
         cells.objectCount = 2;
-        ok(fwWorld_SetHeatShield(world, &cells));
+        ok(fwWorld_SetHeatOcclusion(world, &cells));
     }
     void act(uint32_t frame) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
@@ -245,7 +245,7 @@ class BusyWorld : public HostedWorld {
         }
         if (frame == 33 || frame == 80) blowGrid(frame);
         if (frame == 28 || frame == 50 || frame == 95) shield(frame);
-        if (frame == 145) ok(fwWorld_SetHeatShield(world, nullptr));
+        if (frame == 145) ok(fwWorld_SetHeatOcclusion(world, nullptr));
         if (frame == 125) ok(fwWorld_SetWindGrid(world, nullptr));
         if (frame % 45 == 13) {
             const FwWindZoneDef fan = fanOf(frame);

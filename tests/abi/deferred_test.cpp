@@ -91,8 +91,8 @@ TEST(Deferred, DestroysEveryKindOfObject) {
     const FwWindZoneId zone = created(fwWorld_CreateWindZone, w.world, zoneDef);
     const FwRoomDef roomDef = fwDefaultRoomDef();
     const FwRoomId room = created(fwWorld_CreateRoom, w.world, roomDef);
-    const FwBlockerDef blockerDef = fwDefaultBlockerDef();
-    const FwBlockerId blocker = created(fwWorld_AddBlocker, w.world, blockerDef);
+    const FwHeatOccluderDef blockerDef = fwDefaultHeatOccluderDef();
+    const FwHeatOccluderId occluder = created(fwWorld_AddHeatOccluder, w.world, blockerDef);
     const FwFireColliderDef colliderDef = fwDefaultFireColliderDef();
     const FwFireColliderId collider = created(fwWorld_AddFireCollider, w.world, colliderDef);
     const uint32_t pixels[4] = {};
@@ -115,7 +115,7 @@ TEST(Deferred, DestroysEveryKindOfObject) {
     later(field);
     later(zone);
     later(room);
-    later(blocker);
+    later(occluder);
     later(collider);
     later(object);
     later(w.materialId);
@@ -128,7 +128,7 @@ TEST(Deferred, DestroysEveryKindOfObject) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyParticleField(w.world, field));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyWindZone(w.world, zone));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyRoom(w.world, room));
-    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RemoveBlocker(w.world, blocker));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RemoveHeatOccluder(w.world, occluder));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RemoveFireCollider(w.world, collider));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyBurnableMesh(w.world, object));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, w.materialId));

@@ -46,10 +46,10 @@ const DefCase kDefs[] = {
     {"ignition", FW_DEF_IGNITION, sizeof(FwIgnitionDef)},
     {"view", FW_DEF_VIEW, sizeof(FwView)},
     {"offscreen", FW_DEF_OFFSCREEN, sizeof(FwOffscreenDef)},
-    {"blocker", FW_DEF_BLOCKER, sizeof(FwBlockerDef)},
+    {"occluder", FW_DEF_HEAT_OCCLUDER, sizeof(FwHeatOccluderDef)},
     {"wind zone", FW_DEF_WIND_ZONE, sizeof(FwWindZoneDef)},
     {"wind grid", FW_DEF_WIND_GRID, sizeof(FwWindGridDef)},
-    {"heat shield", FW_DEF_HEAT_SHIELD, sizeof(FwHeatShieldDef)},
+    {"heat shield", FW_DEF_HEAT_OCCLUSION, sizeof(FwHeatOcclusionDef)},
     {"gusts", FW_DEF_GUSTS, sizeof(FwGustDef)},
     {"timeline", FW_DEF_TIMELINE, sizeof(FwTimelineDef)},
     {"room", FW_DEF_ROOM, sizeof(FwRoomDef)},
@@ -66,7 +66,7 @@ const DefCase kDefs[] = {
     {"target", FW_DEF_VULKAN_TARGET, sizeof(FwVulkanTargetDef)},
     {"frame", FW_DEF_VULKAN_FRAME, sizeof(FwVulkanFrame)},
     {"vertices", FW_DEF_VULKAN_VERTICES, sizeof(FwVulkanVertices)},
-    {"wishes", FW_DEF_VULKAN_WISHES, sizeof(FwVulkanWishes)},
+    {"requirements", FW_DEF_VULKAN_REQUIREMENTS, sizeof(FwVulkanRequirements)},
     {"composite", FW_DEF_VULKAN_COMPOSITE, sizeof(FwVulkanComposite)},
 };
 
@@ -296,9 +296,9 @@ TEST(AbiSizes, ServesOlderHostsAndRefusesUnknownFields) {
     checkSizes<FwWindGridDef>(
         "FwWindGridDef", grid,
         [&](const FwWindGridDef* def) { return fwWorld_SetWindGrid(w.world, def); }, worldMessage);
-    checkSizes<FwHeatShieldDef>(
-        "FwHeatShieldDef", fwDefaultHeatShieldDef(),
-        [&](const FwHeatShieldDef* def) { return fwWorld_SetHeatShield(w.world, def); },
+    checkSizes<FwHeatOcclusionDef>(
+        "FwHeatOcclusionDef", fwDefaultHeatOcclusionDef(),
+        [&](const FwHeatOcclusionDef* def) { return fwWorld_SetHeatOcclusion(w.world, def); },
         worldMessage);
     checkSizes<FwGustDef>(
         "FwGustDef", fwDefaultGustDef(),
@@ -377,15 +377,15 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::reserved is 1"));
     for (const uint32_t cell : {0u, 17u}) {
         FwWorldDef coarse = fwDefaultWorldDef();
-        coarse.volumeCell = cell;
+        coarse.volumePixelSize = cell;
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&coarse));
-        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeCell is"));
+        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumePixelSize is"));
     }
     for (const uint32_t steps : {5u, 65u}) {
         FwWorldDef few = fwDefaultWorldDef();
-        few.volumeSteps = steps;
+        few.rayStepCount = steps;
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, makeWorld(&few));
-        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::volumeSteps is"));
+        EXPECT_NE(std::string::npos, contextMessage().find("FwWorldDef::rayStepCount is"));
     }
     for (const uint32_t octaves : {0u, 5u}) {
         FwWorldDef smooth = fwDefaultWorldDef();
@@ -618,9 +618,9 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     pin = {};
     shell.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_RECEDE};
     refusedDeform(shell, "one is possible");
-    shell.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_Z_PASS};
-    refusedDeform(shell, "FW_BURNABLE_Z_PASS needs");
-    shell.flags = uint32_t{FW_BURNABLE_SPRINGS} | uint32_t{FW_BURNABLE_Z_PASS};
+    shell.flags = uint32_t{FW_BURNABLE_SHELL} | uint32_t{FW_BURNABLE_DEPTH_PEEL};
+    refusedDeform(shell, "FW_BURNABLE_DEPTH_PEEL needs");
+    shell.flags = uint32_t{FW_BURNABLE_SPRINGS} | uint32_t{FW_BURNABLE_DEPTH_PEEL};
     EXPECT_EQ(FW_OK, makeBurnable(&shell)) << lastMessage(w.world);
 
     FwIgnitionDef ignition = fwDefaultIgnitionDef();

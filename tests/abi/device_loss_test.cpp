@@ -107,7 +107,7 @@ TEST(DeviceLoss, IsSurvivedAtEveryCallOfAnOwnDevice) {
             if (life.scene.world) {  // the device stays lost, and the world returns what it has
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, fwWorld_Step(life.scene.world, 0.1f));
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, takePicture(life.scene.world));
-                EXPECT_EQ(FW_OK, life.scene.takeSave()) << host::lastMessage(life.scene.world);
+                EXPECT_EQ(FW_OK, life.scene.completeSave()) << host::lastMessage(life.scene.world);
             }
             mirror = life.scene.mirror;
             frame = life.scene.mirrored;

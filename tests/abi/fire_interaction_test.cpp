@@ -20,9 +20,9 @@ FwFireColliderId add(FireWorld& w, const FwFireColliderDef& def) {
     return created(fwWorld_AddFireCollider, w.world, def);
 }
 
-FwFireAnswer ask(FireWorld& w, float x, float y, float z) {
+FwFireSample ask(FireWorld& w, float x, float y, float z) {
     const float point[3] = {x, y, z};
-    return getState(fwWorld_AskVolumetricFires, w.world, point);
+    return getState(fwWorld_SampleVolumetricFires, w.world, point);
 }
 
 // One collider of each kind, each with its lowest point 0.4 m above the base.
@@ -112,7 +112,7 @@ TEST(AbiFireInteraction, FlamesGoAroundColliders) {
     }
 }
 
-TEST(AbiFireInteraction, CollidesWithHeightfieldsAndBlockers) {
+TEST(AbiFireInteraction, CollidesWithHeightfieldsAndOccluders) {
     // A slope east of the fire with wind onto it: the flame climbs it.
     std::vector<float> heights;
     for (int z = 0; z < 9; ++z)
@@ -147,12 +147,13 @@ TEST(AbiFireInteraction, CollidesWithHeightfieldsAndBlockers) {
     EXPECT_THAT(lastMessage(hill.world), HasSubstr("FwFireColliderDef::heights is null"));
 
     FireWorld w;
-    FwBlockerDef blocker = fwDefaultBlockerDef();  // turned a quarter about z: its x is up
+    FwHeatOccluderDef occluder =
+        fwDefaultHeatOccluderDef();  // turned a quarter about z: its x is up
     const float turned[16] = {0, 1, 0, 0, -1, 0, 0, 0, 0, 0, 1, 0, 0, 0.5f, 0, 1};
-    std::copy_n(turned, 16, blocker.transform);
-    blocker.halfSize[0] = 0.1f;
-    blocker.halfSize[1] = blocker.halfSize[2] = 2;
-    const FwBlockerId wall = created(fwWorld_AddBlocker, w.world, blocker);
+    std::copy_n(turned, 16, occluder.transform);
+    occluder.halfSize[0] = 0.1f;
+    occluder.halfSize[1] = occluder.halfSize[2] = 2;
+    const FwHeatOccluderId wall = created(fwWorld_AddHeatOccluder, w.world, occluder);
     FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId under = w.make(fire);
     fire.flags = FW_FIRE_NO_COLLISION;
@@ -161,7 +162,7 @@ TEST(AbiFireInteraction, CollidesWithHeightfieldsAndBlockers) {
     const float there[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 40, 0.5f, 0, 1};
     w.run(1);
     EXPECT_GT(w.state(under).contactPower, 1.0f);
-    EXPECT_EQ(FW_OK, fwWorld_MoveBlocker(w.world, wall, there));
+    EXPECT_EQ(FW_OK, fwWorld_MoveHeatOccluder(w.world, wall, there));
     w.run(2);
     EXPECT_EQ(0.0f, w.state(under).contactPower);
     EXPECT_EQ(0.0f, w.state(through).contactPower);
@@ -397,7 +398,7 @@ TEST(AbiFireInteraction, ReportsHeatAtAPoint) {
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
     w.run(1);
-    const FwFireAnswer in = ask(w, 0, 0.3f, 0), above = ask(w, 0, 1.4f, 0),
+    const FwFireSample in = ask(w, 0, 0.3f, 0), above = ask(w, 0, 1.4f, 0),
                        beside = ask(w, 1, 0.4f, 0), far = ask(w, 200, 0, 0);
     EXPECT_TRUE(in.inside);
     EXPECT_GT(in.temperature, 900.0f);
@@ -420,22 +421,22 @@ TEST(AbiFireInteraction, ReportsHeatAtAPoint) {
     w.run(1);
     EXPECT_GT(ask(w, 1, 0.4f, 0).heatFlux, 1.6f * beside.heatFlux);
     const float centre[3] = {0, 0.3f, 0};
-    FwFirePush small{}, large{};
-    small.structSize = large.structSize = sizeof(FwFirePush);
-    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFirePush(w.world, centre, 0.05f, &small));
-    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFirePush(w.world, centre, 0.1f, &large));
+    FwFireForce small{}, large{};
+    small.structSize = large.structSize = sizeof(FwFireForce);
+    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFireForce(w.world, centre, 0.05f, &small));
+    ASSERT_EQ(FW_OK, fwWorld_GetVolumetricFireForce(w.world, centre, 0.1f, &large));
     EXPECT_GT(small.force[1], 0.0f);
     EXPECT_NEAR(large.force[1] / small.force[1], 4.0f, 0.01f);
     EXPECT_GT(large.ignitionPower, 500.0f);
     const float nowhere[3] = {0, INFINITY, 0};
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
-              fwWorld_GetVolumetricFirePush(w.world, nowhere, 1, &small));
+              fwWorld_GetVolumetricFireForce(w.world, nowhere, 1, &small));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
-              fwWorld_GetVolumetricFirePush(w.world, centre, -1, &small));
+              fwWorld_GetVolumetricFireForce(w.world, centre, -1, &small));
     EXPECT_THAT(lastMessage(w.world), HasSubstr("radius is -1"));
-    FwFireAnswer answer{};
+    FwFireSample answer{};
     answer.structSize = sizeof answer;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskVolumetricFires(w.world, nowhere, &answer));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SampleVolumetricFires(w.world, nowhere, &answer));
 }
 
 float ridgeDistance(void*, const float point[3], float normal[3]) {  // a slab at x = 0.7
@@ -509,16 +510,16 @@ TEST(AbiFireInteraction, WallsBlockRadiation) {
     std::fill(ridge.begin(), ridge.end(), 0.0f);
     EXPECT_FLOAT_EQ(shaded(def), 1.0f) << "flat";
 
-    FwBlockerDef blocker = fwDefaultBlockerDef();
-    blocker.transform[12] = 0.7f;
-    blocker.halfSize[0] = 0.05f;
-    blocker.halfSize[1] = blocker.halfSize[2] = 2;
-    const FwBlockerId wall = created(fwWorld_AddBlocker, w.world, blocker);
+    FwHeatOccluderDef occluder = fwDefaultHeatOccluderDef();
+    occluder.transform[12] = 0.7f;
+    occluder.halfSize[0] = 0.05f;
+    occluder.halfSize[1] = occluder.halfSize[2] = 2;
+    const FwHeatOccluderId wall = created(fwWorld_AddHeatOccluder, w.world, occluder);
     EXPECT_LT(ask(w, 1.2f, 0.3f, 0).heatFlux, 0.01f * open);
     const float centre[3] = {1.2f, 0.3f, 0};
-    const FwFirePush push = getState(fwWorld_GetVolumetricFirePush, w.world, centre, 0.1f);
+    const FwFireForce push = getState(fwWorld_GetVolumetricFireForce, w.world, centre, 0.1f);
     EXPECT_LT(push.ignitionPower, 0.01f * open * 0.0314f);
-    ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(w.world, wall));
+    ASSERT_EQ(FW_OK, fwWorld_RemoveHeatOccluder(w.world, wall));
     EXPECT_FLOAT_EQ(ask(w, 1.2f, 0.3f, 0).heatFlux, open);
 }
 

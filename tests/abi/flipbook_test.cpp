@@ -53,12 +53,12 @@ TEST(AbiFlipbook, LivesWhileInUse) {
     const FwFlipbookId fire = make(w, FW_FLIPBOOK_FLAME), smoke = make(w, FW_FLIPBOOK_HAZE);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     FwFireEmitterId emitter{};
-    def.fireBooks[1] = smoke;
+    def.fireFlipbooks[1] = smoke;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateFireEmitter(w.world, &def, &emitter));
-    EXPECT_THAT(lastMessage(w.world), HasSubstr("FwFireEmitterDef::fireBooks is a flipbook of "
+    EXPECT_THAT(lastMessage(w.world), HasSubstr("FwFireEmitterDef::fireFlipbooks is a flipbook of "
                                                 "smoke; it must be one of fire."));
-    def.fireBooks[1] = fire;
-    def.smokeBooks[0] = smoke;
+    def.fireFlipbooks[1] = fire;
+    def.smokeFlipbooks[0] = smoke;
     ASSERT_EQ(FW_OK, fwWorld_CreateFireEmitter(w.world, &def, &emitter)) << lastMessage(w.world);
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetFlameFlipbooks(w.world, smoke, fire));
     ASSERT_EQ(FW_OK, fwWorld_SetFlameFlipbooks(w.world, fire, {}));
@@ -72,7 +72,7 @@ TEST(AbiFlipbook, LivesWhileInUse) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyFlipbook(w.world, fire));
     EXPECT_EQ(FW_OK, fwWorld_DestroyFlipbook(w.world, smoke));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetFlameFlipbooks(w.world, fire, {}));
-    def.smokeBooks[0] = def.smokeBooks[1] = {};
+    def.smokeFlipbooks[0] = def.smokeFlipbooks[1] = {};
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateFireEmitter(w.world, &def, &emitter));
 }
 

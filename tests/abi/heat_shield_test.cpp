@@ -26,7 +26,7 @@ struct Kiln : Panels {
         board.flags = FW_BURNABLE_TWO_SIDED;
         add(board);
         FwMaterialDef slow = evenMaterial(0.0001f, 2.0f);
-        slow.look = FW_MATERIAL_PAPER;
+        slow.appearance = FW_MATERIAL_PAPER;
         slow.burningFlux = 0.0001f;
         EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(world, &slow, &material));
     }
@@ -44,8 +44,8 @@ struct Kiln : Panels {
         made.flags |= FW_BURNABLE_NO_SPREAD;
         return add(made);
     }
-    static FwHeatShieldDef cells() {
-        FwHeatShieldDef def = fwDefaultHeatShieldDef();
+    static FwHeatOcclusionDef cells() {
+        FwHeatOcclusionDef def = fwDefaultHeatOcclusionDef();
         def.origin[0] = -0.5f;
         def.origin[1] = def.origin[2] = -1;
         def.counts[0] = 40;
@@ -54,11 +54,11 @@ struct Kiln : Panels {
         def.cellSize = 0.05f;
         return def;
     }
-    void shield(const FwHeatShieldDef& def) {
-        EXPECT_EQ(FW_OK, fwWorld_SetHeatShield(world, &def)) << lastMessage(world);
+    void shield(const FwHeatOcclusionDef& def) {
+        EXPECT_EQ(FW_OK, fwWorld_SetHeatOcclusion(world, &def)) << lastMessage(world);
     }
     void bake(const std::vector<FwBurnableMeshId>& walls) {
-        FwHeatShieldDef def = cells();
+        FwHeatOcclusionDef def = cells();
         def.objects = walls.data();
         def.objectCount = uint32_t(walls.size());
         shield(def);
@@ -87,8 +87,8 @@ TEST(AbiHeatShield, ABurnableWallOccludes) {
     const auto all = [](bool walled) {
         return [walled](Kiln& k) {
             if (walled) k.wall();
-            FwHeatShieldDef def = Kiln::cells();
-            def.flags = FW_HEAT_SHIELD_ALL_OBJECTS;
+            FwHeatOcclusionDef def = Kiln::cells();
+            def.flags = FW_HEAT_OCCLUSION_ALL_OBJECTS;
             k.shield(def);
         };
     };
@@ -129,7 +129,7 @@ TEST(AbiHeatShield, FollowsMovedObjectsAfterTheNextCall) {
     EXPECT_TRUE(other.caught());  // a destroyed wall does not occlude
     Kiln none;
     none.bake({none.wall()});
-    ASSERT_EQ(FW_OK, fwWorld_SetHeatShield(none.world, nullptr));
+    ASSERT_EQ(FW_OK, fwWorld_SetHeatOcclusion(none.world, nullptr));
     EXPECT_TRUE(none.caught());
 }
 
@@ -137,7 +137,7 @@ TEST(AbiHeatShield, HostOccludersOcclude) {
     static uint32_t asked = 0;
     const auto plane = [](float x) {  // no thickness, and slanted
         return [x](Kiln& k) {
-            FwHeatShieldDef def = Kiln::cells();
+            FwHeatOcclusionDef def = Kiln::cells();
             float at = x;
             def.distanceData = &at;
             def.distance = [](void* data, const float* place) {
@@ -153,7 +153,7 @@ TEST(AbiHeatShield, HostOccludersOcclude) {
     EXPECT_TRUE(kilnCatches(plane(1.25f)));
     const auto bytes = [](uint32_t x, uint32_t except) {
         return [=](Kiln& k) {
-            FwHeatShieldDef def = Kiln::cells();
+            FwHeatOcclusionDef def = Kiln::cells();
             std::vector<uint8_t> solid(40 * 60 * 40);
             for (uint32_t z = 0; z < 40; ++z)
                 for (uint32_t y = 0; y < 60; ++y)
@@ -170,7 +170,7 @@ TEST(AbiHeatShield, HostOccludersOcclude) {
 TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
     for (const bool walled : {false, true}) {
         Kiln kiln;
-        FwHeatShieldDef def = Kiln::cells();
+        FwHeatOcclusionDef def = Kiln::cells();
         std::vector<uint8_t> solid(40 * 60 * 40);
         for (uint32_t i = 0; i < solid.size(); ++i) solid[i] = i % 40 == 21 ? 1 : 0;
         def.cells = solid.data();
@@ -188,7 +188,7 @@ TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
         EXPECT_EQ(!walled, kiln.lit(1) > 0);
         const FwFireEmitterState state = getState(fwWorld_GetFireEmitterState, kiln.world, id);
         if (walled) {
-            EXPECT_NEAR(1.0f, state.freeWay, 0.06f);  // from -0.45 to 0.55 m
+            EXPECT_NEAR(1.0f, state.clearDistance, 0.06f);  // from -0.45 to 0.55 m
         }
         ASSERT_EQ(FW_OK, fwWorld_DestroyFireEmitter(kiln.world, id));
     }
@@ -199,7 +199,7 @@ TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
         FwSurroundings at{};
         at.structSize = sizeof at;
         const float place[3] = {1.2f, 0.4f, 0.1f};
-        EXPECT_EQ(FW_OK, fwWorld_AskSurroundings(kiln.world, place, &at));
+        EXPECT_EQ(FW_OK, fwWorld_SampleSurroundings(kiln.world, place, &at));
         return at.heatFlux;
     };
     const float open = heat(false), shaded = heat(true);
@@ -209,32 +209,33 @@ TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
 
 TEST(AbiHeatShield, RefusesBadValuesByName) {
     Kiln kiln;
-    const auto refused = [&](const std::function<void(FwHeatShieldDef&)>& change,
+    const auto refused = [&](const std::function<void(FwHeatOcclusionDef&)>& change,
                              const std::string& says) {
-        FwHeatShieldDef def = fwDefaultHeatShieldDef();
+        FwHeatOcclusionDef def = fwDefaultHeatOcclusionDef();
         change(def);
-        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetHeatShield(kiln.world, &def)) << says;
-        EXPECT_EQ(says + "\n - While calling fwWorld_SetHeatShield.", lastMessage(kiln.world));
+        EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetHeatOcclusion(kiln.world, &def)) << says;
+        EXPECT_EQ(says + "\n - While calling fwWorld_SetHeatOcclusion.", lastMessage(kiln.world));
     };
-    refused([](FwHeatShieldDef& d) { d.flags = 2; },
-            "FwHeatShieldDef::flags is 0x2; the known flags are 0x1.");
-    refused([](FwHeatShieldDef& d) { d.counts[1] = 0; },
-            "FwHeatShieldDef::counts[1] is 0; the limits are [1, 256].");
-    refused([](FwHeatShieldDef& d) { d.counts[2] = 257; },
-            "FwHeatShieldDef::counts[2] is 257; the limits are [1, 256].");
-    refused([](FwHeatShieldDef& d) { std::fill_n(d.counts, 3, 200u); },
-            "FwHeatShieldDef::counts makes 200 x 200 x 200 = 8000000 cells; the limit is 2097152.");
-    refused([](FwHeatShieldDef& d) { d.cellSize = 0.04f; },
-            "FwHeatShieldDef::cellSize is 0.04; the limits are [0.05, 10].");
-    refused([](FwHeatShieldDef& d) { d.origin[2] = 2e6f; },
-            "FwHeatShieldDef::origin[2] is 2e+06; the limits are [-1e+06, 1e+06].");
-    refused([](FwHeatShieldDef& d) { d.objectCount = 2; },
-            "FwHeatShieldDef::objects is null, and objectCount is 2.");
-    FwHeatShieldDef def = fwDefaultHeatShieldDef();
+    refused([](FwHeatOcclusionDef& d) { d.flags = 2; },
+            "FwHeatOcclusionDef::flags is 0x2; the known flags are 0x1.");
+    refused([](FwHeatOcclusionDef& d) { d.counts[1] = 0; },
+            "FwHeatOcclusionDef::counts[1] is 0; the limits are [1, 256].");
+    refused([](FwHeatOcclusionDef& d) { d.counts[2] = 257; },
+            "FwHeatOcclusionDef::counts[2] is 257; the limits are [1, 256].");
+    refused(
+        [](FwHeatOcclusionDef& d) { std::fill_n(d.counts, 3, 200u); },
+        "FwHeatOcclusionDef::counts makes 200 x 200 x 200 = 8000000 cells; the limit is 2097152.");
+    refused([](FwHeatOcclusionDef& d) { d.cellSize = 0.04f; },
+            "FwHeatOcclusionDef::cellSize is 0.04; the limits are [0.05, 10].");
+    refused([](FwHeatOcclusionDef& d) { d.origin[2] = 2e6f; },
+            "FwHeatOcclusionDef::origin[2] is 2e+06; the limits are [-1e+06, 1e+06].");
+    refused([](FwHeatOcclusionDef& d) { d.objectCount = 2; },
+            "FwHeatOcclusionDef::objects is null, and objectCount is 2.");
+    FwHeatOcclusionDef def = fwDefaultHeatOcclusionDef();
     const FwBurnableMeshId none{77, 1};
     def.objects = &none;
     def.objectCount = 1;
-    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetHeatShield(kiln.world, &def));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_SetHeatOcclusion(kiln.world, &def));
 }
 
 }  // namespace

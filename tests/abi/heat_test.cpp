@@ -88,7 +88,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
         return hash;
     }
     FwObjectState state() { return getState(fwWorld_GetObjectState, world_, object_); }
-    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world_); }
+    FwEnergyLedger book() { return getState(fwWorld_GetEnergyLedger, world_); }
     FwWorldStats stats() { return getState(fwWorld_GetStats, world_); }
     // FwExtinguishCause of the last end of a fire since the last call; 0: burnt out; kNoEnd: none
     // ended.
@@ -174,7 +174,7 @@ TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
     for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
         const bool pine = which == FW_MATERIAL_PINE;
         make(preset(which), pine ? 20 : 2);
-        const FwEnergyBook whole = book();
+        const FwEnergyLedger whole = book();
         EXPECT_EQ(1u, whole.objects);
         EXPECT_LT(0u, whole.fuel);
         EXPECT_EQ(whole.fuel, whole.unburnt);
@@ -188,7 +188,7 @@ TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
             uint64_t left = 0;
             for (const auto& at : texels())
                 left += uint64_t(std::lround(65535 * double(point(at[0], at[2]).fuel)));
-            const FwEnergyBook now = book();
+            const FwEnergyLedger now = book();
             EXPECT_EQ(whole.fuel, now.fuel);
             EXPECT_EQ(left * unit, now.unburnt);
             EXPECT_EQ(now.fuel, now.unburnt + now.radiated + now.convected);
@@ -211,7 +211,7 @@ TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
 // every step, never decreases while nothing is extinguished, and ends with nothing unburnt.
 TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
     make(preset(FW_MATERIAL_PAPER), 4, FW_BURNABLE_LITE);
-    const FwEnergyBook whole = book();
+    const FwEnergyLedger whole = book();
     EXPECT_EQ(1u, whole.objects);
     EXPECT_EQ(0u, whole.fuel % (texels().size() * 65535)) << "all texels are unburnt";
     EXPECT_LT(0u, whole.fuel);
@@ -223,7 +223,7 @@ TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
     int between = 0;
     for (int i = 0; i < 1600 && unburnt > 0; ++i) {
         ASSERT_EQ(FW_OK, fwWorld_Step(world_, 1.0f / 32)) << lastMessage(world_);
-        const FwEnergyBook now = book();
+        const FwEnergyLedger now = book();
         EXPECT_EQ(whole.fuel, now.fuel);
         EXPECT_EQ(now.fuel, now.unburnt + now.radiated + now.convected);
         EXPECT_LE(now.unburnt, unburnt);
@@ -241,7 +241,7 @@ TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
 
 TEST_P(AbiHeat, ExtinguishedTexelsOfALiteObjectKeepTheirFuel) {
     make(preset(FW_MATERIAL_PINE), 1, FW_BURNABLE_LITE);
-    const FwEnergyBook whole = book();
+    const FwEnergyLedger whole = book();
     all(FW_IGNITE);
     run(1);
     EXPECT_LT(0.0f, book().power);

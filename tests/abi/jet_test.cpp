@@ -65,8 +65,8 @@ TEST(Jet, AClosedWallBurnsAndShieldsWhatIsBehind) {
         r.run(4);
         EXPECT_LT(0u, r.lit(0)) << heat;
         EXPECT_EQ(0u, r.lit(1)) << heat;
-        EXPECT_EQ(16u, r.jetState().struck);
-        EXPECT_NEAR(3, r.jetState().freeWay, 0.1f);
+        EXPECT_EQ(16u, r.jetState().blockedRays);
+        EXPECT_NEAR(3, r.jetState().clearDistance, 0.1f);
         EXPECT_NEAR(700000, r.jetState().heated, 1);  // W, 0.35 of 2 MW
     }
 }
@@ -94,7 +94,7 @@ TEST(Jet, PassesThroughAHole) {
     r.fire();
     r.run(4);
     EXPECT_LT(0u, r.lit(2));
-    EXPECT_LT(r.jetState().struck, 17u);
+    EXPECT_LT(r.jetState().blockedRays, 17u);
 }
 
 // A sheet protects what is behind until it burns through, and not longer. A sheet without holes
@@ -129,7 +129,7 @@ TEST(Jet, PassesThroughABurntHole) {
         EXPECT_GT(8, came);
         EXPECT_EQ(0, point.fuel);
         r.run(0.25);
-        EXPECT_GT(r.jetState().freeWay, 4) << "its particles pass as well";
+        EXPECT_GT(r.jetState().clearDistance, 4) << "its particles pass as well";
     }
 }
 
@@ -196,8 +196,8 @@ TEST(Jet, StuckFuelBurnsOnAndIsConserved) {
     exchanges(16);
     ASSERT_EQ(FW_OK, fwWorld_SetFireEmitterPower(r.world, r.jet, 0));
     exchanges(15);  // until the last of the stream arrives
-    EXPECT_LT(0u, r.jetState().stuckPlaces);
-    EXPECT_GT(17u, r.jetState().stuckPlaces);
+    EXPECT_LT(0u, r.jetState().stuckPatches);
+    EXPECT_GT(17u, r.jetState().stuckPatches);
     const double left = double(r.jetState().stuckFuel), before = gave;
     EXPECT_LT(10, left);
     EXPECT_GT(35, most);  // kW, the power of the jet
@@ -205,7 +205,7 @@ TEST(Jet, StuckFuelBurnsOnAndIsConserved) {
     exchanges(42);
     EXPECT_NEAR(left, gave - before, 1e-3 * left);
     EXPECT_EQ(0, r.jetState().stuckFuel);
-    EXPECT_EQ(0u, r.jetState().stuckPlaces);
+    EXPECT_EQ(0u, r.jetState().stuckPatches);
     EXPECT_EQ(0, r.jetState().heated);
     // A quarter of 0.35 of what left the nozzle in these two seconds and struck.
     EXPECT_NEAR(0.25 * 0.35 * 400 * 2, gave, 0.08 * gave);
@@ -275,7 +275,7 @@ TEST(Jet, ACornerDoesNotLeak) {
     EXPECT_LT(0u, r.lit(0));
     EXPECT_LT(0u, r.lit(1));
     EXPECT_EQ(0u, r.lit(2));
-    EXPECT_EQ(16u, r.jetState().struck);
+    EXPECT_EQ(16u, r.jetState().blockedRays);
 }
 
 // "Through walls at an angle" (RMC-14#8951): a floor that the jet grazes protects what is below.
@@ -302,7 +302,7 @@ TEST(Jet, ANozzleInsideAWallBurnsThatWall) {
         r.run(4);
         EXPECT_LT(0u, r.lit(0)) << nozzle;
         EXPECT_EQ(0u, r.lit(1)) << nozzle;
-        EXPECT_NEAR(0, r.jetState().freeWay, 0.02f) << nozzle;
+        EXPECT_NEAR(0, r.jetState().clearDistance, 0.02f) << nozzle;
     }
     Range through;  // a nozzle on the far side is in another room
     through.wall(3);
@@ -318,47 +318,47 @@ TEST(Jet, ANozzleInsideAWallBurnsThatWall) {
 // "A door beside the path stops the flame" (cmss13#4189).
 TEST(Jet, AnOpenDoorBesideThePathDoesNotBlock) {
     Range r;
-    FwBlockerDef door = fwDefaultBlockerDef();
+    FwHeatOccluderDef door = fwDefaultHeatOccluderDef();
     door.halfSize[0] = 0.5f;
     door.halfSize[1] = 1;
     door.halfSize[2] = 0.02f;
     door.transform[12] = 1.5f;
     door.transform[13] = 1;
     door.transform[14] = 0.45f;
-    FwBlockerId blocker = created(fwWorld_AddBlocker, r.world, door);
+    FwHeatOccluderId occluder = created(fwWorld_AddHeatOccluder, r.world, door);
     r.wall(5);
     r.fire();
     r.run(4);
     EXPECT_LT(0u, r.lit(0));
-    EXPECT_NEAR(5, r.jetState().freeWay, 0.1f);
+    EXPECT_NEAR(5, r.jetState().clearDistance, 0.1f);
     // A closed door does.
     Range closed;
     door.transform[14] = 0;
     door.halfSize[2] = 0.5f;
     door.halfSize[0] = 0.02f;
-    ASSERT_EQ(FW_OK, fwWorld_AddBlocker(closed.world, &door, &blocker));
+    ASSERT_EQ(FW_OK, fwWorld_AddHeatOccluder(closed.world, &door, &occluder));
     closed.wall(5);
     closed.fire();
     closed.run(4);
     EXPECT_EQ(0u, closed.lit(0));
-    EXPECT_NEAR(1.48f, closed.jetState().freeWay, 0.05f);
+    EXPECT_NEAR(1.48f, closed.jetState().clearDistance, 0.05f);
 }
 
 // A metal sheet without thickness, at any stream speed and frame rate.
 TEST(Jet, AThinWallStopsAFastStream) {
     for (const float dt : {1.0f / 90, 1.0f / 8}) {
         Range r;
-        FwBlockerDef sheet = fwDefaultBlockerDef();
+        FwHeatOccluderDef sheet = fwDefaultHeatOccluderDef();
         sheet.halfSize[0] = 0;
         sheet.halfSize[1] = sheet.halfSize[2] = 3;
         sheet.transform[12] = 2;
-        (void)created(fwWorld_AddBlocker, r.world, sheet);
+        (void)created(fwWorld_AddHeatOccluder, r.world, sheet);
         r.wall(2.5f);
         r.jetDef.speed = 120;
         r.fire();
         r.run(4, dt);
         EXPECT_EQ(0u, r.lit(0)) << dt;
-        EXPECT_NEAR(2, r.jetState().freeWay, 0.05f);
+        EXPECT_NEAR(2, r.jetState().clearDistance, 0.05f);
     }
 }
 
@@ -430,7 +430,7 @@ TEST(Jet, RefusesConflictingFlags) {
     r.jetDef.flags = FW_EMITTER_JET | FW_EMITTER_NO_COLLISION;
     r.fire();
     r.run(1);
-    EXPECT_EQ(0u, r.jetState().struck);
+    EXPECT_EQ(0u, r.jetState().blockedRays);
     EXPECT_EQ(0u, r.lit(0));
 }
 

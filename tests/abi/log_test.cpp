@@ -10,9 +10,9 @@ using namespace host;
 
 Bytes logOf(FwWorld* world) {
     uint64_t size = 0;
-    EXPECT_EQ(FW_OK, fwWorld_FetchLog(world, nullptr, &size)) << lastMessage(world);
+    EXPECT_EQ(FW_OK, fwWorld_FetchCommandLog(world, nullptr, &size)) << lastMessage(world);
     Bytes bytes(size);
-    EXPECT_EQ(FW_OK, fwWorld_FetchLog(world, bytes.data(), &size)) << lastMessage(world);
+    EXPECT_EQ(FW_OK, fwWorld_FetchCommandLog(world, bytes.data(), &size)) << lastMessage(world);
     return bytes;
 }
 
@@ -27,7 +27,7 @@ uint64_t tickOf(FwWorld* world) {
 void playTo(FwWorld* world, uint64_t tick, float most = 10) {
     float seconds = 0;
     for (int i = 0; i < 100000; ++i) {
-        ASSERT_EQ(FW_OK, fwWorld_PlayLog(world, tick, &seconds)) << lastMessage(world);
+        ASSERT_EQ(FW_OK, fwWorld_PlayCommandLog(world, tick, &seconds)) << lastMessage(world);
         if (seconds == 0) break;
         for (; seconds > most; seconds -= most) ASSERT_EQ(FW_OK, fwWorld_Step(world, most));
         ASSERT_EQ(FW_OK, fwWorld_Step(world, seconds)) << lastMessage(world);
@@ -42,7 +42,7 @@ void seeks(uint32_t notes, uint32_t plays) {
     };
     BusyWorld first(notes);
     if (!there(first)) GTEST_SKIP() << "there is no such backend here";
-    ASSERT_EQ(FW_OK, fwWorld_StartLog(first.world));
+    ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(first.world));
     std::map<uint32_t, Moment> moments;  // by frame
     std::map<uint32_t, Bytes> saves;
     uint32_t frame = 0;
@@ -55,7 +55,7 @@ void seeks(uint32_t notes, uint32_t plays) {
     const Bytes log = logOf(first.world);
     BusyWorld other(plays);
     if (!there(other)) GTEST_SKIP() << "there is no such backend here";
-    ASSERT_EQ(FW_OK, fwWorld_OpenLog(other.world, log.data(), log.size()))
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(other.world, log.data(), log.size()))
         << lastMessage(other.world);
     for (const uint32_t wanted : {155u, 61u, 30u, 131u, 92u, 110u}) {
         auto save = saves.upper_bound(wanted);
@@ -66,7 +66,7 @@ void seeks(uint32_t notes, uint32_t plays) {
     }
     // Without a save, from the beginning on: what was done first is in the log, too.
     BusyWorld fresh(plays);
-    ASSERT_EQ(FW_OK, fwWorld_OpenLog(fresh.world, log.data(), log.size()));
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(fresh.world, log.data(), log.size()));
     playTo(fresh.world, moments[92].tick);
     EXPECT_EQ(moments[92].hash, fresh.hash());
 }
@@ -79,7 +79,7 @@ TEST(Log, WhatADeviceNotedTheCpuPlays) { seeks(FW_BACKEND_VULKAN, FW_BACKEND_CPU
 // what it does after that frame, at the same tick, is not in it.
 TEST(Log, WhatASaveHasIsNotDoneAgain) {
     BusyWorld w(FW_BACKEND_CPU);
-    ASSERT_EQ(FW_OK, fwWorld_StartLog(w.world));
+    ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 40);
     FwIgnitionDef water = fwDefaultIgnitionDef();
     water.kind = FW_WET;
@@ -103,14 +103,14 @@ TEST(Log, WhatASaveHasIsNotDoneAgain) {
     const uint64_t tick = tickOf(w.world), hash = w.hash();
     const Bytes log = logOf(w.world);
     BusyWorld other(FW_BACKEND_CPU);
-    ASSERT_EQ(FW_OK, fwWorld_OpenLog(other.world, log.data(), log.size()));
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(other.world, log.data(), log.size()));
     ASSERT_EQ(FW_OK, other.load(save));
     playTo(other.world, tick);
     EXPECT_EQ(hash, other.hash());
 }
 
 void expectLogRefused(BusyWorld& w, const Bytes& log, const char* says) {
-    EXPECT_EQ(FW_ERROR_BAD_DATA, fwWorld_OpenLog(w.world, log.data(), log.size())) << says;
+    EXPECT_EQ(FW_ERROR_BAD_DATA, fwWorld_OpenCommandLog(w.world, log.data(), log.size())) << says;
     EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
 }
 
@@ -118,18 +118,18 @@ TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
     BusyWorld w(FW_BACKEND_CPU);
     uint64_t size = 0;
     float seconds = 0;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchLog(w.world, nullptr, &size));
-    EXPECT_NE(std::string::npos, lastMessage(w.world).find("fwWorld_StartLog"));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayLog(w.world, 1000, &seconds));
-    EXPECT_NE(std::string::npos, lastMessage(w.world).find("fwWorld_OpenLog"));
-    ASSERT_EQ(FW_OK, fwWorld_StartLog(w.world));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchCommandLog(w.world, nullptr, &size));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("fwWorld_StartCommandLog"));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayCommandLog(w.world, 1000, &seconds));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("fwWorld_OpenCommandLog"));
+    ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 60);
     const Bytes log = logOf(w.world);
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchLog(w.world, nullptr, nullptr));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_OpenLog(w.world, nullptr, 5));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchCommandLog(w.world, nullptr, nullptr));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_OpenCommandLog(w.world, nullptr, 5));
     unsigned char few[3];
     size = 3;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchLog(w.world, few, &size));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchCommandLog(w.world, few, &size));
     EXPECT_EQ(log.size(), size);
     Bytes wrong = log;
     wrong[0] ^= 1;
@@ -146,14 +146,14 @@ TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
     expectLogRefused(w, wrong, "log ends");
     BusyWorld fewer(FW_BACKEND_CPU, 12, 9);
     expectLogRefused(fewer, log, "other rules, objects or meshes");
-    ASSERT_EQ(FW_OK, fwWorld_OpenLog(w.world, log.data(), log.size()));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayLog(w.world, 1000000, nullptr));
-    ASSERT_EQ(FW_OK, fwWorld_PlayLog(w.world, 5, &seconds));  // behind it
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(w.world, log.data(), log.size()));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayCommandLog(w.world, 1000000, nullptr));
+    ASSERT_EQ(FW_OK, fwWorld_PlayCommandLog(w.world, 5, &seconds));  // behind it
     EXPECT_EQ(0.0f, seconds);
-    ASSERT_EQ(FW_OK, fwWorld_OpenLog(w.world, nullptr, 0));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayLog(w.world, 1000000, &seconds));
-    ASSERT_EQ(FW_OK, fwWorld_StopLog(w.world));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchLog(w.world, nullptr, &size));
+    ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(w.world, nullptr, 0));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayCommandLog(w.world, 1000000, &seconds));
+    ASSERT_EQ(FW_OK, fwWorld_StopCommandLog(w.world));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchCommandLog(w.world, nullptr, &size));
 }
 
 // The checksum that a log's head has, so that what is behind it is looked at.
@@ -166,7 +166,7 @@ void sign(Bytes& log) {
 // With a right checksum: it is opened and played, or refused with a message; the world lives on.
 TEST(Log, DamagedOnesNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);
-    ASSERT_EQ(FW_OK, fwWorld_StartLog(w.world));
+    ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 70);
     const Bytes log = logOf(w.world);
     Bytes plain = log;
@@ -186,7 +186,7 @@ TEST(Log, DamagedOnesNeverCrash) {
             wrong[24 + next(uint32_t(wrong.size() - 24))] ^= (unsigned char)(1u << next(8));
         sign(wrong);
         ASSERT_EQ(FW_OK, other.load(begin)) << lastMessage(other.world);
-        const FwResult result = fwWorld_OpenLog(other.world, wrong.data(), wrong.size());
+        const FwResult result = fwWorld_OpenCommandLog(other.world, wrong.data(), wrong.size());
         if (result != FW_OK) {
             EXPECT_EQ(FW_ERROR_BAD_DATA, result);
             EXPECT_FALSE(lastMessage(other.world).empty());
@@ -195,7 +195,7 @@ TEST(Log, DamagedOnesNeverCrash) {
         }
         float seconds = 1;
         for (int k = 0; k < 20 && seconds > 0; ++k) {
-            EXPECT_EQ(FW_OK, fwWorld_PlayLog(other.world, 4096, &seconds));
+            EXPECT_EQ(FW_OK, fwWorld_PlayCommandLog(other.world, 4096, &seconds));
             EXPECT_EQ(FW_OK, fwWorld_Step(other.world, seconds)) << lastMessage(other.world);
         }
     }

@@ -139,7 +139,7 @@ void actBent(BentSession& session, uint32_t frame) {
         EXPECT_EQ(FW_OK, fwWorld_SetWind(server.world, wind));
     }
     if (frame % 30 == 7) {
-        EXPECT_EQ(FW_OK, fwNet_Tell(server.world, "hello", 5));
+        EXPECT_EQ(FW_OK, fwNet_SendMessage(server.world, "hello", 5));
     }
 }
 void playBent(BentSession& session, uint32_t from, uint32_t to) {
@@ -209,7 +209,7 @@ TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
         const FwNetState good = BentSession::stateOf(play.session.server->world, play.honest.peer);
         EXPECT_EQ(0u, good.packetsRefused);
         EXPECT_EQ(1u, good.states);
-        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).strays);
+        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).desyncs);
         const FwNetState bad = BentSession::stateOf(play.session.server->world, play.other.peer);
         EXPECT_GT(bad.packetsRefused, 40u);
         EXPECT_FALSE(play.session.server->host.warnings.empty());
@@ -227,7 +227,7 @@ TEST(NetBent, AClientSurvivesEachBentFieldOfItsServer) {
         BentPlay play(seed);
         const auto bends = [&](uint32_t packet) { return packet % 4 == seed % 4; };
         play.run(&BentSession::Client::bendDown, kDownFields, bends, 1100, bent);
-        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).strays);
+        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).desyncs);
         EXPECT_GT(BentSession::stateOf(play.other.world->world).packetsRefused, 20u);
     }
     for (const PacketField& field : kDownFields)
@@ -378,7 +378,8 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
     const Bytes text(1000);
     uint64_t expected = 0;
     for (int round = 0; round < 20; ++round) {
-        for (int i = 0; i < 40; ++i) EXPECT_EQ(FW_OK, fwNet_Tell(server->world, text.data(), 1000));
+        for (int i = 0; i < 40; ++i)
+            EXPECT_EQ(FW_OK, fwNet_SendMessage(server->world, text.data(), 1000));
         passFrames(*server, 2);
         using Status = HandClient::Status;
         const Status right = client.right;
@@ -405,7 +406,7 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
         refused("a run that is not there", [](Status& s) { s.runs = 1; });
         refused("what is no request", [](Status& s) { s.request = 3; });
         for (int i = 0; i < 8; ++i) {
-            EXPECT_EQ(FW_OK, fwNet_Tell(server->world, text.data(), 1000));
+            EXPECT_EQ(FW_OK, fwNet_SendMessage(server->world, text.data(), 1000));
             passFrames(*server);
         }
         // Correct packets are accepted all the same.
@@ -461,7 +462,7 @@ TEST(NetBent, OneHostileClientCostsTheOthersNothing) {
         const FwNetState state = BentSession::stateOf(server, client->peer);
         EXPECT_EQ(0u, state.packetsRefused);
         EXPECT_EQ(1u, state.states);
-        EXPECT_EQ(0u, BentSession::stateOf(client->world->world).strays);
+        EXPECT_EQ(0u, BentSession::stateOf(client->world->world).desyncs);
     }
     const FwNetState state = BentSession::stateOf(server, hostile.peer);
     EXPECT_GT(state.packetsRefused, 500u);

@@ -87,7 +87,7 @@ class NetModel {
             EXPECT_EQ(hash, client->world->hash()) << what();
             const FwNetState state = stateOf(client->world->world);
             EXPECT_EQ(0u, state.packetsRefused) << what();
-            EXPECT_EQ(0u, state.strays) << what();
+            EXPECT_EQ(0u, state.desyncs) << what();
             EXPECT_FALSE(client->messages.empty()) << what();
             const size_t from =
                 sentMessages_.size() - std::min(sentMessages_.size(), client->messages.size());
@@ -125,7 +125,7 @@ class NetModel {
                           "; client: phase %u (%u at the server), step %llu of %llu, %u states, %u "
                           "strays, %u records, %u refused, %zu of %zu messages",
                           own.phase, theirs.phase, static_cast<unsigned long long>(own.step),
-                          static_cast<unsigned long long>(state.step), own.states, own.strays,
+                          static_cast<unsigned long long>(state.step), own.states, own.desyncs,
                           own.records, uint32_t(own.packetsRefused + theirs.packetsRefused),
                           client->messages.size(), sentMessages_.size());
             all += text;
@@ -201,7 +201,7 @@ class NetModel {
         if (step % 128 == 77) {
             const std::string text =
                 "message " + std::to_string(step) + std::string(below(300), '.');
-            ok(world, fwNet_Tell(world, text.data(), uint32_t(text.size())));
+            ok(world, fwNet_SendMessage(world, text.data(), uint32_t(text.size())));
             sentMessages_.push_back(text);
         }
     }
@@ -227,13 +227,13 @@ class NetModel {
                 ok(world, fwNet_Read(world, {}, bytes.data(), uint32_t(bytes.size())));
             });
             ok(world, fwNet_Update(world, kStep));
-            FwNetTurn turn{};
+            FwNetAction turn{};
             turn.structSize = sizeof turn;
             for (int i = 0; i < 1000; ++i) {
-                ok(world, fwNet_TakeTurn(world, &turn));
-                if (turn.kind == FW_TURN_WAIT) break;
-                if (turn.kind == FW_TURN_STEP) ok(world, fwWorld_Step(world, turn.deltaTime));
-                if (turn.kind == FW_TURN_MESSAGE)
+                ok(world, fwNet_NextAction(world, &turn));
+                if (turn.kind == FW_NET_ACTION_WAIT) break;
+                if (turn.kind == FW_NET_ACTION_STEP) ok(world, fwWorld_Step(world, turn.deltaTime));
+                if (turn.kind == FW_NET_ACTION_MESSAGE)
                     client->messages.emplace_back(turn.message, turn.message + turn.messageSize);
             }
             take(world, {}, client->up);

@@ -133,7 +133,7 @@ class NetSession {
             const FwNetState state = stateOf(client->world->world);
             ADD_FAILURE() << "phase " << state.phase << ", step " << state.step << " of "
                           << stateOf(server->world).step << ", " << state.records << " records, "
-                          << state.states << " states, " << state.strays << " strays; "
+                          << state.states << " states, " << state.desyncs << " strays; "
                           << lastMessage(client->world->world);
             for (const std::string& warning : client->world->host.warnings)
                 ADD_FAILURE() << warning;
@@ -178,12 +178,12 @@ class NetSession {
     void go(Client& client, double seconds) {
         FwWorld* world = client.world->world;
         ASSERT_EQ(FW_OK, fwNet_Update(world, float(seconds))) << lastMessage(world);
-        FwNetTurn turn{};
+        FwNetAction turn{};
         turn.structSize = sizeof turn;
         for (int i = 0; i < 1000; ++i) {
-            ASSERT_EQ(FW_OK, fwNet_TakeTurn(world, &turn)) << lastMessage(world);
-            if (turn.kind == FW_TURN_WAIT) return;
-            if (turn.kind == FW_TURN_MESSAGE) {
+            ASSERT_EQ(FW_OK, fwNet_NextAction(world, &turn)) << lastMessage(world);
+            if (turn.kind == FW_NET_ACTION_WAIT) return;
+            if (turn.kind == FW_NET_ACTION_MESSAGE) {
                 const std::string text(turn.message, turn.message + turn.messageSize);
                 client.heard.emplace_back(stateOf(world).step, text);
                 if (client.hears) client.hears(text);

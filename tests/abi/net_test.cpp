@@ -1,6 +1,6 @@
 // Networks: whatever is lost, late, doubled or damaged on the way, a client's world burns bit by
-// bit as the server's; who comes late or is led astray gets there, too; and nothing that comes in a
-// packet breaks anything.
+// bit as the server's. A client that joins late or diverges catches up, and no packet breaks
+// anything.
 #include "abi/net_session.h"
 #include "abi/panels.h"
 
@@ -36,7 +36,7 @@ void moveMore(BusyWorld& w, uint32_t frame) {
     if (frame % 27 == 6) {
         float wall[16] = {
             1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 1.0f, 0.3f, 0.2f + 0.002f * float(frame), 1};
-        ok(fwWorld_MoveBlocker(w.world, w.blocker, wall));
+        ok(fwWorld_MoveHeatOccluder(w.world, w.occluder, wall));
     }
 }
 
@@ -70,10 +70,10 @@ void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
     for (const auto& client : session.clients) {
         const FwNetState state = Busy::stateOf(client->world->world);
         EXPECT_EQ(1u, state.states);
-        EXPECT_EQ(0u, state.strays)
+        EXPECT_EQ(0u, state.desyncs)
             << (client->world->host.warnings.empty() ? "" : client->world->host.warnings[0]);
         EXPECT_GT(state.hashes, 10u);
-        EXPECT_EQ(state.step, Busy::stateOf(session.server->world, client->peer).heardStep);
+        EXPECT_EQ(state.step, Busy::stateOf(session.server->world, client->peer).newestKnownStep);
     }
 }
 
@@ -104,7 +104,7 @@ TEST(Net, APartThatIsPutOutIsOut) {
 }
 
 // A client that is changed by hand is found out by a hash, and healed.
-TEST(Net, WhoIsLedAstrayIsHealed) {
+TEST(Net, AClientThatDivergesIsRepaired) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     BusyWorld& client = *session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU)).world;
     play(session, 0, 60);
@@ -116,8 +116,8 @@ TEST(Net, WhoIsLedAstrayIsHealed) {
     play(session, 64, 260);
     session.expectEqual("after");
     const FwNetState state = Busy::stateOf(client.world);
-    EXPECT_GE(state.strays, 1u);  // its fire may have reached others meanwhile
-    EXPECT_EQ(state.strays + 1, state.states);
+    EXPECT_GE(state.desyncs, 1u);  // its fire may have reached others meanwhile
+    EXPECT_EQ(state.desyncs + 1, state.states);
     EXPECT_EQ(1u, state.repairs);
     ASSERT_FALSE(client.host.warnings.empty());
     EXPECT_NE(std::string::npos, client.host.warnings[0].find("differs from the server's"))
@@ -150,7 +150,7 @@ TEST(Net, TilesThatDifferAreEnough) {
     EXPECT_EQ(FW_OK, fwDebug_PushTexels(client.world, client.object, FW_IGNITE, &middle, 1));
     session.run(192);
     const FwNetState state = NetSession<Sheets>::stateOf(client.world);
-    EXPECT_EQ(1u, state.strays);
+    EXPECT_EQ(1u, state.desyncs);
     EXPECT_EQ(2u, state.states);
     EXPECT_EQ(1u, state.repairs);
     EXPECT_LT(double(in() - before), 1.5 * double(before - calm) + 0.5 * double(whole));
@@ -182,7 +182,7 @@ TEST(Net, SlowHostsCatchUp) {
     play(session, 120, 200);
     EXPECT_LT(Busy::stateOf(client.world->world).behind, 0.6f);
     session.expectEqual("at the end");
-    EXPECT_EQ(0u, Busy::stateOf(client.world->world).strays);
+    EXPECT_EQ(0u, Busy::stateOf(client.world->world).desyncs);
 }
 
 // Messages come in order, each before the step it was said before: objects made by them are alike.
@@ -200,23 +200,23 @@ TEST(Net, MessagesComeAtTheirSteps) {
     client.hears = [&](const std::string& text) {
         (void)client.world->add(0.43f * float(text[0] - '0'), 0, 0.23f);
     };
-    std::vector<std::pair<uint64_t, std::string>> told;
+    std::vector<std::pair<uint64_t, std::string>> sent;
     for (uint32_t frame = 0; frame < 200; ++frame) {
         if (frame == 20) server.ignite(server.ids[0], 0.2f, 0, 0.1f, 0.05f);
         if (frame == 30 || frame == 31 || frame == 90) {
             const std::string text = frame == 30 ? "0" : frame == 31 ? "1" : "2 at last";
             (void)server.add(0.43f * float(text[0] - '0'), 0, 0.23f);
-            EXPECT_EQ(FW_OK, fwNet_Tell(server.world, text.data(), uint32_t(text.size())));
-            told.emplace_back(NetSession<Panels>::stateOf(server.world).step, text);
+            EXPECT_EQ(FW_OK, fwNet_SendMessage(server.world, text.data(), uint32_t(text.size())));
+            sent.emplace_back(NetSession<Panels>::stateOf(server.world).step, text);
         }
         server.run(1.0 / 32);
         session.pass(1.0 / 32);
     }
     session.expectEqual("at the end");
-    EXPECT_EQ(told, client.heard);
+    EXPECT_EQ(sent, client.heard);
     EXPECT_GT(server.alight(), 4u);
     const Bytes much(1025);
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_Tell(server.world, much.data(), 1025));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_SendMessage(server.world, much.data(), 1025));
     EXPECT_NE(std::string::npos, lastMessage(server.world).find("1025 bytes"));
 }
 
@@ -224,7 +224,7 @@ TEST(Net, MessagesComeAtTheirSteps) {
 
 TEST(Net, RefusesWhatCannotBe) {
     BusyWorld alone(FW_BACKEND_CPU, 12, 3), other(FW_BACKEND_CPU, 12, 3);
-    FwNetTurn turn{};
+    FwNetAction turn{};
     turn.structSize = sizeof turn;
     FwPeerId peer{};
     Bytes room(1400);
@@ -235,7 +235,7 @@ TEST(Net, RefusesWhatCannotBe) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_Update(alone.world, 0.1f));
     says(alone.world, "fwNet_Serve");
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_AddPeer(alone.world, &peer));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_TakeTurn(alone.world, &turn));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwNet_NextAction(alone.world, &turn));
     EXPECT_EQ(FW_OK, fwNet_Leave(alone.world));
     const struct {
         void (*change)(FwNetDef&);
@@ -282,10 +282,10 @@ TEST(Net, RefusesWhatCannotBe) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetWind(other.world, wind));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetFlags(other.world, 0));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(other.world, 0.5f));
-    says(other.world, "fwNet_TakeTurn");
+    says(other.world, "fwNet_NextAction");
     EXPECT_EQ(FW_OK, fwWorld_Step(other.world, 0));
-    EXPECT_EQ(FW_OK, fwNet_TakeTurn(other.world, &turn));
-    EXPECT_EQ(uint32_t(FW_TURN_WAIT), turn.kind);
+    EXPECT_EQ(FW_OK, fwNet_NextAction(other.world, &turn));
+    EXPECT_EQ(uint32_t(FW_NET_ACTION_WAIT), turn.kind);
     EXPECT_EQ(FW_OK, fwNet_Leave(other.world));
     EXPECT_EQ(FW_OK, fwWorld_SetWind(other.world, wind));
     EXPECT_EQ(FW_OK, fwWorld_Step(other.world, 0.5f));
@@ -356,9 +356,9 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
         EXPECT_EQ(a.packetsIn, b.packetsIn);
         EXPECT_EQ(a.records, b.records);
         EXPECT_EQ(a.step, b.step);
-        EXPECT_EQ(a.heardStep, b.heardStep);
+        EXPECT_EQ(a.newestKnownStep, b.newestKnownStep);
         EXPECT_EQ(a.states, b.states);
-        EXPECT_EQ(a.strays, b.strays);
+        EXPECT_EQ(a.desyncs, b.desyncs);
         EXPECT_EQ(a.phase, b.phase);
     };
     same(ours, Busy::stateOf(client.world->world));
@@ -367,11 +367,11 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
     EXPECT_EQ(before, client.world->hash());
     play(session, 50, 100);
     session.expectEqual("and it goes on");
-    EXPECT_EQ(0u, Busy::stateOf(client.world->world).strays);
+    EXPECT_EQ(0u, Busy::stateOf(client.world->world).desyncs);
 }
 
-// One in twenty is spoilt behind its head and has a right sum all the same. Clients may be led
-// astray by that, but it is found, and they find back.
+// One in twenty is spoilt behind its head and has a right sum all the same. Clients may
+// diverge by that; the server finds and repairs them.
 TEST(Net, DamageThatIsNotFoundAtOnceHeals) {
     for (const uint32_t seed : {1u, 2u, 3u}) {
         Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4), seed);

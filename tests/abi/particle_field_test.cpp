@@ -36,7 +36,7 @@ FwParticleFieldDef presetOf(uint32_t preset) {
 TEST(AbiParticleField, PresetsCountTheirParticles) {
     FieldWorld w;
     for (uint32_t preset = 0; preset < FW_FIELD_PRESET_COUNT; ++preset)
-        for (const uint32_t shape : {FW_FIELD_CARD, FW_FIELD_SPHEROID}) {
+        for (const uint32_t shape : {FW_FIELD_BILLBOARD, FW_FIELD_SPHEROID}) {
             FwParticleFieldDef def = presetOf(preset);
             def.shape = shape;
             def.userData = preset + 70;

@@ -18,7 +18,7 @@ struct Act {
         dropZone,
         makeRoom,
         dropRoom,
-        makeBlocker,
+        makeOccluder,
         dropBlocker,
         makeFire,
         dropFire,
@@ -37,7 +37,7 @@ struct Act {
         shield,
         setZone,
         setRoom,
-        moveBlocker,
+        moveHeatOccluder,
         moveFire,
         firePower,
         firePoints,
@@ -240,12 +240,12 @@ class SessionDraw {
             else
                 place(act(Act::setRoom, any(rooms_)).numbers, false);
         } else if (kind < 30) {
-            if (blockers_.empty() || (blockers_.size() < 3 && once(2)))
-                place(act(Act::makeBlocker, make(blockers_)).numbers);
+            if (occluders_.empty() || (occluders_.size() < 3 && once(2)))
+                place(act(Act::makeOccluder, make(occluders_)).numbers);
             else if (once(3))
-                act(Act::dropBlocker, drop(blockers_));
+                act(Act::dropBlocker, drop(occluders_));
             else
-                place(act(Act::moveBlocker, any(blockers_)).numbers);
+                place(act(Act::moveHeatOccluder, any(occluders_)).numbers);
         } else if (kind < 41 && exact_) {
             return;
         } else if (kind < 34) {
@@ -332,7 +332,7 @@ class SessionDraw {
     bool carries_ = false;  // the object that gives a burn stays until the step that applies it
     float shift_[3] = {};   // m, the last shift
     std::vector<Act>* now_ = nullptr;
-    std::vector<uint32_t> objects_, zones_, rooms_, blockers_, fires_, jets_, fields_;
+    std::vector<uint32_t> objects_, zones_, rooms_, occluders_, fires_, jets_, fields_;
 };
 
 // A world that runs a session, or the part of it that builds a world.
@@ -429,7 +429,7 @@ class SessionWorld {
                       static_cast<unsigned long long>(s.tick), s.frontTiles, s.burningTiles,
                       s.burningObjects, s.hotTiles, s.lateClamps, s.droppedSteps);
         std::string all = text;
-        const FwEnergyBook b = getState(fwWorld_GetEnergyBook, world);
+        const FwEnergyLedger b = getState(fwWorld_GetEnergyLedger, world);
         std::snprintf(text, sizeof text, "fuel %llu left %llu radiated %llu power %.9g\n",
                       static_cast<unsigned long long>(b.fuel),
                       static_cast<unsigned long long>(b.unburnt),
@@ -441,7 +441,7 @@ class SessionWorld {
                           "object %u: ignited %u burning %u front %u power %.9g energy %.17g "
                           "plays %u\n",
                           name, o.ignited, o.burning, o.frontTiles, double(o.power), o.energy,
-                          o.plays);
+                          o.playsBakedBurn);
             all += text;
         }
         for (const auto& [name, id] : rooms) {
@@ -526,7 +526,7 @@ class SessionWorld {
             case Act::makeObject:
             case Act::makeZone:
             case Act::makeRoom:
-            case Act::makeBlocker:
+            case Act::makeOccluder:
             case Act::makeFire:
             case Act::makeJet:
             case Act::makeField:
@@ -534,7 +534,7 @@ class SessionWorld {
             case Act::moveObject:
             case Act::setZone:
             case Act::setRoom:
-            case Act::moveBlocker:
+            case Act::moveHeatOccluder:
             case Act::moveFire:
             case Act::moveJet:
             case Act::moveField:
@@ -625,17 +625,17 @@ class SessionWorld {
                 ok(fwWorld_DestroyRoom(world, rooms[act.name]));
                 rooms.erase(act.name);
                 return;
-            case Act::makeBlocker: {
-                FwBlockerDef def = fwDefaultBlockerDef();
+            case Act::makeOccluder: {
+                FwHeatOccluderDef def = fwDefaultHeatOccluderDef();
                 poseAt(def.transform, n[0], n[1], n[2], 0);
                 for (float& half : def.halfSize) half = 0.1f;
-                return ok(fwWorld_AddBlocker(world, &def, &blockers_[act.name]));
+                return ok(fwWorld_AddHeatOccluder(world, &def, &occluders_[act.name]));
             }
-            case Act::moveBlocker:
+            case Act::moveHeatOccluder:
                 poseAt(at, n[0], n[1], n[2], 0.3f);
-                return ok(fwWorld_MoveBlocker(world, blockers_[act.name], at));
+                return ok(fwWorld_MoveHeatOccluder(world, occluders_[act.name], at));
             case Act::dropBlocker:
-                return ok(fwWorld_RemoveBlocker(world, blockers_[act.name]));
+                return ok(fwWorld_RemoveHeatOccluder(world, occluders_[act.name]));
             case Act::makeFire: {
                 FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
                 def.flags |= FW_FIRE_IGNITES;
@@ -725,8 +725,8 @@ class SessionWorld {
             case Act::flags:
                 return ok(fwWorld_SetFlags(world, act.other));
             case Act::shield: {
-                if (act.other == 0) return ok(fwWorld_SetHeatShield(world, nullptr));
-                FwHeatShieldDef def = fwDefaultHeatShieldDef();
+                if (act.other == 0) return ok(fwWorld_SetHeatOcclusion(world, nullptr));
+                FwHeatOcclusionDef def = fwDefaultHeatOcclusionDef();
                 for (uint32_t& count : def.counts) count = 8;
                 for (float& value : def.origin) value = -0.1875f;
                 moveByOrigin(def.origin);
@@ -737,7 +737,7 @@ class SessionWorld {
                 const FwBurnableMeshId own = idOf(objects, act.name);
                 def.objects = &own;
                 def.objectCount = own.index1 != 0 ? 1 : 0;
-                return ok(fwWorld_SetHeatShield(world, &def));
+                return ok(fwWorld_SetHeatOcclusion(world, &def));
             }
             case Act::tag:
                 (void)fwWorld_TagPoint(world, objects[act.name], n,
@@ -763,7 +763,7 @@ class SessionWorld {
     FwMaterialId materials_[3] = {}, thatch_{};
     FwBurnId burn_{};
     std::map<uint32_t, FwWindZoneId> zones_;
-    std::map<uint32_t, FwBlockerId> blockers_;
+    std::map<uint32_t, FwHeatOccluderId> occluders_;
     std::map<uint32_t, FwVolumetricFireId> fires_;
     std::map<uint32_t, FwFireEmitterId> jets_;
     std::map<uint32_t, FwParticleFieldId> fields_;

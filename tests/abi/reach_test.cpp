@@ -38,12 +38,12 @@ struct Hearth : Panels {
 };
 
 TEST(AbiSpread, RadiationIgnitesExposedObjects) {
-    const auto caught = [](uint32_t flags, float x, const FwBlockerDef* wall, double seconds) {
+    const auto caught = [](uint32_t flags, float x, const FwHeatOccluderDef* wall, double seconds) {
         Hearth p(worldDef(flags));
         p.add(p.paper(x, 0, 0, true));
-        FwBlockerId id{};
+        FwHeatOccluderId id{};
         if (wall) {
-            EXPECT_EQ(FW_OK, fwWorld_AddBlocker(p.world, wall, &id)) << lastMessage(p.world);
+            EXPECT_EQ(FW_OK, fwWorld_AddHeatOccluder(p.world, wall, &id)) << lastMessage(p.world);
         }
         p.light();
         p.run(seconds);
@@ -59,7 +59,7 @@ TEST(AbiSpread, RadiationIgnitesExposedObjects) {
     EXPECT_FALSE(caught(0, 0.5f, nullptr, 20));
     EXPECT_FALSE(caught(FW_WORLD_PLUME | FW_WORLD_CONTACT, 0.5f, nullptr, 20));
     EXPECT_FALSE(caught(FW_WORLD_RADIATION, 4.0f, nullptr, 60));
-    FwBlockerDef wall = fwDefaultBlockerDef();
+    FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
     wall.transform[12] = 0.45f;
     wall.halfSize[0] = 0.02f;
     wall.halfSize[1] = wall.halfSize[2] = 5;
@@ -152,7 +152,7 @@ TEST(AbiSpread, IgnitionTimeOfFacingBoardsMatchesTheFluxFormula) {
 }
 
 TEST(AbiSpread, AWallBetweenBoardsPreventsIgnition) {
-    FwBlockerDef wall = fwDefaultBlockerDef();
+    FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
     wall.transform[12] = 0.05f;
     wall.halfSize[0] = 0.01f;
     wall.halfSize[1] = wall.halfSize[2] = 5;
@@ -160,9 +160,9 @@ TEST(AbiSpread, AWallBetweenBoardsPreventsIgnition) {
         TwoBoards p(
             worldDef(FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS),
             receiverOf(0.0018f, false));
-        FwBlockerId id{};
+        FwHeatOccluderId id{};
         if (walled) {
-            ASSERT_EQ(FW_OK, fwWorld_AddBlocker(p.world, &wall, &id)) << lastMessage(p.world);
+            ASSERT_EQ(FW_OK, fwWorld_AddHeatOccluder(p.world, &wall, &id)) << lastMessage(p.world);
         }
         const double caught = p.caught(120);
         std::printf("two boards, %s: %u texels lit\n", walled ? "a wall between" : "no wall",
@@ -178,14 +178,14 @@ TEST(AbiSpread, AHoleInTheWallLetsRadiationThrough) {
     for (const float beside : {0.0f, 3.0f}) {  // m from the board to the window, sideways
         TwoBoards p(worldDef(FW_WORLD_RADIATION), receiverOf(0.0018f, false));
         const auto wall = [&](float y, float z, float high, float wide) {
-            FwBlockerDef box = fwDefaultBlockerDef();
+            FwHeatOccluderDef box = fwDefaultHeatOccluderDef();
             box.transform[12] = 0.05f;
             box.transform[13] = y;
             box.transform[14] = z + beside;
             box.halfSize[0] = 0.01f;
             box.halfSize[1] = high;
             box.halfSize[2] = wide;
-            (void)created(fwWorld_AddBlocker, p.world, box);
+            (void)created(fwWorld_AddHeatOccluder, p.world, box);
         };
         wall(-5, 0, 5.2f, 20);  // up to 0.2 m
         wall(6, 0, 5, 20);      // from 1 m
@@ -291,13 +291,13 @@ TEST(AbiSpread, EmbersIgniteObjectsDownwind) {
 
     // A wall right behind the fire stops them all.
     auto walled = fierce(def);
-    FwBlockerDef wall = fwDefaultBlockerDef();
+    FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
     wall.transform[12] = 0.7f;
     wall.halfSize[0] = 0.05f;
     wall.halfSize[1] = wall.halfSize[2] = 30;
-    const FwBlockerId id = created(fwWorld_AddBlocker, walled->world, wall);
+    const FwHeatOccluderId id = created(fwWorld_AddHeatOccluder, walled->world, wall);
     EXPECT_EQ(0u, burns(*walled));
-    ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(walled->world, id));
+    ASSERT_EQ(FW_OK, fwWorld_RemoveHeatOccluder(walled->world, id));
     walled->run(20);
     EXPECT_GT(walled->alight(), 1u);
 }

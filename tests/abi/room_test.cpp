@@ -36,9 +36,9 @@ struct Paper : HostedWorld {
             events.insert(events.end(), some.begin(), some.end());
         }
     }
-    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world); }
+    FwEnergyLedger book() { return getState(fwWorld_GetEnergyLedger, world); }
     double released() {  // J
-        const FwEnergyBook now = book();
+        const FwEnergyLedger now = book();
         return double(now.radiated + now.convected) / 1048576;
     }
     FwRoomState air(FwRoomId room) { return getState(fwWorld_GetRoomState, world, room); }

@@ -96,7 +96,7 @@ class ScriptedGame {
             fans_[plot] = make(Act::makeZone, kPlotAt[plot]);
         }
         for (const float x : {-0.75f, 1.0f})
-            walls_.push_back(make(Act::makeBlocker, {x, 0, 0.75f}));
+            walls_.push_back(make(Act::makeOccluder, {x, 0, 0.75f}));
         make(Act::makeFire, {-2.0f, 0, -0.25f});  // a brazier by the road
         made_.frames[now_].back().numbers[3] = 40;
         for (uint32_t i = 0; i < kHouses; ++i) tag(i);
@@ -174,7 +174,7 @@ class ScriptedGame {
         if (now_ == 118) act(Act::flags).other = FW_WORLD_RADIATION | FW_WORLD_CONTACT;
         if (now_ == 136) act(Act::flags).other = 15;
         if (now_ % 50 == 30)
-            act(Act::moveBlocker, walls_[now_ / 50 % walls_.size()], {0.25f, 0, 0.75f});
+            act(Act::moveHeatOccluder, walls_[now_ / 50 % walls_.size()], {0.25f, 0, 0.75f});
         if (now_ == 90 || now_ == 126) {  // a door opens
             const Place at = kHouseAt[1];
             act(Act::setRoom, rooms_[1], {at.x + 0.0625f, at.y + 0.5f, at.z});

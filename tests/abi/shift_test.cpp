@@ -201,7 +201,7 @@ TEST(ShiftOrigin, SavesWithOldPositionsBeyondTheLimits) {
     const auto moveAll = [&](float x) {
         at[12] = x;
         for (const FwBurnableMeshId id : w.ids) w.ok(fwWorld_SetTransform(w.world, id, at));
-        w.ok(fwWorld_MoveBlocker(w.world, w.blocker, at));
+        w.ok(fwWorld_MoveHeatOccluder(w.world, w.occluder, at));
         w.ok(fwWorld_MoveFireEmitter(w.world, w.jet, at + 12, nullptr));
         w.ok(fwWorld_MoveVolumetricFire(w.world, w.fire, at + 12));
         w.ok(fwWorld_MoveParticleField(w.world, w.field, at + 12, nullptr));
@@ -210,7 +210,7 @@ TEST(ShiftOrigin, SavesWithOldPositionsBeyondTheLimits) {
     for (const FwWindZoneId zone : fresh.zones) w.ok(fwWorld_DestroyWindZone(fresh.world, zone));
     w.ok(fwWorld_DestroyRoom(w.world, w.room));
     w.ok(fwWorld_DestroyRoom(fresh.world, fresh.room));
-    w.ok(fwWorld_SetHeatShield(w.world, nullptr));
+    w.ok(fwWorld_SetHeatOcclusion(w.world, nullptr));
     w.ok(fwWorld_SetWindGrid(w.world, nullptr));
     moveAll(999000);
     for (int i = 0; i < 20; ++i) w.ok(fwWorld_Step(w.world, 1.0f / 16));
@@ -349,7 +349,7 @@ TEST(ShiftOrigin, ClientsFollowTheirServer) {
         double origin[3] = {};
         server.ok(fwWorld_GetOrigin(client->world->world, origin));
         for (int i = 0; i < 3; ++i) EXPECT_EQ(server.origin[i], origin[i]);
-        EXPECT_EQ(0u, Session::stateOf(client->world->world).strays);
+        EXPECT_EQ(0u, Session::stateOf(client->world->world).desyncs);
         const float by[3] = {1, 0, 0};
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
                   fwWorld_ShiftOrigin(client->world->world, by, nullptr));
@@ -388,18 +388,18 @@ TEST(ShiftOrigin, LoadsASaveWithADistantOrigin) {
 TEST(ShiftOrigin, IsRecordedInCommandLogs) {
     ShiftedWorld w(FW_BACKEND_CPU), other(FW_BACKEND_CPU);
     const Bytes start = w.save();
-    w.ok(fwWorld_StartLog(w.world));
+    w.ok(fwWorld_StartCommandLog(w.world));
     w.go(30);
     w.shift(-300, 2, 40);
     w.go(30);
     uint64_t size = 0;
-    w.ok(fwWorld_FetchLog(w.world, nullptr, &size));
+    w.ok(fwWorld_FetchCommandLog(w.world, nullptr, &size));
     Bytes log(size);
-    w.ok(fwWorld_FetchLog(w.world, log.data(), &size));
+    w.ok(fwWorld_FetchCommandLog(w.world, log.data(), &size));
     ASSERT_EQ(FW_OK, other.load(start)) << lastMessage(other.world);
-    other.ok(fwWorld_OpenLog(other.world, log.data(), log.size()));
+    other.ok(fwWorld_OpenCommandLog(other.world, log.data(), log.size()));
     float seconds = 0;
-    while (fwWorld_PlayLog(other.world, w.tick(), &seconds) == FW_OK && seconds > 0)
+    while (fwWorld_PlayCommandLog(other.world, w.tick(), &seconds) == FW_OK && seconds > 0)
         other.ok(fwWorld_Step(other.world, seconds));
     double origin[3] = {};
     other.ok(fwWorld_GetOrigin(other.world, origin));

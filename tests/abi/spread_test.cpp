@@ -244,28 +244,28 @@ TEST(AbiSpread, BurningTilesAreCapped) {
 
 TEST(AbiSpread, ValidatesAndCountsBlockers) {
     Panels p(worldDef(0));
-    FwBlockerDef def = fwDefaultBlockerDef();
+    FwHeatOccluderDef def = fwDefaultHeatOccluderDef();
     EXPECT_EQ(0.5f, def.halfSize[1]);
-    FwBlockerId id{};
+    FwHeatOccluderId id{};
     def.halfSize[2] = 31;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AddBlocker(p.world, &def, &id));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AddHeatOccluder(p.world, &def, &id));
     EXPECT_EQ(
-        "FwBlockerDef::halfSize[2] is 31; the limits are [0, 30].\n"
-        " - While calling fwWorld_AddBlocker.",
+        "FwHeatOccluderDef::halfSize[2] is 31; the limits are [0, 30].\n"
+        " - While calling fwWorld_AddHeatOccluder.",
         lastMessage(p.world));
     EXPECT_EQ(0u, id.index1);
     def.halfSize[2] = 0;
-    std::vector<FwBlockerId> all;
+    std::vector<FwHeatOccluderId> all;
     for (int i = 0; i < 64; ++i) {
-        ASSERT_EQ(FW_OK, fwWorld_AddBlocker(p.world, &def, &id));
+        ASSERT_EQ(FW_OK, fwWorld_AddHeatOccluder(p.world, &def, &id));
         all.push_back(id);
     }
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AddBlocker(p.world, &def, &id));
-    EXPECT_EQ(FW_OK, fwWorld_RemoveBlocker(p.world, all[3]));
-    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RemoveBlocker(p.world, all[3]));
-    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_MoveBlocker(p.world, all[3], def.transform));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AddHeatOccluder(p.world, &def, &id));
+    EXPECT_EQ(FW_OK, fwWorld_RemoveHeatOccluder(p.world, all[3]));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RemoveHeatOccluder(p.world, all[3]));
+    EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_MoveHeatOccluder(p.world, all[3], def.transform));
     def.transform[0] = NAN;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_MoveBlocker(p.world, all[4], def.transform));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_MoveHeatOccluder(p.world, all[4], def.transform));
     FwWorldDef wrong = worldDef(0);
     wrong.spreadChance = 1.5f;
     FwWorld* none = nullptr;

@@ -15,7 +15,7 @@ FwSurroundings ask(FwWorld* world, float x, float y, float z) {
     FwSurroundings at{};
     at.structSize = sizeof at;
     const float point[3] = {x, y, z};
-    EXPECT_EQ(FW_OK, fwWorld_AskSurroundings(world, point, &at)) << lastMessage(world);
+    EXPECT_EQ(FW_OK, fwWorld_SampleSurroundings(world, point, &at)) << lastMessage(world);
     return at;
 }
 
@@ -45,8 +45,8 @@ TEST(AbiSurroundings, ReportTheHeatAndSmokeOfAFire) {
     EXPECT_TRUE(near.nearestLight >> 31);
     const float left[3] = {-10, 6, 0}, right[3] = {10, 6, 0}, beside[3] = {10, 6, 30};
     float seen = -1, clear = -1;
-    ASSERT_EQ(FW_OK, fwWorld_AskSight(w.world, left, right, &seen));
-    ASSERT_EQ(FW_OK, fwWorld_AskSight(w.world, beside, right, &clear));
+    ASSERT_EQ(FW_OK, fwWorld_SampleVisibility(w.world, left, right, &seen));
+    ASSERT_EQ(FW_OK, fwWorld_SampleVisibility(w.world, beside, right, &clear));
     EXPECT_LT(seen, 0.9f);
     EXPECT_EQ(1, clear);
 }
@@ -86,13 +86,13 @@ TEST(AbiSurroundings, RefuseInvalidQueries) {
     FireWorld w;
     const float nowhere[3] = {NAN, 0, 0}, here[3] = {0, 0, 0};
     FwSurroundings at{};
-    EXPECT_EQ(FW_ERROR_VERSION, fwWorld_AskSurroundings(w.world, here, &at));
+    EXPECT_EQ(FW_ERROR_VERSION, fwWorld_SampleSurroundings(w.world, here, &at));
     at.structSize = sizeof at;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskSurroundings(w.world, nowhere, &at));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskSurroundings(w.world, here, nullptr));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SampleSurroundings(w.world, nowhere, &at));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SampleSurroundings(w.world, here, nullptr));
     float seen = 0;
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskSight(w.world, here, nowhere, &seen));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_AskSight(w.world, here, here, nullptr));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SampleVisibility(w.world, here, nowhere, &seen));
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SampleVisibility(w.world, here, here, nullptr));
     uint8_t mask = 0;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT,
               fwWorld_MakeSafetyMask(w.world, here, here, here, 0, 1, &mask));

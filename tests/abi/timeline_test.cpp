@@ -28,7 +28,7 @@ FwTimelineState stateOf(FwWorld* world) {
 void start(FwWorld* world, float interval = 1, float longest = 32, uint64_t bytes = 1 << 26) {
     FwTimelineDef def = fwDefaultTimelineDef();
     def.interval = interval;
-    def.longest = longest;
+    def.maxInterval = longest;
     def.bytes = bytes;
     EXPECT_EQ(FW_OK, fwWorld_StartTimeline(world, &def)) << lastMessage(world);
 }
@@ -80,7 +80,7 @@ void seeks(uint32_t backend) {
         ASSERT_EQ(moments[next].tick, tickOf(w.world));
         EXPECT_EQ(moments[next].hash, w.hash()) << "keeping a timeline changed frame " << next;
     }
-    EXPECT_GE(stateOf(w.world).moments, 4u);
+    EXPECT_GE(stateOf(w.world).keyframes, 4u);
     EXPECT_EQ(moments[155].tick, stateOf(w.world).endTick);
     for (const uint32_t wanted : {61u, 131u, 30u, 110u, 92u, 1u, 155u, 75u}) {
         seek(w.world, moments[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
@@ -148,8 +148,8 @@ TEST(Timeline, HasBakedBurnsThatWentLive) {
             FwObjectState state{};
             state.structSize = sizeof state;
             ASSERT_EQ(FW_OK, fwWorld_GetObjectState(other.world, other.ids[1], &state));
-            played |= state.plays != 0;
-            lives |= played && state.plays == 0;
+            played |= state.playsBakedBurn != 0;
+            lives |= played && state.playsBakedBurn == 0;
             if (k == 2) {
                 ASSERT_EQ(FW_OK, fwWorld_StopBurn(other.world, other.ids[1]));
             }
@@ -180,7 +180,7 @@ TEST(Timeline, StaysWithinItsBytes) {
     EXPECT_TRUE(spread) << "first there are fewer";
     EXPECT_GT(state.firstTick, 0u) << "then its beginning goes";
     EXPECT_LE(state.interval, 0.25f);
-    EXPECT_GE(state.moments, 2u) << "of " << state.bytes << " bytes";
+    EXPECT_GE(state.keyframes, 2u) << "of " << state.bytes << " bytes";
     const uint64_t hash = w.hash();
     seek(w.world, state.firstTick);
     seek(w.world, state.endTick);
@@ -195,16 +195,17 @@ TEST(Timeline, NamesWhatIsWrong) {
     };
     float seconds = 1;
     refused(FW_ERROR_INVALID_ARGUMENT, fwWorld_Seek(w.world, 0, &seconds), "fwWorld_StartTimeline");
-    EXPECT_EQ(0u, stateOf(w.world).moments);
+    EXPECT_EQ(0u, stateOf(w.world).keyframes);
     const auto started = [&](float interval, float longest, uint64_t bytes) {
         FwTimelineDef def = fwDefaultTimelineDef();
         def.interval = interval;
-        def.longest = longest;
+        def.maxInterval = longest;
         def.bytes = bytes;
         return fwWorld_StartTimeline(w.world, &def);
     };
     refused(FW_ERROR_INVALID_ARGUMENT, started(0, 32, 1 << 20), "FwTimelineDef::interval is 0");
-    refused(FW_ERROR_INVALID_ARGUMENT, started(2, 4000, 1 << 20), "FwTimelineDef::longest is 4000");
+    refused(FW_ERROR_INVALID_ARGUMENT, started(2, 4000, 1 << 20),
+            "FwTimelineDef::maxInterval is 4000");
     refused(FW_ERROR_INVALID_ARGUMENT, started(3, 2, 1 << 20), "below its interval of 3 s");
     refused(FW_ERROR_INVALID_ARGUMENT, started(2, 32, 100), "FwTimelineDef::bytes is 100");
     w.run(0, 40);
@@ -220,19 +221,19 @@ TEST(Timeline, NamesWhatIsWrong) {
             "the timeline has");
     refused(FW_ERROR_INVALID_ARGUMENT, fwWorld_Seek(w.world, 1u << 20, &seconds),
             "untilTick is 1048576");
-    // Another past: it begins anew there.
+    // Another past: the timeline starts again there.
     const Bytes save = w.save();
     w.run(60, 70);
     ASSERT_EQ(FW_OK, w.load(save));
-    EXPECT_EQ(0u, stateOf(w.world).moments);
+    EXPECT_EQ(0u, stateOf(w.world).keyframes);
     EXPECT_EQ(tickOf(w.world), stateOf(w.world).endTick);
     w.run(60, 80);
-    ASSERT_EQ(1u, stateOf(w.world).moments);
+    ASSERT_EQ(1u, stateOf(w.world).keyframes);
     // What goes is not on it.
     const uint64_t hash = w.hash();
-    ASSERT_EQ(FW_OK, fwWorld_RemoveBlocker(w.world, w.blocker));
+    ASSERT_EQ(FW_OK, fwWorld_RemoveHeatOccluder(w.world, w.occluder));
     refused(FW_ERROR_BAD_DATA, fwWorld_Seek(w.world, stateOf(w.world).firstTick, &seconds),
-            "1 blockers; this world has 0");
+            "1 occluders; this world has 0");
     EXPECT_EQ(hash, w.hash());
     EXPECT_EQ(FW_OK, fwWorld_StopTimeline(w.world));
     EXPECT_EQ(0u, stateOf(w.world).endTick);

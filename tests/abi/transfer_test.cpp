@@ -39,7 +39,7 @@ struct Boards : HostedWorld {
     FwPointState point(FwBurnableMeshId id, float x, float z) {
         return HostedWorld::point(id, x, 0, z);
     }
-    FwEnergyBook book() { return getState(fwWorld_GetEnergyBook, world); }
+    FwEnergyLedger book() { return getState(fwWorld_GetEnergyLedger, world); }
     uint64_t hash(FwBurnableMeshId id) {
         uint64_t tick = 0;
         return HostedWorld::hash(id, &tick) + tick;
@@ -58,7 +58,7 @@ void goesOn(uint32_t preset, uint32_t flags, float before) {
     const FwObjectState was = w.state(w.from);
     ASSERT_GT(was.burntFraction, 0.05f);
     ASSERT_LT(was.burntFraction, 0.9f);
-    const FwEnergyBook all = w.book();
+    const FwEnergyLedger all = w.book();
     FwEvent events[64];
     (void)fwWorld_PollEvents(w.world, events, 64);
     w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
@@ -72,7 +72,7 @@ void goesOn(uint32_t preset, uint32_t flags, float before) {
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(w.to, 0.59f, 0.01f).kind);
     EXPECT_NE(uint32_t(FW_POINT_UNBURNT), w.point(w.to, 0.15f, 0.2f).kind);
     if (!(flags & FW_BURNABLE_LITE)) {
-        const FwEnergyBook left = w.book();
+        const FwEnergyLedger left = w.book();
         const double share = double(all.radiated + all.convected) / (0.5 * double(all.fuel));
         EXPECT_NEAR(share, double(left.radiated + left.convected) / double(left.fuel), 0.02);
         EXPECT_EQ(left.fuel, left.unburnt + left.radiated + left.convected);
@@ -112,14 +112,14 @@ TEST(TransferBurn, IsRecordedInSavesAndCommandLogs) {
     w.ball(FW_IGNITE, w.from, 0.15f, 0.2f, 0.05f);
     w.run(5);
     const Bytes start = saveOf(w.world);
-    w.ok(fwWorld_StartLog(w.world));
+    w.ok(fwWorld_StartCommandLog(w.world));
     w.ok(fwWorld_TransferBurn(w.world, w.from, w.to));
     w.run(2);
     const uint64_t end = w.hash(w.to);
     uint64_t size = 0;
-    w.ok(fwWorld_FetchLog(w.world, nullptr, &size));
+    w.ok(fwWorld_FetchCommandLog(w.world, nullptr, &size));
     Bytes log(size);
-    w.ok(fwWorld_FetchLog(w.world, log.data(), &size));
+    w.ok(fwWorld_FetchCommandLog(w.world, log.data(), &size));
     loaded.ok(fwWorld_Load(loaded.world, start.data(), start.size()));
     loaded.ok(fwWorld_TransferBurn(loaded.world, loaded.from, loaded.to));
     const Bytes between =
@@ -134,9 +134,9 @@ TEST(TransferBurn, IsRecordedInSavesAndCommandLogs) {
     stats.structSize = sizeof stats;
     w.ok(fwWorld_GetStats(w.world, &stats));
     played.ok(fwWorld_Load(played.world, start.data(), start.size()));
-    played.ok(fwWorld_OpenLog(played.world, log.data(), log.size()));
+    played.ok(fwWorld_OpenCommandLog(played.world, log.data(), log.size()));
     float seconds = 0;
-    while (fwWorld_PlayLog(played.world, stats.tick, &seconds) == FW_OK && seconds > 0)
+    while (fwWorld_PlayCommandLog(played.world, stats.tick, &seconds) == FW_OK && seconds > 0)
         played.ok(fwWorld_Step(played.world, seconds));
     EXPECT_EQ(end, played.hash(played.to));
 }

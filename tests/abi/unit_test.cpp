@@ -34,8 +34,8 @@ struct Owner {  // a struct or a function, and some of its numbers
 
 const Owner kLengths[] = {
     {"FwWorldDef", "wind"},
-    {"FwBlockerDef", "transform halfSize"},
-    {"FwHeatShieldDef", "origin cellSize distance"},
+    {"FwHeatOccluderDef", "transform halfSize"},
+    {"FwHeatOcclusionDef", "origin cellSize distance"},
     {"FwWindZoneDef", "position size speed"},
     {"FwWindGridDef", "origin cellSize fade velocities"},
     {"FwGustDef", "size"},
@@ -49,9 +49,9 @@ const Owner kLengths[] = {
     {"FwVolumetricFireDef", "position diameter"},
     {"FwVolumetricFireState", "height boundsLow boundsHigh tip lightPosition contact"},
     {"FwFireColliderDef", "position end halfSize radius cellSize heights distance view projection"},
-    {"FwFireAnswer", "gas"},
+    {"FwFireSample", "gas"},
     {"FwFireEmitterDef", "position extent radius speed size0 size1 ground behind"},
-    {"FwFireEmitterState", "speed reach lightPosition freeWay"},
+    {"FwFireEmitterState", "speed reach lightPosition clearDistance"},
     {"FwParticleFieldDef", "position size"},
     {"FwView", "view projection"},
     {"FwEvent", "position"},
@@ -62,20 +62,20 @@ const Owner kLengths[] = {
     {"fwWorld_SetWind", "wind"},
     {"fwWorld_ShiftOrigin", "offset applied"},
     {"fwWorld_GetOrigin", "origin"},
-    {"fwWorld_MoveBlocker", "transform"},
+    {"fwWorld_MoveHeatOccluder", "transform"},
     {"fwWorld_GetWindAt", "point wind"},
     {"fwWorld_SetTransform", "transform"},
     {"fwWorld_SetVertexPositions", "positions"},
     {"fwWorld_MoveVolumetricFire", "position"},
-    {"fwWorld_AskVolumetricFires", "point"},
-    {"fwWorld_GetVolumetricFirePush", "centre radius"},
+    {"fwWorld_SampleVolumetricFires", "point"},
+    {"fwWorld_GetVolumetricFireForce", "centre radius"},
     {"fwWorld_MoveFireEmitter", "position"},
     {"fwWorld_MoveParticleField", "position"},
     {"fwWorld_TagPoint", "position"},
     {"fwWorld_RequestPoint", "position"},
     {"fwWorld_RequestArrival", "position"},
-    {"fwWorld_AskSurroundings", "point"},
-    {"fwWorld_AskSight", "from to"},
+    {"fwWorld_SampleSurroundings", "point"},
+    {"fwWorld_SampleVisibility", "from to"},
     {"fwWorld_MakeSafetyMask", "corner columnStep rowStep"},
     {"fwDebug_GetTexelPositions", "positions"},
     {"fwDebug_GetUnwrap", "corners"},
@@ -108,8 +108,8 @@ const Owner kOthers[] = {
     {"FwFireTrackDef", "times weight"},
     {"FwFireProfileDef", "texels"},
     {"FwFireColliderDef", "normal rotation depths"},
-    {"FwFireAnswer", "temperature heatFlux"},
-    {"FwFirePush", "ignitionPower force"},
+    {"FwFireSample", "temperature heatFlux"},
+    {"FwFireForce", "ignitionPower force"},
     {"FwFireEmitterDef",
      "direction power rate cone life lifeVariance drag buoyancy windResponse turbulence "
      "inherit smoke smokeLife smokeDensity sparks temperature heat stick stickTime"},
@@ -125,14 +125,14 @@ const Owner kOthers[] = {
     {"FwObjectState", "burntFraction burningArea power reserved1 energy"},
     {"FwPointState", "age reserved temperature fuel charred water"},
     {"FwArrivalState", "seconds reserved"},
-    {"FwTimelineDef", "interval longest"},
+    {"FwTimelineDef", "interval maxInterval"},
     {"FwTimelineState", "interval"},
     {"FwNetDef", "interval delay"},
-    {"FwNetTurn", "deltaTime"},
+    {"FwNetAction", "deltaTime"},
     {"FwNetState", "behind silent changeRate backlog roundTrip"},
     {"FwLight", "color intensity power reserved"},
     {"FwSurroundings", "heatFlux temperature smoke danger nearestPower"},
-    {"FwEnergyBook", "power burningArea"},
+    {"FwEnergyLedger", "power burningArea"},
     {"FwBudgetDef", "gpuMilliseconds cpuMilliseconds measuredMilliseconds"},
     {"FwBudgetState", "gpuMilliseconds cpuMilliseconds quads"},
     {"fwWorld_SetVertexPositions", "normals"},
@@ -142,11 +142,11 @@ const Owner kOthers[] = {
     {"fwWorld_MoveParticleField", "rotation"},
     {"fwWorld_SetParticleFieldAmount", "amount"},
     {"fwWorld_Step", "deltaTime"},
-    {"fwWorld_PlayLog", "seconds"},
+    {"fwWorld_PlayCommandLog", "seconds"},
     {"fwWorld_Seek", "seconds"},
     {"fwWorld_PlayBurn", "delay speed"},
     {"fwNet_Update", "deltaTime"},
-    {"fwWorld_AskSight", "seen"},
+    {"fwWorld_SampleVisibility", "seen"},
     {"FwVulkanFrame", "deltaTime transparency"},
     {"FwPassTime", "milliseconds"},
 };
@@ -253,7 +253,7 @@ class Session {
         def.paceFactor = 12;
         give("FwWorldDef::wind", def.wind, {1.5f, 0, 0.25f});
         ok(fwCreateWorld(context, &def, &world));
-        ok(fwWorld_StartLog(world));
+        ok(fwWorld_StartCommandLog(world));
         createMeshes();
         createSurroundings();
         createFires();
@@ -293,9 +293,9 @@ class Session {
     [[nodiscard]] bool differs(const Session& metres) const { return !difference(metres).empty(); }
     Bytes log() {
         uint64_t size = 0;
-        ok(fwWorld_FetchLog(world, nullptr, &size));
+        ok(fwWorld_FetchCommandLog(world, nullptr, &size));
         Bytes bytes(size);
-        ok(fwWorld_FetchLog(world, bytes.data(), &size));
+        ok(fwWorld_FetchCommandLog(world, bytes.data(), &size));
         return bytes;
     }
     Bytes picture() {
@@ -415,10 +415,10 @@ class Session {
         objects_.push_back(createObject(mesh_, per, 0, 0, 0));
     }
     void createSurroundings() {
-        FwBlockerDef wall = fwDefaultBlockerDef();
-        transform("FwBlockerDef::transform", wall.transform, 2, 0.5f, 0.25f, per);
-        give("FwBlockerDef::halfSize", wall.halfSize, {0.0625f, 0.5f, 0.5f});
-        ok(fwWorld_AddBlocker(world, &wall, &wall_));
+        FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
+        transform("FwHeatOccluderDef::transform", wall.transform, 2, 0.5f, 0.25f, per);
+        give("FwHeatOccluderDef::halfSize", wall.halfSize, {0.0625f, 0.5f, 0.5f});
+        ok(fwWorld_AddHeatOccluder(world, &wall, &wall_));
         FwWindZoneDef zone = fwDefaultWindZoneDef();
         give("FwWindZoneDef::position", zone.position, {0.5f, 0, 0.25f});
         give("FwWindZoneDef::size", zone.size, {1, 0.5f, 0.75f});
@@ -447,17 +447,17 @@ class Session {
         FwRoomId roomId{};
         ok(fwWorld_CreateRoom(world, &room, &roomId));
         ok(fwWorld_SetRoom(world, roomId, &room));
-        FwHeatShieldDef shield = fwDefaultHeatShieldDef();
+        FwHeatOcclusionDef shield = fwDefaultHeatOcclusionDef();
         for (uint32_t& count : shield.counts) count = 12;
-        give("FwHeatShieldDef::origin", shield.origin, {-1, -0.5f, -1});
-        shield.cellSize = give("FwHeatShieldDef::cellSize", 0.25f);
+        give("FwHeatOcclusionDef::origin", shield.origin, {-1, -0.5f, -1});
+        shield.cellSize = give("FwHeatOcclusionDef::cellSize", 0.25f);
         shield.distanceData = this;
         shield.distance = [](void* data, const float* place) {
             auto& self = *static_cast<Session*>(data);
             const float side = place[1] < -0.25f * self.per ? -0.5f : 0.0625f;  // both solid
-            return self.give("FwHeatShieldDef::distance", side);
+            return self.give("FwHeatOcclusionDef::distance", side);
         };
-        ok(fwWorld_SetHeatShield(world, &shield));
+        ok(fwWorld_SetHeatOcclusion(world, &shield));
         createColliders();
     }
     void createColliders() {
@@ -489,10 +489,10 @@ class Session {
         def.distanceData = this;
         def.distance = [](void* data, const float* point, float* normal) {
             auto& self = *static_cast<Session*>(data);
-            if (self.asked_ < 8) {
+            if (self.requested_ < 8) {
                 for (int i = 0; i < 3; ++i)
                     self.get("FwFireColliderDef::distance", double(point[i]));
-                ++self.asked_;
+                ++self.requested_;
             }
             normal[0] = normal[2] = 0;
             normal[1] = 1;
@@ -589,8 +589,8 @@ class Session {
             float wind[3], at[16], vertices[27];
             give("fwWorld_SetWind::wind", wind, {0.5f, 0, 1.25f});
             ok(fwWorld_SetWind(world, wind));
-            transform("fwWorld_MoveBlocker::transform", at, 2.25f, 0.5f, 0.25f, per);
-            ok(fwWorld_MoveBlocker(world, wall_, at));
+            transform("fwWorld_MoveHeatOccluder::transform", at, 2.25f, 0.5f, 0.25f, per);
+            ok(fwWorld_MoveHeatOccluder(world, wall_, at));
             transform("fwWorld_SetTransform::transform", at, 1.25f, 0.125f, 0, 1);
             ok(fwWorld_SetTransform(world, objects_[0], at));
             for (int skinned = 3; skinned < 5; ++skinned) {
@@ -664,7 +664,7 @@ class Session {
             ok(fwWorld_GetFireEmitterState(world, id, &emitter));
             get("FwFireEmitterState::speed", double(emitter.speed));
             get("FwFireEmitterState::reach", double(emitter.reach));
-            get("FwFireEmitterState::freeWay", double(emitter.freeWay));
+            get("FwFireEmitterState::clearDistance", double(emitter.clearDistance));
             get("FwFireEmitterState::lightPosition", emitter.lightPosition);
             same("heated", double(emitter.heated));
         }
@@ -693,26 +693,26 @@ class Session {
         get("FwArrivalState::distance", double(arrival.distance));
         get("FwArrivalState::position", arrival.position);
         same("arrives in", double(arrival.seconds));
-        auto answer = info<FwFireAnswer>();
-        place = at("fwWorld_AskVolumetricFires::point", 3, 0.5f, 1);
-        ok(fwWorld_AskVolumetricFires(world, place.data(), &answer));
-        get("FwFireAnswer::gas", answer.gas);
+        auto answer = info<FwFireSample>();
+        place = at("fwWorld_SampleVolumetricFires::point", 3, 0.5f, 1);
+        ok(fwWorld_SampleVolumetricFires(world, place.data(), &answer));
+        get("FwFireSample::gas", answer.gas);
         same("heat flux", double(answer.heatFlux));
-        auto push = info<FwFirePush>();
-        place = at("fwWorld_GetVolumetricFirePush::centre", 3, 0.75f, 1);
-        ok(fwWorld_GetVolumetricFirePush(
-            world, place.data(), give("fwWorld_GetVolumetricFirePush::radius", 0.25f), &push));
+        auto push = info<FwFireForce>();
+        place = at("fwWorld_GetVolumetricFireForce::centre", 3, 0.75f, 1);
+        ok(fwWorld_GetVolumetricFireForce(
+            world, place.data(), give("fwWorld_GetVolumetricFireForce::radius", 0.25f), &push));
         same("force", double(push.force[1]));
         auto around = info<FwSurroundings>();
-        place = at("fwWorld_AskSurroundings::point", 6, 2.5f, -3);
-        ok(fwWorld_AskSurroundings(world, place.data(), &around));
+        place = at("fwWorld_SampleSurroundings::point", 6, 2.5f, -3);
+        ok(fwWorld_SampleSurroundings(world, place.data(), &around));
         get("FwSurroundings::nearest", double(around.nearest));
         get("FwSurroundings::nearestPosition", around.nearestPosition);
         same("smoke", double(around.smoke));
-        const auto to = at("fwWorld_AskSight::to", 4, 1.5f, 1);
-        place = at("fwWorld_AskSight::from", -1, 1, 1);
+        const auto to = at("fwWorld_SampleVisibility::to", 4, 1.5f, 1);
+        place = at("fwWorld_SampleVisibility::from", -1, 1, 1);
         float seen = 0;
-        ok(fwWorld_AskSight(world, place.data(), to.data(), &seen));
+        ok(fwWorld_SampleVisibility(world, place.data(), to.data(), &seen));
         same("seen", double(seen));
         uint8_t mask[16];
         place = at("fwWorld_MakeSafetyMask::corner", 2, 0.5f, 0);
@@ -755,12 +755,12 @@ class Session {
     FwMeshId mesh_{}, metric_{};
     std::vector<float> positions_;  // of the mesh in metres, which is created last
     std::vector<FwBurnableMeshId> objects_;
-    FwBlockerId wall_{};
+    FwHeatOccluderId wall_{};
     FwVolumetricFireId fires_[4] = {};
     FwFireEmitterId emitters_[2] = {};
     FwParticleFieldId field_{};
     float shift_ = 0;
-    int asked_ = 0;
+    int requested_ = 0;
     const std::string wrong_;
     bool refused_ = false;
 };
@@ -899,8 +899,8 @@ TEST(WorldUnit, DefaultsAndPresetsAreConverted) {
     ASSERT_EQ(FW_OK, fwWorld_ConvertDef(w.world, FW_DEF_FIRE_EMITTER, &jet));
     EXPECT_EQ(50, jet.behind);
     EXPECT_EQ(60, jet.power);
-    FwBlockerDef wall = fwDefaultBlockerDef();
-    ASSERT_EQ(FW_OK, fwWorld_ConvertDef(w.world, FW_DEF_BLOCKER, &wall));
+    FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
+    ASSERT_EQ(FW_OK, fwWorld_ConvertDef(w.world, FW_DEF_HEAT_OCCLUDER, &wall));
     EXPECT_EQ(50, wall.halfSize[1]);
     EXPECT_EQ(1, wall.transform[0]);
     FwMeshDef mesh = fwDefaultMeshDef(), same = mesh;

@@ -192,7 +192,7 @@ TEST(AbiVolumetricFire, AcceptsATierAtAnyTime) {
     FireWorld w;
     const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
-    for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_FLIPBOOK; ++tier)
+    for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_SHARED_IMPOSTOR; ++tier)
         EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireTier(w.world, id, tier));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFireTier(w.world, id, 6));
     EXPECT_NE(std::string::npos, std::string(lastMessage(w.world)).find("tier is 6"));
@@ -304,7 +304,7 @@ TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
         w.run(1.0f / 32);
         FwLight lights[64];
         EXPECT_LE(1u, fwWorld_GetLights(w.world, lights, 64));
-        (void)getState(fwWorld_AskVolumetricFires, w.world, place);
+        (void)getState(fwWorld_SampleVolumetricFires, w.world, place);
     }
     EXPECT_EQ(before, w.host.allocations);
     for (const FwVolumetricFireId id : ids) EXPECT_EQ(1u, w.state(id).flames);

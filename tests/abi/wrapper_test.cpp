@@ -41,11 +41,11 @@ TEST(AbiWrapper, ClosesInOrderAndExplainsFailures) {
         EXPECT_FALSE(object);
         EXPECT_TRUE(moved);
 
-        FwHeatShieldDef shield = fw::def<FwHeatShieldDef>();
+        FwHeatOcclusionDef shield = fw::def<FwHeatOcclusionDef>();
         shield.counts[0] = 3;
         uint32_t asked = 0;
         const auto ground = [&asked](const float* place) { return ++asked, place[1]; };
-        EXPECT_EQ(FW_OK, fw::setHeatShield(world, shield, ground)) << fw::lastMessage(world);
+        EXPECT_EQ(FW_OK, fw::setHeatOcclusion(world, shield, ground)) << fw::lastMessage(world);
         EXPECT_EQ(3u, asked);
 
         FwIgnitionDef ignition = fw::def<FwIgnitionDef>();

@@ -25,7 +25,8 @@ void deform(benchmark::State& state, const char* file, uint32_t flags) {
     scene.light();
     plain.light();
     constexpr float kFrame = 1.0f / 60;
-    constexpr const char* kPasses[] = {"recede", "ties", "soft", "springs", "drape", "inner"};
+    constexpr const char* kPasses[] = {"recede",  "link_cache",         "soft",
+                                       "springs", "skin_to_mesh", "inner"};
     double spent[std::size(kPasses)] = {};  // ms
     const auto passes = [&] {
         FwPassTime times[64];

@@ -42,9 +42,9 @@ bool makeSparks(FwWorld* world, uint32_t particles, bool books, FwFireEmitterId&
         bookDef.preset = preset;
         return fwWorld_CreateFlipbook(world, &bookDef, &book) == FW_OK;
     };
-    if (books &&
-        !(open(FW_FLIPBOOK_FLAME, def.fireBooks[0]) && open(FW_FLIPBOOK_ROLL, def.fireBooks[1]) &&
-          open(FW_FLIPBOOK_SMOKE, def.smokeBooks[0])))
+    if (books && !(open(FW_FLIPBOOK_FLAME, def.fireFlipbooks[0]) &&
+                   open(FW_FLIPBOOK_ROLL, def.fireFlipbooks[1]) &&
+                   open(FW_FLIPBOOK_SMOKE, def.smokeFlipbooks[0])))
         return false;
     return fwWorld_CreateFireEmitter(world, &def, &emitter) == FW_OK;
 }

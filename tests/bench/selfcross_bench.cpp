@@ -3,7 +3,7 @@
 // noise_pct), and between them one with the row's measure. Of the least process time: surface_ms is
 // without measure less hidden; added_ms and added_pct are the measure's cost.
 // none: FW_BURNABLE_RECEDE without bounds; product: FW_BURNABLE_RECEDE; published:
-// FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS; undone: camera-facing walls only
+// FW_BURNABLE_SPRINGS | FW_BURNABLE_DEPTH_PEEL; undone: camera-facing walls only
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"
@@ -17,7 +17,7 @@ using fw::test::BunnyPicture;
 using fw::test::BunnyScene;
 using fw::test::median;
 
-constexpr uint32_t kNoHandling = FW_DEBUG_CROSSING | FW_DEBUG_NO_Z_PASS;
+constexpr uint32_t kNoHandling = FW_DEBUG_SELF_INTERSECTION | FW_DEBUG_NO_DEPTH_PEEL;
 
 void selfcross(benchmark::State& state, uint32_t flags, uint32_t switches) {
     BunnyScene scene;
@@ -70,7 +70,7 @@ BENCHMARK_CAPTURE(selfcross, product, FW_BURNABLE_RECEDE, 0)
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime()
     ->Iterations(15);
-BENCHMARK_CAPTURE(selfcross, published, FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS, 0)
+BENCHMARK_CAPTURE(selfcross, published, FW_BURNABLE_SPRINGS | FW_BURNABLE_DEPTH_PEEL, 0)
     ->Name("selfcross/published")
     ->Unit(benchmark::kMillisecond)
     ->UseManualTime()

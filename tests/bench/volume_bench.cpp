@@ -42,8 +42,8 @@ class Fires {
         const FwContextDef contextDef = fwDefaultContextDef();
         FwWorldDef worldDef = fwDefaultWorldDef();
         worldDef.maxFlames = 0;
-        worldDef.volumeCell = case_.cell;
-        worldDef.volumeSteps = case_.steps;
+        worldDef.volumePixelSize = case_.cell;
+        worldDef.rayStepCount = case_.steps;
         worldDef.volumeOctaves = case_.octaves;
         FwErrorInfo info{};
         if (fwCreateContext(&contextDef, &context_, &info) != FW_OK ||

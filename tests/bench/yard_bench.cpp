@@ -54,7 +54,7 @@ class YardBench {
     // A board as tall as a man between every third row, and the crates themselves.
     void shield() {
         const uint32_t rows = (uint32_t(yard_.crates.size()) + yard_.columns - 1) / yard_.columns;
-        FwHeatShieldDef def = fwDefaultHeatShieldDef();
+        FwHeatOcclusionDef def = fwDefaultHeatOcclusionDef();
         def.cellSize = 0.15f;
         def.counts[0] = 6 * yard_.columns;
         def.counts[1] = 12;
@@ -66,8 +66,8 @@ class YardBench {
             for (uint32_t i = 0; i < def.counts[0] * def.counts[1]; ++i)
                 cells[size_t(z) * def.counts[0] * def.counts[1] + i] = 1;
         def.cells = cells.data();
-        def.flags = FW_HEAT_SHIELD_ALL_OBJECTS;
-        if (fwWorld_SetHeatShield(world_, &def) != FW_OK)
+        def.flags = FW_HEAT_OCCLUSION_ALL_OBJECTS;
+        if (fwWorld_SetHeatOcclusion(world_, &def) != FW_OK)
             throw std::runtime_error("the yard has no shield");
     }
     [[nodiscard]] FwWorld* world() const { return world_; }
@@ -96,11 +96,11 @@ void show(benchmark::State& state, YardBench& bench) {
     state.counters["cpu_ms"] = mean(bench.cpu) * 1e3;
     state.counters["most_ms"] = *std::max_element(bench.seconds.begin(), bench.seconds.end()) * 1e3;
     state.counters["burning"] = double(bench.burning());
-    for (const char* pass : {"heat", "exchange", "exchange_shield", "reduce"})
+    for (const char* pass : {"heat", "exchange", "exchange_occlusion", "reduce"})
         state.counters[pass] = bench.passes[pass] / double(bench.seconds.size());
     // ms per step for appearance only.
     double looks = 0;
-    for (const char* pass : {"lights", "soot", "support", "predict_anew", "predict_states",
+    for (const char* pass : {"lights", "soot", "support", "predict_restart", "predict_states",
                              "predict_gather", "predict", "predict_rim", "predict_commit"})
         looks += bench.passes[pass];
     state.counters["looks"] = looks / double(bench.seconds.size());
@@ -151,9 +151,10 @@ void shared(benchmark::State& state, uint32_t crates) {
             (void)fwNet_Update(server.world(), kStep);
             carry(server.world(), peer, client.world(), {});
             (void)fwNet_Update(client.world(), kStep);
-            FwNetTurn turn{};
+            FwNetAction turn{};
             turn.structSize = sizeof turn;
-            while (fwNet_TakeTurn(client.world(), &turn) == FW_OK && turn.kind == FW_TURN_STEP)
+            while (fwNet_NextAction(client.world(), &turn) == FW_OK &&
+                   turn.kind == FW_NET_ACTION_STEP)
                 if (fwWorld_Step(client.world(), turn.deltaTime) != FW_OK)
                     throw std::runtime_error("a client's step fails");
             carry(client.world(), {}, server.world(), peer);
@@ -176,8 +177,8 @@ void shared(benchmark::State& state, uint32_t crates) {
         state.counters["packets_s"] = double(after.packetsOut - before.packetsOut) / seconds;
         state.counters["lost"] = double(lost) / double(packets);
         state.counters["hashes"] = double(afterUp.hashes);
-        state.counters["strays"] = double(afterUp.strays);
-        if (afterUp.phase != FW_NET_FOLLOWING || afterUp.strays != 0 || afterUp.hashes == 0)
+        state.counters["strays"] = double(afterUp.desyncs);
+        if (afterUp.phase != FW_NET_FOLLOWING || afterUp.desyncs != 0 || afterUp.hashes == 0)
             throw std::runtime_error("the client does not burn as the server does");
     } catch (const std::exception& failure) {
         state.SkipWithError(failure.what());

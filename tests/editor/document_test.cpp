@@ -834,7 +834,7 @@ TEST(EditorScene, ObjectsAttachedToANodeFollowIt) {
     document.nodePose = poseOfTheHook;
     const auto place = [&] { return worldPosition(document.scene, 2, document.nodePose); };
     const auto way = [&] {
-        return turnedBy(holderPose(document.scene, 2, document.nodePose),
+        return turnedBy(parentPose(document.scene, 2, document.nodePose),
                         document.scene.sources[0].direction);
     };
     mustRun(document, "import a.glb name=Box position 10 0 0");
@@ -874,7 +874,7 @@ TEST(EditorScene, ObjectsAttachedToANodeFollowIt) {
     const Scene placed = placedScene(document.scene, document.nodePose);
     EXPECT_EQ("", placed.sources[0].sticksToNode);
     expectNear(place(), worldPosition(placed, 2));
-    expectNear(way(), turnedBy(holderPose(placed, 2), placed.sources[0].direction));
+    expectNear(way(), turnedBy(parentPose(placed, 2), placed.sources[0].direction));
     std::vector<std::string> problems;
     document.scene.sources[0].sticksToNode = "eye";
     (void)placedScene(document.scene, document.nodePose, &problems);
@@ -926,7 +926,7 @@ TEST(EditorScene, ChainsMayBeLong) {
     }
     const std::vector<HeatSource>& row = document.scene.sources;
     ASSERT_EQ(size_t(kRow), row.size());
-    EXPECT_EQ(size_t(kRow - 1), holdersOf(document.scene, row.back().sticksTo).size());
+    EXPECT_EQ(size_t(kRow - 1), ancestorsOf(document.scene, row.back().sticksTo).size());
     for (HeatSource& one : document.scene.sources) one.position = {0.1f, 0, 0};
     const auto near = [&](float x) {
         EXPECT_NEAR(x, worldPosition(document.scene, row.back().id)[0], 1e-4f);
@@ -943,11 +943,11 @@ TEST(EditorScene, ChainsMayBeLong) {
     // A cycle in a file: only its members are reported.
     Scene cyclic = document.scene;
     cyclic.sources[2].sticksTo = cyclic.sources[4].id;
-    const std::vector<ObjectId> holders = holdersOf(cyclic, row.back().id);
+    const std::vector<ObjectId> holders = ancestorsOf(cyclic, row.back().id);
     EXPECT_EQ(size_t(kRow - 2) + 1, holders.size());
     EXPECT_EQ(row[4].id, holders.back());
     std::vector<std::string> repairs;
-    EXPECT_TRUE(mendReferences(cyclic, &repairs));
+    EXPECT_TRUE(repairReferences(cyclic, &repairs));
     ASSERT_EQ(1u, repairs.size());
     EXPECT_THAT(repairs[0], HasSubstr("sources[2].sticks_to"));
 }
@@ -962,7 +962,7 @@ TEST(EditorFile, LoadsVersion1AttachedEmitters) {
                     {"id": 3, "name": "Free", "direction": [1, 0, 0], "sticks_to_node": "hook"}]})",
                           "x", scene, repairs, error))
         << error;
-    expectNear({1, 0, 0}, turnedBy(holderPose(scene, 2), scene.sources[0].direction));
+    expectNear({1, 0, 0}, turnedBy(parentPose(scene, 2), scene.sources[0].direction));
     expectNear({0, 0, 1}, scene.sources[0].direction);
     EXPECT_EQ((Vec3{1, 0, 0}), scene.sources[1].direction);
     EXPECT_EQ("", scene.sources[1].sticksToNode);

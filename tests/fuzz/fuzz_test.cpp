@@ -291,8 +291,8 @@ class Fuzz {
         for (float& x : def.extent) x = random_.number();
         garble(def);
         def.structSize = sizeof def;
-        if (random_.once(2)) def.fireBooks[random_.below(3)] = books_.any(random_);
-        if (random_.once(2)) def.smokeBooks[random_.below(2)] = books_.any(random_);
+        if (random_.once(2)) def.fireFlipbooks[random_.below(3)] = books_.any(random_);
+        if (random_.once(2)) def.smokeFlipbooks[random_.below(2)] = books_.any(random_);
         FwFireEmitterId id{};
         const FwResult result = fwWorld_CreateFireEmitter(world_, &def, &id);
         check(result);
@@ -475,7 +475,7 @@ class Fuzz {
     void shapeShield() {
         uint8_t solid[512];  // as many as a damaged count may ask for below
         for (uint8_t& cell : solid) cell = uint8_t(random_.below(2));
-        FwHeatShieldDef shield = fwDefaultHeatShieldDef();
+        FwHeatOcclusionDef shield = fwDefaultHeatOcclusionDef();
         shield.cellSize = random_.number();
         for (float& value : shield.origin) value = random_.number();
         garble(shield);
@@ -487,7 +487,7 @@ class Fuzz {
         const FwBurnableMeshId one{1 + random_.below(4), 1};
         shield.objects = random_.once(4) ? nullptr : &one;
         shield.objectCount = std::min(shield.objectCount, 1u);
-        check(fwWorld_SetHeatShield(world_, random_.once(6) ? nullptr : &shield));
+        check(fwWorld_SetHeatOcclusion(world_, random_.once(6) ? nullptr : &shield));
     }
     void shapeWind() {
         FwWindZoneDef def = fwDefaultWindZoneDef();
@@ -611,25 +611,25 @@ class Fuzz {
     void askFlames() {
         float place[3];
         for (float& x : place) x = random_.number();
-        FwFireAnswer answer{};
+        FwFireSample answer{};
         answer.structSize = sizeof answer;
-        FwResult result = fwWorld_AskVolumetricFires(world_, place, &answer);
+        FwResult result = fwWorld_SampleVolumetricFires(world_, place, &answer);
         check(result);
         if (result == FW_OK) {
             EXPECT_TRUE(answer.temperature >= 293.0f && answer.temperature < 4000.0f);
             EXPECT_TRUE(answer.heatFlux >= 0.0f && answer.heatFlux <= 2e5f);
             EXPECT_TRUE(std::isfinite(answer.gas[0] + answer.gas[1] + answer.gas[2]));
         }
-        FwFirePush push{};
+        FwFireForce push{};
         push.structSize = sizeof push;
-        result = fwWorld_GetVolumetricFirePush(world_, place, random_.number(), &push);
+        result = fwWorld_GetVolumetricFireForce(world_, place, random_.number(), &push);
         check(result);
         if (result == FW_OK) {
             EXPECT_TRUE(std::isfinite(push.force[0] + push.force[1] + push.force[2]));
         }
         FwSurroundings at{};
         at.structSize = sizeof at;
-        result = fwWorld_AskSurroundings(world_, place, &at);
+        result = fwWorld_SampleSurroundings(world_, place, &at);
         check(result);
         if (result == FW_OK) {
             EXPECT_TRUE(at.temperature >= 293.0f && at.temperature < 4000.0f);
@@ -638,7 +638,7 @@ class Fuzz {
         }
         float other[3], seen = -1;
         for (float& x : other) x = random_.number();
-        result = fwWorld_AskSight(world_, place, other, &seen);
+        result = fwWorld_SampleVisibility(world_, place, other, &seen);
         check(result);
         if (result == FW_OK) {
             EXPECT_TRUE(seen >= 0.0f && seen <= 1.0f);

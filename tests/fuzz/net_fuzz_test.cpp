@@ -1,5 +1,5 @@
 // Networks of random hosts: calls in any order, packets lost, late, doubled, mixed up, damaged,
-// made up or handed to the wrong one, clients that come, go and are led astray, servers that load,
+// made up or handed to the wrong one, clients that come, go and diverge, servers that load,
 // leave and serve again. Nothing crashes, every refusal has its words, and once the storm is over
 // all burn bit by bit alike again. Fixed seeds.
 #include "abi/net_session.h"
@@ -163,7 +163,7 @@ class Storm {
                 break;
             case 2: {
                 const Bytes text = anyPacket();
-                heard(world, fwNet_Tell(world, text.data(), uint32_t(text.size())));
+                heard(world, fwNet_SendMessage(world, text.data(), uint32_t(text.size())));
                 break;
             }
             case 3:
@@ -179,9 +179,9 @@ class Storm {
                 heard(world, fwNet_Update(world, number()));
                 break;
             case 7: {
-                FwNetTurn turn{};
+                FwNetAction turn{};
                 turn.structSize = once(2) ? sizeof turn : below(2000);
-                heard(world, fwNet_TakeTurn(world, &turn));
+                heard(world, fwNet_NextAction(world, &turn));
                 break;
             }
             case 8: {
@@ -277,13 +277,13 @@ class Storm {
     void go(Party& party, double seconds, bool wild) {
         FwWorld* world = party.world->world;
         heard(world, fwNet_Update(world, float(seconds)));
-        FwNetTurn turn{};
+        FwNetAction turn{};
         turn.structSize = sizeof turn;
         for (int i = 0; i < 100; ++i) {
-            const FwResult result = fwNet_TakeTurn(world, &turn);
+            const FwResult result = fwNet_NextAction(world, &turn);
             heard(world, result);
-            if (result != FW_OK || turn.kind == FW_TURN_WAIT) return;
-            if (turn.kind != FW_TURN_STEP) continue;
+            if (result != FW_OK || turn.kind == FW_NET_ACTION_WAIT) return;
+            if (turn.kind != FW_NET_ACTION_STEP) continue;
             if (wild && once(20)) continue;  // it forgets to
             heard(world, fwWorld_Step(world, turn.deltaTime));
         }
@@ -292,7 +292,7 @@ class Storm {
         const uint64_t step = stateOf(server_->world).step;
         return std::all_of(parties_.begin(), parties_.end(), [&](const Party& party) {
             const FwNetState state = stateOf(party.world->world);
-            heals = std::max(heals, state.strays);
+            heals = std::max(heals, state.desyncs);
             return state.phase == FW_NET_FOLLOWING && state.records == 0 && state.step == step;
         });
     }

@@ -75,16 +75,17 @@ class Crossing : public OwnDevice {
 
 TEST_F(Crossing, BoundedWallsNeverIntersectAndDepthPeelingHidesOthers) {
     FwWorld* plain = board(FW_BURNABLE_RECEDE);
-    FwWorld* passed = board(FW_BURNABLE_RECEDE | FW_BURNABLE_Z_PASS);
+    FwWorld* passed = board(FW_BURNABLE_RECEDE | FW_BURNABLE_DEPTH_PEEL);
     const std::vector<uint8_t> bounded = picture(plain, 0);
     EXPECT_GT(covered(bounded), 1000u);
     // Nothing to hide: with the pass the picture is the same but for a few outline pixels.
     EXPECT_LE(different(bounded, picture(passed, 0)), 4u);
 
     // Without bounds the back wall's inner side is in front of the front wall.
-    const std::vector<uint8_t> crossed = picture(plain, FW_DEBUG_CROSSING);
-    const std::vector<uint8_t> front = picture(passed, FW_DEBUG_CROSSING | FW_DEBUG_NO_Z_PASS);
-    const std::vector<uint8_t> hidden = picture(passed, FW_DEBUG_CROSSING);
+    const std::vector<uint8_t> crossed = picture(plain, FW_DEBUG_SELF_INTERSECTION);
+    const std::vector<uint8_t> front =
+        picture(passed, FW_DEBUG_SELF_INTERSECTION | FW_DEBUG_NO_DEPTH_PEEL);
+    const std::vector<uint8_t> hidden = picture(passed, FW_DEBUG_SELF_INTERSECTION);
     std::printf("[   FIGURE ] px: bounded %zu, crossed %zu, its front %zu, with the Z-pass %zu\n",
                 covered(bounded), covered(crossed), covered(front), covered(hidden));
     EXPECT_GT(covered(crossed), 1000u);
@@ -97,8 +98,8 @@ TEST_F(Crossing, BoundedWallsNeverIntersectAndDepthPeelingHidesOthers) {
 
 // The springs of the reference implementation pull walls through each other.
 TEST_F(Crossing, SpringsNeedTheDepthPeelPass) {
-    FwWorld* world = board(FW_BURNABLE_SPRINGS | FW_BURNABLE_Z_PASS);
-    const std::vector<uint8_t> front = picture(world, FW_DEBUG_NO_Z_PASS);
+    FwWorld* world = board(FW_BURNABLE_SPRINGS | FW_BURNABLE_DEPTH_PEEL);
+    const std::vector<uint8_t> front = picture(world, FW_DEBUG_NO_DEPTH_PEEL);
     const std::vector<uint8_t> hidden = picture(world, 0);
     std::printf("[   FIGURE ] px: %zu, with the Z-pass %zu\n", covered(front), covered(hidden));
     EXPECT_GT(covered(front), 1000u);

@@ -32,7 +32,7 @@ book::Book spots(book::Kind kind) {
     f.width = f.height = 64;
     f.motionWidth = f.motionHeight = 8;
     f.frames = 5;
-    f.motionMost = 0.25f;
+    f.maxMotion = 0.25f;
     f.seconds = 1;
     for (uint32_t frame = 0; frame < f.frames; ++frame) {
         for (uint32_t y = 0; y < 64; ++y)
@@ -44,8 +44,8 @@ book::Book spots(book::Kind kind) {
                     made.texels.push_back(uint8_t(255 * c + 0.5f));
             }
         for (uint32_t i = 0; i < 64; ++i) {
-            made.motion.push_back(uint8_t(128.5f + 127 * (8 / 64.0f) / f.motionMost));
-            made.motion.push_back(uint8_t(128.5f + 127 * (6 / 64.0f) / f.motionMost));
+            made.motion.push_back(uint8_t(128.5f + 127 * (8 / 64.0f) / f.maxMotion));
+            made.motion.push_back(uint8_t(128.5f + 127 * (6 / 64.0f) / f.maxMotion));
         }
         made.rects.push_back({0, 0, 64, 64});
     }
@@ -67,7 +67,7 @@ class BookPicture : public OwnWorld {
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
     }
     FwFlipbookId create(const book::Book& made) {
-        const auto bytes = book::cookBook(made, memory());
+        const auto bytes = book::cookFlipbook(made, memory());
         FwFlipbookDef def = fwDefaultFlipbookDef();
         def.cooked = bytes.data();
         def.cookedSize = bytes.size();
@@ -93,7 +93,7 @@ class BookPicture : public OwnWorld {
         def.smokeLife = kSmokeLife;
         def.life = 1 / (0.65f + time * (0.35f + kSmokeLife));
         def.maxParticles = 1;
-        def.smokeBooks[0] = book;
+        def.smokeFlipbooks[0] = book;
         const FwFireEmitterId emitter = created(fwWorld_CreateFireEmitter, world_, def);
         for (int i = 0; i < 5 * 32; ++i) fwWorld_Step(world_, 1.0f / 32);
         const FwView view = frontView({aside, 0}, span, span);
@@ -134,7 +134,7 @@ TEST_F(BookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
         float most = 0;
         for (uint32_t y = 0; y < kSide; ++y)
             for (uint32_t x = 0; x < kSide; ++x) {
-                const float v = book::showBook(made, time, uvOf(shown, x, y)).z;
+                const float v = book::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
                 drawn += double(shown.alpha[y * kSide + x] * v), said += double(v * v);
                 most = std::max(most, shown.alpha[y * kSide + x]);
             }
@@ -142,7 +142,7 @@ TEST_F(BookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
         ASSERT_GT(opacity, 0.1f);
         for (uint32_t y = 0; y < kSide; ++y)
             for (uint32_t x = 0; x < kSide; ++x) {
-                const float v = book::showBook(made, time, uvOf(shown, x, y)).z;
+                const float v = book::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
                 worst = std::max(worst, std::abs(double(shown.alpha[y * kSide + x] / opacity - v)));
             }
         // Peaks at least a spot's width apart.
@@ -225,9 +225,9 @@ TEST_F(BookPicture, LooksTheSameBesideEmittersWithoutFlipbooks) {
         def.power = 100;
         def.smoke = 0.5f;
         FwFireEmitterDef other = def;
-        def.fireBooks[0] = create(FW_FLIPBOOK_FLAME);
-        def.fireBooks[1] = create(FW_FLIPBOOK_ROLL);
-        def.smokeBooks[0] = create(FW_FLIPBOOK_SMOKE);
+        def.fireFlipbooks[0] = create(FW_FLIPBOOK_FLAME);
+        def.fireFlipbooks[1] = create(FW_FLIPBOOK_ROLL);
+        def.smokeFlipbooks[0] = create(FW_FLIPBOOK_SMOKE);
         other.position[0] = 100;  // outside the picture
         FwFireEmitterId id = created(fwWorld_CreateFireEmitter, world_, def);
         if (beside) {
@@ -277,7 +277,7 @@ TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
             def.size1 = 0.6f;
             def.smoke = 0;
             def.temperature = i < 3 ? 1800.0f : 1250.0f;
-            def.fireBooks[0] = book;
+            def.fireFlipbooks[0] = book;
             (void)created(fwWorld_CreateFireEmitter, world_, def);
         }
         for (int i = 0; i < 48; ++i) fwWorld_Step(world_, 1.0f / 32);

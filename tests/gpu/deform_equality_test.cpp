@@ -14,11 +14,16 @@ namespace {
 
 using gpu::vec3;
 
-constexpr uint32_t kBindings[] = {
-    FW_BIND_STATE,         FW_BIND_OBJECTS,      FW_BIND_DEFORM_OBJECTS,
-    FW_BIND_DEFORM_GROUPS, FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS,
-    FW_BIND_SHOWN,         FW_BIND_SOFT,         FW_BIND_VERTICES};
-constexpr uint32_t kTexels[] = {FW_BIND_DEFORM_NODES, FW_BIND_DEFORM_COATS, FW_BIND_SHOWN,
+constexpr uint32_t kBindings[] = {FW_BIND_STATE,
+                                  FW_BIND_OBJECTS,
+                                  FW_BIND_DEFORM_OBJECTS,
+                                  FW_BIND_DEFORM_GROUPS,
+                                  FW_BIND_DEFORM_PARTICLES,
+                                  FW_BIND_DEFORM_EMBEDDINGS,
+                                  FW_BIND_SHOWN,
+                                  FW_BIND_SOFT,
+                                  FW_BIND_VERTICES};
+constexpr uint32_t kTexels[] = {FW_BIND_DEFORM_PARTICLES, FW_BIND_DEFORM_EMBEDDINGS, FW_BIND_SHOWN,
                                 FW_BIND_SOFT};
 constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
 constexpr float kSide = 0.2f;  // m
@@ -42,14 +47,14 @@ struct Pair {
         object.scale = 1;
         mesh::resetDeform(model, state);
         mesh::resetSoft(model, object, state);
-        std::vector<gpu::DeviceNode> nodes(model.nodes.size());
+        std::vector<gpu::DeviceParticle> nodes(model.nodes.size());
         for (uint32_t i = 0; i < nodes.size(); ++i)
             mesh::putQuads(mesh::deviceNode(model, i), i, nodes.size(),
                            reinterpret_cast<std::byte*>(nodes.data()));
-        std::vector<gpu::DeformCoat> coats(model.coats.size());
-        for (size_t i = 0; i < coats.size(); ++i)
-            mesh::putQuads(model.coats[i], i, coats.size(),
-                           reinterpret_cast<std::byte*>(coats.data()));
+        std::vector<gpu::DeformEmbedding> embeddings(model.embeddings.size());
+        for (size_t i = 0; i < embeddings.size(); ++i)
+            mesh::putQuads(model.embeddings[i], i, embeddings.size(),
+                           reinterpret_cast<std::byte*>(embeddings.data()));
         groups = (std::max(object.nodeCount, object.vertexCount) + gpu::kDeformGroup - 1) /
                  gpu::kDeformGroup;
         const gpu::vec4 rows[10] = {{}, {}, {}, {}, {}, {1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}};
@@ -57,8 +62,9 @@ struct Pair {
         rig.make(FW_BIND_OBJECTS, sizeof rows, rows);
         rig.make(FW_BIND_DEFORM_OBJECTS, sizeof object, &object);
         rig.make(FW_BIND_DEFORM_GROUPS, groups * 8);
-        rig.make(FW_BIND_DEFORM_NODES, nodes.size() * sizeof nodes[0], nodes.data());
-        rig.make(FW_BIND_DEFORM_COATS, coats.size() * sizeof coats[0], coats.data());
+        rig.make(FW_BIND_DEFORM_PARTICLES, nodes.size() * sizeof nodes[0], nodes.data());
+        rig.make(FW_BIND_DEFORM_EMBEDDINGS, embeddings.size() * sizeof embeddings[0],
+                 embeddings.data());
         // The second half is the inner skin, if there is one.
         rig.make(FW_BIND_SHOWN, 2 * domain.vertices.size() * sizeof(gpu::ShownVertex));
         skin = domain.vertices;
@@ -70,7 +76,8 @@ struct Pair {
         }
         rig.make(FW_BIND_VERTICES, skin.size() * sizeof skin[0], skin.data());
         rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
-        for (const std::string pass : {"recede", "ties", "soft", "springs", "drape", "inner"})
+        for (const std::string pass :
+             {"recede", "link_cache", "soft", "springs", "skin_to_mesh", "inner"})
             rig.add((pass + (words ? ".comp" : "_texels.comp")).c_str());
         push.up = {0, 1, 0, 0};
         push.step = kStep;
@@ -97,9 +104,9 @@ struct Pair {
             push.parity = steps << 1;
             rig.dispatch(commands, 0, &push, groups);
             for (uint32_t i = 0; i < steps && soft; ++i) {
-                const uint32_t way = (state.way + i) % gpu::kArmWays;
+                const uint32_t way = (state.way + i) % gpu::kBendSets;
                 push.parity = (i & 1) | way << 1;
-                if (!springs && (gpu::tiesAt(way) || (i == 0 && !state.tied)))
+                if (!springs && (gpu::updatesLinkCache(way) || (i == 0 && !state.tied)))
                     rig.dispatch(commands, 1, &push, groups);
                 rig.dispatch(commands, springs ? 3 : 2, &push, groups);
             }
@@ -112,7 +119,7 @@ struct Pair {
         const std::pmr::vector<gpu::ShownVertex> before = state.shown;
         mesh::recede(model, object, states, now, state);
         std::vector<float> lost;
-        for (const gpu::DeformNode& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.nodes) {
             gpu::ShownVertex& shown = state.shown[node.vertex];
             const gpu::ShownVertex& last = before[node.vertex];
             const float more = fresh ? 0 : shown.burnt - last.burnt;
@@ -143,17 +150,18 @@ struct Pair {
             const uint32_t vertex = model.nodes[i].vertex;
             const mesh::DeformState::Soft& own = state.soft[vertex];
             const vec3 at = own.place[state.parity];
-            const auto shareOf = [&](int kind) {
-                return gpu::packShare(own.share[state.parity][kind] * gpu::kBendUnit);
+            const auto unpackBendShare = [&](int kind) {
+                return gpu::packBendShare(own.share[state.parity][kind] * gpu::kBendUnit);
             };
-            const uint32_t way = gpu::packWay(own.reach[state.parity], own.known);
+            const uint32_t way = gpu::packPathLength(own.reach[state.parity], own.known);
             soft[i + (odd ? model.nodes.size() : 0)] = {
-                gpu::packPlace(std::bit_cast<uint32_t>(at.x), way, gpu::kWayLow),
-                gpu::packPlace(std::bit_cast<uint32_t>(at.y), way >> 5, gpu::kWayLow),
-                gpu::packPlace(std::bit_cast<uint32_t>(at.z), way >> 10, gpu::kWayHigh),
-                shareOf(0)};
+                gpu::packPathBits(std::bit_cast<uint32_t>(at.x), way, gpu::kPathLowMask),
+                gpu::packPathBits(std::bit_cast<uint32_t>(at.y), way >> 5, gpu::kPathLowMask),
+                gpu::packPathBits(std::bit_cast<uint32_t>(at.z), way >> 10, gpu::kPathHighMask),
+                unpackBendShare(0)};
             soft[i + 3 * model.nodes.size()] = {
-                gpu::packFacts(own.burnt, own.reach[state.parity] == 0), 0, shareOf(1), shareOf(1)};
+                gpu::packParticleFacts(own.burnt, own.reach[state.parity] == 0), 0,
+                unpackBendShare(1), unpackBendShare(1)};
             shown[vertex].x = state.shown[vertex].x;
             shown[vertex].y = state.shown[vertex].y;
             shown[vertex].z = state.shown[vertex].z;
@@ -274,7 +282,7 @@ TEST_F(DeformEquality, InnerSkinsOfRecedingSolidsAgree) {
             ASSERT_EQ(out.normal, in.normal);
             const float* place = pair.skin[i].position;
             const bool stays = gpu::length(inside - vec3(place[0], place[1], place[2])) < 1e-7f;
-            const float burnt = shown[pair.model.coats[i].node].burnt;
+            const float burnt = shown[pair.model.embeddings[i].node].burnt;
             ASSERT_TRUE(stays || burnt > 1 - 2.01f * gpu::kThinnestWall) << now << ' ' << i;
             (stays ? still : gone) += 1;
         }

@@ -158,7 +158,7 @@ TEST_F(LossOnDevice, IsSurvivedAtEveryCallOfAHostDevice) {
                 << fwResultName(life.result) << ": " << life.host.lastError;
             if (life.scene.world) {  // the device stays lost, and the world returns what it has
                 EXPECT_EQ(FW_ERROR_DEVICE_LOST, life.record(*this, life.scene.world, 0.1f));
-                EXPECT_EQ(FW_OK, life.scene.takeSave());
+                EXPECT_EQ(FW_OK, life.scene.completeSave());
             }
             mirror = life.scene.mirror;
             frame = life.scene.mirrored;

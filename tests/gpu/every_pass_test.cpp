@@ -3,7 +3,7 @@
 // Without it a software device would not notice.
 #include "book/own.h"
 #include "book/picture.h"
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/sparks.h"
@@ -141,7 +141,7 @@ class EveryPass : public GpuTest {
         flames_[2].record.tier = FW_FIRE_TIER_SLICES;
         flames_[2].record.key = 2;
         flames_[3] = flames_[1];
-        flames_[3].record.tier = FW_FIRE_TIER_FLIPBOOK;
+        flames_[3].record.tier = FW_FIRE_TIER_SHARED_IMPOSTOR;
         flames_[3].record.key = 3;
         FwFireEmitterDef jet = fwDefaultFireEmitterDef();
         jet.flags = FW_EMITTER_JET | FW_EMITTER_GROUND;
@@ -241,12 +241,12 @@ class EveryPass : public GpuTest {
     // itself.
     void placeBox() {
         placed_.object = 0;
-        components::placeRemote({}, scene_->domains[0], placed_.record);
-        gpu::RemoteObject& o = placed_.record;
-        o.flags = gpu::kRemoteLive | gpu::kRemoteGives | gpu::kRemoteTwoSided;
+        components::placeExchangeObject({}, scene_->domains[0], placed_.record);
+        gpu::ExchangeObject& o = placed_.record;
+        o.flags = gpu::kExchangeLive | gpu::kExchangeGives | gpu::kExchangeTwoSided;
         o.power0 = o.power1 = {16000, 16000, 16000, 16000};
         o.chance = gpu::kChanceOne;
-        o.hopsMost = o.lifeTicks = o.tilesMost = gpu::kNoneTexel;
+        o.hopsMost = o.lifeTicks = o.maxTiles = gpu::kNoneTexel;
         o.catches = 256;
         o.texelArea = 1700;
         o.neighbourCount = 1;
@@ -254,27 +254,28 @@ class EveryPass : public GpuTest {
         for (uint32_t i = 0; i < scene_->domains[0].texelCount(); i += 3)
             links_.push_back({0, i, 0, scene_->domains[0].texelCount() - 1 - i, 100, 0, 0, 0});
         blocker_.size = {10, 10, 10, 1};
-        remote_.objects = {&placed_, 1};
-        remote_.neighbours = {&self_, 1};
-        remote_.neighbourRanges = {&selfRange_, 1};
-        remote_.links = links_;
+        exchange_.objects = {&placed_, 1};
+        exchange_.neighbours = {&self_, 1};
+        exchange_.neighbourRanges = {&selfRange_, 1};
+        exchange_.links = links_;
         linkRange_ = {0, uint32_t(links_.size())};
-        remote_.linkRanges = {&linkRange_, 1};
-        remote_.blockers = {&blocker_, 1};
+        exchange_.linkRanges = {&linkRange_, 1};
+        exchange_.occluders = {&blocker_, 1};
         // Its faces occlude each other, and so does a wall of the host's.
-        components::HeatShield shield(std::pmr::get_default_resource());
+        components::HeatOcclusion shield(std::pmr::get_default_resource());
         shield.shape.counts = {24, 24, 24};
         shield.shape.origin = {-600, -600, -600};
         shield.shape.cell = 50;
         shield.solid.assign(shield.shape.words(), 0);
         shield.solid.front() = 0xFFFFFFu;
-        const components::ShieldObject walls{0, &scene_->domains[0], o, 40, 0};
-        components::bakeShield(shield.shape, {&walls, 1}, shield.baked);
-        components::packShield(shield, shieldWords_);
-        shield_.origin = {shield.shape.origin[0], shield.shape.origin[1], shield.shape.origin[2]};
-        shield_.cell = shield.shape.cell;
-        shield_.counts = components::countsOf(shield.shape);
-        shield_.words = shieldWords_;
+        const components::OcclusionObject walls{0, &scene_->domains[0], o, 40, 0};
+        components::bakeOcclusion(shield.shape, {&walls, 1}, shield.baked);
+        components::packOcclusion(shield, shieldWords_);
+        occlusion_.origin = {shield.shape.origin[0], shield.shape.origin[1],
+                             shield.shape.origin[2]};
+        occlusion_.cell = shield.shape.cell;
+        occlusion_.counts = components::countsOf(shield.shape);
+        occlusion_.words = shieldWords_;
     }
     void frame(const Frame& what) {
         std::vector<gpu::StepPlan> steps(what.steps);
@@ -297,10 +298,10 @@ class EveryPass : public GpuTest {
             if (&step == steps.data()) {
                 step.events = events;
                 if (what.latch) step.materials = {&update, 1};
-                if (what.exchange) step.remote = &remote_;
+                if (what.exchange) step.remote = &exchange_;
             }
             // Without it up to that step.
-            if (what.exchange && &step == &steps[what.steps / 2]) step.shield = &shield_;
+            if (what.exchange && &step == &steps[what.steps / 2]) step.shield = &occlusion_;
             if (what.exchange) {
                 step.exchange = step.governed = step.capped = true;
                 step.rules.flags = 15;
@@ -308,7 +309,7 @@ class EveryPass : public GpuTest {
                 step.rules.upY = 4096;
                 step.rules.chance = gpu::kChanceOne;
                 step.rules.hopsMost = step.rules.lifeTicks = gpu::kNoneTexel;
-                step.rules.tilesMost = 40;  // fewer than would burn
+                step.rules.maxTiles = 40;  // fewer than would burn
                 step.rules.brands = 0xFFFFFFFFu;
             }
             now_ += gpu::kStepTicks;
@@ -418,16 +419,17 @@ class EveryPass : public GpuTest {
     }
 
     // From here on flames and particles show flipbooks.
-    void showBooks() {
+    void showFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
         book::Book books[3]{book::Book(memory), book::Book(memory), book::Book(memory)};
         const book::Book* laid[] = {&books[0], &books[1], &books[2]};
         const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SMOKE, FW_FLIPBOOK_SPARK};
-        for (int i = 0; i < 3; ++i) book::readBook(book::ownBook(presets[i], memory), books[i]);
-        const book::Picture picture = book::layBooks(laid, memory);
-        rig_->backend.setBooks(picture.width, picture.height,
-                               std::as_bytes(std::span(picture.texels)), picture.words);
-        rig_->backend.setFlameBooks(1u | 2u << 8);
+        for (int i = 0; i < 3; ++i)
+            book::readFlipbook(book::presetFlipbook(presets[i], memory), books[i]);
+        const book::Picture picture = book::packFlipbooks(laid, memory);
+        rig_->backend.setFlipbooks(picture.width, picture.height,
+                                   std::as_bytes(std::span(picture.texels)), picture.words);
+        rig_->backend.setTileFlipbooks(1u | 2u << 8);
         emitter_->emitter.books = {1u, 2u | 3u << 16};
     }
 
@@ -448,7 +450,7 @@ class EveryPass : public GpuTest {
             if (domain.texels[i].materialFlags & mesh::kTexelReal) ticks[i] = gpu::kNever;
         const std::vector<gpu::uvec2> heat(domain.texelCount(), gpu::uvec2(0xFFFFu, 0));
         const std::vector<gpu::TileState> tiles(
-            domain.tileCount(), gpu::TileState{gpu::kNever, gpu::kTileKept, gpu::kFarPast, 0});
+            domain.tileCount(), gpu::TileState{gpu::kNever, gpu::kTileKept, gpu::kNeverChanged, 0});
         const std::vector<gpu::TileHeat> tileHeat(domain.tileCount(), gpu::TileHeat{1000, 1});
         gpu::RestoredObject one;
         one.image = {0, ticks, {}, tiles, tileHeat, {}};
@@ -482,7 +484,7 @@ class EveryPass : public GpuTest {
         hide(false);
         frame({.steps = 1});
         placeBox();
-        showBooks();
+        showFlipbooks();
         frame({gpu::kEventExtinguish, 2});
         frame({gpu::kEventDry, 1});
         frame({gpu::kEventIgnite, 7});
@@ -529,18 +531,18 @@ class EveryPass : public GpuTest {
     TestImage color_, depth_, behind_;
     TestBuffer vertices_;
     std::set<std::string> passes_;  // passes with a time
-    gpu::RemoteUpdate::Placed placed_{};
-    gpu::RemoteUpdate remote_;
-    gpu::ShieldUpdate shield_;
+    gpu::ExchangeUpdate::Placed placed_{};
+    gpu::ExchangeUpdate exchange_;
+    gpu::OcclusionUpdate occlusion_;
     std::pmr::vector<uint32_t> shieldWords_;
     std::vector<gpu::ContactLink> links_;
-    gpu::Blocker blocker_{};
+    gpu::HeatOccluder blocker_{};
     gpu::VolumeFlame flames_[4]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};
     uint32_t fieldStep_ = 0;
-    const gpu::RemoteUpdate::Range selfRange_{0, 1};
-    gpu::RemoteUpdate::Range linkRange_;
+    const gpu::ExchangeUpdate::Range selfRange_{0, 1};
+    gpu::ExchangeUpdate::Range linkRange_;
     const uint32_t self_ = 0xFF000000u;
     uint32_t now_ = 0;
     uint64_t index_ = 0;

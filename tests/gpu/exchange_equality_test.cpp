@@ -67,7 +67,7 @@ class ExchangeEquality : public GpuTest {
                 object.moisture = moisture;
                 object.spreadChance = governance.chance;
                 object.maxHops = governance.hopsMost;
-                object.maxBurningTiles = governance.tilesMost;
+                object.maxBurningTiles = governance.maxTiles;
                 object.timeToLive = governance.life;
                 id = w.createBurnableMesh(object);
             });
@@ -140,9 +140,9 @@ Mesh twoBoxes() {
 // A ball is one event for each object it holds, beside events of texels of others.
 TEST_F(ExchangeEquality, BallsAroundWholeObjectsAgree) {
     if (!device_) return;
-    for (const uint32_t tilesMost : {0u, 6u}) {
+    for (const uint32_t maxTiles : {0u, 6u}) {
         FwWorldDef def = worldDef(FW_WORLD_RADIATION);
-        def.maxBurningTiles = tilesMost;
+        def.maxBurningTiles = maxTiles;
         Both both(*device_, def);
         const Mesh board = makePlane(0.5, 0.3), box = twoBoxes();
         both.add(board, FW_MATERIAL_PINE, 0, 0, 0, 0.3f, 0);
@@ -170,7 +170,7 @@ TEST_F(ExchangeEquality, BallsAroundWholeObjectsAgree) {
         steps(30);
         ball(FW_WET, 0.5f, 1.6f, 0);  // all but the last
         steps(3);
-        both.compare("after rain, of tiles at most " + std::to_string(tilesMost));
+        both.compare("after rain, of tiles at most " + std::to_string(maxTiles));
         ball(FW_DRY, 0.5f, 1.6f, 0.05f);
         ball(FW_IGNITE, 0.5f, 1.6f, 0.05f);  // in order, in one step
         steps(8);
@@ -201,19 +201,19 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
     for (int i = 0; i < 24; ++i) {
         components::Governance governance;
         if (i % 7 == 3) governance.life = 4;
-        if (i % 7 == 4) governance.tilesMost = 5;
+        if (i % 7 == 4) governance.maxTiles = 5;
         if (i % 7 == 5) governance.hopsMost = 1;
         both.add(i % 3 == 0 ? box : board, presets[random() % 5], one(1.6f), one(0.6f), one(1.6f),
                  one(6), i % 8 == 1 ? uint32_t(FW_BURNABLE_LITE) : 0u, i % 5 == 2 ? 0.15f : 0.0f,
                  governance);
     }
     both.each([&](world::World& w) {
-        FwBlockerDef wall{};
+        FwHeatOccluderDef wall{};
         wall.structSize = sizeof wall;
         moved(wall.transform, 0.8f, 0.3f, 0.8f, 0.4f);
         wall.halfSize[0] = 0.02f;
         wall.halfSize[1] = wall.halfSize[2] = 0.3f;
-        (void)w.exchange().addBlocker(wall);
+        (void)w.exchange().addHeatOccluder(wall);
     });
     const auto ignite = [&](size_t i, uint32_t kind, float radius) {
         both.each([&](world::World& w) {
@@ -242,7 +242,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
             const FwBurnableMeshId walls[] = {both.ids[0], both.ids[2], both.ids[7], both.ids[9]};
             uint8_t post[40 * 24 * 40] = {};
             for (int y = 0; y < 24; ++y) post[(12 * 24 + y) * 40 + 20] = 1;
-            FwHeatShieldDef shield{};
+            FwHeatOcclusionDef shield{};
             shield.structSize = sizeof shield;
             shield.counts[0] = shield.counts[2] = 40;
             shield.counts[1] = 24;
@@ -252,7 +252,7 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
             shield.objects = walls;
             shield.objectCount = frame % 80 == 10 ? 4 : 2;
             if (frame % 160 == 130) shield = {};
-            both.each([&](world::World& w) { w.exchange().setHeatShield(shield); });
+            both.each([&](world::World& w) { w.exchange().setHeatOcclusion(shield); });
         }
         if (random() % 15 == 0) {
             const float wind[3] = {one(6) - 3, 0, one(6) - 3};
@@ -301,7 +301,7 @@ TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     const uint32_t flags[] = {0, 0, FW_BURNABLE_LITE, FW_BURNABLE_PUBLISHED};
     for (int i = 0; i < 20; ++i) {
         components::Governance governance;
-        if (i % 3 == 2) governance.tilesMost = kOfOne;
+        if (i % 3 == 2) governance.maxTiles = kOfOne;
         both.add(i % 3 == 0 ? box : board, presets[random() % 4], one(1.2f), one(0.4f), one(1.2f),
                  one(6), flags[i % 4], 0, governance);
     }
@@ -319,7 +319,7 @@ TEST_F(ExchangeEquality, BurningTilesStayWithinTheirLimits) {
     // A flame blows all the time on an object far from the others; without the limit it would
     // ignite LITE objects at once.
     components::Governance few;
-    few.tilesMost = kOfOne;
+    few.maxTiles = kOfOne;
     both.add(board, FW_MATERIAL_PAPER, 3, 0.2f, 3, 0, 0, 0, few);
     both.each([&](world::World& w) {
         FwFireEmitterDef jet = fwDefaultFireEmitterDef();
@@ -381,11 +381,11 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
         moved(object.transform, float(i) * 0.52f, 0, 0, 0);
         ids.push_back(world.createBurnableMesh(object));
     }
-    FwBlockerDef wall{};
+    FwHeatOccluderDef wall{};
     wall.structSize = sizeof wall;
     moved(wall.transform, 1.5f, 0.5f, 0, 0);
     wall.halfSize[0] = wall.halfSize[1] = wall.halfSize[2] = 0.1f;
-    const FwBlockerId blocker = world.exchange().addBlocker(wall);
+    const FwHeatOccluderId occluder = world.exchange().addHeatOccluder(wall);
     for (const size_t i : {size_t(0), size_t(4)}) {
         FwIgnitionDef ball{};
         ball.structSize = sizeof ball;
@@ -402,7 +402,7 @@ TEST_F(ExchangeEquality, SteadyFramesAllocateNothing) {
         moved(transform, 7 * 0.52f + far, 0, 0, 0);
         world.setTransform(ids[7], transform);
         moved(transform, 1.5f, 0.5f + far, 0, 0);
-        world.exchange().moveBlocker(blocker, transform);
+        world.exchange().moveHeatOccluder(occluder, transform);
         const float wind[3] = {far * 5, 0, 0};
         world.wind().set(wind);
         const FwVulkanFrame begun = rig.frames.begin();

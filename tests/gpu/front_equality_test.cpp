@@ -68,7 +68,7 @@ class FrontEquality : public GpuTest {
                 expected.push_back(copyAnswer(*readback));
             plan.plan.switches |= vkSwitches;
             rig.run(plan.plan);
-            check(rig.takeAnswers());
+            check(rig.applyAnswers());
         }
         check(rig.finish());
         for (uint32_t o = 0; o < scene.objects.size(); ++o)
@@ -179,7 +179,7 @@ TEST_F(FrontEquality, EqualityTestCatchesMutants) {
     if (!device_) return;
     const BurnScene scene = BurnScene::make(14);
     for (const uint32_t mutant :
-         {FW_DEBUG_NO_SEAM_WAKE, FW_DEBUG_WRONG_READERS, FW_DEBUG_NO_WIND_WAKE}) {
+         {FW_DEBUG_NO_SEAM_WAKE, FW_DEBUG_WRONG_DEPENDENTS, FW_DEBUG_NO_WIND_WAKE}) {
         const Outcome outcome = compare(scene, 1600, 4, 4, 4, uint32_t(mutant));
         EXPECT_FALSE(outcome.equal) << "switch " << mutant << " goes unnoticed";
         std::printf("mutant %u: noticed in frame %u\n", uint32_t(mutant), outcome.step);

@@ -2,7 +2,7 @@
 #include "components/view_params.h"
 #include "gpu/passes/blend_order.h"
 #include "gpu/passes/draw.h"
-#include "shared/book.h"
+#include "shared/flipbook.h"
 #include "shared/particle.h"
 #include "support/burn_scene.h"
 #include "support/particle_reference.h"
@@ -29,9 +29,9 @@ class ParticlePass : public GpuTest {
     // `lights`: additive quads in a range of their own.
     void makeRig(uint32_t quads, bool byTexels = false, uint32_t lights = 0) {
         static constexpr uint32_t kBindings[] = {
-            FW_BIND_EMITTERS, FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
-            FW_BIND_FLAMES,   FW_BIND_DRAW_ARGS,      FW_BIND_VIEW,
-            FW_BIND_BOOKS,    FW_BIND_COUNTERS,       FW_BIND_BURN_TILES};
+            FW_BIND_EMITTERS,  FW_BIND_EMITTER_GROUPS, FW_BIND_PARTICLES,
+            FW_BIND_FLAMES,    FW_BIND_DRAW_ARGS,      FW_BIND_VIEW,
+            FW_BIND_FLIPBOOKS, FW_BIND_COUNTERS,       FW_BIND_BURN_TILES};
         static constexpr uint32_t kUniforms[] = {FW_BIND_VIEW};
         static constexpr uint32_t kTexels[] = {FW_BIND_PARTICLES};
         rig_ = std::make_unique<PassRig>(
@@ -44,7 +44,7 @@ class ParticlePass : public GpuTest {
         const uint32_t all = kTiles + quads + lights;
         rig_->make(FW_BIND_FLAMES, all * sizeof(gpu::FlameQuad));
         rig_->make(FW_BIND_DRAW_ARGS, (gpu::kFlameOrder + 2 * all) * 4);
-        rig_->make(FW_BIND_BOOKS, gpu::kBookWords * 4);
+        rig_->make(FW_BIND_FLIPBOOKS, gpu::kFlipbookWords * 4);
         rig_->make(FW_BIND_COUNTERS, sizeof(gpu::IterationCounters));
         rig_->make(FW_BIND_BURN_TILES, kBurnTiles * sizeof(gpu::BurnTile));
         gpu::ViewInput input;
@@ -345,13 +345,13 @@ TEST_F(ParticlePass, SmokeOfAJetHangsInFrontOfTheWall) {
     constexpr float kWall = 3;  // m, along x
     add(emitterDef(FW_EMITTER_JET, 500));
     makeRig(8192);
-    components::JetShield wall;
+    components::JetObstacle wall;
     wall.met = true;
     wall.place[0] = kWall;
     wall.normal[0] = -1;
     wall.radius = 6;
     for (int i = 0; i < 60; ++i) {
-        components::takeShield(references_[0]->emitter, 0, wall, references_[0]->air.now);
+        components::setJetObstacle(references_[0]->emitter, 0, wall, references_[0]->air.now);
         frame(0.04f);
     }
     uint32_t puffs = 0, hanging = 0;
@@ -442,8 +442,8 @@ TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandQuads) {
             quad = {};
             quad.baseHeight = gpu::vec4(back * (-depthOf(kind, i) - m[14]), 0);
         }
-        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameTiles] = 0;
-        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameParticles] = kQuads;
+        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameTileQuads] = 0;
+        rig_->of<uint32_t>(FW_BIND_DRAW_ARGS)[gpu::kFlameParticleQuads] = kQuads;
         sortAlone();
         ASSERT_EQ(kQuads, quads());
         expectAll(kTiles);
@@ -491,9 +491,9 @@ class EmittingQuads : public ParticlePass {
         for (uint32_t i = 0; i < lights; ++i) put(firstLight_ + i);
         const auto words = rig_->of<uint32_t>(FW_BIND_DRAW_ARGS);
         std::fill_n(words.begin(), words.size(), 0xFFFFFFFFu);
-        words[gpu::kFlameTiles] = 0;
-        words[gpu::kFlameParticles] = hiding;
-        words[gpu::kFlameLights] = lights;
+        words[gpu::kFlameTileQuads] = 0;
+        words[gpu::kFlameParticleQuads] = hiding;
+        words[gpu::kFlameEmissiveQuads] = lights;
         sortAlone();
         EXPECT_EQ(hiding + lights, quads());
         std::vector<uint32_t> out(arguments().begin() + gpu::kFlameOrder,
@@ -572,10 +572,10 @@ TEST_P(ParticleWays, AdditiveFireIsNotSorted) {
     one.emitter.books.fire = 1;
     one.emitter.books.fireEmits = true;
     makeRig(2000, GetParam(), 2000);
-    std::fill_n(rig_->of<uint32_t>(FW_BIND_BOOKS).begin(), gpu::kBookWords, 0u);
+    std::fill_n(rig_->of<uint32_t>(FW_BIND_FLIPBOOKS).begin(), gpu::kFlipbookWords, 0u);
     for (int i = 0; i < 30; ++i) frame(0.05f);
-    const uint32_t hiding = arguments()[gpu::kFlameParticles];
-    const uint32_t lights = arguments()[gpu::kFlameLights];
+    const uint32_t hiding = arguments()[gpu::kFlameParticleQuads];
+    const uint32_t lights = arguments()[gpu::kFlameEmissiveQuads];
     EXPECT_GT(lights, 200u);
     EXPECT_GT(hiding, 100u);
     ASSERT_EQ(hiding + lights, quads());
@@ -632,8 +632,8 @@ class SparkPass : public GpuTest {
         });
         std::map<uint32_t, gpu::FlameQuad> out;
         std::map<uint32_t, int> met;
-        EXPECT_EQ(0u, arguments[gpu::kFlameParticles]);  // the sort sees none of them
-        count_ = arguments[gpu::kFlameLights];
+        EXPECT_EQ(0u, arguments[gpu::kFlameParticleQuads]);  // the sort sees none of them
+        count_ = arguments[gpu::kFlameEmissiveQuads];
         for (uint32_t i = 0; i < std::min(count_, kQuads); ++i) {
             const gpu::FlameQuad& quad = rig_->of<gpu::FlameQuad>(FW_BIND_FLAMES)[i];
             EXPECT_EQ(gpu::kQuadSpark, quad.kind & 3u);

@@ -60,10 +60,10 @@ class RefineEquality : public GpuTest {
         for (size_t i = 0; i < s.levels.size(); ++i) {
             const gpu::RefineTriangle& t = scene.model.triangles[i];
             uint32_t top[3];
-            for (int k = 0; k < 3; ++k) top[k] = gpu::refineTop(s.edges[t.edge[k]].level);
+            for (int k = 0; k < 3; ++k) top[k] = gpu::topLevel(s.edges[t.edge[k]].level);
             s.levels[i] = gpu::refinePack(
                 top[0], top[1], top[2],
-                gpu::refineFit(top[0], top[1], top[2], gpu::refineTop(s.interiors[i].level)));
+                gpu::fitInterior(top[0], top[1], top[2], gpu::topLevel(s.interiors[i].level)));
         }
         mesh::refineScan(scene.model, s);
         mesh::refineEmit(scene.model, s);

@@ -7,10 +7,11 @@
 namespace fw::test::refine_published_test {
 namespace {
 
-constexpr uint32_t kBindings[] = {
-    FW_BIND_PREDICT,        FW_BIND_GRADIENT,         FW_BIND_ARP_GROUPS,   FW_BIND_ARP_LIST,
-    FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES, FW_BIND_REFINE_SLOTS, FW_BIND_REFINE_VERTICES,
-    FW_BIND_REFINE_INDICES, FW_BIND_VERTICES};
+constexpr uint32_t kBindings[] = {FW_BIND_PREDICT,        FW_BIND_GRADIENT,
+                                  FW_BIND_PATTERN_GROUPS, FW_BIND_PATTERN_LIST,
+                                  FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES,
+                                  FW_BIND_REFINE_SLOTS,   FW_BIND_REFINE_VERTICES,
+                                  FW_BIND_REFINE_INDICES, FW_BIND_VERTICES};
 constexpr float kRecede = 0.6f;
 
 class RefinePublishedEquality : public GpuTest {
@@ -27,7 +28,7 @@ class RefinePublishedEquality : public GpuTest {
             slot.opposite == gpu::kRefineOpposed
                 ? gpu::kRefineNever
                 : arrival(slot.opposite & 0xFFFFFFu, gpu::refineOppositeWeights(slot.opposite));
-        const glm::vec4 v = gpu::refineEvaluate(slot, own, opposite, now, kBurnSeconds, kRecede);
+        const glm::vec4 v = gpu::evaluateSlot(slot, own, opposite, now, kBurnSeconds, kRecede);
         return {v.x, v.y, v.z, v.w};
     }
 };
@@ -36,16 +37,16 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     if (!device_) return;
     auto* memory = std::pmr::new_delete_resource();
     const uint32_t depth = 4;
-    RefineScene scene(gridBox(0.8, 0.6, 0.02, 1, 1, 1, 11), mesh::arpOptions(depth), 96);
+    RefineScene scene(gridBox(0.8, 0.6, 0.02, 1, 1, 1, 11), mesh::patternOptions(depth), 96);
     scene.light({0.2, 0.2, 0.02}, 0.05, 0.15);
     const mesh::RefineModel& m = scene.model;
-    const mesh::ArpModel reference = mesh::makeArpModel(scene.domain, m, depth, memory);
-    const mesh::ArpSettings settings = mesh::arpSettings(reference, 0, 0, 0.05f);
-    mesh::ArpState state(memory);
+    const mesh::PatternModel reference = mesh::makePatternModel(scene.domain, m, depth, memory);
+    const mesh::PatternSettings settings = mesh::patternSettings(reference, 0, 0, 0.05f);
+    mesh::PatternState state(memory);
     state.reset(reference);
-    mesh::arpIgnite(reference, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
+    mesh::ignitePattern(reference, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
 
-    PassRig rig(*device_, kBindings, sizeof(gpu::ArpPush));
+    PassRig rig(*device_, kBindings, sizeof(gpu::PatternPush));
     const auto make = [&](uint32_t binding, const auto& data) {
         rig.make(binding, data.size() * sizeof data[0], data.data());
     };
@@ -59,21 +60,21 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     const auto slots = uint32_t(m.slots.size());
     const uint32_t placeGroups = (slots + 63) / 64, nameGroups = (reference.most() + 63) / 64;
     rig.make(FW_BIND_REFINE_VERTICES, slots * sizeof(gpu::RefineVertex));
-    rig.make(FW_BIND_ARP_LIST, size_t(nameGroups) * 256);
+    rig.make(FW_BIND_PATTERN_LIST, size_t(nameGroups) * 256);
     rig.make(FW_BIND_REFINE_INDICES, size_t(nameGroups) * 768);
     rig.make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
     std::vector<gpu::uvec2> groups;
     for (uint32_t g = 0; g < placeGroups; ++g) groups.push_back({0, g * 64});
     for (uint32_t g = 0; g < nameGroups; ++g) groups.push_back({0, g * 64});
-    make(FW_BIND_ARP_GROUPS, groups);
+    make(FW_BIND_PATTERN_GROUPS, groups);
     const uint32_t pass = rig.add("refine_published.comp");
 
     uint32_t consumed = 0, coarser = 0, frames = 0;
     double worst = 0;
     for (float now = 0; now < scene.end + 6; now += 0.9f, ++frames) {
         const uint32_t tick = kStartTick + uint32_t(now * 4096);
-        const mesh::ArpView view{{0.2f, 0.2f, 1.5f}, frames % 3 == 2 ? 150.0f : 0.0f};
-        mesh::arpAdvance(reference, settings, tick, view, false, state);
+        const mesh::PatternView view{{0.2f, 0.2f, 1.5f}, frames % 3 == 2 ? 150.0f : 0.0f};
+        mesh::advancePattern(reference, settings, tick, view, false, state);
         gpu::RefineObject object{};
         object.cornerCount = slots;
         object.textureWidth = m.textureWidth;
@@ -81,12 +82,12 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
         object.now = now;
         object.burnSeconds0 = gpu::vec4(kBurnSeconds);
         rig.of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0] = object;
-        const auto list = rig.of<uint32_t>(FW_BIND_ARP_LIST);
-        std::fill(list.begin(), list.end(), gpu::kArpNothing);
+        const auto list = rig.of<uint32_t>(FW_BIND_PATTERN_LIST);
+        std::fill(list.begin(), list.end(), gpu::kPatternEmpty);
         std::copy(state.list.begin(), state.list.end(), list.begin());
         device_->run([&](VkCommandBuffer commands) {
             rig.begin(commands);
-            gpu::ArpPush push{0, tick, 0, kRecede};
+            gpu::PatternPush push{0, tick, 0, kRecede};
             rig.dispatch(commands, pass, &push, placeGroups);
             push = {1, tick, placeGroups, kRecede};
             rig.dispatch(commands, pass, &push, nameGroups);
@@ -102,14 +103,14 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
         const auto indices = rig.of<uint32_t>(FW_BIND_REFINE_INDICES);
         for (size_t i = 0; i < state.list.size(); ++i) {
             const uint32_t word = state.list[i];
-            const bool finest = gpu::arpHalvings(word) == depth;
+            const bool finest = gpu::patternHalvings(word) == depth;
             uint32_t drawn[6] = {}, gone = 0;
             for (uint32_t k = 0; k < (finest ? 3u : 6u); ++k) {
-                const gpu::uvec2 c = gpu::arpPoint(word, depth, k);
-                drawn[k] = gpu::arpDrawVertex(m.triangles[gpu::arpCoarse(word)], c.x, c.y);
+                const gpu::uvec2 c = gpu::patternPoint(word, depth, k);
+                drawn[k] = gpu::patternDrawVertex(m.triangles[gpu::patternCoarse(word)], c.x, c.y);
                 gone |= (places[m.draws[drawn[k]].slot].hole <= now ? 1u : 0u) << k;
             }
-            const bool hidden = gpu::arpConsumed(gone, finest);
+            const bool hidden = gpu::isPatternConsumed(gone, finest);
             consumed += hidden;
             coarser += hidden && !finest;
             for (uint32_t k = 0; k < 3; ++k)

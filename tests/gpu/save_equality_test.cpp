@@ -1,4 +1,4 @@
-// Saves of a lent device, which come some frames late, against those of the cpu backend: worlds
+// Saves of a host device, which come some frames late, against those of the cpu backend: worlds
 // that are made of either go on alike on both.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"

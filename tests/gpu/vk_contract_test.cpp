@@ -198,7 +198,7 @@ TEST_F(VkContract, PoolsGrowWithoutChangingAFire) {
         while (const gpu::Readback* readback = cpu.nextReadback())
             want.push_back(copyAnswer(*readback));
         rig.run(plan.plan);
-        for (FrameAnswer& answer : rig.takeAnswers()) got.push_back(std::move(answer));
+        for (FrameAnswer& answer : rig.applyAnswers()) got.push_back(std::move(answer));
     }
     for (FrameAnswer& answer : rig.finish()) got.push_back(std::move(answer));
     after = capacity();

@@ -53,7 +53,7 @@ class Volume : public GpuTest {
  protected:
     void makeRig(PFN_vkGetInstanceProcAddr entry = nullptr, uint32_t steps = 64) {
         gpu::vk::WorldLimits limits;
-        limits.volumeSteps = steps;
+        limits.rayStepCount = steps;
         limits.looks = testLooks();
         targets_ = {};  // of the previous rig
         index_ = 0;
@@ -325,7 +325,7 @@ class Volume : public GpuTest {
                 const uint32_t x = i % kSide * side + k % side;
                 const uint32_t y = i / kSide * side + k / side % side;
                 vec2 cell = vec2(float(x), float(y)) + 0.5f;
-                if (side > 1) cell += gpu::volumeShift(x, y);
+                if (side > 1) cell += gpu::marchRayShift(x, y);
                 const vec2 ndc = cell * (2.0f / float(kSide * side)) - 1.0f;
                 picture[i] += shownOf(
                     vec3(draw.rayO) + ndc.x * vec3(draw.rayX) + ndc.y * vec3(draw.rayY),
@@ -336,10 +336,10 @@ class Volume : public GpuTest {
                             volume::flameChord(flame.record, flame.nodes, vec3(view.eye), direction,
                                                rules.farthest, rules.intervals, knots);
                         rules.steps = steps ? steps
-                                            : uint32_t(gpu::volumeSteps(
+                                            : uint32_t(gpu::rayStepCount(
                                                   chord.y - chord.x, draw.spacing, draw.mostSteps));
-                        rules.jitter = steps ? 0.5f : gpu::volumePhase(x, y);
-                        rules.pixel = gpu::volumeFine(view.eye.w / perDepth, side);
+                        rules.jitter = steps ? 0.5f : gpu::marchSamplePhase(x, y);
+                        rules.pixel = gpu::sampleFootprint(view.eye.w / perDepth, side);
                     });
             }
             for (vec4& pixel : picture) pixel /= float(side * side);
@@ -353,21 +353,23 @@ class Volume : public GpuTest {
         const lod::VolumeScreen screen{{kSide, kSide}, 1};
         lod::MarchedVolume marched;
         const uint32_t words = lod::volumeRayWords(screen);
-        EXPECT_GT(lod::layVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}).count, 0u);
-        const gpu::VolumeMarch& m = marched.march;
+        EXPECT_GT(lod::allocateVolumes({&item, 1}, screen, view.eye.w, words, {&marched, 1}).count,
+                  0u);
+        const gpu::MarchPush& m = marched.march;
         const float cell = 0.5f * float(kSide) * marched.composite.place.z;  // px
-        const auto side = int(marched.composite.tilesX * gpu::kVolumeTile);
+        const auto side = int(marched.composite.tilesX * gpu::kMarchTileSide);
         std::vector<vec4> coarse;
         for (int y = 0; y < side; ++y)
             for (int x = 0; x < side; ++x) {
                 const auto i = uint32_t(x), j = uint32_t(y);
                 const vec2 at = vec2(float(x), float(y)) +
-                                (m.perPixel > 1 ? gpu::volumeShift(i, j) : vec2(0.0f));
+                                (m.perPixel > 1 ? gpu::marchRayShift(i, j) : vec2(0.0f));
                 coarse.push_back(shownOf(vec3(m.rayO) + at.x * vec3(m.rayX) + at.y * vec3(m.rayY),
                                          [&](volume::MarchRules& rules, float perDepth, vec3) {
                                              rules.pixel = m.rayX.w / perDepth;
                                              rules.steps = steps ? steps : m.turns;
-                                             rules.jitter = steps ? 0.5f : gpu::volumePhase(i, j);
+                                             rules.jitter =
+                                                 steps ? 0.5f : gpu::marchSamplePhase(i, j);
                                              if (steps) return;
                                              rules.apart = m.rayY.w * perDepth;
                                              rules.first = m.rayO.w * perDepth;
@@ -391,8 +393,8 @@ class Volume : public GpuTest {
             const vec2 whole = glm::floor(at + 0.5f);
             for (int y = -1; y <= 1; ++y)
                 for (int x = -1; x <= 1; ++x)
-                    picture[i] += gpu::volumeWeight(x, at.x - whole.x) *
-                                  gpu::volumeWeight(y, at.y - whole.y) *
+                    picture[i] += gpu::neighbourWeight(x, at.x - whole.x) *
+                                  gpu::neighbourWeight(y, at.y - whole.y) *
                                   of(int(whole.x) + x, int(whole.y) + y);
         }
         return picture;
@@ -588,17 +590,17 @@ class Volume : public GpuTest {
     }  // m, Heskestad (1984)
 
     // Flipbooks for emitters: a flame, a roll and a puff.
-    void layBooks() {
+    void packFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
         std::vector<book::Book> books;
         for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF}) {
             books.emplace_back(memory);
-            book::readBook(book::ownBook(preset, memory), books.back());
+            book::readFlipbook(book::presetFlipbook(preset, memory), books.back());
         }
         const book::Book* const laid[] = {&books[0], &books[1], &books[2]};
-        const book::Picture pages = book::layBooks(laid, memory);
-        rig_->backend.setBooks(pages.width, pages.height, std::as_bytes(std::span(pages.texels)),
-                               pages.words);
+        const book::Picture pages = book::packFlipbooks(laid, memory);
+        rig_->backend.setFlipbooks(pages.width, pages.height,
+                                   std::as_bytes(std::span(pages.texels)), pages.words);
     }
     void addVolume(float power, Mean& mean) {
         FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
@@ -1178,10 +1180,10 @@ TEST_F(Volume, BillboardsShowTheSameFlame) {
             flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
             const std::vector<vec4> marched = draw({&flame, 1}, FW_DEPTH_TEST);
             flame.record.key = ++key_;
-            flame.record.tier = page ? FW_FIRE_TIER_FLIPBOOK : FW_FIRE_TIER_IMPOSTOR;
+            flame.record.tier = page ? FW_FIRE_TIER_SHARED_IMPOSTOR : FW_FIRE_TIER_IMPOSTOR;
             std::vector<vec4> card = draw({&flame, 1}, FW_DEPTH_TEST);
             // Until the impostor was updated once.
-            for (uint32_t k = 0; page && k < lod::kBookTurn; ++k)
+            for (uint32_t k = 0; page && k < lod::kAtlasFrameStep; ++k)
                 card = drawOnce({&flame, 1}, FW_DEPTH_TEST, 0);
             const vec4 a = meanOf(card), b = meanOf(marched);
             worst[page] =
@@ -1314,7 +1316,7 @@ TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
     for (int i = 0; i < 3; ++i) {
         // A tier keeps its last drawing until another frame, so each gets its own rig.
         makeRig();
-        layBooks();
+        packFlipbooks();
         for (int k = 0; k < 3; ++k) {
             const float power = kPowers[k], tall = tallOf(power);
             const float eye[3] = {0, 0.6f * tall, kAway * tall}, at[3] = {0, 0.6f * tall, 0};
@@ -1464,7 +1466,7 @@ TEST_F(Volume, ADollyThroughVolumeFlipbooksAndFieldShowsOneFire) {
     for (int i = 0; i < 3; ++i) {
         // A tier keeps its last drawing until another frame, so each gets its own rig.
         makeRig();
-        layBooks();
+        packFlipbooks();
         films[i] = tiers[i]();
         ASSERT_EQ(size_t(kFrames), films[i].size());
     }
@@ -1518,7 +1520,7 @@ TEST_F(Volume, AJetByNoiseLooksLikeOneByFlipbooks) {
     const float far = 9 * tallOf(kPower);
     const auto light = [&](auto&& add, vec3 middle) {
         makeRig();
-        layBooks();
+        packFlipbooks();
         const float eye[3] = {middle.x, middle.y, far}, at[3] = {middle.x, middle.y, 0};
         look(eye, at, 40);
         Mean mean(kSide * kSide, vec4(0.0f));
@@ -1551,7 +1553,7 @@ TEST_F(Volume, NearFlamesCoverFarOnesInEveryTier) {
     if (!device_) return;
     makeRig();
     const uint32_t tiers[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_IMPOSTOR, FW_FIRE_TIER_SLICES,
-                              FW_FIRE_TIER_FLIPBOOK};
+                              FW_FIRE_TIER_SHARED_IMPOSTOR};
     const float eye[3] = {0, 0.5f, 4}, at[3] = {0, 0.35f, 0};
     look(eye, at, 20);
     const auto flameAt = [&](float z, uint32_t seed) {
@@ -1612,7 +1614,7 @@ TEST_F(Volume, SwitchingTiersDoesNotPop) {
         const float stays = worstOf(kHigh, kHigh), cut = worstOf(kSlices, kSlices);
         const float card = worstOf(kHigh, FW_FIRE_TIER_IMPOSTOR);
         const float low = worstOf(kHigh, FW_FIRE_TIER_MARCH_LOW);
-        const float book = worstOf(kHigh, FW_FIRE_TIER_FLIPBOOK);
+        const float book = worstOf(kHigh, FW_FIRE_TIER_SHARED_IMPOSTOR);
         const float slices = worstOf(kHigh, kSlices);
         std::printf(
             "           %s: at most %.4f a frame, to a card %.4f, book %.4f, low %.4f, slices %.4f "
@@ -1635,7 +1637,7 @@ TEST_F(Volume, ADollyThroughAllTiersShowsOneFlame) {
     if (!device_) return;
     makeRig();
     constexpr uint32_t kLegs[] = {FW_FIRE_TIER_MARCH_HIGH, FW_FIRE_TIER_MARCH_LOW,
-                                  FW_FIRE_TIER_SLICES, FW_FIRE_TIER_FLIPBOOK,
+                                  FW_FIRE_TIER_SLICES, FW_FIRE_TIER_SHARED_IMPOSTOR,
                                   FW_FIRE_TIER_IMPOSTOR};
     constexpr int kLeg = 18, kWay = kLeg * int(std::size(kLegs));  // frames
     gpu::VolumeFlame flame = flameOf(FW_FIRE_CAMP, 1.3f, FW_FIRE_NO_SMOKE);
@@ -1698,14 +1700,14 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
     if (!device_) return;
     makeRig();
     // A key with almost no delay, so that frames can be compared.
-    const auto shelf = std::make_unique<lod::VolumeBookShelf>();
+    const auto shelf = std::make_unique<lod::ImpostorAtlases>();
     (*shelf)[0].used = true;
-    (*shelf)[0].written = lod::kBookPages;
+    (*shelf)[0].written = lod::kAtlasFrames;
     const auto isLate = [&](uint32_t key) {
-        lod::BookReader reader;
+        lod::AtlasCursor reader;
         reader.key = key;
         reader.read(0, *shelf);
-        return reader.mirrored || reader.at + 3 < lod::kBookPages;
+        return reader.mirrored || reader.at + 3 < lod::kAtlasFrames;
     };
     uint32_t reads = 2001;
     while (isLate(reads)) ++reads;
@@ -1764,7 +1766,7 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
                 flame.record.key += marched ? 100000 : 0;
                 flame.record.tier = marched       ? FW_FIRE_TIER_MARCH_HIGH
                                     : frame >= 96 ? FW_FIRE_TIER_IMPOSTOR
-                                                  : FW_FIRE_TIER_FLIPBOOK;
+                                                  : FW_FIRE_TIER_SHARED_IMPOSTOR;
             }
             const float eye[3] = {0, 0.5f * kTall, kAway}, at[3] = {0, 0.5f * kTall, 0};
             look(eye, at, 24);
@@ -1840,7 +1842,7 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
     EXPECT_LT(films[0].turning, films[1].turning + 0.05f);
 
     gpu::VolumeFlame flames[2] = {flameAt(true, 2, 1, 0), flameAt(false, 2, 1, 0)};
-    for (gpu::VolumeFlame& flame : flames) flame.record.tier = FW_FIRE_TIER_FLIPBOOK;
+    for (gpu::VolumeFlame& flame : flames) flame.record.tier = FW_FIRE_TIER_SHARED_IMPOSTOR;
     const Mean second = drawDirect(flames, FW_DEPTH_TEST);
     for (gpu::VolumeFlame& flame : flames) flame.record.tier = FW_FIRE_TIER_MARCH_HIGH;
     EXPECT_EQ(second, drawDirect(flames, FW_DEPTH_TEST));
@@ -1986,7 +1988,7 @@ TEST_F(Volume, FramesNeedNoTemporalMixing) {
 }
 
 // For any number and nearness of flames, pixels grow until all fit.
-TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
+TEST(MarchPush, FitsAnyFlamesIntoTheMemory) {
     const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = lod::volumeRayWords(screen);
     std::vector<lod::VolumeItem> items(gpu::kMaxVolumeFlames);
@@ -2002,22 +2004,23 @@ TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
     }
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     for (const size_t count : {size_t(1), size_t(7), items.size()}) {
-        const lod::LaidVolumes laid = lod::layVolumes({items.data(), count}, screen, 1, words, out);
+        const lod::VolumeAllocation laid =
+            lod::allocateVolumes({items.data(), count}, screen, 1, words, out);
         ASSERT_EQ(laid.count, count);
         EXPECT_EQ(laid.end, out[0].march.samples);
         std::printf("           %zu over all: cells of %.0f px\n", count, double(cell(0)));
         uint32_t known = 0, sample = out[0].march.samples;
         for (size_t i = 0; i < count; ++i) {
-            const gpu::VolumeMarch& march = out[i].march;
-            const gpu::VolumeComposite& shown = out[i].composite;
+            const gpu::MarchPush& march = out[i].march;
+            const gpu::CompositePush& shown = out[i].composite;
             EXPECT_EQ(march.tiles, known);
             EXPECT_EQ(shown.flags, known);
             EXPECT_EQ(march.samples, sample);
             EXPECT_EQ(shown.samples, sample);
-            known += gpu::kVolumeTileWords * shown.tilesX * shown.tilesY;
-            sample += march.cells * march.slabs * gpu::kVolumeCellWords;
-            EXPECT_GE(float(shown.tilesX * gpu::kVolumeTile) * cell(i), 1280.0f);
-            EXPECT_GE(float(shown.tilesY * gpu::kVolumeTile) * cell(i), 720.0f);
+            known += gpu::kMarchTileWords * shown.tilesX * shown.tilesY;
+            sample += march.cells * march.slabs * gpu::kMarchPixelWords;
+            EXPECT_GE(float(shown.tilesX * gpu::kMarchTileSide) * cell(i), 1280.0f);
+            EXPECT_GE(float(shown.tilesY * gpu::kMarchTileSide) * cell(i), 720.0f);
         }
         EXPECT_EQ(known, out[0].march.samples);
         EXPECT_LE(sample, words);
@@ -2025,24 +2028,24 @@ TEST(VolumeMarch, FitsAnyFlamesIntoTheMemory) {
             EXPECT_EQ(cell(0), 2.0f);
         }
     }
-    EXPECT_EQ(lod::layVolumes(items, screen, 1, 1000, out).end, 0u) << "it must not fit";
+    EXPECT_EQ(lod::allocateVolumes(items, screen, 1, 1000, out).end, 0u) << "it must not fit";
 
     // A small flame keeps fine pixels however many large ones crowd the memory.
     lod::VolumeItem& small = items.back();
     small.draw.rect = {-0.01f, -0.02f, 0.01f, 0.02f};
     small.draw.wide = 0.05f;
     small.draw.rayX = {4, 0, 0, 0};
-    ASSERT_GT(lod::layVolumes(std::span(&small, 1), screen, 1, words, out).end, 0u);
+    ASSERT_GT(lod::allocateVolumes(std::span(&small, 1), screen, 1, words, out).end, 0u);
     const float alone = cell(0);
     EXPECT_LT(alone, 1.0f);
-    ASSERT_GT(lod::layVolumes(items, screen, 1, words, out).end, 0u);
+    ASSERT_GT(lod::allocateVolumes(items, screen, 1, words, out).end, 0u);
     EXPECT_GT(cell(0), 4.0f) << "memory must be short";
     EXPECT_EQ(cell(items.size() - 1), alone);
 }
 
 // When memory is short, smoke yields: fire keeps its resolution in its own window, which begins
 // where the smoke's ends.
-TEST(VolumeMarch, SmokeYieldsMemoryToFire) {
+TEST(MarchPush, SmokeYieldsMemoryToFire) {
     const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = lod::volumeRayWords(screen);
     std::array<lod::VolumeItem, 24> items;
@@ -2059,17 +2062,17 @@ TEST(VolumeMarch, SmokeYieldsMemoryToFire) {
     }
     std::array<lod::MarchedVolume, 2 * items.size()> out;
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
-    ASSERT_EQ(lod::layVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
+    ASSERT_EQ(lod::allocateVolumes({items.data(), 1}, screen, 1, words, out).count, 1u);
     EXPECT_EQ(cell(0), 2.0f) << "there is memory for one";
     EXPECT_EQ(out[0].composite.window, vec4(0.0f));
-    ASSERT_EQ(lod::layVolumes(items, screen, 1, words, out).count, out.size());
+    ASSERT_EQ(lod::allocateVolumes(items, screen, 1, words, out).count, out.size());
     for (size_t i = 0; i < out.size(); i += 2) {
-        const gpu::VolumeComposite &whole = out[i].composite, &fire = out[i + 1].composite;
+        const gpu::CompositePush &whole = out[i].composite, &fire = out[i + 1].composite;
         EXPECT_FALSE(out[i].window);
         EXPECT_TRUE(out[i + 1].window);
         EXPECT_GE(cell(i), 8.0f);
         EXPECT_EQ(cell(i + 1), 2.0f);
-        const vec2 size = float(gpu::kVolumeTile) * vec2(fire.tilesX, fire.tilesY);
+        const vec2 size = float(gpu::kMarchTileSide) * vec2(fire.tilesX, fire.tilesY);
         const vec2 low(fire.place), high = low + size * vec2(fire.place.z, fire.place.w);
         const vec2 per(whole.place.z, whole.place.w);
         EXPECT_LT(glm::distance(vec2(whole.place) + per * vec2(whole.window), low), 1e-5f);
@@ -2243,7 +2246,7 @@ TEST_F(Volume, HalfResolutionKeepsBrightnessAndEdges) {
     const auto film = [&](bool half) {
         half_ = half;
         makeRig();
-        layBooks();
+        packFlipbooks();
         const auto targets = [&] {
             std::pmr::vector<gpu::MemoryRow> rows;
             rig_->context.memoryRows(rows);

@@ -7,7 +7,7 @@ namespace fw::mesh {
 namespace {
 
 using gpu::DeformMaterial;
-using gpu::DeformNode;
+using gpu::DeformParticle;
 using gpu::ShownVertex;
 using gpu::vec3;
 
@@ -17,7 +17,7 @@ void place(ShownVertex& v, vec3 p) {
     v.y = p.y;
     v.z = p.z;
 }
-vec3 restOf(const DeformNode& node) { return {node.x, node.y, node.z}; }
+vec3 restOf(const DeformParticle& node) { return {node.x, node.y, node.z}; }
 
 // `links`: neighbours and rest lengths, as packed; a length of 0 is no link.
 struct Links {
@@ -29,7 +29,7 @@ struct Links {
 };
 
 // Around a node, by its present places.
-vec3 normalOf(const DeformNode& node, const DeformState& state, uint32_t parity) {
+vec3 normalOf(const DeformParticle& node, const DeformState& state, uint32_t parity) {
     const vec3 x = state.soft[node.vertex].place[parity];
     vec3 turned(0), before(0), first(0);
     for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
@@ -38,17 +38,17 @@ vec3 normalOf(const DeformNode& node, const DeformState& state, uint32_t parity)
         if (k == 0) first = arm;
         before = arm;
     }
-    if (node.flags & gpu::kNodeClosed) turned += gpu::cross(before, first);
+    if (node.flags & gpu::kParticleClosed) turned += gpu::cross(before, first);
     const float size = gpu::length(turned);
     return size > 1e-18f ? turned / size : vec3(0);
 }
 
 float inSteps(float charred) { return std::floor(charred * gpu::kCharredSteps + 0.5f); }
 
-void tiesPass(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
-    for (const DeformNode& node : model.nodes)
+void linkCachePass(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
+    for (const DeformParticle& node : model.nodes)
         state.soft[node.vertex].burnt = state.shown[node.vertex].burnt;
-    for (const DeformNode& node : model.nodes) {
+    for (const DeformParticle& node : model.nodes) {
         DeformState::Soft& self = state.soft[node.vertex];
         const auto number = uint32_t(&node - model.nodes.data());
         const auto holds = [&](uint32_t other) {
@@ -67,10 +67,10 @@ void tiesPass(const DeformModel& model, const gpu::DeformObject& object, DeformS
             self.holds |= 1u << k;
             ++count;
         }
-        for (uint32_t k = 0; k < 2 * gpu::kArmWays; ++k)
+        for (uint32_t k = 0; k < 2 * gpu::kBendSets; ++k)
             if (node.arms[k] != kNone && holds(node.arms[k])) self.holds |= 1u << (k + 8);
-        const uint32_t ring = node.flags >> gpu::kNodeRingShift & 15u;
-        self.whole = (node.flags & gpu::kNodeClosed) && count == ring;
+        const uint32_t ring = node.flags >> gpu::kParticleRingShift & 15u;
+        self.whole = (node.flags & gpu::kParticleClosed) && count == ring;
         float nearest = 1e30f;
         const vec3 x = self.place[state.parity];
         for (uint32_t i = 0; i < object.pinCount; ++i) {
@@ -86,12 +86,12 @@ void tiesPass(const DeformModel& model, const gpu::DeformObject& object, DeformS
 }
 
 // m, as devices keep it.
-vec3 shareOf(vec3 share) {
-    return gpu::shareOf(gpu::packShare(share * gpu::kBendUnit)) / gpu::kBendUnit;
+vec3 unpackBendShare(vec3 share) {
+    return gpu::unpackBendShare(gpu::packBendShare(share * gpu::kBendUnit)) / gpu::kBendUnit;
 }
 
 // Its own bends, and its shares of others', which are of the step before.
-vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const SheetDrive& drive,
+vec3 bendingOf(const DeformParticle& node, const DeformMaterial& material, const SheetDrive& drive,
                DeformState& state) {
     DeformState::Soft& self = state.soft[node.vertex];
     const uint32_t now = state.parity;
@@ -106,7 +106,7 @@ vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const She
         const float mean = 1 / std::max(count, 1.0f);
         self.bend[kind] =
             whole ? gpu::bendOf(sum * mean, self.normal, rise, count, relax, even) : vec3(0);
-        self.share[now ^ 1][kind] = shareOf(self.bend[kind] * mean);
+        self.share[now ^ 1][kind] = unpackBendShare(self.bend[kind] * mean);
         bending += self.share[now ^ 1][kind] * count;
     };
     const Links links(node.ringLength);
@@ -121,7 +121,7 @@ vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const She
         bending -= there.share[now][0];
     }
     bend(0, sum, count, node.rise + gpu::curlRise(curl, squares / std::max(count, 1.0f)),
-         stiff * gpu::kBendRelax, self.whole, (node.flags & gpu::kNodeEven) != 0);
+         stiff * gpu::kBendRelax, self.whole, (node.flags & gpu::kParticleEven) != 0);
     sum = vec3(0);
     count = squares = 0;
     float ends[2]{};
@@ -131,18 +131,18 @@ vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const She
         ends[k] = inSteps(gpu::charredShare(state.soft[other].burnt)) / gpu::kCharredSteps;
         const vec3 to = state.soft[other].place[now] - x;
         if ((self.holds >> (arm + 8) & 1u) == 0 ||
-            gpu::length(to) > gpu::kArmTears * node.armLength[arm])
+            gpu::length(to) > gpu::kBendTears * node.bendLength[arm])
             continue;
         sum += to;
-        squares += node.armLength[arm] * node.armLength[arm];
+        squares += node.bendLength[arm] * node.bendLength[arm];
         count += 1;
     }
-    const float across = gpu::armCurl(ends[0], ends[1]);
+    const float across = gpu::bendCurl(ends[0], ends[1]);
     bend(1, sum, count,
-         node.armRise[state.way] + gpu::kArmCurls * across * gpu::curlRise(curl, squares * 0.5f),
-         gpu::armFirm(stiff, charred, across), count == 2,
-         (node.flags & gpu::kNodeArmsEven << state.way) != 0);
-    const uint32_t echoed = (state.way + gpu::kArmWays - 1) % gpu::kArmWays;
+         node.bendRise[state.way] + gpu::kBendCurl * across * gpu::curlRise(curl, squares * 0.5f),
+         gpu::bendStiffness(stiff, charred, across), count == 2,
+         (node.flags & gpu::kParticleBendsEven << state.way) != 0);
+    const uint32_t echoed = (state.way + gpu::kBendSets - 1) % gpu::kBendSets;
     for (uint32_t k = 0; k < 2; ++k)
         if (const uint32_t other = node.arms[2 * echoed + k]; other != kNone)
             bending -= state.soft[other].share[now][1];
@@ -152,14 +152,14 @@ vec3 bendingOf(const DeformNode& node, const DeformMaterial& material, const She
 }  // namespace
 
 void resetSoft(const DeformModel& model, const gpu::DeformObject& object, DeformState& state) {
-    state.soft.assign(model.coats.size(), {});
+    state.soft.assign(model.embeddings.size(), {});
     state.parity = state.way = 0;
     state.tied = false;
-    for (const DeformNode& node : model.nodes) {
+    for (const DeformParticle& node : model.nodes) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
         // Known from the start, or a sheet would fall until word of its pins came to it.
-        float reach = gpu::kReachNone;
+        float reach = gpu::kNoPath;
         for (uint32_t i = 0; i < object.pinCount; ++i) {
             const vec3 point =
                 gpu::pinPoint(restOf(node), vec3(object.pins[i * 2]), vec3(object.pins[i * 2 + 1]));
@@ -172,9 +172,9 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
 
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state) {
-    if (!state.tied || gpu::tiesAt(state.way)) tiesPass(model, object, state);
+    if (!state.tied || gpu::updatesLinkCache(state.way)) linkCachePass(model, object, state);
     const uint32_t now = state.parity;
-    for (const DeformNode& node : model.nodes) {
+    for (const DeformParticle& node : model.nodes) {
         DeformState::Soft& self = state.soft[node.vertex];
         ShownVertex& shown = state.shown[node.vertex];
         const DeformMaterial& material = object.materials[node.flags & 7u];
@@ -184,33 +184,33 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         const Links links(node.ringLength);
         const vec3 bending = bendingOf(node, material, drive, state);
         vec3 pushed(0);
-        float reach = gpu::kReachNone;
+        float reach = gpu::kNoPath;
         for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
             if ((self.holds >> k & 1u) == 0) continue;
             const DeformState::Soft& there = state.soft[node.ring[k]];
             const float shrunk = material.shrink * 0.5f / gpu::kCharredSteps;
             const float both = inSteps(charred) + inSteps(gpu::charredShare(there.burnt));
-            pushed += gpu::linkPush(x, there.place[now], links.rest[k] * (1 - shrunk * both),
-                                    (self.pinned >> k & 1u) ? 1.0f : 0.5f);
+            pushed += gpu::linkCorrection(x, there.place[now], links.rest[k] * (1 - shrunk * both),
+                                          (self.pinned >> k & 1u) ? 1.0f : 0.5f);
             reach = std::min(reach, there.reach[now] + links.rest[k]);
         }
-        const float was = self.reach[now] == 0 && !pinned ? gpu::kReachNone : self.reach[now];
+        const float was = self.reach[now] == 0 && !pinned ? gpu::kNoPath : self.reach[now];
         const bool knew = self.known;
-        self.known = knew || gpu::reachKnown(reach, was);
-        reach = pinned ? 0 : gpu::reachNext(reach, was, knew);
+        self.known = knew || gpu::isPathKnown(reach, was);
+        reach = pinned ? 0 : gpu::nextPath(reach, was, knew);
         const vec3 last = placeOf(shown);
         vec3 moved = x + pushed * gpu::relaxAt(gpu::kLinkRelax, drive.step) +
                      bending * gpu::relaxAt(1, drive.step);
-        if (reach < 0.5f * gpu::kReachNone) {
+        if (reach < 0.5f * gpu::kNoPath) {
             const vec3 anchor(self.anchor);
             const float away = gpu::length(moved - anchor);
-            const float most = reach * gpu::kReachSlack + self.anchor.w;
+            const float most = reach * gpu::kPathSlack + self.anchor.w;
             if (away > most) moved = anchor + (moved - anchor) * (most / away);
         }
         const float height = gpu::dot(moved, drive.up);
         const bool down = height < object.ground;
         if (down) moved += drive.up * (object.ground - height);
-        vec3 velocity = gpu::noFasterThan((moved - last) / drive.step, gpu::kFastest);
+        vec3 velocity = gpu::limitSpeed((moved - last) / drive.step, gpu::kFastest);
         velocity *= down ? 0.5f : gpu::sheetDamping(charred, drive.step);
         const float slowed = material.drag * (1 + 2 * charred) * drive.step;
         const vec3 air = drive.wind * gpu::gustAt(x, 1, drive.time) +
@@ -224,7 +224,7 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
         self.reach[now ^ 1] = reach;
     }
     state.parity ^= 1;
-    state.way = (state.way + 1) % gpu::kArmWays;
+    state.way = (state.way + 1) % gpu::kBendSets;
 }
 
 void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,
@@ -232,7 +232,7 @@ void springStep(const DeformModel& model, const gpu::DeformObject& object, float
     const uint32_t now = state.parity;
     const float stiffness = object.springs * gpu::kSpringShare;
     for (size_t i = 0; i < model.nodes.size(); ++i) {
-        const DeformNode& node = model.nodes[i];
+        const DeformParticle& node = model.nodes[i];
         DeformState::Soft& self = state.soft[node.vertex];
         const vec3 x = self.place[now];
         const Links ring(node.ringLength), cross(node.crossLength);
@@ -256,14 +256,14 @@ void springStep(const DeformModel& model, const gpu::DeformObject& object, float
 }
 
 void resetDeform(const DeformModel& model, DeformState& state) {
-    state.shown.assign(model.coats.size(), ShownVertex{});
-    for (const DeformNode& node : model.nodes) place(state.shown[node.vertex], restOf(node));
+    state.shown.assign(model.embeddings.size(), ShownVertex{});
+    for (const DeformParticle& node : model.nodes) place(state.shown[node.vertex], restOf(node));
     skinVertices(model, state);
 }
 
 void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state) {
-    for (const DeformNode& node : model.nodes) {
+    for (const DeformParticle& node : model.nodes) {
         ShownVertex& shown = state.shown[node.vertex];
         const DeformMaterial& material = object.materials[node.flags & 7u];
         float sum = 0, known = 0;
@@ -283,8 +283,8 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
 }
 
 void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
-    for (size_t i = 0; i < model.coats.size(); ++i) {
-        const gpu::DeformCoat& coat = model.coats[i];
+    for (size_t i = 0; i < model.embeddings.size(); ++i) {
+        const gpu::DeformEmbedding& coat = model.embeddings[i];
         const ShownVertex& node = state.shown[coat.node];
         const vec3 at = placeOf(node);
         vec3 turned(0), before(0);
@@ -300,12 +300,12 @@ void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
         vec3 normal = rest;
         if (size > 1e-18f)
             normal =
-                gpu::turnedNormal(rest, vec3(coat.faceX, coat.faceY, coat.faceZ), turned / size);
+                gpu::rotateNormal(rest, vec3(coat.faceX, coat.faceY, coat.faceZ), turned / size);
         ShownVertex& shown = state.shown[i];
         shown.normal = normal == rest ? coat.normal : gpu::packDirection(normal);
         shown.lead = node.behind;
         if (tears)
-            shown.lead = std::max(shown.lead, gpu::tornLead(square, coat.longest, node.burnt));
+            shown.lead = std::max(shown.lead, gpu::tornOffset(square, coat.longest, node.burnt));
         shown.burnt = node.burnt;
         place(shown, at);
     }

@@ -1,4 +1,4 @@
-// Deformation of one object on the CPU, in its own axes: the passes recede, ties, soft and springs
+// Deformation of one object on the CPU, in its own axes: the passes recede, link_cache, soft and springs
 // and the skinning of the drawn vertices are compared with it.
 #pragma once
 #include "mesh/deform/model.h"
@@ -14,7 +14,7 @@ struct DeformState {  // of one object; per vertex of the domain
         gpu::vec3 place[2];       // m: where it would be without constraints, now and next
         gpu::vec3 normal;         // unit
         float reach[2] = {};      // m to a pin along links that hold; 0: pinned
-        bool known = false;       // see reachNext
+        bool known = false;       // see nextPath
         gpu::vec3 bend[2]{};      // m, by which it gives way: to neighbours, to arms
         gpu::vec3 share[2][2]{};  // m, of each of those, in the step before and in this one
         // As of when its ties were looked at.
@@ -48,7 +48,7 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state);
 // `tears`: a sheet, which has holes where it was torn.
 void skinVertices(const DeformModel& model, DeformState& state, bool tears = false);
-// One step of a sheet: pass soft, and before every fourth pass ties.
+// One step of a sheet: pass soft, and before every fourth pass link_cache.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);
 // One step of the published springs; `lost`: m that every node recedes in it.

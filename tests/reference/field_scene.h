@@ -18,10 +18,10 @@ inline void addDefaultSource(FieldRules& rules, const FieldLook& look) noexcept 
     source.rate = emissionRate(look.amount);
 }
 
-// Sets a cell to `n` particles, at most gpu::kFieldCellMost, at rest.
+// Sets a cell to `n` particles, at most gpu::kMaxFieldCell, at rest.
 inline void fillCell(Field& field, uint32_t x, uint32_t y, uint32_t n) noexcept {
     field.cells[size_t(y) * field.width + x] =
-        gpu::fieldCell(std::min(n, gpu::kFieldCellMost), gpu::uvec2(gpu::kFieldStill));
+        gpu::fieldCell(std::min(n, gpu::kMaxFieldCell), gpu::uvec2(gpu::kFieldStill));
 }
 
 }  // namespace fw::field

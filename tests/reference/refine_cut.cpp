@@ -42,7 +42,7 @@ void refineShell(const RefineModel& model, const RefineState& state, float now, 
             uint32_t solid = 0;
             for (int k = 0; k < 3; ++k) {
                 slots[k] = model.draws[gpu::refineDrawVertex(t, levels, codes[k])].slot;
-                if (gpu::refineField(state.vertices[slots[k]].hole, now) > 0) solid |= 1u << k;
+                if (gpu::secondsToHole(state.vertices[slots[k]].hole, now) > 0) solid |= 1u << k;
             }
             const gpu::RefineCut cut = gpu::refineCut(solid, openSides(model, t, levels, codes));
             if (cut.points == 0) {
@@ -71,8 +71,8 @@ glm::vec3 refineCornerPlace(const RefineModel& model, const RefineState& state, 
     const glm::vec3 a = placeOf(model, state, corner.low, inner);
     if (high == corner.low) return a;
     return gpu::refineCutPoint(a, placeOf(model, state, high, inner),
-                               gpu::refineField(state.vertices[corner.low].hole, now),
-                               gpu::refineField(state.vertices[high].hole, now));
+                               gpu::secondsToHole(state.vertices[corner.low].hole, now),
+                               gpu::secondsToHole(state.vertices[high].hole, now));
 }
 
 bool refineHoled(const RefineModel& model, const RefineState& state, float now, uint32_t triangle) {

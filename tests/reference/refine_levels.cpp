@@ -60,9 +60,9 @@ void aim(const RefineModel& model, const RefineSettings& settings, const RefineF
          RefineState& state) {
     for (size_t e = 0; e < model.edges.size(); ++e) {
         if (asleep(state.edges[e], state.edgeHeat[e])) continue;
-        gpu::refineAim(state.edges[e], state.edgeHeat[e],
-                       lodOf(model, settings, frame, model.edges[e]),
-                       float(model.edges[e].flags & 15), frame.now, settings.cool);
+        gpu::setRefineTarget(state.edges[e], state.edgeHeat[e],
+                             lodOf(model, settings, frame, model.edges[e]),
+                             float(model.edges[e].flags & 15), frame.now, settings.cool);
     }
     for (size_t i = 0; i < model.triangles.size(); ++i) {
         if (asleep(state.interiors[i], state.interiorHeat[i])) continue;
@@ -70,8 +70,8 @@ void aim(const RefineModel& model, const RefineSettings& settings, const RefineF
         float lod = 0;
         for (const uint32_t e : t.edge)
             lod = std::max(lod, lodOf(model, settings, frame, model.edges[e]));
-        gpu::refineAim(state.interiors[i], state.interiorHeat[i], lod,
-                       float(gpu::refineInteriorDepth(t.flags)), frame.now, settings.cool);
+        gpu::setRefineTarget(state.interiors[i], state.interiorHeat[i], lod,
+                             float(gpu::refineInteriorDepth(t.flags)), frame.now, settings.cool);
     }
 }
 
@@ -80,33 +80,33 @@ void aim(const RefineModel& model, const RefineSettings& settings, const RefineF
 float edgeWant(const RefineState& state, uint32_t e, float bias) {
     const float target = state.edges[e].target;
     if (target == 0 || bias == 0) return target;
-    return gpu::refineBiased(target, bias, gpu::refineSpread(e * 2, state.edgeHeat[e]));
+    return gpu::biasedLevel(target, bias, gpu::levelLossOrder(e * 2, state.edgeHeat[e]));
 }
 float interiorWant(const RefineState& state, uint32_t i, float bias) {
     const float target = state.interiors[i].target;
     if (target == 0 || bias == 0) return target;
-    return gpu::refineBiased(target, bias, gpu::refineSpread(i * 2 + 1, state.interiorHeat[i]));
+    return gpu::biasedLevel(target, bias, gpu::levelLossOrder(i * 2 + 1, state.interiorHeat[i]));
 }
 
 uint32_t packed(const RefineState& state, const gpu::RefineTriangle& t, uint32_t interior) {
     const uint32_t a = state.edgeTops[t.edge[0]], b = state.edgeTops[t.edge[1]],
                    c = state.edgeTops[t.edge[2]];
-    return gpu::refinePack(a, b, c, gpu::refineFit(a, b, c, interior));
+    return gpu::refinePack(a, b, c, gpu::fitInterior(a, b, c, interior));
 }
 
 // Triangles that the targets come to with this bias; stops counting above `most`.
 uint64_t aimedCount(const RefineModel& model, RefineState& state, float bias, uint64_t most) {
     for (uint32_t e = 0; e < model.edges.size(); ++e)
-        state.edgeTops[e] = uint8_t(gpu::refineTop(edgeWant(state, e, bias)));
+        state.edgeTops[e] = uint8_t(gpu::topLevel(edgeWant(state, e, bias)));
     uint64_t sum = 0;
     for (uint32_t i = 0; i < model.triangles.size() && sum <= most; ++i)
         sum += gpu::refineCount(
-            packed(state, model.triangles[i], gpu::refineTop(interiorWant(state, i, bias))));
+            packed(state, model.triangles[i], gpu::topLevel(interiorWant(state, i, bias))));
     return sum;
 }
 
 // The least of sixteen biases that fits the budget.
-float leastBias(const RefineModel& model, RefineState& state, uint32_t budget) {
+float minBias(const RefineModel& model, RefineState& state, uint32_t budget) {
     for (uint32_t k = 0; k + 1 < gpu::kRefineBiases; ++k) {
         const float bias = float(k) * gpu::kRefineBiasStep;
         if (aimedCount(model, state, bias, budget) <= budget) return bias;
@@ -118,21 +118,21 @@ float leastBias(const RefineModel& model, RefineState& state, uint32_t budget) {
 uint8_t move(const RefineSettings& settings, const RefineFrame& frame, float want,
              gpu::RefineLevel& level) {
     const float before = level.level;
-    gpu::refineMove(level, want, frame.now, frame.dt, settings.morph ? settings.rate : 1e9f,
-                    settings.grace);
-    if (!settings.morph) level.level = float(gpu::refineTop(level.level));
+    gpu::moveRefineLevel(level, want, frame.now, frame.dt, settings.morph ? settings.rate : 1e9f,
+                         settings.grace);
+    if (!settings.morph) level.level = float(gpu::topLevel(level.level));
     return level.level != before || frame.now - level.lastHot < settings.cool ? 1 : 0;
 }
 
 // Levels of all triangles from those of edges and interiors; the triangles they make.
 uint64_t packAll(const RefineModel& model, RefineState& state) {
     for (uint32_t e = 0; e < model.edges.size(); ++e)
-        state.edgeTops[e] = uint8_t(gpu::refineTop(state.edges[e].level));
+        state.edgeTops[e] = uint8_t(gpu::topLevel(state.edges[e].level));
     uint64_t sum = 0;
     for (uint32_t i = 0; i < model.triangles.size(); ++i) {
         const uint32_t before = state.levels[i];
         state.levels[i] =
-            packed(state, model.triangles[i], gpu::refineTop(state.interiors[i].level));
+            packed(state, model.triangles[i], gpu::topLevel(state.interiors[i].level));
         if (state.levels[i] != before) state.interiorMoving[i] = 1;
         sum += gpu::refineCount(state.levels[i]);
     }
@@ -179,8 +179,8 @@ void refineHeat(const BurnDomain& domain, std::span<const uint32_t> tileFlags, b
             for (int u = std::max(0, x - 1); u <= std::min(width - 1, x + 1); ++u)
                 tiles[size_t(v * width + u)] |= gpu::kRefineHot;
         const TileStatic& tile = domain.tiles[t];
-        for (uint32_t r = 0; r < tile.readerCount; ++r)
-            tiles[domain.readers[tile.readerStart + r]] |= gpu::kRefineHot;
+        for (uint32_t r = 0; r < tile.dependentCount; ++r)
+            tiles[domain.readers[tile.dependentStart + r]] |= gpu::kRefineHot;
     }
 }
 
@@ -188,7 +188,7 @@ void refineLevels(const RefineModel& model, const RefineSettings& settings,
                   const RefineFrame& frame, RefineState& state) {
     warm(model, frame, state);
     aim(model, settings, frame, state);
-    state.bias = leastBias(model, state, settings.budget);
+    state.bias = minBias(model, state, settings.budget);
     for (uint32_t e = 0; e < state.edges.size(); ++e)
         state.edgeMoving[e] = move(settings, frame, edgeWant(state, e, state.bias), state.edges[e]);
     for (uint32_t i = 0; i < state.interiors.size(); ++i)

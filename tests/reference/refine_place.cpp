@@ -39,8 +39,8 @@ class Placer {
             opposite =
                 arrival(slot.opposite & 0xFFFFFFu, gpu::refineOppositeWeights(slot.opposite));
         const glm::vec4 v =
-            gpu::refineEvaluate(slot, own, opposite, frame_.now,
-                                frame_.burnSeconds[slot.texel >> 24], settings_.recede);
+            gpu::evaluateSlot(slot, own, opposite, frame_.now, frame_.burnSeconds[slot.texel >> 24],
+                              settings_.recede);
         state_.vertices[s] = {v.x, v.y, v.z, v.w};
         ++state_.placed;
     }
@@ -67,8 +67,8 @@ class Placer {
         const float level = state_.edges[e].level;
         const bool still = (state_.edgeHeat[e] & gpu::kRefineBurning) == 0 &&
                            state_.edgeShown[e] == level && settings_.skipStill;
-        const uint32_t l = gpu::refineTop(level), steps = 1u << l;
-        const float age = gpu::refineAge(level, l);
+        const uint32_t l = gpu::topLevel(level), steps = 1u << l;
+        const float age = gpu::levelMorphAge(level, l);
         const bool same = settings_.skipStill && state_.edgeShown[e] == level && age >= 1;
         state_.edgeMoved[e] = still ? 0 : 1;
         state_.edgeShown[e] = level;
@@ -92,7 +92,7 @@ class Placer {
     void edgeFate(uint32_t e) {
         if (state_.edgeMoving[e] == 0) return;
         const gpu::RefineEdge& edge = model_.edges[e];
-        const uint32_t l = gpu::refineTop(state_.edges[e].level);
+        const uint32_t l = gpu::topLevel(state_.edges[e].level);
         for (uint32_t i = 0; i <= 1u << l; ++i)
             state_.edgeFate[e] |= fateOf(gpu::refineEdgeSlot(edge, i, l));
     }
@@ -128,7 +128,7 @@ class Placer {
         }
         const float level = state_.interiors[i].level;
         // A fit to its sides has no age of its own.
-        const float age = gpu::refineTop(level) == m ? gpu::refineAge(level, m) : 1;
+        const float age = gpu::topLevel(level) == m ? gpu::levelMorphAge(level, m) : 1;
         const float shown = float(m) - 1 + age;
         bool still = (state_.interiorHeat[i] & gpu::kRefineBurning) == 0 &&
                      state_.interiorShown[i] == shown && settings_.skipStill;

@@ -1,5 +1,5 @@
 // Recorded input logs, played through the C ABI: the same maps after every step as when they were
-// recorded, on the cpu backend and on a lent Vulkan device. README.md tells of the files.
+// recorded, on the cpu backend and on a host Vulkan device. README.md tells of the files.
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "replay/replay_log.h"

@@ -1,8 +1,8 @@
 #include "support/burn_scene.h"
 
+#include "components/appearance_table.h"
+#include "components/appearance_textures.h"
 #include "components/fire_flames.h"
-#include "components/look_table.h"
-#include "components/look_textures.h"
 #include "components/view_params.h"
 #include "fire/heat.h"
 #include "fire/presets.h"
@@ -116,8 +116,8 @@ constexpr uint32_t kReferenceDepth = 2;
 
 void BurnScene::addPublished() {
     auto* memory = std::pmr::get_default_resource();
-    referenceModel = std::make_shared<const mesh::ArpModel>(mesh::makeArpModel(
-        domains[0], mesh::bakeRefine(domains[0], mesh::arpOptions(kReferenceDepth), memory),
+    referenceModel = std::make_shared<const mesh::PatternModel>(mesh::makePatternModel(
+        domains[0], mesh::bakeRefine(domains[0], mesh::patternOptions(kReferenceDepth), memory),
         kReferenceDepth, memory));
 }
 
@@ -145,8 +145,8 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     if (object.reference) {
         init.refine = true;
         init.refineDepth = kReferenceDepth;
-        init.arpModel = referenceModel.get();
-        init.arp = mesh::arpSettings(*referenceModel, 0, 0, 0.3f);
+        init.patternModel = referenceModel.get();
+        init.pattern = mesh::patternSettings(*referenceModel, 0, 0, 0.3f);
     }
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
@@ -182,7 +182,7 @@ void BurnScene::create(gpu::Backend& backend) const {
         auto* memory = std::pmr::get_default_resource();
         backend.createRefinement(
             0, kReferenceDepth, true, domains[0],
-            mesh::bakeRefine(domains[0], mesh::arpOptions(kReferenceDepth), memory), {});
+            mesh::bakeRefine(domains[0], mesh::patternOptions(kReferenceDepth), memory), {});
     }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));
 }
@@ -307,8 +307,8 @@ OwnedPlan PlanMaker::next(uint32_t count, bool maps, uint32_t switches) {
 }
 
 gpu::LookSources testLooks() {
-    static const std::vector<gpu::MaterialLook> table = [] {
-        std::vector<gpu::MaterialLook> rows;
+    static const std::vector<gpu::MaterialAppearance> table = [] {
+        std::vector<gpu::MaterialAppearance> rows;
         for (uint32_t i = 0; i < components::kLookCount; ++i)
             rows.push_back(components::materialLook(i));
         return rows;
@@ -358,7 +358,7 @@ gpu::VolumeFlame flameAlone(const FwVolumetricFireDef& def, float seconds) {
     components::VolumetricFire fire(memory);
     components::makeVolumetricFire(def, 1, fire);
     components::FireFlames flames(memory);
-    flames.findRoom(fire.partCount);
+    flames.reserveFlames(fire.partCount);
     gpu::VolumeFlame flame{};
     for (float t = 0; t < seconds; t += 0.1f) {
         flames.begin();
@@ -421,7 +421,7 @@ std::vector<FrameAnswer> VkRig::finish() {
     gpu::FramePlan nothing;  // an empty frame that only completes the others
     run(nothing);
     frames.waitAll();
-    return takeAnswers();
+    return applyAnswers();
 }
 
 }  // namespace fw::test

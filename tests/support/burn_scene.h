@@ -29,7 +29,7 @@ struct BurnScene {
     std::vector<mesh::BurnDomain> domains;
     std::vector<SceneObject> objects;
     std::vector<mesh::DeformModel> models;  // one per domain if an object deforms
-    std::shared_ptr<const mesh::ArpModel>
+    std::shared_ptr<const mesh::PatternModel>
         referenceModel;  // of the first mesh, if an object refines as in the reference
                          // implementation
 
@@ -109,7 +109,7 @@ class VkRig {
     void run(const gpu::FramePlan& plan);
     // Recorded in the same command buffer, after the outside part.
     std::function<void(const FwVulkanFrame&)> alsoRecord;
-    std::vector<FrameAnswer> takeAnswers() { return std::exchange(answers_, {}); }
+    std::vector<FrameAnswer> applyAnswers() { return std::exchange(answers_, {}); }
     // Waits and fetches the outstanding answers.
     std::vector<FrameAnswer> finish();
 

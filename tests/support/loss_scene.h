@@ -70,13 +70,13 @@ class LossScene {
                 one != std::end(kSaves) && result == FW_OK && (requested = *one) > from)
                 result = fwWorld_RequestSave(world);
             if (result == FW_OK) result = step(world, 1.0f / 16);
-            takeSave();
+            completeSave();
             if (result == FW_OK && picture && frame % 3 == 1) result = picture(world);
         }
         return result;
     }
     // Takes a new save; FW_OK, or a valid result if there is none.
-    FwResult takeSave() {
+    FwResult completeSave() {
         if (requested == 0) return FW_OK;
         uint64_t size = 0;
         FwResult result = fwWorld_FetchSave(world, nullptr, &size);

@@ -12,7 +12,7 @@ class ParticleReference {
  public:
     explicit ParticleReference(const FwFireEmitterDef& def, uint32_t ownSeed = 1) {
         components::makeFireEmitter(def, ownSeed, emitter);
-        emitter.ring = std::max(components::emitterNeeds(emitter), 1u);
+        emitter.ring = std::max(components::particlesNeeded(emitter), 1u);
         particles.resize(emitter.ring);
     }
     // False if no particle is left.
@@ -71,7 +71,7 @@ class ParticleReference {
                 const float reach = p.hit.w < 0 ? std::min(0.12f * size, 0.12f) : 0.0f;
                 float least = 2;
                 gpu::vec4 disc(0.0f), normal(e.up);
-                for (uint32_t k = 0; k < e.shieldCount; ++k) {
+                for (uint32_t k = 0; k < e.obstacleCount; ++k) {
                     const float f =
                         gpu::particleMeets(from, gpu::vec3(p.placeAge), e.shields[2 * k],
                                            gpu::vec3(e.shields[2 * k + 1]), reach);

@@ -107,7 +107,7 @@ class RefineRig {
                          phase == 2 ? 1 : push_.edgeGroups + push_.triangleGroups);
         });
         for (gpu::RefineLevel& item : of<gpu::RefineLevel>(FW_BIND_REFINE_ITEMS))
-            if (!morph) item.level = float(gpu::refineTop(item.level));
+            if (!morph) item.level = float(gpu::topLevel(item.level));
         device_.run([&](VkCommandBuffer commands) {
             rig_.begin(commands);
             dispatch(commands, 1, 0, 1);

@@ -226,9 +226,9 @@ inline mesh::RefineOptions unsplit(uint32_t depth, float cellTexels = 0) {
 inline uint32_t levelOf(const mesh::RefineModel& model, const mesh::RefineState& state, uint32_t i,
                         uint32_t interior) {
     const gpu::RefineTriangle& t = model.triangles[i];
-    const auto top = [&](uint32_t k) { return gpu::refineTop(state.edges[t.edge[k]].level); };
+    const auto top = [&](uint32_t k) { return gpu::topLevel(state.edges[t.edge[k]].level); };
     return gpu::refinePack(top(0), top(1), top(2),
-                           gpu::refineFit(top(0), top(1), top(2), interior));
+                           gpu::fitInterior(top(0), top(1), top(2), interior));
 }
 
 // Sets random levels; returns the number of output edges that must have no partner.

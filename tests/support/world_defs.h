@@ -17,8 +17,8 @@ inline FwWorldDef plainWorldDef(uint32_t flags) {
     def.maxFlames = 256;
     def.maxRefinedTriangles = 1000;
     def.spreadChance = 1;
-    def.volumeCell = 2;
-    def.volumeSteps = 64;
+    def.volumePixelSize = 2;
+    def.rayStepCount = 64;
     def.arrivalTiles = 1024;
     def.volumeOctaves = 4;
     return def;

@@ -105,9 +105,9 @@ void besideCreateDestroyAndStep(FwContext* context, int rounds) {
             EXPECT_LE(0, fwWorld_ReadLights(world, lights, &count));
             FwEvent events[8];
             (void)fwWorld_PollEvents(world, events, 8);
-            FwVulkanWishes requests{};
+            FwVulkanRequirements requests{};
             requests.structSize = sizeof requests;
-            EXPECT_EQ(FW_OK, fwQueryVulkanWishes(&requests));
+            EXPECT_EQ(FW_OK, fwQueryVulkanRequirements(&requests));
             FwWorld* passing = nullptr;
             EXPECT_EQ(FW_OK, fwCreateWorld(context, &worldDef, &passing));
             EXPECT_EQ(FW_OK, fwWorld_DestroyAfterFrame(passing, 0));

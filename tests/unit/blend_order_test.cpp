@@ -14,7 +14,7 @@ using gpu::Orderer;
 using gpu::PlacedBy;
 
 TEST(BlendOrder, TheDeviceSortsWhatItPlaces) {
-    for (const uint32_t hiding : {1u, 1000u, gpu::kMostQuads})
+    for (const uint32_t hiding : {1u, 1000u, gpu::kMaxQuads})
         EXPECT_EQ(Orderer::Device, gpu::ordererOf(PlacedBy::Device, hiding));
 }
 
@@ -31,8 +31,8 @@ TEST(BlendOrder, AdditiveDrawsAreNotSorted) {
 // On every device the sort's shared memory holds as many items as it compares.
 TEST(BlendOrder, TheSortFitsInSharedMemory) {
     EXPECT_EQ(1024u, gpu::fewQuads(true));
-    EXPECT_EQ(gpu::kMostFewQuads, gpu::fewQuads(false));
-    EXPECT_LE(gpu::fewQuads(true), gpu::kMostFewQuads);
+    EXPECT_EQ(gpu::kMaxFewQuads, gpu::fewQuads(false));
+    EXPECT_LE(gpu::fewQuads(true), gpu::kMaxFewQuads);
 }
 
 TEST(BlendOrder, SortsFarthestFirstThenByIndex) {

@@ -61,7 +61,7 @@ TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
         for (int j = 0; j < kSide; ++j)
             for (int i = 0; i < kSide; ++i) {
                 const vec2 uv((float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide);
-                seen.push_back(book::showBook(made, time, uv).y);
+                seen.push_back(book::sampleFlipbook(made, time, uv).y);
                 sum += double(seen.back());
                 x += double(seen.back()) * (i + 0.5), y += double(seen.back()) * (j + 0.5);
             }
@@ -144,10 +144,10 @@ TEST(Flipbook, LoopsWithoutASeam) {
 TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
     size_t all = 0;
     for (uint32_t preset = 1; preset < FW_FLIPBOOK_PRESET_COUNT; ++preset) {
-        const auto bytes = book::ownBook(preset, memory());
+        const auto bytes = book::presetFlipbook(preset, memory());
         all += bytes.size();
         book::Book made(memory());
-        ASSERT_NO_THROW(book::readBook(bytes, made)) << preset;
+        ASSERT_NO_THROW(book::readFlipbook(bytes, made)) << preset;
         const book::Kind kind = preset <= FW_FLIPBOOK_PUFF   ? book::Kind::Fire
                                 : preset <= FW_FLIPBOOK_HAZE ? book::Kind::Smoke
                                                              : book::Kind::Spark;
@@ -180,22 +180,23 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
     std::vector<book::Book> books;
     for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SPARK, FW_FLIPBOOK_HAZE}) {
         books.emplace_back(memory());
-        book::readBook(book::ownBook(preset, memory()), books.back());
+        book::readFlipbook(book::presetFlipbook(preset, memory()), books.back());
     }
     const book::Book* const laid[] = {&books[0], nullptr, &books[1], &books[2]};
-    const book::Picture picture = book::layBooks(laid, memory());
-    EXPECT_LE(picture.width, book::kMostPicture);
+    const book::Picture picture = book::packFlipbooks(laid, memory());
+    EXPECT_LE(picture.width, book::kMaxPicture);
     std::vector<uint8_t> taken(size_t(picture.width) * picture.height);
     for (uint32_t slot = 0; slot < 4; ++slot) {
         if (!laid[slot]) continue;
         const book::Facts& f = laid[slot]->facts;
-        gpu::BookRecord record;
-        std::memcpy(&record, picture.words.data() + slot * gpu::kBookRecordWords, sizeof record);
+        gpu::FlipbookRecord record;
+        std::memcpy(&record, picture.words.data() + slot * gpu::kFlipbookRecordWords,
+                    sizeof record);
         EXPECT_EQ(f.frames, record.frames);
         for (uint32_t frame = 0; frame < f.frames; ++frame)
             for (const bool motion : {false, true}) {
-                const auto at =
-                    motion ? gpu::bookMotionCell(record, frame) : gpu::bookCell(record, frame);
+                const auto at = motion ? gpu::flipbookMotionOrigin(record, frame)
+                                       : gpu::flipbookFrameOrigin(record, frame);
                 const uint32_t w = motion ? f.motionWidth : f.width;
                 const uint32_t h = motion ? f.motionHeight : f.height, bytes = motion ? 2 : 4;
                 const auto& from = motion ? laid[slot]->motion : laid[slot]->texels;
@@ -220,17 +221,17 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
 // frames or levels share a texel, so no lookup bleeds.
 TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
     book::Book one(memory());
-    book::readBook(book::ownBook(FW_FLIPBOOK_FLAME, memory()), one);
+    book::readFlipbook(book::presetFlipbook(FW_FLIPBOOK_FLAME, memory()), one);
     const book::Book* const laid[] = {&one};
-    const book::Picture picture = book::layBooks(laid, memory());
-    gpu::BookRecord record;
+    const book::Picture picture = book::packFlipbooks(laid, memory());
+    gpu::FlipbookRecord record;
     std::memcpy(&record, picture.words.data(), sizeof record);
     const uint32_t ats[] = {record.at, record.at1, record.at2, record.at3};
     const auto texel = [&](uint32_t x, uint32_t y) {
         return &picture.texels[4 * (size_t(y) * picture.width + x)];
     };
-    for (uint32_t level = 1; level < gpu::kBookLevels; ++level) {
-        gpu::BookRecord big = record, small = record;
+    for (uint32_t level = 1; level < gpu::kFlipbookLevels; ++level) {
+        gpu::FlipbookRecord big = record, small = record;
         big.at = ats[level - 1];
         small.at = ats[level];
         ASSERT_NE(0u, small.at) << level;
@@ -238,7 +239,8 @@ TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
         small.size = (one.facts.width >> level) | (one.facts.height >> level) << 16;
         const uint32_t w = small.size & 0xFFFF, h = small.size >> 16;
         for (uint32_t frame = 0; frame < one.facts.frames; ++frame) {
-            const gpu::uvec2 from = gpu::bookCell(big, frame), at = gpu::bookCell(small, frame);
+            const gpu::uvec2 from = gpu::flipbookFrameOrigin(big, frame),
+                             at = gpu::flipbookFrameOrigin(small, frame);
             for (uint32_t y = 0; y < h; ++y)
                 for (uint32_t x = 0; x < w; ++x)
                     for (uint32_t c = 1; c < 4; ++c) {
@@ -255,11 +257,11 @@ TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
         }
     }
     // With as many texels as pixels or fewer, level 0; then one level per halving.
-    EXPECT_EQ(0u, gpu::bookLevel(64, 128, 0.99f));
-    EXPECT_EQ(0u, gpu::bookLevel(64, 64, 0.99f));
-    EXPECT_EQ(1u, gpu::bookLevel(64, 32, 0.0f));
-    EXPECT_EQ(1u, gpu::bookLevel(64, 32, 0.99f));
-    EXPECT_EQ(3u, gpu::bookLevel(64, 0.1f, 0.0f));
+    EXPECT_EQ(0u, gpu::flipbookLevel(64, 128, 0.99f));
+    EXPECT_EQ(0u, gpu::flipbookLevel(64, 64, 0.99f));
+    EXPECT_EQ(1u, gpu::flipbookLevel(64, 32, 0.0f));
+    EXPECT_EQ(1u, gpu::flipbookLevel(64, 32, 0.99f));
+    EXPECT_EQ(3u, gpu::flipbookLevel(64, 0.1f, 0.0f));
 }
 
 TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
@@ -269,7 +271,7 @@ TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
     huge.facts.frames = 256;
     const book::Book* const laid[] = {&huge};
     try {
-        (void)book::layBooks(laid, memory());
+        (void)book::packFlipbooks(laid, memory());
         FAIL();
     } catch (const core::Error& error) {
         EXPECT_EQ(FW_ERROR_OUT_OF_MEMORY, error.result);
@@ -280,7 +282,7 @@ TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
 TEST(Flipbook, ShowsTheStatedHeightAndLight) {
     const book::Book fire = smallBook("campfire", 24, 4);
     EXPECT_GT(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).y, 0.5f);
-    EXPECT_GT(gpu::bookKelvin(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).x), 1200);
+    EXPECT_GT(gpu::flipbookKelvin(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).x), 1200);
     for (const char* scene : {"roll", "smoke"}) {
         const book::Book puff = smallBook(scene, 16, 3);
         const bool smoke = puff.facts.kind == book::Kind::Smoke;
@@ -303,7 +305,7 @@ std::string saidOf(std::span<const std::byte> bytes) {
     book::Book book(memory());
     book.facts.frames = 77;
     try {
-        book::readBook(bytes, book);
+        book::readFlipbook(bytes, book);
     } catch (const core::Error& error) {
         EXPECT_EQ(book.facts.frames, 77u);
         return error.message;
@@ -313,13 +315,13 @@ std::string saidOf(std::span<const std::byte> bytes) {
 
 TEST(Flipbook, RefusesBadFilesByName) {
     const book::Book made = spots(16, vec2(5, 5), vec2(1, 1));
-    const auto whole = book::cookBook(made, memory());
+    const auto whole = book::cookFlipbook(made, memory());
     EXPECT_EQ(saidOf(whole), "");
     book::Book again(memory());
-    book::readBook(whole, again);
+    book::readFlipbook(whole, again);
     EXPECT_EQ(again.texels, made.texels);
     EXPECT_EQ(again.motion, made.motion);
-    EXPECT_EQ(again.facts.motionMost, made.facts.motionMost);
+    EXPECT_EQ(again.facts.maxMotion, made.facts.maxMotion);
     for (size_t cut = 0; cut < whole.size(); cut += 1 + cut / 3)
         EXPECT_NE(saidOf(std::span(whole).first(cut)), "") << cut;
     const auto changed = [&](size_t at, uint8_t to) {
@@ -332,7 +334,7 @@ TEST(Flipbook, RefusesBadFilesByName) {
     EXPECT_NE(changed(16, 7).find("kind is 7; it must lie in [0, 2]"), std::string::npos);
     EXPECT_NE(changed(24, 3).find("width is 3; it must lie in [8, 512]"), std::string::npos);
     EXPECT_NE(changed(32, 9).find("9 frames of 16 x 16 need"), std::string::npos);
-    EXPECT_NE(changed(47, 0x7F).find("motionMost is"), std::string::npos);
+    EXPECT_NE(changed(47, 0x7F).find("maxMotion is"), std::string::npos);
     EXPECT_NE(changed(52, 1).find("reserved word is 1"), std::string::npos);
     EXPECT_NE(changed(whole.size() - 1, uint8_t(whole.back()) ^ 1).find("checksum"),
               std::string::npos);

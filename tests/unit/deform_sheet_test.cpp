@@ -58,14 +58,14 @@ struct Sheet {
     void run(int steps) {
         for (int i = 0; i < steps; ++i) mesh::sheetStep(model, object, drive, state);
     }
-    vec3 at(const gpu::DeformNode& node) const {
+    vec3 at(const gpu::DeformParticle& node) const {
         const gpu::ShownVertex& v = state.shown[node.vertex];
         return {v.x, v.y, v.z};
     }
     vec3 nearest(vec3 rest) const {
-        const gpu::DeformNode* best = nullptr;
+        const gpu::DeformParticle* best = nullptr;
         float least = 1e30f;
-        for (const gpu::DeformNode& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.nodes) {
             const float d = gpu::length(vec3(node.x, node.y, node.z) - rest);
             if (d >= least) continue;
             least = d;
@@ -75,12 +75,12 @@ struct Sheet {
     }
     template <class Of>
     void burn(Of of) {
-        for (const gpu::DeformNode& node : model.nodes)
+        for (const gpu::DeformParticle& node : model.nodes)
             state.shown[node.vertex].burnt = of(vec3(node.x, node.y, node.z));
     }
     double kinetic() const {
         double sum = 0;
-        for (const gpu::DeformNode& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.nodes) {
             const vec3 v = state.soft[node.vertex].place[state.parity] - at(node);
             sum += double(gpu::dot(v, v)) / double(drive.step) / double(drive.step) / 2;
         }
@@ -90,7 +90,7 @@ struct Sheet {
     double energy() const {
         const double perStep = 1 / double(drive.step) / double(drive.step);
         double sum = kinetic();
-        for (const gpu::DeformNode& node : model.nodes) {
+        for (const gpu::DeformParticle& node : model.nodes) {
             const DeformState::Soft& self = state.soft[node.vertex];
             for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
                 const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
@@ -105,7 +105,7 @@ struct Sheet {
             for (int kind = 0; kind < 2;
                  ++kind) {  // bending constraints of one direction, previous step
                 const vec3 bend = self.bend[kind];
-                const float relax = stiff * (kind ? gpu::kArmRelax : gpu::kBendRelax);
+                const float relax = stiff * (kind ? gpu::kBendSetRelax : gpu::kBendRelax);
                 sum += double(gpu::dot(bend, bend)) / 2 / double(relax) * perStep;
             }
         }
@@ -114,11 +114,11 @@ struct Sheet {
     // Largest ratio of length to rest length over intact links.
     double stretch() const {
         double worst = 0;
-        for (const gpu::DeformNode& node : model.nodes)
+        for (const gpu::DeformParticle& node : model.nodes)
             for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
                 const float rest = gpu::unpackHalf2x16(node.ringLength[k / 2])[int(k & 1)];
                 if (!(rest > 0)) continue;
-                const gpu::DeformNode& other = model.nodes[model.nodeOf[node.ring[k]]];
+                const gpu::DeformParticle& other = model.nodes[model.nodeOf[node.ring[k]]];
                 if (!gpu::linkHolds(
                         state.shown[node.vertex].burnt, state.shown[other.vertex].burnt,
                         gpu::linkOdds(model.nodeOf[node.vertex], model.nodeOf[other.vertex])))
@@ -132,7 +132,7 @@ struct Sheet {
 TEST(DeformSheet, StaysFlatWithoutFireOrForce) {
     Sheet s(16, paper(30));
     s.run(500);
-    for (const gpu::DeformNode& node : s.model.nodes)
+    for (const gpu::DeformParticle& node : s.model.nodes)
         ASSERT_LT(gpu::length(s.at(node) - vec3(node.x, node.y, node.z)), 1e-4f);
 }
 
@@ -144,7 +144,7 @@ TEST(DeformSheet, EnergyNeverGrows) {
         Sheet s(16, object);
         std::mt19937 random(5);
         std::uniform_real_distribution<float> off(-0.0005f, 0.0005f);
-        for (const gpu::DeformNode& node : s.model.nodes) {
+        for (const gpu::DeformParticle& node : s.model.nodes) {
             vec3& p = s.state.soft[node.vertex].place[0];
             p += vec3(off(random), off(random), off(random) + 0.01f * std::sin(20 * node.x));
         }
@@ -180,7 +180,7 @@ Curl curlOf(float step, float curl) {
     s.burn([](vec3 at) { return 0.75f * std::max(0.0f, 2 * at.x / float(kPaper) - 1); });
     s.run(int(8.0f / step));
     Curl made;
-    for (const gpu::DeformNode& node : s.model.nodes) {
+    for (const gpu::DeformParticle& node : s.model.nodes) {
         const double z = std::fabs(double(s.at(node).z));
         made.most = std::max(made.most, z);
     }
@@ -260,7 +260,7 @@ double bendsInWind(int cells, float stiffness, bool arms) {
     s.drive.wind = {0.2f, 0, 2};
     std::vector<uint32_t> at(size_t(cells + 1) * size_t(cells + 1));
     const float cell = float(kPaper) / float(cells);
-    for (gpu::DeformNode& node : s.model.nodes) {
+    for (gpu::DeformParticle& node : s.model.nodes) {
         if (!arms) std::fill(std::begin(node.arms), std::end(node.arms), kNone);
         const auto column = size_t(std::lround(node.x / cell));
         at[size_t(std::lround(node.y / cell)) * size_t(cells + 1) + column] = node.vertex;
@@ -309,7 +309,7 @@ TEST(DeformSheet, PinsHoldFromTheFirstStep) {
     float worst = 0;
     for (int step = 0; step < 128; ++step) {
         s.run(1);
-        for (const gpu::DeformNode& node : s.model.nodes)
+        for (const gpu::DeformParticle& node : s.model.nodes)
             worst = std::max(worst, gpu::length(s.at(node) - vec3(node.x, node.y, node.z)));
     }
     EXPECT_LT(worst, 0.02f * float(kPaper));
@@ -356,9 +356,9 @@ double springSpread(float share) {
     constexpr float kRest = 0.0625f;
     DeformModel model(std::pmr::new_delete_resource());
     DeformState state(std::pmr::new_delete_resource());
-    model.coats.resize(kNodes);
+    model.embeddings.resize(kNodes);
     for (uint32_t i = 0; i < kNodes; ++i) {
-        gpu::DeformNode node{};
+        gpu::DeformParticle node{};
         node.x = kRest * float(i);
         node.vertex = i;
         std::fill(std::begin(node.ring), std::end(node.ring), i);
@@ -367,8 +367,8 @@ double springSpread(float share) {
         node.ring[1] = i + 1 < kNodes ? i + 1 : i;
         node.ringLength[0] = gpu::packHalf2x16({i ? kRest : 0.0f, i + 1 < kNodes ? kRest : 0.0f});
         model.nodes.push_back(node);
-        model.coats[i].node = i;
-        for (uint32_t& other : model.coats[i].ring) other = i;
+        model.embeddings[i].node = i;
+        for (uint32_t& other : model.embeddings[i].ring) other = i;
     }
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
@@ -407,7 +407,7 @@ TEST(DeformSprings, DecayMovesInwardsByTheLostDepth) {
     for (int i = 0; i < 128; ++i)
         mesh::springStep(model, object, kSheetStep, lost, gpu::kSpringDamping, state);
     double sum = 0;
-    for (const gpu::DeformNode& node : model.nodes) {
+    for (const gpu::DeformParticle& node : model.nodes) {
         const gpu::ShownVertex& v = state.shown[node.vertex];
         const float r = gpu::length(vec3(v.x, v.y, v.z));
         ASSERT_GT(r, 0.05f);

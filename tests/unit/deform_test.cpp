@@ -64,10 +64,10 @@ TEST(DeformMaths, PicksTheMipByEquation9) {
 
 TEST(DeformMaths, NormalsRotateWithTheirFaces) {
     const vec3 x(1, 0, 0), y(0, 1, 0), z(0, 0, 1);
-    EXPECT_EQ(z, gpu::turnedNormal(z, y, y));
-    EXPECT_NEAR(0, gpu::length(gpu::turnedNormal(x, x, y) - y), 1e-6f);
-    EXPECT_NEAR(0, gpu::length(gpu::turnedNormal(z, x, y) - z), 1e-6f);
-    EXPECT_EQ(-x, gpu::turnedNormal(y, x, -x));
+    EXPECT_EQ(z, gpu::rotateNormal(z, y, y));
+    EXPECT_NEAR(0, gpu::length(gpu::rotateNormal(x, x, y) - y), 1e-6f);
+    EXPECT_NEAR(0, gpu::length(gpu::rotateNormal(z, x, y) - z), 1e-6f);
+    EXPECT_EQ(-x, gpu::rotateNormal(y, x, -x));
     for (const vec3 v : {x, y, -z, vec3(0.6f, 0, -0.8f)})
         EXPECT_NEAR(0, gpu::length(gpu::unpackDirection(gpu::packDirection(v)) - v), 2e-3f);
 }
@@ -77,8 +77,8 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
     const BurnDomain domain = bakeOf(box.input(64));
     const DeformModel model = modelOf(domain);
     EXPECT_EQ(98u, model.nodes.size());  // 6 * 25, less 12 edges * 3, less 8 corners * 2
-    ASSERT_EQ(domain.vertices.size(), model.coats.size());
-    for (const gpu::DeformNode& node : model.nodes) {
+    ASSERT_EQ(domain.vertices.size(), model.embeddings.size());
+    for (const gpu::DeformParticle& node : model.nodes) {
         const float at[3] = {node.x, node.y, node.z}, out[3] = {node.outX, node.outY, node.outZ};
         for (int k = 0; k < 3; ++k) {
             const float side = at[k] > 0.199f ? -1.0f : (at[k] < -0.199f ? 1.0f : 0.0f);
@@ -87,8 +87,8 @@ TEST(DeformModel, CornersOfABoxRecedeOnAllThreeFaces) {
         EXPECT_NEAR(0.05f / std::sqrt(2.0f) /
                         std::sqrt(out[0] * out[0] + out[1] * out[1] + out[2] * out[2]),
                     node.limit, 1e-3f);
-        EXPECT_LT(0u, node.flags >> gpu::kNodeRingShift & 15u);
-        EXPECT_TRUE(node.flags & gpu::kNodeClosed);
+        EXPECT_LT(0u, node.flags >> gpu::kParticleRingShift & 15u);
+        EXPECT_TRUE(node.flags & gpu::kParticleClosed);
     }
 }
 
@@ -101,19 +101,19 @@ TEST(DeformModel, BendingConstraintsAreMutualAndRunsAgree) {
         const DeformModel model = modelOf(domain);
         size_t armed = 0;
         for (uint32_t i = 0; i < model.nodes.size(); ++i) {
-            const gpu::DeformNode& node = model.nodes[i];
+            const gpu::DeformParticle& node = model.nodes[i];
             ASSERT_EQ(i, model.nodeOf[node.vertex]);
-            const gpu::DeformNode& first = model.nodes[i / gpu::kDeformRun * gpu::kDeformRun];
-            constexpr uint32_t kShared = (7u << gpu::kNodeTurnsShift) | gpu::kNodeHasArms;
+            const gpu::DeformParticle& first = model.nodes[i / gpu::kDeformRun * gpu::kDeformRun];
+            constexpr uint32_t kShared = (7u << gpu::kParticlePassesShift) | gpu::kParticleHasBends;
             EXPECT_EQ(first.flags & kShared, node.flags & kShared) << i;
-            EXPECT_GE((node.flags >> gpu::kNodeTurnsShift & 7u) * gpu::kDeformLinks,
-                      node.flags >> gpu::kNodeRingShift & 15u);
-            for (uint32_t arm = 0; arm < 2 * gpu::kArmWays; ++arm) {
+            EXPECT_GE((node.flags >> gpu::kParticlePassesShift & 7u) * gpu::kLinksPerPass,
+                      node.flags >> gpu::kParticleRingShift & 15u);
+            for (uint32_t arm = 0; arm < 2 * gpu::kBendSets; ++arm) {
                 if (node.arms[arm] == kNone) continue;
-                const gpu::DeformNode& other = model.nodes[model.nodeOf[node.arms[arm]]];
+                const gpu::DeformParticle& other = model.nodes[model.nodeOf[node.arms[arm]]];
                 EXPECT_EQ(node.vertex, other.arms[arm ^ 1]);
-                EXPECT_EQ(node.armLength[arm], other.armLength[arm ^ 1]);
-                EXPECT_NEAR(arm < 4 ? model.span : 0.6f * model.span, node.armLength[arm],
+                EXPECT_EQ(node.bendLength[arm], other.bendLength[arm ^ 1]);
+                EXPECT_NEAR(arm < 4 ? model.span : 0.6f * model.span, node.bendLength[arm],
                             0.15f * model.span);
                 ++armed;
             }
@@ -238,7 +238,7 @@ TEST(DeformTierA, SlabsOpenOnBothSidesTogether) {
     for (uint32_t now = 1; now < uint32_t(1000 * kTicksPerSecond); now += kTicksPerSecond) {
         mesh::recede(model, object, states, now, state);
         for (size_t i = 0; i < model.nodes.size(); ++i) {
-            const gpu::DeformNode& node = model.nodes[i];
+            const gpu::DeformParticle& node = model.nodes[i];
             const uint32_t t = states[node.texels[0]];
             const float age = now > t ? seconds(now - t) : 0;
             if (openAt[i] == 0 && age + state.shown[node.vertex].behind >= whole)
@@ -259,7 +259,7 @@ TEST(DeformTierA, SlabsOpenOnBothSidesTogether) {
     EXPECT_LT(worst, 0.05);
     // Both lit together: 462 s on either side.
     const std::vector<uint32_t> together = allLit(domain);
-    for (const gpu::DeformNode& node : model.nodes) {
+    for (const gpu::DeformParticle& node : model.nodes) {
         state = restOf(model);
         mesh::recede(model, object, together, 1 + uint32_t(439 * kTicksPerSecond), state);
         EXPECT_LT(439 + state.shown[node.vertex].behind, whole);

@@ -4,7 +4,7 @@
 #include "fire/presets.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_backend.h"
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 #include "support/meshes.h"
 #include "support/world_defs.h"
 #include "world/world.h"
@@ -146,13 +146,13 @@ TEST(Exchange, OccluderBoxesAgreeWithRealArithmetic) {
         const components::Pose pose = randomPose(random, 1);
         const float half[3] = {float(random() % 4000) / 1000, float(random() % 2000) / 1000,
                                float(random() % 800) / 1000};
-        gpu::Blocker blocker{};
-        components::placeBlocker(pose, half, blocker);
+        gpu::HeatOccluder occluder{};
+        components::placeHeatOccluder(pose, half, occluder);
         int end[2][3];
         for (auto& p : end)
             for (int& value : p) value = int(random() % 8000) - 4000;
-        const bool isCut = gpu::blockerCuts(blocker, ivec3(end[0][0], end[0][1], end[0][2]),
-                                            ivec3(end[1][0], end[1][1], end[1][2]));
+        const bool isCut = gpu::occluderBlocks(occluder, ivec3(end[0][0], end[0][1], end[0][2]),
+                                               ivec3(end[1][0], end[1][1], end[1][2]));
         // Clipped in doubles without the ray's ends; `slack` grows or shrinks the box.
         const auto cuts = [&](double slack) {
             double a[3], d[3], length = 0;
@@ -197,22 +197,22 @@ TEST(Exchange, OccluderBoxesAgreeWithRealArithmetic) {
 
 TEST(Exchange, TheReportedSourceDoesNotDependOnOrder) {
     EXPECT_EQ(0u, gpu::hopsOf(0));
-    EXPECT_EQ(gpu::kNoneTexel, gpu::giverOf(gpu::kLitByHand));
+    EXPECT_EQ(gpu::kNoneTexel, gpu::igniterOf(gpu::kLitByHand));
     std::mt19937 random(7);
     for (int i = 0; i < 1000; ++i) {
         const uint32_t hops = random() % 200, from = random() % 100000;
         const uint32_t by = gpu::litBy(hops, from);
         EXPECT_EQ(hops + 1, gpu::hopsOf(by));
-        EXPECT_EQ(from, gpu::giverOf(by));
+        EXPECT_EQ(from, gpu::igniterOf(by));
         EXPECT_GT(gpu::kLitByHand, by);
         EXPECT_GT(by, gpu::litBy(hops + 1, 0));
         EXPECT_GT(by, gpu::litBy(hops, from + 1));
     }
     uint32_t may = 0;
     for (uint32_t to = 0; to < 20000; ++to) {
-        may += gpu::mayJump(9, 3, to, 128, gpu::kChanceOne / 4) ? 1 : 0;
-        EXPECT_TRUE(gpu::mayJump(9, 3, to, 128, gpu::kChanceOne));
-        EXPECT_FALSE(gpu::mayJump(9, 3, to, 128, 0));
+        may += gpu::mayReach(9, 3, to, 128, gpu::kChanceOne / 4) ? 1 : 0;
+        EXPECT_TRUE(gpu::mayReach(9, 3, to, 128, gpu::kChanceOne));
+        EXPECT_FALSE(gpu::mayReach(9, 3, to, 128, 0));
     }
     EXPECT_NEAR(5000, may, 250);
 }
@@ -264,10 +264,10 @@ TEST(Exchange, EmbersFollowTheirRateAndLandDownwind) {
 
 struct Placed {
     mesh::BurnDomain domain{std::pmr::get_default_resource()};
-    gpu::RemoteObject place{};
+    gpu::ExchangeObject place{};
     Placed(const Mesh& mesh, double density, const components::Pose& pose)
         : domain(mesh::bake(mesh.input(density), std::pmr::get_default_resource())) {
-        components::placeRemote(pose, domain, place);
+        components::placeExchangeObject(pose, domain, place);
     }
     [[nodiscard]] glm::dvec3 real(const components::Pose& pose, uint32_t texel) const {
         const mesh::TexelPosition& p = domain.texels[texel];
@@ -289,7 +289,7 @@ TEST(Exchange, PlacesAreExactToAMillimetre) {
         for (uint32_t texel = 0; texel < placed.domain.texelCount(); texel += 7) {
             if (!placed.domain.real(texel)) continue;
             const mesh::TexelPosition& p = placed.domain.texels[texel];
-            const ivec3 at = gpu::remotePlace(placed.place, ivec3(p.x, p.y, p.z));
+            const ivec3 at = gpu::toWorldMm(placed.place, ivec3(p.x, p.y, p.z));
             const glm::dvec3 real = placed.real(pose, texel);
             const double allowed = 1.6 + double(pose.scale) * 0.2;
             for (int k = 0; k < 3; ++k) {
@@ -307,19 +307,19 @@ TEST(Exchange, PlacesAreExactToAMillimetre) {
 
 TEST(Exchange, TilesHaveCentresNormalsAndCells) {
     const Placed placed(makeCube(0.6, 3), 64, {});
-    std::pmr::vector<gpu::RemoteTile> tiles;
-    const uint32_t cells = mesh::remoteTiles(placed.domain, tiles);
+    std::pmr::vector<gpu::ExchangeTile> tiles;
+    const uint32_t cells = mesh::exchangeTiles(placed.domain, tiles);
     EXPECT_EQ(cells, mesh::sourceCells(placed.domain));
     EXPECT_GE(cells, 20u);
     EXPECT_LE(cells, 27u);  // a hollow grid of 3 x 3 x 3
     uint32_t texels = 0, seen = 0;
-    for (const gpu::RemoteTile& tile : tiles) {
+    for (const gpu::ExchangeTile& tile : tiles) {
         texels += tile.texels;
         if (tile.texels < 64) continue;  // tiles that lie within one face
         ++seen;
         EXPECT_LT(gpu::tileCell(tile), cells);
         const ivec3 n = gpu::decodeNormal(tile.normal);
-        const ivec3 at = gpu::remotePlace(placed.place, gpu::tileMiddle(tile));
+        const ivec3 at = gpu::toWorldMm(placed.place, gpu::tileMiddle(tile));
         for (int k = 0; k < 3; ++k)
             if (std::abs(n[k]) > 16000) {
                 EXPECT_NEAR(n[k] > 0 ? 300 : -300, at[k], 3);
@@ -453,7 +453,7 @@ TEST(Exchange, ContactsAreTheNearestOfAllPairs) {
             const Placed &to = boxes[side], &from = boxes[1 - side];
             const auto placeOf = [](const Placed& box, uint32_t texel) {
                 const mesh::TexelPosition& p = box.domain.texels[texel];
-                return gpu::remotePlace(box.place, ivec3(p.x, p.y, p.z));
+                return gpu::toWorldMm(box.place, ivec3(p.x, p.y, p.z));
             };
             std::map<uint32_t, mesh::Contact> found;  // by block of its texel
             const auto blockOf = [&](uint32_t texel) {

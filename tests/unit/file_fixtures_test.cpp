@@ -35,7 +35,7 @@ TEST(FileFixtures, FireProfileLoads) {
 
 TEST(FileFixtures, FlipbookLoads) {
     book::Book book(std::pmr::get_default_resource());
-    book::readBook(contentOf("small.fwbook"), book);
+    book::readFlipbook(contentOf("small.fwbook"), book);
     EXPECT_EQ(book::Kind::Fire, book.facts.kind);
     EXPECT_EQ(1u, book.facts.loops);
     EXPECT_EQ(16u, book.facts.width);

@@ -44,7 +44,7 @@ struct Burning {
 
 TEST(FireFlames, AFailedFrameChangesNothing) {
     Burning once(60, 0.6f), twice(60, 0.6f);
-    for (Burning* b : {&once, &twice}) b->flames.findRoom(1);
+    for (Burning* b : {&once, &twice}) b->flames.reserveFlames(1);
     for (int k = 0; k < 20; ++k) {
         once.frame(1.0f / 32);
         twice.plan(0.4f);  // planned and not committed
@@ -58,10 +58,10 @@ TEST(FireFlames, AFailedFrameChangesNothing) {
 TEST(FireFlames, FlamesBeyondTheCapacityAreOmitted) {
     Burning b(10, 2);
     ASSERT_LT(8u, b.fire.partCount);
-    EXPECT_EQ(5u, b.flames.findRoom(5));
+    EXPECT_EQ(5u, b.flames.reserveFlames(5));
     b.frame(1.0f / 32);
     EXPECT_EQ(5u, b.flames.now().size());
-    EXPECT_EQ(size_t(gpu::kMaxVolumeFlames), b.flames.findRoom(1000));
+    EXPECT_EQ(size_t(gpu::kMaxVolumeFlames), b.flames.reserveFlames(1000));
     b.frame(1.0f / 32);
     EXPECT_EQ(b.fire.partCount, b.flames.now().size());
 }
@@ -70,7 +70,7 @@ TEST(FireFlames, FlamesBeyondTheCapacityAreOmitted) {
 // jumps.
 TEST(FireFlames, DivisionKeepsThePowerContinuous) {
     Burning b(600, 1.3f);
-    b.flames.findRoom(128);
+    b.flames.reserveFlames(128);
     b.frame(1.0f / 32);
     EXPECT_EQ(1u, b.flames.now().size());
     components::setFirePower(b.fire, 8);
@@ -117,7 +117,7 @@ TEST(VolumeTiers, AFlameKeepsItsTier) {
     for (int k = 0; k < 40; ++k) frame();
     uint32_t turns = 0, tier = lives[places[0]].tier;
     for (int k = 0; k < 200; ++k) {
-        items[0].wide = k % 2 ? lod::kCardInside + 0.1f : lod::kCardOutside - 0.1f;
+        items[0].wide = k % 2 ? lod::kImpostorInside + 0.1f : lod::kImpostorOutside - 0.1f;
         frame();
         turns += lives[places[0]].tier != tier;
         tier = lives[places[0]].tier;
@@ -163,13 +163,13 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
             lod::chooseTiers(items, gpu::kMaxVolumeFlames, {}, lives, places);
     };
     frames(1);
-    EXPECT_EQ(16u, count(FW_FIRE_TIER_FLIPBOOK));
+    EXPECT_EQ(16u, count(FW_FIRE_TIER_SHARED_IMPOSTOR));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_IMPOSTOR));
     EXPECT_EQ(16u, count(FW_FIRE_TIER_MARCH_LOW));
     // The device's budget limits them too.
     for (int k = 0; k < 40; ++k)
         lod::chooseTiers(items, gpu::kMaxVolumeFlames, {4, 8}, lives, places);
-    EXPECT_EQ(28u, count(FW_FIRE_TIER_FLIPBOOK));
+    EXPECT_EQ(28u, count(FW_FIRE_TIER_SHARED_IMPOSTOR));
 
     // By size: an impostor below 24 px, kept up to 31; a billboard below 10, kept up to 13.
     items.resize(2);
@@ -178,21 +178,21 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
         frames(40);
         return lives[places[0]].tier;
     };
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookInside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kBookInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kAtlasOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kAtlasInside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(lod::kAtlasInside - 1));
     EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, lives[places[1]].tier) << "it has no impostor";
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kBookOutside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kCardInside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kCardOutside - 1));
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(lod::kAtlasOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kImpostorInside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(lod::kImpostorOutside - 1));
+    EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(lod::kImpostorOutside + 1));
     items[0].shared = false;  // it keeps its impostor and takes no other
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(lod::kCardOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kBookOutside + 1));
-    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kCardOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(lod::kImpostorOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kAtlasOutside + 1));
+    EXPECT_EQ(FW_FIRE_TIER_MARCH_HIGH, settle(lod::kImpostorOutside + 1));
     // A flame that requests an impostor gets it, or a billboard.
-    items[0].asked = FW_FIRE_TIER_FLIPBOOK;
-    EXPECT_EQ(FW_FIRE_TIER_FLIPBOOK, settle(100));
+    items[0].asked = FW_FIRE_TIER_SHARED_IMPOSTOR;
+    EXPECT_EQ(FW_FIRE_TIER_SHARED_IMPOSTOR, settle(100));
     items[0].booked = false;
     EXPECT_EQ(FW_FIRE_TIER_IMPOSTOR, settle(100));
 }
@@ -201,10 +201,10 @@ TEST(VolumeTiers, SimilarFlamesShareAnImpostor) {
 // another flame's frames.
 TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     constexpr uint32_t kFlames = 12;
-    auto books = std::make_unique<lod::VolumeBookShelf>();
-    std::vector<lod::BookItem> items(kFlames);
-    std::vector<uint32_t> had(kFlames, lod::kNoBook), out(kFlames);
-    std::vector<lod::BookReader> readers(kFlames);
+    auto books = std::make_unique<lod::ImpostorAtlases>();
+    std::vector<lod::AtlasItem> items(kFlames);
+    std::vector<uint32_t> had(kFlames, lod::kNoAtlas), out(kFlames);
+    std::vector<lod::AtlasCursor> readers(kFlames);
     for (uint32_t i = 0; i < kFlames; ++i) {
         items[i].kind = {i < 9 ? 7u : 8u, 0.5f + 0.01f * float(i), 2, 0.1f, true};
         items[i].key = 100 + i;
@@ -214,11 +214,11 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     items[8].kind.wide = 1;  // too wide
     items[11].kind.plain = false;
     const auto frame = [&] {
-        lod::chooseBooks(items, had, 2, *books, out);
-        for (lod::VolumeBook& book : *books)
-            if (book.used) book.pages[book.written++ % lod::kBookPages].run = book.run;
+        lod::chooseAtlases(items, had, 2, *books, out);
+        for (lod::ImpostorAtlas& book : *books)
+            if (book.used) book.pages[book.written++ % lod::kAtlasFrames].run = book.run;
         for (uint32_t i = 0; i < items.size(); ++i) {
-            if (out[i] == lod::kNoBook) continue;
+            if (out[i] == lod::kNoAtlas) continue;
             readers[i].read(out[i], *books);
             had[i] = out[i];
         }
@@ -227,27 +227,27 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
     frame();
     EXPECT_EQ(103u, (*books)[0].key) << "the largest flame";
     EXPECT_EQ(8u, (*books)[0].shares);
-    EXPECT_EQ(lod::kNoBook, out[11]);
+    EXPECT_EQ(lod::kNoAtlas, out[11]);
     // With two impostors the second goes to the first flame without one.
     EXPECT_EQ(108u, (*books)[1].key);
-    EXPECT_EQ(lod::kNoBook, out[9]) << "there are only two";
+    EXPECT_EQ(lod::kNoAtlas, out[9]) << "there are only two";
     for (int k = 0; k < 40; ++k) frame();
     std::set<uint64_t> late;
     for (uint32_t i = 0; i < 8; ++i) late.insert((*books)[0].written - 1 - readers[i].at);
     EXPECT_GE(late.size(), 6u);
     EXPECT_EQ((*books)[0].written - 1, readers[3].at) << "its own frames as they are written";
-    EXPECT_LE(*late.rbegin() + lod::kBookTurn, lod::kBookPages);
+    EXPECT_LE(*late.rbegin() + lod::kAtlasFrameStep, lod::kAtlasFrames);
 
     // Another flame's frames: each reader switches to them in turn.
     items[3].wants = false;
     items[4].covers = 1.5f;
     uint32_t turns = 0;
-    for (uint32_t k = 0; k < lod::kBookPages; ++k) {
-        const std::vector<lod::BookReader> last = readers;
+    for (uint32_t k = 0; k < lod::kAtlasFrames; ++k) {
+        const std::vector<lod::AtlasCursor> last = readers;
         frame();
         EXPECT_NE(103u, (*books)[0].key);
         for (uint32_t i = 0; i < 8; ++i) {
-            const lod::BookReader& r = readers[i];
+            const lod::AtlasCursor& r = readers[i];
             if (i == 3) continue;
             if (r.turned == 1) {
                 ++turns;
@@ -255,7 +255,7 @@ TEST(VolumeTiers, ImpostorsAreReadFrameByFrame) {
             } else {
                 EXPECT_EQ(last[i].at + 1, r.at) << i;
             }
-            EXPECT_LT((*books)[0].written - r.at, lod::kBookPages);
+            EXPECT_LT((*books)[0].written - r.at, lod::kAtlasFrames);
         }
     }
     EXPECT_EQ(7u, turns) << "each once";

@@ -125,7 +125,7 @@ TEST(Fire, PresetsAreValidAndNamed) {
     std::vector<std::string> names;
     for (uint32_t p = 0; p < FW_MATERIAL_PRESET_COUNT; ++p) {
         EXPECT_NO_THROW(fire::checkMaterial(fire::presetDef(p))) << p;
-        EXPECT_EQ(fire::presetDef(p).look, p);
+        EXPECT_EQ(fire::presetDef(p).appearance, p);
         names.emplace_back(fire::presetName(p));
     }
     std::sort(names.begin(), names.end());
@@ -154,7 +154,7 @@ TEST(Fire, RefusesBadMaterialsByName) {
               std::string::npos);
     EXPECT_NE(message([](FwMaterialDef& d) { d.baseColor[2] = INFINITY; }).find("baseColor[2]"),
               std::string::npos);
-    EXPECT_NE(message([](FwMaterialDef& d) { d.look = 14; }).find("look is 14"), std::string::npos);
+    EXPECT_NE(message([](FwMaterialDef& d) { d.appearance = 14; }).find("appearance is 14"), std::string::npos);
 }
 
 // Every valid material stays within the kernel's ranges.

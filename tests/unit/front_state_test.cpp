@@ -184,7 +184,7 @@ TEST(Front, EqualityTestCatchesMutants) {
     EXPECT_FALSE(differs(0, true));
     EXPECT_TRUE(differs(FW_DEBUG_NO_SEAM_WAKE, false));
     std::printf("no seam wake: differs at step %u\n", failedAt);
-    EXPECT_TRUE(differs(FW_DEBUG_WRONG_READERS, false));
+    EXPECT_TRUE(differs(FW_DEBUG_WRONG_DEPENDENTS, false));
     std::printf("wrong readers: differs at step %u\n", failedAt);
     EXPECT_TRUE(differs(FW_DEBUG_NO_WIND_WAKE, true));
     std::printf("no wake on a wind key: differs at step %u\n", failedAt);

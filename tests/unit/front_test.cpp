@@ -95,8 +95,8 @@ TEST(Front, KernelSurvivesExtremes) {
         m.driveY = part();
         m.driveZ = part();
         m.upCeiling = {0, uint32_t(-1024), 0, 0};
-        const gpu::FrontPrep p =
-            gpu::frontPrep(gpu::decodeNormal(random()), 1 + random() % 65535, m);
+        const gpu::FrontDrive p =
+            gpu::prepareFront(gpu::decodeNormal(random()), 1 + random() % 65535, m);
         gpu::FrontRing ring;
         for (int k = 0; k < 8; ++k) {
             ring.tick[k] = random() >> (random() % 20) & 0x7FFFFFFFu;
@@ -132,7 +132,7 @@ TEST(Front, SourcesAfterTheNextWakeChangeNothing) {
         const auto part = [&] { return random() % 3 ? int(random() % 2049) - 1024 : 0; };
         m.driveX = part();
         m.driveY = part();
-        const gpu::FrontPrep p = gpu::frontPrep({0, 0, 16384}, 96 + random() % 64, m);
+        const gpu::FrontDrive p = gpu::prepareFront({0, 0, 16384}, 96 + random() % 64, m);
         const int unit = 100 + int(random() % 900), skew = int(random() % 3) * unit / 3;
         const uint32_t now = 100000, floorTick = 99000;
         gpu::FrontRing ring;

@@ -74,14 +74,14 @@ TEST(Governor, HigherLevelsOnlyReduceDetail) {
         const gpu::Detail more = world::detailOf(level - 1), less = world::detailOf(level);
         EXPECT_LE(less.marched, more.marched);
         EXPECT_LE(less.marchedHigh, more.marchedHigh);
-        EXPECT_LE(less.volumeSteps, more.volumeSteps);
+        EXPECT_LE(less.rayStepCount, more.rayStepCount);
         EXPECT_LT(less.triangles, more.triangles);
         EXPECT_GT(less.triangles, 0.0f);
         EXPECT_LE(less.lights, more.lights);
         EXPECT_GE(gpu::lightsOf(less, 1), 1u);
         EXPECT_EQ(gpu::lightsOf(less, 0), 0u);
         EXPECT_GE(less.marched, 1u);
-        EXPECT_GE(less.volumeSteps, 6u);
+        EXPECT_GE(less.rayStepCount, 6u);
     }
     EXPECT_EQ(world::detailOf(0), gpu::Detail{});
     EXPECT_EQ(world::detailOf(1000), world::detailOf(world::kDetailLevels - 1));

@@ -1,6 +1,6 @@
 // Cells of the heat-occlusion grid: a segment meets exactly the cells it crosses, and objects fill
 // the right cells.
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 
 #include "components/remote.h"
 #include "mesh/bake.h"
@@ -15,46 +15,47 @@
 namespace fw::test {
 namespace {
 
-using components::ShieldShape;
+using components::OcclusionGridShape;
 using gpu::ivec3;
 
-ShieldShape shapeOf(uint32_t x, uint32_t y, uint32_t z, uint32_t cell) {
-    ShieldShape shape;
+OcclusionGridShape shapeOf(uint32_t x, uint32_t y, uint32_t z, uint32_t cell) {
+    OcclusionGridShape shape;
     shape.counts = {x, y, z};
     shape.origin = {-700, 300, 1000};
     shape.cell = cell;
     return shape;
 }
 
-gpu::ExchangePush rulesOf(const ShieldShape& shape) {
+gpu::ExchangePush rulesOf(const OcclusionGridShape& shape) {
     gpu::ExchangePush rules{};
-    rules.shieldX = shape.origin[0];
-    rules.shieldY = shape.origin[1];
-    rules.shieldZ = shape.origin[2];
-    rules.shieldCell = shape.cell;
-    rules.shieldCounts = components::countsOf(shape);
+    rules.occlusionX = shape.origin[0];
+    rules.occlusionY = shape.origin[1];
+    rules.occlusionZ = shape.origin[2];
+    rules.occlusionCell = shape.cell;
+    rules.occlusionCounts = components::countsOf(shape);
     return rules;
 }
 
-std::vector<uint32_t> walked(const ShieldShape& shape, ivec3 a, ivec3 b) {
+std::vector<uint32_t> walked(const OcclusionGridShape& shape, ivec3 a, ivec3 b) {
     std::vector<uint32_t> cells;
-    for (gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shape), a, b); w.within;
-         gpu::shieldStep(w, shape.cell)) {
+    for (gpu::OcclusionWalk w = gpu::beginOcclusionWalk(rulesOf(shape), a, b); w.within;
+         gpu::stepOcclusionWalk(w, shape.cell)) {
         cells.push_back(w.cell);
-        if (cells.size() > 3 * gpu::kShieldSide) break;
+        if (cells.size() > 3 * gpu::kMaxOcclusionSide) break;
     }
     return cells;
 }
 
 // Points well inside a cell (3 mm, the precision of the grid entry) say which cells a segment must
 // meet.
-TEST(HeatShield, SegmentsMeetTheCellsTheyCross) {
+TEST(HeatOcclusion, SegmentsMeetTheCellsTheyCross) {
     std::mt19937 random(7);
     const auto below = [&](int most) { return int(random() % uint32_t(most)); };
     uint32_t met = 0, missed = 0;
     for (int i = 0; i < 2000; ++i) {
-        const ShieldShape shape = shapeOf(1 + uint32_t(below(30)), 1 + uint32_t(below(12)),
-                                          1 + uint32_t(below(30)), 50 + uint32_t(below(300)));
+        const OcclusionGridShape shape =
+            shapeOf(1 + uint32_t(below(30)), 1 + uint32_t(below(12)), 1 + uint32_t(below(30)),
+                    50 + uint32_t(below(300)));
         ivec3 ends[2];
         for (ivec3& end : ends)
             for (int k = 0; k < 3; ++k) {
@@ -98,17 +99,17 @@ TEST(HeatShield, SegmentsMeetTheCellsTheyCross) {
 }
 
 // Far away and at the ends of the world nothing overflows; sanitizers check this.
-TEST(HeatShield, DistantSegmentsMeetNothing) {
-    ShieldShape shape = shapeOf(256, 32, 256, 10000);
+TEST(HeatOcclusion, DistantSegmentsMeetNothing) {
+    OcclusionGridShape shape = shapeOf(256, 32, 256, 10000);
     shape.origin = {1000000000, -1000000000, 0};
     for (const int at : {-2000000000, -40000, 0, 40000, 2000000000})
         EXPECT_TRUE(walked(shape, {at, at, -at / 2}, {at + 30000, at, -at / 2}).empty());
     EXPECT_TRUE(walked(shapeOf(4, 4, 4, 100), {-600, 400, 1100}, {-600, 400, 1100}).size() <= 1);
-    EXPECT_TRUE(walked(ShieldShape{}, {0, 0, 0}, {100, 0, 0}).empty());
+    EXPECT_TRUE(walked(OcclusionGridShape{}, {0, 0, 0}, {100, 0, 0}).empty());
 }
 
 // A slanted plane has no gap from either side: each segment through it meets one of its cells.
-TEST(HeatShield, ObjectsFillTheCellsOfTheirTexels) {
+TEST(HeatOcclusion, ObjectsFillTheCellsOfTheirTexels) {
     const Mesh plane = makePlane(2, 2, 0, 1, 90);  // along x and z
     const mesh::BurnDomain domain = mesh::bake(plane.input(48), std::pmr::get_default_resource());
     for (const float turn : {0.0f, 0.3f, 0.78f}) {
@@ -129,31 +130,31 @@ TEST(HeatShield, ObjectsFillTheCellsOfTheirTexels) {
                                0,
                                1};
         const components::Pose pose = components::makePose(transform, "transform");
-        components::ShieldObject object;
+        components::OcclusionObject object;
         object.slot = 5;
         object.domain = &domain;
-        components::placeRemote(pose, domain, object.place);
+        components::placeExchangeObject(pose, domain, object.place);
         object.texelSide = uint32_t(domain.texelSide * 1000);
-        ShieldShape shape;
+        OcclusionGridShape shape;
         shape.counts = {60, 60, 60};
         shape.origin = {-500, -500, -500};
         shape.cell = 60;
-        components::HeatShield shield(std::pmr::get_default_resource());
+        components::HeatOcclusion shield(std::pmr::get_default_resource());
         shield.shape = shape;
         shield.solid.assign(shape.words(), 0);
-        components::bakeShield(shape, {&object, 1}, shield.baked);
+        components::bakeOcclusion(shape, {&object, 1}, shield.baked);
         std::pmr::vector<uint32_t> words;
-        components::packShield(shield, words);
+        components::packOcclusion(shield, words);
         ASSERT_EQ(3 * shape.words() + 2 * shield.baked.size(), words.size());
         for (size_t i = 0; i < shield.baked.size(); ++i) {
             const uint32_t cell = shield.baked[i].cell;
             ASSERT_TRUE(words[cell / 32] >> cell % 32 & 1);
-            ASSERT_EQ(5u, shield.baked[i].what & gpu::kShieldSlot);
+            ASSERT_EQ(5u, shield.baked[i].what & gpu::kOcclusionSlotMask);
             ASSERT_TRUE(domain.real(shield.baked[i].texel));
         }
         // About its area in cells, half as much more if slanted.
         EXPECT_LT(shield.baked.size(), size_t(2.2 * (2000.0 / 60) * (2000.0 / 60)));
-        components::ShieldView view{shape, words, {}};
+        components::OcclusionView view{shape, words, {}};
         std::mt19937 random(3);
         for (int i = 0; i < 500; ++i) {
             const auto within = [&] { return 0.2f + 1.4f * float(random() % 1000) / 1000; };
@@ -161,12 +162,12 @@ TEST(HeatShield, ObjectsFillTheCellsOfTheirTexels) {
             const float on[3] = {x * std::cos(turn), x * std::sin(turn), z};
             const float a[3] = {on[0] - up * std::sin(turn), on[1] + up * std::cos(turn), on[2]};
             const float b[3] = {on[0] + up * std::sin(turn), on[1] - up * std::cos(turn), on[2]};
-            ASSERT_TRUE(components::shieldShades(view, a, b, 0)) << turn << ", " << i;
+            ASSERT_TRUE(components::isShadedByOcclusion(view, a, b, 0)) << turn << ", " << i;
         }
         const uint8_t fallen[] = {0, 0, 0, 0, 0, 1};
         view.fallen = fallen;
         const float a[3] = {0.5f, 1.5f, 0.5f}, b[3] = {0.5f, -0.4f, 0.5f};
-        EXPECT_FALSE(components::shieldShades(view, a, b, 0));
+        EXPECT_FALSE(components::isShadedByOcclusion(view, a, b, 0));
     }
 }
 

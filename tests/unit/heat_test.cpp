@@ -36,7 +36,7 @@ gpu::HeatTexel atRest(float ambient, float moisture) {
     gpu::HeatTexel x{};
     x.fuel = gpu::kFuelFull;
     x.heat = fire::fixed(double(ambient), 16, 16000);
-    x.moist = fire::fixed(double(moisture), 128, gpu::kMoistMost);
+    x.moist = fire::fixed(double(moisture), 128, gpu::kMaxMoist);
     return x;
 }
 
@@ -143,7 +143,7 @@ TEST(Heat, WaterExtinguishesClothAndMustEvaporateBeforeReignition) {
     for (int i = 0; i < 32; ++i) burn.run(0);
     ASSERT_EQ(burn.texel.phase, gpu::kPhaseBurning);
 
-    gpu::heatWets(burn.texel, 250, burn.material);
+    gpu::wetTexel(burn.texel, 250, burn.material);
     EXPECT_EQ(burn.texel.film, 200u) << "the surplus runs off";
     uint32_t result = 0;
     for (int i = 0; i < 8 && !(result & gpu::kHeatExtinguishes); ++i) result |= burn.run(0);
@@ -179,7 +179,7 @@ TEST(Heat, EvaporationConsumesItsLatentHeat) {
         TexelBurn burn = texelOf(cloth);
         burn.texelIndex = i;
         burn.texel.heat = gpu::kBoiling;
-        gpu::heatWets(burn.texel, 200, burn.material);
+        gpu::wetTexel(burn.texel, 200, burn.material);
         while (!(burn.run(40000) & gpu::kHeatDries)) ASSERT_LT(burn.step, 3200u);
         // Net of the losses of a surface at 373 K by radiation and convection.
         const double net =
@@ -302,7 +302,7 @@ TEST(Heat, StaysInRangeForAnyInput) {
         facts.ownFlux = upTo(200000);
         facts.pyrolysis = upTo(1);
         facts.charFloor = upTo(1);
-        facts.filmMost = upTo(1023);
+        facts.maxFilm = upTo(1023);
         const double seconds = kHeatStep / 128 * std::pow(2.0, double(random() % 18));
         TexelBurn burn = texelOf(facts, seconds, upTo(1000));
         burn.texelIndex = random();
@@ -310,7 +310,7 @@ TEST(Heat, StaysInRangeForAnyInput) {
         const gpu::HeatTexel first = burn.texel;
         uint32_t fuel = first.fuel;
         for (int k = 0; k < 200; ++k) {
-            if (random() % 32 == 0) gpu::heatWets(burn.texel, random(), burn.material);
+            if (random() % 32 == 0) gpu::wetTexel(burn.texel, random(), burn.material);
             const uint32_t film = burn.texel.film, moist = burn.texel.moist;
             burn.run(random() % 3 ? random() % 200000 : random(), (random() & 1) != 0,
                      256 + random() % 257);
@@ -319,7 +319,7 @@ TEST(Heat, StaysInRangeForAnyInput) {
             ASSERT_LE(x.heat, 65535u);
             ASSERT_LE(x.film, film);
             ASSERT_LE(x.moist, moist);
-            ASSERT_LE(x.soaked, gpu::kSoaksOut);
+            ASSERT_LE(x.soaked, gpu::kSoakSteps);
             ASSERT_LE(x.charred, 255u);
             const gpu::HeatTexel same = gpu::unpackHeat(gpu::packHeat(x));
             ASSERT_EQ(gpu::packHeat(same), gpu::packHeat(x));

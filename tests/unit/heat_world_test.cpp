@@ -165,12 +165,13 @@ TEST(HeatMap, HotTilesFollowTheFireAndOthersSleep) {
         const gpu::HeatTexel x = sheet.at(k);
         EXPECT_EQ(0u, x.fuel);
         EXPECT_EQ(gpu::kPhaseBurnt, x.phase);
-        EXPECT_NEAR(double(x.heat), double(sheet.material.ambient), gpu::kLukewarm);
+        EXPECT_NEAR(double(x.heat), double(sheet.material.ambient), gpu::kSleepTolerance);
     }
 }
 
-// A warm texel takes one step in kRests, or one in four times as many where little arrives. Its
-// temperature must follow that of all steps, during and after the flux, and when the flux grows.
+// A warm texel takes one step in kSleepSteps, or one in four times as many where little arrives.
+// Its temperature must follow that of all steps, during and after the flux, and when the flux
+// grows.
 TEST(HeatMap, WarmTilesTakeOneStepInEight) {
     HotSheet sheet(fire::HeatFacts{}, 1e-4);
     const uint32_t tile = 2 * sheet.domain.tilesX + 2;
@@ -180,7 +181,7 @@ TEST(HeatMap, WarmTilesTakeOneStepInEight) {
     for (bool ends = false; !ends;) {
         const uint32_t now = sheet.now;
         sheet.step();
-        ends = world::heatsAt(now) && gpu::restEnds(tile, gpu::kNapFlux, now);
+        ends = world::heatsAt(now) && gpu::sleepEnds(tile, gpu::kLongSleepFlux, now);
     }
     const auto run = [&](uint32_t flux, int seconds) {
         sheet.backend.setTileHeat(0, tile, {flux, 1});
@@ -194,7 +195,7 @@ TEST(HeatMap, WarmTilesTakeOneStepInEight) {
             const uint32_t chance = gpu::heatChance(texel, gpu::hash32(now));
             gpu::heatStep(all, sheet.material, flux, 256, true, chance, burnt, water);
             changes += sheet.at(texel).heat != before ? 1 : 0;
-            if (gpu::restEnds(tile, flux, now))
+            if (gpu::sleepEnds(tile, flux, now))
                 apart = std::max(apart, std::fabs(double(sheet.at(texel).heat) - all.heat) / 16);
         }
         std::printf("under %u W/m^2 for %d s: %u of %d steps, %.1f K, at most %.2f K apart\n", flux,
@@ -204,8 +205,8 @@ TEST(HeatMap, WarmTilesTakeOneStepInEight) {
     };
     const uint32_t warms = run(3000, 120);
     EXPECT_GT(sheet.at(texel).heat, sheet.material.ambient + 16u * 30);
-    EXPECT_LT(warms, 120u + gpu::kRests);
-    EXPECT_LT(run(0, 120), 120u / 4 + gpu::kRests);
+    EXPECT_LT(warms, 120u + gpu::kSleepSteps);
+    EXPECT_LT(run(0, 120), 120u / 4 + gpu::kSleepSteps);
     const uint32_t hot = run(8000, 60);
     EXPECT_GT(hot, 60u * 8 * 9 / 10) << "it takes every step again";
 }

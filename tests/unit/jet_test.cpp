@@ -91,17 +91,17 @@ TEST(JetStream, DistributesAllOfItsPower) {
         const uint64_t all = std::accumulate(areas.begin(), areas.end(), uint64_t(0));
         const bool much = turn % 7 == 0;
         const uint64_t power =
-            much ? all * gpu::kFluxMost + pick(100000) : all * pick(400000) + pick(100000);
+            much ? all * gpu::kMaxFlux + pick(100000) : all * pick(400000) + pick(100000);
         std::vector<uint32_t> flux(areas.size());
-        const uint64_t left = components::shareJet(power, areas, flux);
+        const uint64_t left = components::updateJetShare(power, areas, flux);
         uint64_t given = 0;
         for (size_t i = 0; i < areas.size(); ++i) given += areas[i] * flux[i];
         EXPECT_EQ(power, given + left);
         const auto [low, high] = std::minmax_element(flux.begin(), flux.end());
         EXPECT_LE(*high - *low, 1u);
         if (much) {
-            EXPECT_EQ(gpu::kFluxMost, *low);
-        } else if (power < all * gpu::kFluxMost) {
+            EXPECT_EQ(gpu::kMaxFlux, *low);
+        } else if (power < all * gpu::kMaxFlux) {
             EXPECT_LT(left, *std::max_element(areas.begin(), areas.end()));
         }
     }
@@ -197,7 +197,7 @@ TEST(JetStream, ConservesPowerOnStretchedMeshes) {
         r.run(1.5, 1 / 32.0f);
         FwFireEmitterState state{};
         r.world->emitters().fillState(jet, state);
-        ASSERT_EQ(16u, state.struck) << c.x;
+        ASSERT_EQ(16u, state.blockedRays) << c.x;
         r.world->emitters().setPower(jet, 0);
         r.run(2.5, 1 / 32.0f);  // the stream in flight arrives
         const uint64_t ray = uint64_t(2000000.0 * double(0.35f) / 16 * 1e9);
@@ -232,22 +232,22 @@ TEST(JetStream, HitsTheSceneAtArrivalTime) {
     for (const bool comes : {false, true}) {
         Range r;
         r.wall(5);
-        FwBlockerDef door{};
+        FwHeatOccluderDef door{};
         door.structSize = sizeof door;
         for (int i = 0; i < 4; ++i) door.transform[i * 5] = 1;
         door.halfSize[1] = door.halfSize[2] = 3;
         door.halfSize[0] = 0.02f;
         door.transform[12] = 4.5f;
-        FwBlockerId id{};
-        if (!comes) id = r.world->exchange().addBlocker(door);
+        FwHeatOccluderId id{};
+        if (!comes) id = r.world->exchange().addHeatOccluder(door);
         const FwFireEmitterId jet = r.world->emitters().create(flamethrower());
         r.run(0.125, 1 / 32.0f);
         r.world->emitters().setPower(jet, 0);
         r.run(0.125, 1 / 32.0f);  // it has travelled some 2.8 m
         if (comes)
-            r.world->exchange().addBlocker(door);
+            r.world->exchange().addHeatOccluder(door);
         else
-            r.world->exchange().removeBlocker(id);
+            r.world->exchange().removeHeatOccluder(id);
         r.run(1, 1 / 32.0f);
         EXPECT_EQ(comes, r.book.list.empty());
     }

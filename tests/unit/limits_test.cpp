@@ -22,12 +22,12 @@ namespace limits = fw::limits;
 using namespace fw;
 
 static_assert(limits::kWindZones == components::kMaxWindZones &&
-              limits::kWindGridSide == components::kMostGridSide &&
-              limits::kWindGridPoints == components::kMostGridPoints &&
-              limits::kWind == uint32_t(fire::kMostWind) &&
+              limits::kWindGridSide == components::kMaxGridSide &&
+              limits::kWindGridPoints == components::kMaxGridPoints &&
+              limits::kWind == uint32_t(fire::kMaxWind) &&
               limits::kLights == components::kMostLights &&
-              limits::kFirePower == uint32_t(components::kMostPower) &&
-              limits::kStretch == uint32_t(components::kMostStretch) &&
+              limits::kFirePower == uint32_t(components::kMaxPower) &&
+              limits::kStretch == uint32_t(components::kMaxStretch) &&
               limits::kFlipbookSide == book::kMaxSide &&
               limits::kFlipbookFrames == book::kMaxFrames &&
               limits::kPreparedViews == FW_MAX_VIEWS);

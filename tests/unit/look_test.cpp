@@ -1,7 +1,7 @@
 // Data of the appearance: presets, textures, the view's uniform block. tests/golden covers the
 // pictures.
-#include "components/look_table.h"
-#include "components/look_textures.h"
+#include "components/appearance_table.h"
+#include "components/appearance_textures.h"
 #include "components/view_params.h"
 #include "gpu/passes/draw.h"
 
@@ -16,11 +16,11 @@
 namespace fw::components {
 namespace {
 
-using gpu::MaterialLook;
+using gpu::MaterialAppearance;
 
 TEST(LookTable, EveryPresetIsComplete) {
     for (uint32_t preset = 0; preset < kLookCount; ++preset) {
-        const MaterialLook m = materialLook(preset);
+        const MaterialAppearance m = materialLook(preset);
         SCOPED_TRACE(preset);
         EXPECT_EQ(m.spreadRate > 0, preset != FW_MATERIAL_NONCOMBUSTIBLE);
         // Shaders divide by these.
@@ -47,7 +47,7 @@ TEST(LookTable, OutOfRangePresetsDoNotBurn) {
 
 TEST(LookTable, CracksOpenWhileTheyGlow) {
     for (uint32_t preset = 0; preset < kLookCount; ++preset) {
-        const MaterialLook m = materialLook(preset);
+        const MaterialAppearance m = materialLook(preset);
         if (m.crackDepth > 0) {
             EXPECT_LT(m.crackTime, 0.6f * m.crackLife) << preset;
         }

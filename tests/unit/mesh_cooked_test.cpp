@@ -183,8 +183,8 @@ uint64_t touch(const BurnDomain& d) {
         sum += d.indices.at(d.triangleOf[i] * 3);
     }
     for (const mesh::TileStatic& tile : d.tiles)
-        for (uint32_t r = 0; r < tile.readerCount; ++r)
-            sum += d.tiles.at(d.readers.at(tile.readerStart + r)).rimBase;
+        for (uint32_t r = 0; r < tile.dependentCount; ++r)
+            sum += d.tiles.at(d.readers.at(tile.dependentStart + r)).rimBase;
     for (uint32_t index : d.indices) sum += d.vertices.at(index).tint;
     return sum;
 }

@@ -249,7 +249,7 @@ TEST(NetProtocol, PhasesLeadToPhases) {
             EXPECT_NE(net::kRefused, net::phaseAfter(phase, PeerEvent::begins)) << rule.name;
         }
         if (!rule.hasState) {
-            EXPECT_EQ(net::kRefused, net::phaseAfter(phase, PeerEvent::asksTiles)) << rule.name;
+            EXPECT_EQ(net::kRefused, net::phaseAfter(phase, PeerEvent::requestsTiles)) << rule.name;
         }
     }
     EXPECT_EQ(net::kRefused, net::phaseAfter(PeerPhase::calling, PeerEvent::loads));

@@ -230,14 +230,14 @@ TEST(Particles, WallsStopAStreamAtAnyFrameRate) {
     def.sparks = 0;
     for (const float dt : {1 / 90.0f, 1 / 15.0f}) {
         ParticleReference jet(def);
-        components::JetShield wall;
+        components::JetObstacle wall;
         wall.met = true;
         wall.place[0] = 3;
         wall.normal[0] = -1;
         wall.radius = 6;
         int spread = 0;
         for (float t = 0; t < 2; t += dt) {
-            components::takeShield(jet.emitter, 0, wall, jet.air.now);
+            components::setJetObstacle(jet.emitter, 0, wall, jet.air.now);
             jet.step(dt);
             for (uint32_t i = 0; i < jet.record.ring; ++i) {
                 if (!jet.alive(i)) continue;
@@ -248,11 +248,11 @@ TEST(Particles, WallsStopAStreamAtAnyFrameRate) {
         EXPECT_LT(20, spread);
         // Particles in flight still hit a wall that no ray hits any more.
         wall.met = false;
-        components::takeShield(jet.emitter, 0, wall, jet.air.now);
+        components::setJetObstacle(jet.emitter, 0, wall, jet.air.now);
         jet.step(dt);
-        EXPECT_EQ(1u, jet.record.shieldCount);
+        EXPECT_EQ(1u, jet.record.obstacleCount);
         for (int i = 0; i < 2; ++i) jet.step(0.5f);
-        EXPECT_EQ(0u, jet.record.shieldCount);
+        EXPECT_EQ(0u, jet.record.obstacleCount);
     }
 }
 
@@ -274,7 +274,7 @@ TEST(Particles, EndWithoutPower) {
         EXPECT_TRUE(burns || i < 2) << i;
     }
     components::setEmitterPower(fire.emitter, 0);
-    const float lasts = components::emitterLasts(fire.emitter);
+    const float lasts = components::longestParticleLife(fire.emitter);
     int frames = 0;
     while (fire.step(1 / 60.0f) && frames < 10000) ++frames;
     EXPECT_NEAR(float(frames) / 60, lasts, 0.2f);

@@ -303,7 +303,7 @@ TEST(SheetImport, FramesRunRightThenDown) {
                    texels.begin());
         EXPECT_EQ(best % 32, 8 + 2 * k) << "frame " << k;
         EXPECT_EQ(best / 32, 31u - 12u) << "rows are from the bottom";
-        EXPECT_NEAR(fw::gpu::bookKelvin(texels[best].x), 1780.0f, 1.0f) << "yellow in kelvin";
+        EXPECT_NEAR(fw::gpu::flipbookKelvin(texels[best].x), 1780.0f, 1.0f) << "yellow in kelvin";
         EXPECT_NEAR(texels[best].y, 1.0f, 1e-5f);
     }
     // The motion between frames is found: 2 texels of 32 per frame.
@@ -323,7 +323,7 @@ TEST(SheetImport, HueSetsTemperatureAndAlphaSmoke) {
         return frames[0].texels[(31 - 12) * 32 + 8];
     };
     using enum fw::book::Kind;
-    EXPECT_NEAR(fw::gpu::bookKelvin(middle(discs({0.5f, 0, 0}, false), Fire).x), 1370.0f, 1.0f);
+    EXPECT_NEAR(fw::gpu::flipbookKelvin(middle(discs({0.5f, 0, 0}, false), Fire).x), 1370.0f, 1.0f);
     EXPECT_NEAR(middle(discs({0.5f, 0, 0}, false), Fire).y, 0.5f, 1e-5f);
     // Integer formats are sRGB: 0.735 is half the light.
     EXPECT_NEAR(middle(discs({0.7354f, 0, 0, 1}, true), Fire).y, 0.5f, 1e-3f);

@@ -27,8 +27,8 @@ glm::vec3 restOf(const mesh::RefineModel& model, const mesh::RefineState& state,
     };
     if (corner.high == corner.low) return rest(corner.low);
     return gpu::refineCutPoint(rest(corner.low), rest(corner.high),
-                               gpu::refineField(state.vertices[corner.low].hole, now),
-                               gpu::refineField(state.vertices[corner.high].hole, now));
+                               gpu::secondsToHole(state.vertices[corner.low].hole, now),
+                               gpu::secondsToHole(state.vertices[corner.high].hole, now));
 }
 
 struct Burn {
@@ -260,13 +260,13 @@ TEST(RefineBurn, PermanentCharNeverOpens) {
 
 TEST(RefineBurn, HoleTimesCombineBothSides) {
     const float never = gpu::kRefineNever;
-    EXPECT_EQ(never, gpu::refineHole(never, never, 4));
-    EXPECT_EQ(7, gpu::refineHole(3, never, 4));
-    EXPECT_EQ(7, gpu::refineHole(never, 3, 4));
-    EXPECT_EQ(5, gpu::refineHole(3, 3, 4)) << "from both sides at once: half the time";
-    EXPECT_EQ(6, gpu::refineHole(3, 5, 4));
-    EXPECT_EQ(7, gpu::refineHole(3, 9, 4)) << "burnt through before the other side is lit";
-    EXPECT_EQ(gpu::refineHole(2, 5.5f, 4), gpu::refineHole(5.5f, 2, 4));
+    EXPECT_EQ(never, gpu::burnThroughTime(never, never, 4));
+    EXPECT_EQ(7, gpu::burnThroughTime(3, never, 4));
+    EXPECT_EQ(7, gpu::burnThroughTime(never, 3, 4));
+    EXPECT_EQ(5, gpu::burnThroughTime(3, 3, 4)) << "from both sides at once: half the time";
+    EXPECT_EQ(6, gpu::burnThroughTime(3, 5, 4));
+    EXPECT_EQ(7, gpu::burnThroughTime(3, 9, 4)) << "burnt through before the other side is lit";
+    EXPECT_EQ(gpu::burnThroughTime(2, 5.5f, 4), gpu::burnThroughTime(5.5f, 2, 4));
 }
 
 // Both walls of a slab cut the same hole although their charts are rotated against each other.

@@ -108,7 +108,7 @@ uint32_t everyPattern(Visit visit) {
         for (uint32_t b = 0; b <= 5; ++b)
             for (uint32_t c = 0; c <= 5; ++c)
                 for (uint32_t m = 0; m <= 5; ++m)
-                    if (gpu::refineFit(a, b, c, m) == m) {
+                    if (gpu::fitInterior(a, b, c, m) == m) {
                         ++count;
                         visit(gpu::refinePack(a, b, c, m));
                     }
@@ -171,7 +171,7 @@ TEST(RefinePattern, EqualLevelsAreTheRegularLattice) {
 
 TEST(RefinePattern, HaveTheirTriangleCounts) {
     const auto count = [](uint32_t a, uint32_t b, uint32_t c, uint32_t m) {
-        return gpu::refineCount(gpu::refinePack(a, b, c, gpu::refineFit(a, b, c, m)));
+        return gpu::refineCount(gpu::refinePack(a, b, c, gpu::fitInterior(a, b, c, m)));
     };
     EXPECT_EQ(1024u, count(5, 5, 5, 5));
     EXPECT_EQ(38u, count(5, 0, 0, 0)) << "a cold neighbour of one hot edge";

@@ -61,18 +61,18 @@ TEST(Room, FireConsumesOxygen) {
         const gpu::Room room = components::roomRecord(components::makeRoom(roomDef(1, volume)), 1,
                                                       airOf(gpu::kAirOutside, 7));
         gpu::RoomAir air{};
-        gpu::roomBreathes(air, room, 0, 0);
+        gpu::stepRoomAir(air, room, 0, 0);
         EXPECT_EQ(gpu::kAirOutside, air.oxygen);
         EXPECT_EQ(7u, air.epoch);
         EXPECT_EQ(0u, air.stirs);
-        gpu::roomBreathes(air, room, 0, 0);
+        gpu::stepRoomAir(air, room, 0, 0);
         EXPECT_EQ(0u, air.stirs);
         const auto joules = uint32_t(1e5f * volume);
-        for (int i = 0; i < 10; ++i) gpu::roomBreathes(air, room, joules / 10, 0);
+        for (int i = 0; i < 10; ++i) gpu::stepRoomAir(air, room, joules / 10, 0);
         const double taken = double(joules) / 13.1e6 / 1.330 / double(volume);
         EXPECT_NEAR(0.2095 - taken, double(air.oxygen) / kWhole, 3e-5) << volume;
         EXPECT_EQ(joules / 10, air.drawn);
-        gpu::roomBreathes(air, room, 0xFFFFFFFFu, 0);
+        gpu::stepRoomAir(air, room, 0xFFFFFFFFu, 0);
         if (volume < 1e4f) {
             EXPECT_EQ(0u, air.oxygen);
         }
@@ -87,16 +87,16 @@ TEST(Room, AirRecovers) {
             components::roomRecord(made, pace, airOf(uint32_t(0.10 * kWhole), 1));
         gpu::RoomAir air{};
         const int after = int(20 * 8 / pace);
-        for (int i = 0; i < after; ++i) gpu::roomBreathes(air, room, 0, 0);
+        for (int i = 0; i < after; ++i) gpu::stepRoomAir(air, room, 0, 0);
         EXPECT_NEAR(0.2095 - 0.1095 * std::exp(-1), double(air.oxygen) / kWhole, 1.5e-3);
-        for (int i = 0; i < after * 30; ++i) gpu::roomBreathes(air, room, 0, 0);
+        for (int i = 0; i < after * 30; ++i) gpu::stepRoomAir(air, room, 0, 0);
         EXPECT_EQ(gpu::kAirOutside, air.oxygen);
         EXPECT_EQ(0u, air.stirs);
     }
     const gpu::Room rich = components::roomRecord(components::makeRoom(roomDef(1, 1, 1e4f)), 100,
                                                   airOf(uint32_t(0.9 * kWhole), 1));
     gpu::RoomAir air{};
-    for (int i = 0; i < 4; ++i) gpu::roomBreathes(air, rich, 0, 0);
+    for (int i = 0; i < 4; ++i) gpu::stepRoomAir(air, rich, 0, 0);
     EXPECT_NEAR(0.2095, double(air.oxygen) / kWhole, 1e-6);
     EXPECT_GE(air.oxygen, gpu::kAirOutside);
 }
@@ -123,7 +123,7 @@ TEST(Room, FlashesOverAgainOnlyBelowHalfThePower) {
     const auto burn = [&](uint32_t joules, int periods) {
         for (int i = 0; i < periods; ++i) {
             now += gpu::kRoomPeriod;
-            gpu::roomBreathes(air, room, joules, now);
+            gpu::stepRoomAir(air, room, joules, now);
         }
     };
     burn(990, 400);  // never reaches the power
@@ -151,7 +151,7 @@ TEST(Room, FlashesOverAgainOnlyBelowHalfThePower) {
     EXPECT_EQ(4u, air.flash);
     burn(0xFFFFFFFFu, 10000);  // extreme values do not wrap
     EXPECT_EQ(5u, air.flash);
-    EXPECT_GT(air.power, gpu::kFlashMost * 6);
+    EXPECT_GT(air.power, gpu::kMaxFlash * 6);
     room.power = 7 * 900, room.flash = 5, room.epoch = 2;  // as a save holds it
     burn(900, 1);
     EXPECT_EQ(5u, air.flash);
@@ -164,7 +164,7 @@ TEST(Room, FlashesOverAgainOnlyBelowHalfThePower) {
 }
 
 TEST(Room, FlameStrengthFallsLinearlyFrom15To12Percent) {
-    const auto at = [](double part) { return gpu::roomStrength(uint32_t(part * kWhole)); };
+    const auto at = [](double part) { return gpu::burnStrengthOfOxygen(uint32_t(part * kWhole)); };
     EXPECT_EQ(256u, at(0.2095));
     EXPECT_EQ(256u, at(0.1501));
     EXPECT_EQ(192u, at(0.142501));
@@ -173,9 +173,9 @@ TEST(Room, FlameStrengthFallsLinearlyFrom15To12Percent) {
     EXPECT_EQ(0u, at(0));
     uint32_t before = 0;
     for (uint32_t air = 0; air < 0xFFF00000u; air += 100000) {
-        EXPECT_LE(before, gpu::roomStrength(air));
-        EXPECT_LE(gpu::roomStrength(air), before + 1);
-        before = gpu::roomStrength(air);
+        EXPECT_LE(before, gpu::burnStrengthOfOxygen(air));
+        EXPECT_LE(gpu::burnStrengthOfOxygen(air), before + 1);
+        before = gpu::burnStrengthOfOxygen(air);
     }
     EXPECT_EQ(256u, gpu::airStrength(0));  // in no room
     EXPECT_EQ(0u, gpu::airStrength(gpu::kAirKnown));
@@ -189,7 +189,8 @@ TEST(Room, ConservesEnergyBetweenPeriods) {
     for (int i = 0; i < 4000; ++i) {
         draw = gpu::hash32(draw + uint32_t(i));
         energy += i % 3 == 0 ? uint64_t(draw) * 200 : draw >> 12;
-        joules += gpu::energySince(uint32_t(energy), uint32_t(energy >> 32), drawnLow, drawnHigh);
+        joules +=
+            gpu::takeWholeJoules(uint32_t(energy), uint32_t(energy >> 32), drawnLow, drawnHigh);
         const uint64_t drawn = uint64_t(drawnHigh) << 32 | drawnLow;
         ASSERT_EQ(joules << 20, drawn - 5);
         ASSERT_LT(energy - drawn, 1u << 20);
@@ -206,11 +207,11 @@ struct Burn {
 
     explicit Burn(uint32_t preset) {
         material = fire::heatMaterial(fire::presetDef(preset), {1e-4f, 1, 0});
-        texel = gpu::heatRests(material, true);
+        texel = gpu::unheatedTexel(material, true);
     }
     void step(uint32_t strength) {
         uint32_t units = 0;
-        state = gpu::heatTexelStep(texel, gpu::heatInAir(material, strength), state, now, 20000,
+        state = gpu::heatTexelStep(texel, gpu::materialInAir(material, strength), state, now, 20000,
                                    true, 256, gpu::hash32(now), units);
         burnt += units;
         now += gpu::kRoomPeriod;

@@ -5,7 +5,7 @@
 #include "core/growth.h"
 #include "fire/presets.h"
 #include "gpu/cpu/cpu_backend.h"
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 #include "support/world_defs.h"
 #include "world/box_grid.h"
 #include "world/list_pool.h"
@@ -100,7 +100,7 @@ TEST(ListPool, KeepsListsApartAndReportsChanges) {
     std::vector<world::ListPlace> places(40);
     std::vector<std::vector<uint32_t>> lists(places.size());
     std::vector<uint32_t> copy;  // as a backend holds it
-    std::pmr::vector<gpu::RemoteUpdate::Range> ranges(memory());
+    std::pmr::vector<gpu::ExchangeUpdate::Range> ranges(memory());
     for (int turn = 0; turn < 4000; ++turn) {
         const size_t i = random() % lists.size();
         world::ListPlace& place = places[i];
@@ -296,7 +296,7 @@ TEST(World, ExplainsAMissByNearbyCratesOnly) {
     match.position[2] = 10 * square.apart;
     match.radius = 0.1f;
     char text[256];
-    square.world->burn().explainNothingThere(match, 0, text);
+    square.world->burn().explainMiss(match, 0, text);
     EXPECT_NE(std::string::npos, std::string(text).find("the nearest burnable mesh")) << text;
     const uint64_t compared = square.world->scene().places.examined() - before;
     std::printf("[   FIGURE ] %llu boxes of 1600 crates\n",
@@ -461,12 +461,12 @@ TEST(Contacts, AreFoundAnywhereInTheWorld) {
     Square square(1, 0);
     const mesh::BurnDomain& domain = square.world->scene().objectDomain(square.ids[0]);
     const auto count = [&](float at) {
-        gpu::RemoteObject places[2] = {};
+        gpu::ExchangeObject places[2] = {};
         for (int i = 0; i < 2; ++i) {
             components::Pose pose;
             pose.translation[0] = at + 0.42f * float(i);
             pose.translation[1] = pose.translation[2] = at;
-            components::placeRemote(pose, domain, places[i]);
+            components::placeExchangeObject(pose, domain, places[i]);
         }
         mesh::Contacts contacts(memory());
         mesh::findContacts({{&domain, &places[0], 1}, {&domain, &places[1], 1}}, contacts);
@@ -480,15 +480,15 @@ TEST(Contacts, AreFoundAnywhereInTheWorld) {
 
 TEST(World, RefusesABlockerScaledTooLarge) {
     Square square(1, 0);
-    FwBlockerDef def{};
+    FwHeatOccluderDef def{};
     def.structSize = sizeof def;
     for (const int i : {0, 5, 10}) def.transform[i] = 4;
     def.transform[15] = 1;
     for (float& half : def.halfSize) half = 7;
-    const FwBlockerId id = square.world->exchange().addBlocker(def);  // 28 m
+    const FwHeatOccluderId id = square.world->exchange().addHeatOccluder(def);  // 28 m
     for (const int i : {0, 5, 10}) def.transform[i] = 5;
-    EXPECT_THROW((void)square.world->exchange().addBlocker(def), core::Error);
-    EXPECT_THROW(square.world->exchange().moveBlocker(id, def.transform), core::Error);
+    EXPECT_THROW((void)square.world->exchange().addHeatOccluder(def), core::Error);
+    EXPECT_THROW(square.world->exchange().moveHeatOccluder(id, def.transform), core::Error);
 }
 
 TEST(World, DestroyedNeighboursAreForgotten) {

@@ -179,13 +179,13 @@ TEST(Sparks, BounceOffTheWallOfAJet) {
     def.power = 500;
     def.cone = 0.1f;
     components::makeFireEmitter(def, 7, rig.emitter);
-    components::JetShield wall;
+    components::JetObstacle wall;
     wall.met = true;
     wall.place[0] = 2;
     wall.place[1] = 0.6f;
     wall.normal[0] = -1;
     wall.radius = 3;
-    components::takeShield(rig.emitter, 0, wall, 0);
+    components::setJetObstacle(rig.emitter, 0, wall, 0);
     ASSERT_TRUE(rig.step(5));
     ASSERT_TRUE(rig.record.flags & gpu::kSparkWall);
     gpu::SparkBounds bounds{};

@@ -71,13 +71,13 @@ TEST(Surroundings, SmokeRisesAboveTheFlameAndBlocksSight) {
 
 TEST(Surroundings, DangerIsTheWorstOfAllEffects) {
     Surroundings one;
-    EXPECT_EQ(0, dangerOf(one));
+    EXPECT_EQ(0, spreadRiskOf(one));
     one.heatFlux = 5000;
-    EXPECT_FLOAT_EQ(2, dangerOf(one));
+    EXPECT_FLOAT_EQ(2, spreadRiskOf(one));
     one.excess = 120;
-    EXPECT_FLOAT_EQ(3, dangerOf(one));
+    EXPECT_FLOAT_EQ(3, spreadRiskOf(one));
     one.smoke = 4;
-    EXPECT_FLOAT_EQ(4, dangerOf(one));
+    EXPECT_FLOAT_EQ(4, spreadRiskOf(one));
 }
 
 }  // namespace

@@ -20,7 +20,7 @@ FlameNodes nodesOf(const std::vector<ControlPoint>& points, float length) {
     Curve curve;
     curve.set(points, kUp);
     FlameNodes nodes;
-    layNodes(curve, length, nodes);
+    placeFlameNodes(curve, length, nodes);
     return nodes;
 }
 
@@ -174,7 +174,7 @@ TEST(VolumeCurve, LocateInvertsTheCurve) {
                                            {{1.2f, 1.3f, 0.2f}, 0.1f}};
     curve.set(points, kUp);
     FlameNodes nodes;
-    layNodes(curve, curve.length(), nodes);
+    placeFlameNodes(curve, curve.length(), nodes);
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (int k = 0; k < 2000; ++k) {

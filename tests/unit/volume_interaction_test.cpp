@@ -317,29 +317,29 @@ TEST(VolumeQuery, IsHotInsideTheFlameOnly) {
     startFlame(f, campFire(), {});
     Profile profile;
     paintLook(f.def.look, profile);
-    const FlameAnswer core = askFlame(f, profile, vec3(0, 0.15f, 0));
+    const FlameAnswer core = queryFlame(f, profile, vec3(0, 0.15f, 0));
     EXPECT_TRUE(core.inside);
     EXPECT_GT(core.kelvin, 900.0f);
     EXPECT_LT(core.kelvin, 1500.0f);
     EXPECT_GT(core.heatFlux, 3e4f);
     EXPECT_LT(core.heatFlux, 2e5f);
     EXPECT_GT(core.gas.y, 1.0f) << "up-wind";
-    const FlameAnswer above = askFlame(f, profile, vec3(0, 1.1f, 0));
+    const FlameAnswer above = queryFlame(f, profile, vec3(0, 1.1f, 0));
     EXPECT_FALSE(above.inside);
     EXPECT_GT(above.kelvin, 350.0f);
     EXPECT_GT(above.gas.y, 1.0f);
     float last = 1e9f;
     for (float x = 0.6f; x < 6.0f; x += 0.2f) {
-        const FlameAnswer side = askFlame(f, profile, vec3(x, 0.3f, 0));
+        const FlameAnswer side = queryFlame(f, profile, vec3(x, 0.3f, 0));
         EXPECT_FALSE(side.inside);
         EXPECT_LT(side.heatFlux, last);
         last = side.heatFlux;
     }
     // 60 kW, 35 % radiated, at 3 m: 21000 / (4 pi 9) = 186 W/m^2.
-    EXPECT_NEAR(askFlame(f, profile, vec3(3, 0.3f, 0)).heatFlux, 186.0f, 25.0f);
-    const FlameAnswer far = askFlame(f, profile, vec3(1e6f, 0, 0));
+    EXPECT_NEAR(queryFlame(f, profile, vec3(3, 0.3f, 0)).heatFlux, 186.0f, 25.0f);
+    const FlameAnswer far = queryFlame(f, profile, vec3(1e6f, 0, 0));
     EXPECT_NEAR(far.kelvin, kAmbientKelvin, 0.1f);
-    EXPECT_TRUE(std::isfinite(askFlame(f, profile, f.def.position).heatFlux));
+    EXPECT_TRUE(std::isfinite(queryFlame(f, profile, f.def.position).heatFlux));
 }
 
 TEST(VolumeQuery, PushesAndIgnitesBodies) {
@@ -362,7 +362,7 @@ TEST(VolumeNeighbours, LeanMergeAndNeverPop) {
     for (float distance = 4.0f; distance >= 0.0f; distance -= 0.01f) {
         const NeighbourFlame pair[] = {{vec3(0), 60, 0.6f, height},
                                        {vec3(distance, 0, 0), 60, 0.6f, height}};
-        meetNeighbours(pair, vec3(0, 1, 0), out);
+        updateNeighbours(pair, vec3(0, 1, 0), out);
         EXPECT_GE(out[0].pull.x, 0.0f);
         EXPECT_NEAR(out[0].pull.x, -out[1].pull.x, 1e-5f);
         const float gap = distance - 0.6f;
@@ -383,7 +383,7 @@ TEST(VolumeNeighbours, LeanMergeAndNeverPop) {
     }
     const NeighbourFlame near[] = {{vec3(0), 60, 0.6f, height},
                                    {vec3(1.0f, 0, 0), 60, 0.6f, height}};
-    meetNeighbours(near, vec3(0, 1, 0), out);
+    updateNeighbours(near, vec3(0, 1, 0), out);
     Flame f;
     FlameAir air;
     air.neighbours = out[0];
@@ -407,11 +407,11 @@ TEST(VolumeNeighbours, ChainsAreOneGroup) {
         row.push_back(
             {vec3(0.9f * float((k * 7) % 20) + (k >= 20 ? 100.0f : 0.0f), 0, 0), 60, 0.6f, 0.6f});
     std::vector<Neighbourhood> out(row.size());
-    meetNeighbours(row, vec3(0, 1, 0), out);
+    updateNeighbours(row, vec3(0, 1, 0), out);
     for (size_t k = 0; k < row.size(); ++k) EXPECT_EQ(out[k].group, k < 20 ? 0u : 20u) << k;
-    meetNeighbours({}, vec3(0, 1, 0), {});
+    updateNeighbours({}, vec3(0, 1, 0), {});
     std::vector<NeighbourFlame> same(3, NeighbourFlame{vec3(1), 60, 0.6f, 0.6f});
-    meetNeighbours(same, vec3(0, 1, 0), std::span(out).first(3));
+    updateNeighbours(same, vec3(0, 1, 0), std::span(out).first(3));
     EXPECT_TRUE(std::isfinite(out[0].pull.x) && std::isfinite(out[0].height));
 }
 

@@ -401,7 +401,7 @@ TEST(VolumeLook, TipsDoNotBreakIntoBeads) {
                                     h * (0.9f + 0.7f * float(y) / 24.0f), 10.0f * h);
                     double sum = 0, squares = 0;
                     for (uint32_t quarter = 0; quarter < 4; ++quarter) {
-                        rules.jitter = fw::gpu::volumePhase(quarter & 1u, quarter >> 1u);
+                        rules.jitter = fw::gpu::marchSamplePhase(quarter & 1u, quarter >> 1u);
                         const double one =
                             double(marchRay(shown.record, shown.nodes, *shown.profile, from,
                                             vec3(0, 0, -1), rules)

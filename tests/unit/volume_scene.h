@@ -60,7 +60,7 @@ struct Shown {
         const float r = 0.5f * size.diameter;
         const ControlPoint points[] = {{vec3(0), r}, {vec3(0, size.height, 0), r}};
         curve.set(points, vec3(0, 1, 0));
-        layNodes(curve, topOf(record), nodes);
+        placeFlameNodes(curve, topOf(record), nodes);
     }
     explicit Shown(const Flame& flame) : look(flame.def.look) {  // as it burns now
         size = flame.size;

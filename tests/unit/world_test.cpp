@@ -179,8 +179,8 @@ class PlannedWorld : public ::testing::Test {
         def.maxStepsPerFrame = 8;
         def.maxLights = 16;
         def.maxRefinedTriangles = 400000;
-        def.volumeCell = 2;
-        def.volumeSteps = 64;
+        def.volumePixelSize = 2;
+        def.rayStepCount = 64;
         def.arrivalTiles = 1024;
         def.volumeOctaves = 4;
         world.emplace(def, backend, log, std::pmr::new_delete_resource());

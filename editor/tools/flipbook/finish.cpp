@@ -154,8 +154,8 @@ void fade(const book::Facts& facts, std::vector<Frame>& frames) {
         Frame& frame = frames[i];
         const Frame& past = frames[facts.frames + i];
         for (size_t k = 0; k < frame.texels.size(); ++k)
-            frame.texels[k] =
-                gpu::bookMix(past.texels[k], frame.texels[k], glm::smoothstep(0.0f, 1.0f, part));
+            frame.texels[k] = gpu::mixFlipbookTexels(past.texels[k], frame.texels[k],
+                                                     glm::smoothstep(0.0f, 1.0f, part));
     }
     frames.resize(facts.frames);
 }
@@ -290,7 +290,7 @@ book::Book finishBook(const book::Facts& facts, std::vector<Frame>& frames, uint
     for (const auto& motion : motions)
         for (const vec2& m : motion) most = std::max({most, std::abs(m.x), std::abs(m.y)});
     most = std::min(most, 0.25f);
-    made.facts.motionMost = most;
+    made.facts.maxMotion = most;
     for (uint32_t i = 0; i < facts.frames; ++i) {
         for (const vec4& t : frames[i].texels)
             for (int c = 0; c < 4; ++c) made.texels.push_back(byteOf(t[c]));
@@ -320,7 +320,7 @@ Picture makeSheet(const std::vector<book::Book>& flipbooks) {
                 for (uint32_t x = 0; x < kSide; ++x) {
                     const vec2 uv((float(x) + 0.5f) / kSide, 1 - (float(y) + 0.5f) / kSide);
                     const float time = (float(k) + 0.37f) / float(kShown);
-                    const vec4 t = book::showBook(book, time, uv);
+                    const vec4 t = book::sampleFlipbook(book, time, uv);
                     // Burnt-out parts cool.
                     const float cooled = book.facts.loops ? 0.0f : 160.0f * time;
                     vec3 light =
@@ -329,7 +329,7 @@ Picture makeSheet(const std::vector<book::Book>& flipbooks) {
                               : 1.25f * t.y *
                                     gpu::sootRadiance(1650 + 600 * (t.x - 0.5f) - 1.5f * cooled);
                     if (!smoke && book.facts.loops)
-                        light = 0.9f * t.y * gpu::sootRadiance(gpu::bookKelvin(t.x));
+                        light = 0.9f * t.y * gpu::sootRadiance(gpu::flipbookKelvin(t.x));
                     uint8_t* out =
                         &picture
                              .rgb[3 * ((row * kSide + y) * size_t(picture.width) + k * kSide + x)];

@@ -99,7 +99,9 @@ class FlameScene final : public Scene {
     // Returns the temperature of soot that emits `light` relative to its opacity.
     static float red(float light) {
         const float kelvin = 1 / (1 / 1600.0f - std::log2(std::max(light, 1e-9f)) / 34981.0f);
-        return std::clamp((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), 0.0f, 1.0f);
+        return std::clamp((kelvin - gpu::kFlipbookMinKelvin) /
+                              (gpu::kFlipbookMaxKelvin - gpu::kFlipbookMinKelvin),
+                          0.0f, 1.0f);
     }
     // A free flame thins out at its foot instead of ending in a cut.
     [[nodiscard]] float foot(vec2 uv) const {
@@ -208,7 +210,7 @@ bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& pr
         if (stopped) return false;
         const book::Book made =
             finishBook(facts, frames, def.threads, std::pmr::get_default_resource());
-        const auto cooked = book::cookBook(made, std::pmr::get_default_resource());
+        const auto cooked = book::cookFlipbook(made, std::pmr::get_default_resource());
         bytes.assign(cooked.begin(), cooked.end());
         return true;
     } catch (const core::Error& failure) {

@@ -214,12 +214,12 @@ class Progress {
 int finish(const Options& options, const book::Facts& facts, std::vector<Frame>& frames) {
     const book::Book made =
         finishBook(facts, frames, options.threads, std::pmr::get_default_resource());
-    const auto bytes = book::cookBook(made, std::pmr::get_default_resource());
+    const auto bytes = book::cookFlipbook(made, std::pmr::get_default_resource());
     const std::string error = replaceFile(options.out, bytes);
     if (!error.empty()) return refuse(error);
     std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
                 options.out.c_str(), facts.frames, facts.width, facts.height,
-                facts.loops ? "a loop" : "once", double(made.facts.motionMost),
+                facts.loops ? "a loop" : "once", double(made.facts.maxMotion),
                 double(bytes.size()) / (1 << 20));
     return 0;
 }
@@ -277,7 +277,7 @@ int sheet(const Options& options) {
         if (!error.empty()) return refuse(error);
         flipbooks.emplace_back(std::pmr::get_default_resource());
         try {
-            book::readBook(bytes, flipbooks.back());
+            book::readFlipbook(bytes, flipbooks.back());
         } catch (const core::Error& e) {
             return refuse(path + ": " + e.message);
         }

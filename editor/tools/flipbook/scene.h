@@ -21,7 +21,7 @@ struct Frame {                 // rows from the bottom
 
 struct BakeDef {
     std::string_view scene = "campfire";  // one of sceneNames
-    fw::book::Facts facts;                // motionMost is computed
+    fw::book::Facts facts;                // maxMotion is computed
     uint32_t seed = 1;
     uint32_t samples = 2;  // rays per texel, [1, 16]
 };

@@ -72,8 +72,9 @@ vec4 texelOf(const vec4& seen, book::Kind kind, bool emits) {
     const float hue = seen.x > 1e-5f ? seen.y / seen.x / kYellowGreen : 1.0f;
     const float kelvin = kRed + (kYellow - kRed) * std::clamp(hue, 0.0f, 1.0f);
     const float glows = std::min(most, 1.0f);
-    return vec4((kelvin - gpu::kBookCold) / (gpu::kBookHot - gpu::kBookCold), glows,
-                emits ? 0.0f : std::max(hides, glows), thick);
+    return vec4(
+        (kelvin - gpu::kFlipbookMinKelvin) / (gpu::kFlipbookMaxKelvin - gpu::kFlipbookMinKelvin),
+        glows, emits ? 0.0f : std::max(hides, glows), thick);
 }
 
 // Premultiplied light without any coverage is additive.

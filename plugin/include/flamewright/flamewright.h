@@ -40,7 +40,7 @@
 extern "C" {
 #endif
 
-#define FW_ABI_VERSION 1u /* grows only when an older host can no longer work */
+#define FW_ABI_VERSION 2u /* grows only when an older host can no longer work */
 #define FW_VERSION_MAJOR 0u
 #define FW_VERSION_MINOR 1u
 #define FW_VERSION_PATCH 0u
@@ -58,7 +58,7 @@ typedef struct FwMeshId { uint32_t index1, generation; } FwMeshId;
 typedef struct FwBurnableMeshId { uint32_t index1, generation; } FwBurnableMeshId;
 typedef struct FwTargetId { uint32_t index1, generation; } FwTargetId;
 typedef struct FwQueryId { uint32_t index1, generation; } FwQueryId;
-typedef struct FwBlockerId { uint32_t index1, generation; } FwBlockerId;
+typedef struct FwHeatOccluderId { uint32_t index1, generation; } FwHeatOccluderId;
 typedef struct FwVolumetricFireId { uint32_t index1, generation; } FwVolumetricFireId;
 typedef struct FwFireProfileId { uint32_t index1, generation; } FwFireProfileId;
 typedef struct FwFireColliderId { uint32_t index1, generation; } FwFireColliderId;
@@ -117,13 +117,13 @@ FW_API uint32_t FW_CALL fwGetVersion(void);
 typedef enum FwDefType {
     FW_DEF_CONTEXT = 1, FW_DEF_WORLD = 2, FW_DEF_MATERIAL = 3, FW_DEF_IMAGE = 4, FW_DEF_MESH = 5,
     FW_DEF_BURNABLE_MESH = 6, FW_DEF_IGNITION = 7, FW_DEF_VIEW = 8, FW_DEF_OFFSCREEN = 9,
-    FW_DEF_BLOCKER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
+    FW_DEF_HEAT_OCCLUDER = 10, FW_DEF_VOLUMETRIC_FIRE = 11, FW_DEF_FIRE_PROFILE = 12, FW_DEF_FIRE_COLLIDER = 13,
     FW_DEF_FIRE_TRACK = 14, FW_DEF_PARTICLE_FIELD = 15, FW_DEF_FIRE_EMITTER = 20,
     FW_DEF_FLIPBOOK = 21, FW_DEF_BUDGET = 22, FW_DEF_NET = 23, FW_DEF_WIND_ZONE = 24, FW_DEF_ROOM = 25,
     FW_DEF_WIND_GRID = 26, FW_DEF_GUSTS = 27, FW_DEF_TIMELINE = 28,
-    FW_DEF_HEAT_SHIELD = 29,
+    FW_DEF_HEAT_OCCLUSION = 29,
     FW_DEF_VULKAN_HOST = 100, FW_DEF_VULKAN_TARGET = 101, FW_DEF_VULKAN_FRAME = 102,
-    FW_DEF_VULKAN_WISHES = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
+    FW_DEF_VULKAN_REQUIREMENTS = 103, FW_DEF_VULKAN_COMPOSITE = 104, FW_DEF_VULKAN_VERTICES = 105,
     FW_DEF_TYPE_FORCE32 = 0x7fffffff
 } FwDefType;
 /* Writes the defaults of a def type to the first structSize bytes of `def`, and never a byte more. Bytes that this
@@ -230,8 +230,8 @@ typedef struct FwWorldDef {
     float (FW_CALL* visibility)(void* visibilityData, FwBurnableMeshId from, FwBurnableMeshId to);
     void* visibilityData;
     /* Ray march of volumetric fires before they are drawn: for the views of fwWorld_RecordOutside. */
-    uint32_t volumeCell;        /* px, [1, 16], default 2. Side of a march pixel; 1: full resolution */
-    uint32_t volumeSteps;       /* [6, 64], default 64. Most samples of a ray through a flame. Flames beyond the 32 largest get
+    uint32_t volumePixelSize;        /* px, [1, 16], default 2. Side of a march pixel; 1: full resolution */
+    uint32_t rayStepCount;       /* [6, 64], default 64. Most samples of a ray through a flame. Flames beyond the 32 largest get
                                    fewer samples, and never more than this */
     uint32_t maxParticles;      /* [0, 1048576], default 16384. Particles of all fire emitters. Each takes 48 bytes once used */
     uint32_t arrivalTiles;      /* [1, 1048576], default 1024. Tiles that fwWorld_RequestArrival may simulate per frame, for all
@@ -273,7 +273,7 @@ FW_API uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completed
 
 typedef enum FwObjectKind { /* kind of an id, for fwWorld_DestroyLater */
     FW_OBJECT_MATERIAL = 1, FW_OBJECT_IMAGE = 2, FW_OBJECT_MESH = 3, FW_OBJECT_BURNABLE_MESH = 4,
-    FW_OBJECT_BLOCKER = 5, FW_OBJECT_VOLUMETRIC_FIRE = 6, FW_OBJECT_FIRE_PROFILE = 7,
+    FW_OBJECT_HEAT_OCCLUDER = 5, FW_OBJECT_VOLUMETRIC_FIRE = 6, FW_OBJECT_FIRE_PROFILE = 7,
     FW_OBJECT_FIRE_COLLIDER = 8, FW_OBJECT_FIRE_EMITTER = 9, FW_OBJECT_FLIPBOOK = 10,
     FW_OBJECT_PARTICLE_FIELD = 11, FW_OBJECT_WIND_ZONE = 12, FW_OBJECT_ROOM = 13, FW_OBJECT_BURN = 14,
     FW_OBJECT_KIND_COUNT = 15, FW_OBJECT_KIND_FORCE32 = 0x7fffffff
@@ -305,28 +305,28 @@ FW_API FwResult FW_CALL fwWorld_ShiftOrigin(FwWorld*, const float offset[3], flo
 /* Gets the sum of all shifts since the world was created, in m. [world] */
 FW_API FwResult FW_CALL fwWorld_GetOrigin(FwWorld*, double origin[3]);
 
-typedef struct FwBlockerDef { /* a box that stops radiation, plumes and embers: a wall, a door */
+typedef struct FwHeatOccluderDef { /* a box that stops radiation, plumes and embers: a wall, a door */
     uint32_t structSize, flags; /* flags: 0 */
     float transform[16];        /* box to world, default identity. Rigid, with a uniform scale */
     float halfSize[3];          /* m, [0, 30] each, default 0.5; the limit includes the scale. One 0 makes a quad */
     uint32_t reserved;          /* 0 */
-} FwBlockerDef;
-static inline FwBlockerDef fwDefaultBlockerDef(void) {
-    FwBlockerDef d; fwInitDef(FW_DEF_BLOCKER, &d, (uint32_t)sizeof d); return d;
+} FwHeatOccluderDef;
+static inline FwHeatOccluderDef fwDefaultHeatOccluderDef(void) {
+    FwHeatOccluderDef d; fwInitDef(FW_DEF_HEAT_OCCLUDER, &d, (uint32_t)sizeof d); return d;
 }
 /* Adds an occluder box, at most 64 at a time. The box does not occlude points within 6 cm of its surface. [world] */
-FW_API FwResult FW_CALL fwWorld_AddBlocker(FwWorld*, const FwBlockerDef* def, FwBlockerId* id);
-FW_API FwResult FW_CALL fwWorld_MoveBlocker(FwWorld*, FwBlockerId id, const float transform[16]); /* [world] */
-FW_API FwResult FW_CALL fwWorld_RemoveBlocker(FwWorld*, FwBlockerId id); /* [world] */
+FW_API FwResult FW_CALL fwWorld_AddHeatOccluder(FwWorld*, const FwHeatOccluderDef* def, FwHeatOccluderId* id);
+FW_API FwResult FW_CALL fwWorld_MoveHeatOccluder(FwWorld*, FwHeatOccluderId id, const float transform[16]); /* [world] */
+FW_API FwResult FW_CALL fwWorld_RemoveHeatOccluder(FwWorld*, FwHeatOccluderId id); /* [world] */
 
-typedef enum FwHeatShieldFlags {
-    FW_HEAT_SHIELD_ALL_OBJECTS = 1, /* all existing burnable meshes fill cells, not only those in `objects` */
-    FW_HEAT_SHIELD_FORCE32 = 0x7fffffff
-} FwHeatShieldFlags;
+typedef enum FwHeatOcclusionFlags {
+    FW_HEAT_OCCLUSION_ALL_OBJECTS = 1, /* all existing burnable meshes fill cells, not only those in `objects` */
+    FW_HEAT_OCCLUSION_FLAGS_FORCE32 = 0x7fffffff
+} FwHeatOcclusionFlags;
 /* Heat-occlusion grid: solid cells stop radiation, plumes and embers. For shapes beyond boxes: terrain and houses of the
  * host, walls and fences that are burnable meshes. A cell is solid if `cells`, `distance` or an object makes it solid. */
-typedef struct FwHeatShieldDef {
-    uint32_t structSize, flags; /* flags: FwHeatShieldFlags, default 0 */
+typedef struct FwHeatOcclusionDef {
+    uint32_t structSize, flags; /* flags: FwHeatOcclusionFlags, default 0 */
     uint32_t counts[3];         /* [1, 256] each, default 1. Cells along the world's x, y, z; at most 2097152 in all */
     float origin[3];            /* m, [-1e6, 1e6], world. The grid's low corner; rounded to mm */
     float cellSize;             /* m, [0.05, 10], default 0.25. Choose it no larger than the gaps that fire must pass, and no
@@ -335,15 +335,15 @@ typedef struct FwHeatShieldDef {
     const uint8_t* cells;       /* default null. One byte a cell, x fastest, then y, then z. Not 0: solid. Copied */
     float (FW_CALL* distance)(void* distanceData, const float place[3]); /* default null. Returns the distance in m from `place`
                                    (m, world) to the nearest surface, negative inside. The library calls it once for the
-                                   middle of each cell, only during fwWorld_SetHeatShield. A cell is solid below half of
+                                   middle of each cell, only during fwWorld_SetHeatOcclusion. A cell is solid below half of
                                    cellSize, so that walls of any thickness have no gaps. To keep solid ground below the
                                    objects that lie on it, return more there */
     void* distanceData;
     const FwBurnableMeshId* objects; /* default null. Objects whose surfaces fill cells, in their present rest pose. Such a
                                    cell opens when the texel at its middle has a hole, as jets and pictures see it */
-} FwHeatShieldDef;
-static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
-    FwHeatShieldDef d; fwInitDef(FW_DEF_HEAT_SHIELD, &d, (uint32_t)sizeof d); return d;
+} FwHeatOcclusionDef;
+static inline FwHeatOcclusionDef fwDefaultHeatOcclusionDef(void) {
+    FwHeatOcclusionDef d; fwInitDef(FW_DEF_HEAT_OCCLUSION, &d, (uint32_t)sizeof d); return d;
 }
 /* Replaces the heat-occlusion grid; null removes it. Takes effect at the next exchange, in addition to occluder boxes. Cells
  * of the host also stop jets; jets hit meshes without the grid. Nothing shades itself: the library ignores all cells within
@@ -353,7 +353,7 @@ static inline FwHeatShieldDef fwDefaultHeatShieldDef(void) {
  * networks. Size there: 9 bytes for each object, and 58 for each row of 384 cells in which a host's cell changed. If the grid
  * differs, all rows with solid cells count. Cost: about 5 ns a cell, the time of the callback, and about 40 ns a texel of the
  * objects. [world] */
-FW_API FwResult FW_CALL fwWorld_SetHeatShield(FwWorld*, const FwHeatShieldDef* def);
+FW_API FwResult FW_CALL fwWorld_SetHeatOcclusion(FwWorld*, const FwHeatOcclusionDef* def);
 
 typedef enum FwWindShape { /* extent of a wind zone. Falloff runs from its middle to its edge */
     FW_WIND_BOX = 0,           /* along the world's axes; size: half of each side */
@@ -491,7 +491,7 @@ typedef enum FwMaterialPreset {
 /* Spread law: plugin/docs/model.md. All values are SI in every world. Defaults are those of FW_MATERIAL_PINE. */
 typedef struct FwMaterialDef {
     uint32_t structSize;
-    uint32_t look;        /* FwMaterialPreset, default FW_MATERIAL_PINE. Selects the appearance */
+    uint32_t appearance;        /* FwMaterialPreset, default FW_MATERIAL_PINE. Selects the appearance */
     float spreadRate;     /* m/s, [0, 1], default 0.0003. Front speed on a flat horizontal sheet in still air; 0: cannot burn */
     float windGain;       /* drive for each m/s of wind along the surface, [0, 16], default 0.35 */
     float upGain;         /* drive of a vertical surface, [0, 16], default 1 */
@@ -629,8 +629,8 @@ typedef enum FwBurnableFlags {
     FW_BURNABLE_SKINNED = 1024, /* the host moves its vertices: fwWorld_SetVertexPositions */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_NO_DAMAGE = 4096, /* it burns as usual but shows only flames: no char, holes, recession, curling or refinement */
-    FW_BURNABLE_Z_PASS = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has ignited, self-intersections are hidden as
-                                   published. Costs one depth draw of the object for each view, shows no insides, and needs a
+    FW_BURNABLE_DEPTH_PEEL = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has ignited, self-intersections are hidden
+                                   as published. Costs one depth draw of the object for each view, shows no insides, and needs a
                                    target with FW_DEPTH_TEST */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
@@ -763,12 +763,12 @@ typedef enum FwFireTier { /* how the views of fwWorld_RecordOutside show a fire.
                                     sample each. For hosts that can run little before their pass. Layers may be visible. Slices
                                     need FW_OUTPUT_LINEAR; with another FwOutputEncoding they would blend wrongly, so the fire
                                     is marched low instead */
-    FW_FIRE_TIER_FLIPBOOK = 5,   /* an impostor that similar flames share. Each frame marches one of them into an atlas of the
-                                    last 32 frames. Each flame shows the atlas up to 22 frames late, with its own width,
+    FW_FIRE_TIER_SHARED_IMPOSTOR = 5,   /* an impostor that similar flames share. Each frame marches one of them into an atlas of
+                                    the last 32 frames. Each flame shows the atlas up to 22 frames late, with its own width,
                                     height and lean; half of them are mirrored. Similar: the same appearance, nearly the same
-                                    width, height for that width and view elevation, and no obstacle. There are 4 atlases.
-                                    Without a complete atlas a flame has an impostor of its own. AUTO uses this tier for
-                                    similar flames 10 to 24 px across, and for those of any size beyond the 32 */
+                                    width, height for that width and view elevation, and no obstacle. There are 4 atlases. Without
+                                    a complete atlas a flame has an impostor of its own. AUTO uses this tier for similar flames 10
+                                    to 24 px across, and for those of any size beyond the 32 */
     FW_FIRE_TIER_FORCE32 = 0x7fffffff
 } FwFireTier;
 typedef struct FwFirePoint { /* a point of the line that a flame follows, base first */
@@ -842,7 +842,8 @@ typedef struct FwVolumetricFireState { /* state at the last frame; before the fi
     float lightIntensity;       /* W/sr of visible light, with flicker */
     float contact[3];           /* m, world. Middle of the touched surface; valid if contactPower > 0 */
 } FwVolumetricFireState;
-FW_API FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld*, FwVolumetricFireId id, FwVolumetricFireState* state); /* [world] */
+/* [world] */
+FW_API FwResult FW_CALL fwWorld_GetVolumetricFireState(FwWorld*, FwVolumetricFireId id, FwVolumetricFireState* state);
 
 /* Animation of a fire: keys of its line, with smooth interpolation. */
 typedef struct FwFireTrackDef {
@@ -924,7 +925,7 @@ FW_API FwResult FW_CALL fwWorld_AddFireCollider(FwWorld*, const FwFireColliderDe
 FW_API FwResult FW_CALL fwWorld_SetFireCollider(FwWorld*, FwFireColliderId id, const FwFireColliderDef* def);
 FW_API FwResult FW_CALL fwWorld_RemoveFireCollider(FwWorld*, FwFireColliderId id); /* [world] */
 
-typedef struct FwFireAnswer {   /* effect of all volumetric fires at a point, at the last frame */
+typedef struct FwFireSample {   /* effect of all volumetric fires at a point, at the last frame */
     uint32_t structSize;
     uint32_t inside;            /* 1: within a mean flame */
     float temperature;          /* K. Gas temperature; 293 beyond the reach of fire */
@@ -932,17 +933,17 @@ typedef struct FwFireAnswer {   /* effect of all volumetric fires at a point, at
     float gas[3];               /* m/s. Velocity of the fire's gas, without the wind */
     uint32_t reserved;
     FwVolumetricFireId fire;    /* the fire that heats the point most, or null */
-} FwFireAnswer;
+} FwFireSample;
 /* Samples all volumetric fires at a point (m, world). Answers at once, on every backend. [world] */
-FW_API FwResult FW_CALL fwWorld_AskVolumetricFires(FwWorld*, const float point[3], FwFireAnswer* answer);
-typedef struct FwFirePush {     /* effect of all volumetric fires on a ball at rest */
+FW_API FwResult FW_CALL fwWorld_SampleVolumetricFires(FwWorld*, const float point[3], FwFireSample* sample);
+typedef struct FwFireForce {     /* effect of all volumetric fires on a ball at rest */
     uint32_t structSize;
     float ignitionPower;        /* W into the ball */
     float force[3];             /* N */
     uint32_t reserved;
-} FwFirePush;
+} FwFireForce;
 /* Gets heat and force on a ball; centre: m, world; radius: m, [0, 100]. [world] */
-FW_API FwResult FW_CALL fwWorld_GetVolumetricFirePush(FwWorld*, const float centre[3], float radius, FwFirePush* push);
+FW_API FwResult FW_CALL fwWorld_GetVolumetricFireForce(FwWorld*, const float centre[3], float radius, FwFireForce* force);
 
 /* ---- flipbooks: frames that particles and flames show ------------------------------------------------------- */
 
@@ -1043,9 +1044,9 @@ typedef struct FwFireEmitterDef {
     float behind;               /* m, [0, 10], default 0.5 */
     float heat;                 /* share, [0, 1], default 0.35 */
     /* Flipbooks. Each particle picks one of those given, by chance, and its own phase. None given: procedural noise. */
-    FwFlipbookId fireBooks[3];
-    FwFlipbookId smokeBooks[2];
-    FwFlipbookId sparkBook;
+    FwFlipbookId fireFlipbooks[3];
+    FwFlipbookId smokeFlipbooks[2];
+    FwFlipbookId sparkFlipbook;
     FwBurnableMeshId object;    /* for FW_EMITTER_MESH. Once it is destroyed, births end */
     /* Jet with FW_EMITTER_IGNITES: sticking fuel. The share `stick` of the power that hits a surface stays there as fuel, in at
      * most 16 patches 0.25 m wide. A patch burns evenly over stickTime after its last fuel arrived. It flames and heats its mesh
@@ -1079,12 +1080,12 @@ typedef struct FwFireEmitterState { /* state at the last frame */
     float reach;                /* m. Approximate length of its fire */
     float lightIntensity;       /* W/sr of visible light, with flicker */
     float lightPosition[3];     /* m, world */
-    uint32_t struck;            /* jet: how many of its 16 rays hit something */
-    float freeWay;              /* m. Jet: distance from its nozzle to the nearest hit; otherwise `reach` */
+    uint32_t blockedRays;            /* jet: how many of its 16 rays hit something */
+    float clearDistance;              /* m. Jet: distance from its nozzle to the nearest hit; otherwise `reach` */
     float heated;               /* W that reached burnable meshes in the last 1/8 s */
     float stuckFuel;            /* kJ of sticking fuel */
     float stuckPower;           /* kW that sticking fuel gave off in the last 1/8 s, on meshes or not */
-    uint32_t stuckPlaces;       /* [0, 16]. Patches of sticking fuel */
+    uint32_t stuckPatches;       /* [0, 16]. Patches of sticking fuel */
     uint32_t reserved1;
 } FwFireEmitterState;
 FW_API FwResult FW_CALL fwWorld_GetFireEmitterState(FwWorld*, FwFireEmitterId id, FwFireEmitterState* state); /* [world] */
@@ -1096,7 +1097,7 @@ typedef enum FwFieldPreset {
     FW_FIELD_PRESET_FORCE32 = 0x7fffffff
 } FwFieldPreset;
 typedef enum FwFieldShape {       /* the surface that shows the grid */
-    FW_FIELD_CARD = 0,            /* a billboard: turns about its up axis to face the camera */
+    FW_FIELD_BILLBOARD = 0,            /* a billboard: turns about its up axis to face the camera */
     FW_FIELD_SPHEROID = 1,        /* its left and right borders meet */
     FW_FIELD_DISPLACED = 2,       /* a spheroid that bulges where the grid is dense */
     FW_FIELD_SHAPE_FORCE32 = 0x7fffffff
@@ -1124,7 +1125,7 @@ typedef enum FwParticleFieldFlags {
  * counts the same. Steps are at fixed times of the world. */
 typedef struct FwParticleFieldDef {
     uint32_t structSize, flags; /* flags: FwParticleFieldFlags, default 0 */
-    uint32_t shape;             /* FwFieldShape, default FW_FIELD_CARD */
+    uint32_t shape;             /* FwFieldShape, default FW_FIELD_BILLBOARD */
     uint32_t seed;              /* default 0: a different seed for each field of a world */
     float position[3];          /* m, [-1e6, 1e6], world. Middle of its lower edge; spheroid: its lowest point */
     float size[3];              /* m, [0.001, 1000], default 1. Width, height and, for spheroids, depth */
@@ -1308,7 +1309,7 @@ typedef struct FwObjectState { /* state at `frameIndex`: 2 to 3 frames ago on a 
     float reserved1;
     double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_PUBLISHED */
     uint32_t refinedTriangles; /* at the last draw, if it refines and has ignited; see FwWorldStats */
-    uint32_t plays;            /* 1: it plays a baked burn (fwWorld_PlayBurn); 0: it is simulated */
+    uint32_t playsBakedBurn;            /* 1: it plays a baked burn (fwWorld_PlayBurn); 0: it is simulated */
 } FwObjectState;
 FW_API FwResult FW_CALL fwWorld_GetObjectState(FwWorld*, FwBurnableMeshId id, FwObjectState* state); /* [world] */
 /* Reads the state that the last fwWorld_Step or fwWorld_RecordOutside left, without waiting for one that runs. The first
@@ -1408,26 +1409,26 @@ FW_API FwResult FW_CALL fwWorld_Load(FwWorld*, const void* bytes, uint64_t size)
 
 /* Starts to record the commands that change the burn, each with the tick that it preceded. A save and the command log after it
  * reproduce any later time bit by bit, on any backend, at any frame rate. Load the save, open the log, then
- *     while (fwWorld_PlayLog(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
+ *     while (fwWorld_PlayCommandLog(world, untilTick, &seconds) == FW_OK && seconds > 0) fwWorld_Step(world, seconds);
  * The log contains the calls that a network sends by itself (see fwNet_Serve). The host repeats all else at its time:
  * creation, destruction, colliders, points of fires, painted fields, vertices. A call takes 20 to 60 bytes. Drops an earlier
  * recording. [world] */
-FW_API FwResult FW_CALL fwWorld_StartLog(FwWorld*);
+FW_API FwResult FW_CALL fwWorld_StartCommandLog(FwWorld*);
 /* Stops recording and drops the recorded commands. [world] */
-FW_API FwResult FW_CALL fwWorld_StopLog(FwWorld*);
+FW_API FwResult FW_CALL fwWorld_StopCommandLog(FwWorld*);
 /* Copies the recorded commands: little-endian, versioned, checksummed. Recording continues. If `buffer` is null, *size gets
  * the size needed; otherwise *size is the capacity on entry and the bytes written on return.
  * FW_ERROR_INVALID_ARGUMENT: nothing is being recorded. FW_ERROR_OUT_OF_MEMORY: memory ran out while recording. [world] */
-FW_API FwResult FW_CALL fwWorld_FetchLog(FwWorld*, void* buffer, uint64_t* size);
+FW_API FwResult FW_CALL fwWorld_FetchCommandLog(FwWorld*, void* buffer, uint64_t* size);
 /* Opens a command log for replay, in place of an open one; size 0 closes it. FW_ERROR_BAD_DATA: the bytes are damaged,
  * incomplete, of another version, or of a world that holds other things; nothing changed. [world] */
-FW_API FwResult FW_CALL fwWorld_OpenLog(FwWorld*, const void* bytes, uint64_t size);
+FW_API FwResult FW_CALL fwWorld_OpenCommandLog(FwWorld*, const void* bytes, uint64_t size);
 /* Applies the logged commands that precede the world's next step. *seconds gets the time to advance before the next call: to
  * the next command, or to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick). It is never more than
  * one frame may advance. 0: the world is there. Skips commands before the world's present and those that the loaded save already
  * contains. Skips commands that the world refuses; the log has a warning.
  * FW_ERROR_INVALID_ARGUMENT: no log is open, or the world follows a server. [world] */
-FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* seconds);
+FW_API FwResult FW_CALL fwWorld_PlayCommandLog(FwWorld*, uint64_t untilTick, float* seconds);
 
 /* ---- timeline: back and forth in a burn ------------------------------------------------------------------------ */
 
@@ -1436,10 +1437,10 @@ FW_API FwResult FW_CALL fwWorld_PlayLog(FwWorld*, uint64_t untilTick, float* sec
 typedef struct FwTimelineDef {
     uint32_t structSize;
     float interval;            /* s of world time, [1/32, 3600], default 2. Distance between keyframes */
-    float longest;             /* s, [interval, 3600], default 32. Largest distance to which they may be thinned out to fit */
+    float maxInterval;             /* s, [interval, 3600], default 32. Largest distance to which they may be thinned out to fit */
     uint32_t reserved;         /* 0 */
     uint64_t bytes;            /* bytes, [65536, 2^64), default 67108864. Limit for keyframes and commands. Beyond it every second
-                                  keyframe goes, as far as `longest` allows; then the oldest, and with it the start of the
+                                  keyframe goes, as far as `maxInterval` allows; then the oldest, and with it the start of the
                                   timeline. The newest keyframe and the commands after it stay, whatever their size */
 } FwTimelineDef;
 static inline FwTimelineDef fwDefaultTimelineDef(void) {
@@ -1463,7 +1464,7 @@ FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays as it
 FW_API FwResult FW_CALL fwWorld_Seek(FwWorld*, uint64_t untilTick, float* seconds);
 typedef struct FwTimelineState {
     uint32_t structSize;
-    uint32_t moments;          /* keyframes; 0: the first has not arrived, or there is no timeline */
+    uint32_t keyframes;          /* keyframes; 0: the first has not arrived, or there is no timeline */
     uint64_t firstTick, endTick; /* ticks (2^-12 s). Range of fwWorld_Seek */
     uint64_t bytes;            /* bytes of keyframes and commands */
     float interval;            /* s. Present distance between keyframes */
@@ -1512,10 +1513,10 @@ FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
  *
  * Sent automatically: fwWorld_Ignite, fwWorld_PlayBurn, fwWorld_StopBurn, fwWorld_TransferBurn, fwWorld_SetWind,
  * fwWorld_SetWindGrid, fwWorld_SetGusts, fwWorld_SetWindZone, fwWorld_SetRoom, fwWorld_SetFlags, fwWorld_SetTransform,
- * fwWorld_MoveBlocker, fwWorld_SetHeatShield and fwWorld_ShiftOrigin; position and power of volumetric fires with
- * FW_FIRE_IGNITES and of jets with FW_EMITTER_IGNITES; position and amount of fields with FW_FIELD_WETS. A client refuses these
- * calls, and fwWorld_Load. Each host repeats all else that changes the burn at the same step, when a message of fwNet_Tell says
- * so: creation, destruction, colliders, points of fires, painted fields, vertices. */
+ * fwWorld_MoveHeatOccluder, fwWorld_SetHeatOcclusion and fwWorld_ShiftOrigin; position and power of volumetric fires with
+ * FW_FIRE_IGNITES and of jets with FW_EMITTER_IGNITES; position and amount of fields with FW_FIELD_WETS. A client refuses
+ * these calls, and fwWorld_Load. Each host repeats all else that changes the burn at the same step, when a message of
+ * fwNet_SendMessage says so: creation, destruction, colliders, points of fires, painted fields, vertices. */
 typedef struct FwNetDef {
     uint32_t structSize, flags; /* flags: 0 */
     uint32_t token;             /* [1, 2^32). A random number of the host, new each time: of the session, or of this client.
@@ -1534,7 +1535,7 @@ static inline FwNetDef fwDefaultNetDef(void) {
 }
 /* Makes the world a server, on any backend. FW_ERROR_INVALID_ARGUMENT: it is a server or a client already. [world] */
 FW_API FwResult FW_CALL fwNet_Serve(FwWorld*, const FwNetDef* def);
-/* Makes the world a client, on any backend. It starts with the server's state and advances no further than fwNet_TakeTurn says.
+/* Makes the world a client, on any backend. It starts with the server's state and advances no further than fwNet_NextAction says.
  * FW_ERROR_INVALID_ARGUMENT: it is a server or a client already. [world] */
 FW_API FwResult FW_CALL fwNet_Join(FwWorld*, const FwNetDef* def);
 /* Ends the role of server or client. The world stays as it is. [world] */
@@ -1558,25 +1559,25 @@ FW_API FwResult FW_CALL fwNet_Read(FwWorld*, FwPeerId from, const void* packet, 
  * client gets it between the same commands and before the same step, in order and without gaps. A client that gets the whole
  * state gets the messages that precede that state right before it. Clients that join later do not get it: their host must learn
  * by other means what was created since. [world] */
-FW_API FwResult FW_CALL fwNet_Tell(FwWorld*, const void* message, uint32_t size);
+FW_API FwResult FW_CALL fwNet_SendMessage(FwWorld*, const void* message, uint32_t size);
 
-typedef enum FwNetTurnKind {
-    FW_TURN_WAIT = 0,    /* nothing more to do in this frame of the host */
-    FW_TURN_STEP = 1,    /* advance the world by deltaTime, with fwWorld_Step or a recorded frame, then call again */
-    FW_TURN_MESSAGE = 2, /* a message of the server's host: act on it now, then call again */
-    FW_TURN_FORCE32 = 0x7fffffff
-} FwNetTurnKind;
-typedef struct FwNetTurn {
+typedef enum FwNetActionKind {
+    FW_NET_ACTION_WAIT = 0,    /* nothing more to do in this frame of the host */
+    FW_NET_ACTION_STEP = 1,    /* advance the world by deltaTime, with fwWorld_Step or a recorded frame, then call again */
+    FW_NET_ACTION_MESSAGE = 2, /* a message of the server's host: act on it now, then call again */
+    FW_NET_ACTION_KIND_FORCE32 = 0x7fffffff
+} FwNetActionKind;
+typedef struct FwNetAction {
     uint32_t structSize;
-    uint32_t kind;             /* FwNetTurnKind */
-    float deltaTime;           /* s. For FW_TURN_STEP */
+    uint32_t kind;             /* FwNetActionKind */
+    float deltaTime;           /* s. For FW_NET_ACTION_STEP */
     uint32_t messageSize;      /* bytes */
     unsigned char message[1024];
-} FwNetTurn;
-/* Client: gets the next action. Call it in a loop after fwNet_Update until FW_TURN_WAIT. A host that records one frame of the
- * world in each of its own takes one step each; the rest waits and arrives a little faster.
- * FW_ERROR_VERSION: structSize is below sizeof(FwNetTurn). [world] */
-FW_API FwResult FW_CALL fwNet_TakeTurn(FwWorld*, FwNetTurn* turn);
+} FwNetAction;
+/* Client: gets the next action. Call it in a loop after fwNet_Update until FW_NET_ACTION_WAIT. A host that records one frame
+ * of the world in each of its own takes one step each; the rest waits and arrives a little faster.
+ * FW_ERROR_VERSION: structSize is below sizeof(FwNetAction). [world] */
+FW_API FwResult FW_CALL fwNet_NextAction(FwWorld*, FwNetAction* action);
 
 typedef enum FwNetRole { FW_NET_NONE = 0, FW_NET_SERVER = 1, FW_NET_CLIENT = 2, FW_NET_ROLE_FORCE32 = 0x7fffffff } FwNetRole;
 typedef enum FwNetPhase {
@@ -1591,12 +1592,12 @@ typedef struct FwNetState {
     uint32_t role, phase;      /* FwNetRole; FwNetPhase of a client, or of a server's peer */
     uint32_t peers;
     uint64_t step;             /* steps (1/32 s). Present of this world */
-    uint64_t heardStep;        /* steps. Newest step of the other side that this side knows */
+    uint64_t newestKnownStep;        /* steps. Newest step of the other side that this side knows */
     float behind;              /* s. How far the client is behind that step */
     float silent;              /* s since the last packet arrived */
     uint32_t records;          /* waiting records: for acknowledgement on a server, for their step on a client */
     uint32_t states;           /* states received from the server; the first is the one with which a client joins */
-    uint32_t strays;           /* client: how often it was found to differ */
+    uint32_t desyncs;           /* client: how often it was found to differ */
     uint32_t repairs;          /* client: states of which only the tiles that differed were sent */
     uint64_t hashes;           /* client: hashes compared */
     uint64_t bytesOut, bytesIn, packetsOut, packetsIn; /* without overhead of the transport */
@@ -1654,9 +1655,9 @@ typedef struct FwSurroundings {
 /* Samples the effect of fire at a point (m, [-1e6, 1e6], world). Answers at once, on every backend; costs some tens of
  * nanoseconds a fire. heatFlux and danger sum over the lights of fwWorld_GetLights and differ between backends as these do.
  * [world] */
-FW_API FwResult FW_CALL fwWorld_AskSurroundings(FwWorld*, const float point[3], FwSurroundings* surroundings);
+FW_API FwResult FW_CALL fwWorld_SampleSurroundings(FwWorld*, const float point[3], FwSurroundings* surroundings);
 /* Gets the visibility of one point from the other through smoke: [0, 1]. Walls are up to the host. [world] */
-FW_API FwResult FW_CALL fwWorld_AskSight(FwWorld*, const float from[3], const float to[3], float* seen);
+FW_API FwResult FW_CALL fwWorld_SampleVisibility(FwWorld*, const float from[3], const float to[3], float* seen);
 /* Writes danger at columns x rows points, one byte each, row after row, for path-finding: 127 is a danger of 1; at most 255.
  * `corner` (m, world, at head height) is the first point; `columnStep` and `rowStep` (m, [-1e4, 1e4]) lead to the others.
  * columns and rows: [1, 4096] each. [world] */
@@ -1685,7 +1686,7 @@ FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [wor
 /* Energy of all burnable meshes of the world, exact: fuel = unburnt + radiated + convected, always. In units of 2^-20 J, which
  * the simulation counts. At `frameIndex`, as in FwObjectState. FW_BURNABLE_LITE: a texel's fuel counts as a whole once it has
  * burnt out (if put out earlier, all of it is unburnt). FW_BURNABLE_PUBLISHED keeps no ledger. */
-typedef struct FwEnergyBook {
+typedef struct FwEnergyLedger {
     uint32_t structSize;
     uint32_t objects;          /* objects that keep a ledger */
     uint64_t frameIndex;
@@ -1695,8 +1696,8 @@ typedef struct FwEnergyBook {
     uint64_t convected;        /* 2^-20 J. The rest, in hot gas */
     float power;               /* W at pace 1. Present heat release */
     float burningArea;         /* m^2. Flaming surface of all objects */
-} FwEnergyBook;
-FW_API FwResult FW_CALL fwWorld_GetEnergyBook(FwWorld*, FwEnergyBook* book); /* [world] */
+} FwEnergyLedger;
+FW_API FwResult FW_CALL fwWorld_GetEnergyLedger(FwWorld*, FwEnergyLedger* ledger); /* [world] */
 
 /* Cost limits of a frame. While a frame costs more, detail falls in eight levels; it rises when there is budget again. A level
  * sets how many volumetric flames have rays of their own (the largest on the screen keep them), and with how many samples. It
@@ -1725,7 +1726,7 @@ typedef struct FwBudgetState {
     uint32_t structSize;
     uint32_t level, levels;    /* 0: full detail; levels - 1: the least */
     uint32_t marchedFires;     /* most volumetric flames with rays of their own */
-    uint32_t volumeSteps;      /* most samples of a ray */
+    uint32_t rayStepCount;      /* most samples of a ray */
     uint32_t refinedTriangles; /* target of refined meshes */
     float gpuMilliseconds, cpuMilliseconds; /* ms a frame, smoothed; 0: unknown */
     float quads;               /* share, [0, 1]. Visible share of the quads of flames and particles */

@@ -31,8 +31,8 @@ inline constexpr uint32_t kDefType = 0;
 // clang-format off
 template <> inline constexpr uint32_t kDefType<FwContextDef> = FW_DEF_CONTEXT;
 template <> inline constexpr uint32_t kDefType<FwWorldDef> = FW_DEF_WORLD;
-template <> inline constexpr uint32_t kDefType<FwBlockerDef> = FW_DEF_BLOCKER;
-template <> inline constexpr uint32_t kDefType<FwHeatShieldDef> = FW_DEF_HEAT_SHIELD;
+template <> inline constexpr uint32_t kDefType<FwHeatOccluderDef> = FW_DEF_HEAT_OCCLUDER;
+template <> inline constexpr uint32_t kDefType<FwHeatOcclusionDef> = FW_DEF_HEAT_OCCLUSION;
 template <> inline constexpr uint32_t kDefType<FwWindZoneDef> = FW_DEF_WIND_ZONE;
 template <> inline constexpr uint32_t kDefType<FwWindGridDef> = FW_DEF_WIND_GRID;
 template <> inline constexpr uint32_t kDefType<FwGustDef> = FW_DEF_GUSTS;
@@ -66,7 +66,7 @@ template <class Def>
 
 // Bits of the FwDefTypes whose defaults contain lengths of a world.
 inline constexpr uint32_t kDefsWithLengths =
-    1u << FW_DEF_BURNABLE_MESH | 1u << FW_DEF_BLOCKER | 1u << FW_DEF_HEAT_SHIELD |
+    1u << FW_DEF_BURNABLE_MESH | 1u << FW_DEF_HEAT_OCCLUDER | 1u << FW_DEF_HEAT_OCCLUSION |
     1u << FW_DEF_WIND_ZONE | 1u << FW_DEF_WIND_GRID | 1u << FW_DEF_GUSTS | 1u << FW_DEF_ROOM |
     1u << FW_DEF_VOLUMETRIC_FIRE | 1u << FW_DEF_FIRE_COLLIDER | 1u << FW_DEF_FIRE_EMITTER |
     1u << FW_DEF_PARTICLE_FIELD;
@@ -300,16 +300,16 @@ inline FwResult ignite(const World& world, const float (&place)[3], float radius
 
 // ---- heat occlusion
 
-// Sets the heat-occlusion grid (see fwWorld_SetHeatShield) from a distance function,
+// Sets the heat-occlusion grid (see fwWorld_SetHeatOcclusion) from a distance function,
 // float(const float place[3]). The library calls it once for each cell before this returns. It must
 // not throw.
 template <std::invocable<const float*> Distance>
-FwResult setHeatShield(const World& world, FwHeatShieldDef def, Distance distance) noexcept {
+FwResult setHeatOcclusion(const World& world, FwHeatOcclusionDef def, Distance distance) noexcept {
     def.distance = [](void* data, const float* place) -> float {
         return (*static_cast<Distance*>(data))(place);
     };
     def.distanceData = std::addressof(distance);
-    return fwWorld_SetHeatShield(world.get(), &def);
+    return fwWorld_SetHeatOcclusion(world.get(), &def);
 }
 
 // ---- running
@@ -358,7 +358,7 @@ inline void destroyAfterFrame(World& world, uint64_t frameIndex = 0) noexcept {
 [[nodiscard]] constexpr FwObjectKind kindOf(FwBurnableMeshId) noexcept {
     return FW_OBJECT_BURNABLE_MESH;
 }
-[[nodiscard]] constexpr FwObjectKind kindOf(FwBlockerId) noexcept { return FW_OBJECT_BLOCKER; }
+[[nodiscard]] constexpr FwObjectKind kindOf(FwHeatOccluderId) noexcept { return FW_OBJECT_HEAT_OCCLUDER; }
 [[nodiscard]] constexpr FwObjectKind kindOf(FwVolumetricFireId) noexcept {
     return FW_OBJECT_VOLUMETRIC_FIRE;
 }

@@ -25,12 +25,12 @@ typedef enum FwDebugSwitch {
     FW_DEBUG_DENSE = 1,             /* runs every tile of burning objects each step */
     FW_DEBUG_SHUFFLE = 2,           /* cpu backend: runs due tiles and embers in a random order */
     FW_DEBUG_NO_SEAM_WAKE = 4,      /* mutant, which must make a test fail: tiles across a seam do not wake */
-    FW_DEBUG_WRONG_READERS = 8,     /* mutant: dependent tiles are wrong */
+    FW_DEBUG_WRONG_DEPENDENTS = 8,     /* mutant: dependent tiles are wrong */
     FW_DEBUG_NO_WIND_WAKE = 16,     /* mutant: a change of wind or pose wakes no tiles */
     FW_DEBUG_NEVER_IDLE = 32,       /* records the passes even if nothing burns */
     FW_DEBUG_REFINE_FULL = 64,      /* refined objects have their deepest level everywhere, and all of it moves */
-    FW_DEBUG_CROSSING = 128,        /* no bounds on recession: walls cross, and each opens by itself */
-    FW_DEBUG_NO_Z_PASS = 256,       /* objects with FW_BURNABLE_Z_PASS draw only front faces */
+    FW_DEBUG_SELF_INTERSECTION = 128,        /* no bounds on recession: walls cross, and each opens by itself */
+    FW_DEBUG_NO_DEPTH_PEEL = 256,       /* objects with FW_BURNABLE_DEPTH_PEEL draw only front faces */
     FW_DEBUG_SWITCH_FORCE32 = 0x7fffffff
 } FwDebugSwitch;
 FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* FwDebugSwitch bits [world] */

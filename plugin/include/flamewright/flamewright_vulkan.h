@@ -45,7 +45,7 @@ static inline FwVulkanHost fwDefaultVulkanHost(void) {
 }
 
 /* For a host that creates its device later: what the library can use. Only minimumApiVersion and queueFlags are required. */
-typedef struct FwVulkanWishes {
+typedef struct FwVulkanRequirements {
     uint32_t structSize;
     uint32_t minimumApiVersion;          /* VK_API_VERSION_1_0 */
     uint32_t extensionCount, instanceExtensionCount;
@@ -53,9 +53,9 @@ typedef struct FwVulkanWishes {
     const char* const* instanceExtensions;
     VkPhysicalDeviceFeatures features;   /* VK_TRUE: useful */
     VkQueueFlags queueFlags;             /* required of the queue family */
-} FwVulkanWishes;
+} FwVulkanRequirements;
 /* Needs no context. [any] */
-FW_API FwResult FW_CALL fwQueryVulkanWishes(FwVulkanWishes* wishes);
+FW_API FwResult FW_CALL fwQueryVulkanRequirements(FwVulkanRequirements* requirements);
 
 typedef enum FwDepthMode {
     FW_DEPTH_NONE = 0,      /* the target has no depth. Surfaces are drawn without it: right for flat sheets that do not

@@ -7,8 +7,8 @@
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
-#include "mesh/remote_tiles.h"
-#include "shared/grant.h"
+#include "mesh/exchange_tiles.h"
+#include "shared/burn_budget.h"
 
 #include <algorithm>
 #include <bit>
@@ -20,14 +20,14 @@ namespace fw::gpu::cpu {
 
 static_assert(kSwitchDense == FW_DEBUG_DENSE && kSwitchShuffle == FW_DEBUG_SHUFFLE &&
               kSwitchNoSeamWake == FW_DEBUG_NO_SEAM_WAKE &&
-              kSwitchWrongReaders == FW_DEBUG_WRONG_READERS &&
+              kSwitchWrongDependents == FW_DEBUG_WRONG_DEPENDENTS &&
               kSwitchNoWindWake == FW_DEBUG_NO_WIND_WAKE);
 
 namespace {
 
-constexpr const char* kTimerNames[kTimerCount] = {"wake",      "events",  "rooms",    "heat",
-                                                  "schedule",  "arrival", "grant",    "commit",
-                                                  "published", "reduce",  "exchange", "field"};
+constexpr const char* kTimerNames[kTimerCount] = {"wake",      "events",  "rooms",       "heat",
+                                                  "schedule",  "arrival", "burn_budget", "commit",
+                                                  "published", "reduce",  "exchange",    "field"};
 
 class Stopwatch {
  public:
@@ -72,9 +72,9 @@ CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_
       freeTiles(memory_),
       readbacks(memory_) {}
 
-FrontPlanes CpuBackend::State::planes(const CpuObject& object) const noexcept {
+FrontArrays CpuBackend::State::planes(const CpuObject& object) const noexcept {
     const mesh::BurnDomain& domain = *object.domain;
-    FrontPlanes planes;
+    FrontArrays planes;
     planes.state = object.state.data();
     planes.texels = domain.texels.data();
     planes.normals = domain.normals.data();
@@ -103,7 +103,7 @@ void CpuBackend::State::burning(uint32_t worldTile) noexcept {
     flag |= kTileBurning;
 }
 
-void CpuBackend::State::askToBurn(uint32_t worldTile) noexcept {
+void CpuBackend::State::requestToBurn(uint32_t worldTile) noexcept {
     FW_ASSERT(worldTile < asked.size(), "world tile %u of %zu", worldTile, asked.size());
     if (asked[worldTile] != 0) return;
     FW_ASSERT(asks.size() < asks.capacity(), "%zu tiles ask", asks.size());
@@ -111,37 +111,37 @@ void CpuBackend::State::askToBurn(uint32_t worldTile) noexcept {
     asks.push_back({0, 0, 0, worldTile});
 }
 
-void CpuBackend::State::grant(uint32_t tilesMost, uint32_t now) noexcept {
-    Stopwatch watch(*this, kTimerGrant);
+void CpuBackend::State::grant(uint32_t maxTiles, uint32_t now) noexcept {
+    Stopwatch watch(*this, kTimerBurnBudget);
     for (uvec4& ask : asks) {
         asked[ask.w] = 0;
         ask.y = tiles[ask.w].object;
         ask.z = at(ask.y).localTileOf(ask.w);
-        ask.x = askOrder(ask.y, ask.z, now);
+        ask.x = requestOrder(ask.y, ask.z, now);
     }
-    std::sort(asks.begin(), asks.end(), asksBefore);
+    std::sort(asks.begin(), asks.end(), requestPrecedes);
     for (const uvec4& ask : asks) {
         const CpuObject& object = at(ask.y);
         const bool limited = object.exchanges();
         // A tile that the host lit meanwhile needs no grant, and counts.
         if ((tiles[ask.w].flag & kTileBurning) == 0 &&
-            roomFor(uint32_t(burnList.size()) + goneBurning, tilesMost) != 0 &&
-            (!limited || roomFor(object.counters.burningTiles, object.remote.tilesMost) != 0))
+            remainingTiles(uint32_t(burnList.size()) + goneBurning, maxTiles) != 0 &&
+            (!limited || remainingTiles(object.counters.burningTiles, object.remote.maxTiles) != 0))
             burning(ask.w);
     }
     asks.clear();
 }
 
-void CpuBackend::State::touchReaders(const CpuObject& object, uint32_t local,
-                                     uint64_t mask) noexcept {
+void CpuBackend::State::touchDependents(const CpuObject& object, uint32_t local,
+                                        uint64_t mask) noexcept {
     const uint32_t base = object.record.worldTileBase;
     const mesh::BurnDomain& domain = *object.domain;
     touch(base + local, kTileTouched);
     mesh::forEachTileBeside(domain, local, mask,
                             [&](uint32_t tile) { touch(base + tile, kTileTouched); });
     if ((switches & kSwitchNoSeamWake) != 0) return;
-    for (const uint32_t reader : mesh::seamReaders(domain, local, mask))
-        touch(base + ((switches & kSwitchWrongReaders) != 0 ? 0 : reader), kTileTouched);
+    for (const uint32_t reader : mesh::seamDependents(domain, local, mask))
+        touch(base + ((switches & kSwitchWrongDependents) != 0 ? 0 : reader), kTileTouched);
 }
 
 // As events.comp.
@@ -154,12 +154,12 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
     uint32_t& state = object.state[event.texel];
     const uint32_t before = state;
     uint32_t after = from.state[event.tick];
-    if (asksOnly || !carries(after, before)) return;
+    if (isRequestPass || !carries(after, before)) return;
     const uint32_t worldTile = object.worldTileOf(event.texel);
     if (!object.heat.empty()) {
         const HeatMaterial& m = object.heatMaterialOf(event.texel);
-        const HeatTexel has = heatCarried(unpackHeat(from.heat[event.tick]), m);
-        after = wetState(after, heatClosed(has, m));
+        const HeatTexel has = carriedTexel(unpackHeat(from.heat[event.tick]), m);
+        after = wetState(after, isBarrierByWater(has, m));
         const uvec2 had = object.heat[event.texel], packed = packHeat(has);
         if (packed == had && after == before) return;
         // Fuel that burnt on the other mesh counts as this object's loss. Its room has already
@@ -193,7 +193,7 @@ void CpuBackend::State::changedTexel(const CpuObject& object, uint32_t texel,
                                      uint32_t now) noexcept {
     const uint32_t worldTile = object.worldTileOf(texel);
     tiles[worldTile].lastChange = now;
-    touchReaders(object, object.localTileOf(worldTile), 1ull << object.domain->laneOf(texel));
+    touchDependents(object, object.localTileOf(worldTile), 1ull << object.domain->laneOf(texel));
 }
 
 // Number of events from `first` on with the same object and texel; "all texels" counts as one.
@@ -201,7 +201,8 @@ size_t CpuBackend::State::runOf(std::span<const TexelEvent> events, size_t first
     size_t end = first;
     while (end < events.size() && events[end].object == events[first].object &&
            events[end].texel == events[first].texel && eventKind(events[end].kind) != kEventGate &&
-           eventKind(events[end].kind) != kEventPlays && eventKind(events[end].kind) != kEventCarry)
+           eventKind(events[end].kind) != kEventPlaybackSpan &&
+           eventKind(events[end].kind) != kEventCarry)
         ++end;
     return end - first;
 }
@@ -230,7 +231,7 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             ++i;
             continue;
         }
-        if (eventKind(first.kind) == kEventPlays) {
+        if (eventKind(first.kind) == kEventPlaybackSpan) {
             if (first.tick == kNever)
                 object.counters.playsUntil = kNever;
             else
@@ -254,9 +255,9 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             afterEvents(object, first.texel, step.events, run, step.now, heated, byFlame);
         const uint32_t worldTile = object.worldTileOf(first.texel);
         const bool lights = isSource(now) && !isSource(before);
-        if (asksOnly) {
+        if (isRequestPass) {
             if (lights && byFlame)
-                askToBurn(worldTile);
+                requestToBurn(worldTile);
             else if (lights)
                 burning(worldTile);
             continue;
@@ -313,7 +314,7 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
                 knownMaterial = flags & 7;
             }
             const uint32_t now = knownAfter;
-            if (asksOnly) {
+            if (isRequestPass) {
                 burns |= isSource(now) && !isSource(before);
                 continue;
             }
@@ -338,7 +339,7 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
                 std::max(object.counters.lastIgnition, step.now + kStepTicks);
         if (!object.published.empty()) continue;
         tiles[worldTile].lastChange = step.now;
-        touchReaders(object, local, changed);
+        touchDependents(object, local, changed);
     }
 }
 
@@ -352,7 +353,7 @@ void CpuBackend::State::wake(const StepPlan& step) noexcept {
         for (uint32_t local = 0; local < object.record.tileCount; ++local) {
             const uint32_t worldTile = object.record.worldTileBase + local;
             const bool listed = (tiles[worldTile].flag & kTileListed) != 0;
-            if (latchTouches(listed, tiles[worldTile].lastChange, step.now, update.window))
+            if (latchReaches(listed, tiles[worldTile].lastChange, step.now, update.window))
                 touch(worldTile, kTileTouched);
         }
     }
@@ -365,8 +366,8 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
     const BurnObject& record = object.record;
     const bool listed = (tile.flag & kTileListed) != 0;
     // A tile of a baked burn is due once the burn goes live.
-    if (!takesPart(iteration, step.substepShift, record.substepShift) ||
-        (step.plays && playsAt(object.counters.playsUntil, step.now))) {
+    if (!runsInIteration(iteration, step.substepShift, record.substepShift) ||
+        (step.plays && isPlayingBack(object.counters.playsUntil, step.now))) {
         if (listed) append(listOut, worldTile);
         return;
     }
@@ -375,8 +376,8 @@ void CpuBackend::State::scheduleTile(const StepPlan& step, uint32_t iteration, u
             tile.flag &= ~(kTileListed | kTileTouched);
             return;
         }
-        if (holdsTile(tile.flag, scheduledBurning, step.rules.tilesMost,
-                      object.counters.burningTiles, object.remote.flags, object.remote.tilesMost)) {
+        if (holdsTile(tile.flag, scheduledBurning, step.rules.maxTiles,
+                      object.counters.burningTiles, object.remote.flags, object.remote.maxTiles)) {
             if (listed) append(listOut, worldTile);
             return;
         }
@@ -430,7 +431,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
         FW_ASSERT(runList.size() <= results.size() && runList.size() * 64 <= scratch.size(),
                   "%zu tiles run, %zu results", runList.size(), results.size());
         uint32_t known = kNoneTexel;  // object of knownPlanes
-        FrontPlanes knownPlanes;
+        FrontArrays knownPlanes;
         uint32_t end = 0, floorTick = 0, base = 0;
         for (size_t i = 0; i < runList.size(); ++i) {
             const uint32_t worldTile = runList[i];
@@ -441,7 +442,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
                 knownPlanes = planes(object);
                 end = iterationEnd(step.now, iteration, step.substepShift, shift);
                 floorTick =
-                    frontFloor(end - windowTicks(step.substepShift, shift), object.record.window);
+                    windowFloor(end - windowTicks(step.substepShift, shift), object.record.window);
                 base = object.record.worldTileBase;
             }
             results[i] =
@@ -450,8 +451,8 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
     }
     if (capped) {
         for (size_t i = 0; i < runList.size(); ++i)
-            if (results[i].lit != 0 && !mayBurn(runList[i])) askToBurn(runList[i]);
-        grant(step.rules.tilesMost, step.now);
+            if (results[i].lit != 0 && !mayBurn(runList[i])) requestToBurn(runList[i]);
+        grant(step.rules.maxTiles, step.now);
     }
     Stopwatch watch(*this, kTimerCommit);
     for (size_t i = 0; i < runList.size(); ++i) {
@@ -483,7 +484,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
             burning(worldTile);
             if (!object.heat.empty()) hot(worldTile);
         }
-        touchReaders(object, local, result.changed);
+        touchDependents(object, local, result.changed);
     }
 }
 
@@ -551,12 +552,12 @@ CpuBackend::CpuBackend(std::pmr::memory_resource* memory, uint32_t maxLights)
 CpuBackend::~CpuBackend() = default;
 
 void CpuBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
-    std::pmr::vector<RemoteTile> tiles(state_->memory);
-    (void)mesh::remoteTiles(domain, tiles);
-    if (slot >= state_->remoteTiles.size()) state_->remoteTiles.resize(slot + 1);
+    std::pmr::vector<ExchangeTile> tiles(state_->memory);
+    (void)mesh::exchangeTiles(domain, tiles);
+    if (slot >= state_->exchangeTiles.size()) state_->exchangeTiles.resize(slot + 1);
     if (slot >= state_->meshes.size()) state_->meshes.resize(slot + 1, nullptr);
     state_->meshes[slot] = &domain;
-    state_->remoteTiles[slot].swap(tiles);
+    state_->exchangeTiles[slot].swap(tiles);
 }
 
 void CpuBackend::destroyMesh(uint32_t slot) noexcept {
@@ -669,18 +670,18 @@ ReadbackStore& CpuBackend::State::reserveReadback(const FramePlan& plan) {
 void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     FW_ASSERT(step.substepShift < 32, "substep shift %u", step.substepShift);
     FW_ASSERT(!step.exchange || step.reduce, "an exchange needs the counts of a reduction");
-    FW_ASSERT(!asksOnly && asks.empty(), "%zu tiles still ask", asks.size());
-    if (step.remote) placeRemote(*step.remote);
-    if (step.shield) placeShield(*step.shield);
+    FW_ASSERT(!isRequestPass && asks.empty(), "%zu tiles still ask", asks.size());
+    if (step.remote) placeExchangeObject(*step.remote);
+    if (step.shield) setOcclusionPush(*step.shield);
     capped = step.capped;
-    const uint32_t most = step.rules.tilesMost;
+    const uint32_t most = step.rules.maxTiles;
     if (!step.materials.empty()) {
         Stopwatch watch(*this, kTimerWake);
         wake(step);
     }
     if (!step.events.empty()) {
         Stopwatch watch(*this, kTimerEvents);
-        askThen(most, step.now, [&] { applyEvents(step); });
+        requestThenBurn(most, step.now, [&] { applyEvents(step); });
     }
     if (step.rooms) {
         Stopwatch watch(*this, kTimerRooms);
@@ -689,7 +690,7 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     if (step.heat) goneHot = 0;
     if (step.heat && !hotList.empty()) {
         Stopwatch watch(*this, kTimerHeat);
-        if (capped) askHeat(step.now), grant(most, step.now);
+        if (capped) requestHeat(step.now), grant(most, step.now);
         heatStep(step.now);
     }
     goneListed = 0;
@@ -697,7 +698,7 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
         for (uint32_t k = 0; k < 1u << step.substepShift; ++k) iterate(step, k);
     if (publishedObjects != 0) {
         Stopwatch watch(*this, kTimerPublished);
-        askThen(most, step.now, [&] { publishedStep(step.now); });
+        requestThenBurn(most, step.now, [&] { publishedStep(step.now); });
     }
     if (step.reduce) {
         Stopwatch watch(*this, kTimerReduce);
@@ -752,7 +753,7 @@ void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& sto
         store.objects[i] = objects[i] ? objects[i]->counters : ObjectCounters{};
     answerProbes(plan.probes, store.answers);
     copyBurnMaps(plan.burnMaps, store);
-    takeImages(store, plan.images);
+    collectImages(store, plan.images);
     findLights(store.lights);
     store.rooms.assign(roomAir.begin(), airs ? roomAir.end() : roomAir.begin());
     Readback& readback = store.readback;
@@ -792,8 +793,8 @@ void CpuBackend::run(const FramePlan& plan) {
     // Everything that can fail comes first.
     ReadbackStore& store = s.reserveReadback(plan);
     for (const StepPlan& step : plan.steps) {
-        if (step.remote) s.reserveRemote(*step.remote);
-        if (step.shield) s.reserveShield(*step.shield);
+        if (step.remote) s.reserveExchange(*step.remote);
+        if (step.shield) s.reserveOcclusion(*step.shield);
     }
 
     s.showRestored();

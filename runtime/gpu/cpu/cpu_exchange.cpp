@@ -4,8 +4,8 @@
 #include "core/growth.h"
 #include "core/hash.h"
 #include "gpu/cpu/cpu_state.h"
+#include "mesh/exchange_tiles.h"
 #include "mesh/part_links.h"
-#include "mesh/remote_tiles.h"
 
 #include <algorithm>
 #include <array>
@@ -16,28 +16,28 @@ namespace {
 
 ivec3 upOf(const ExchangePush& rules) noexcept { return {rules.upX, rules.upY, rules.upZ}; }
 
-uint32_t powerOf(const RemoteObject& object, uint32_t material) noexcept {
+uint32_t powerOf(const ExchangeObject& object, uint32_t material) noexcept {
     return (material < 4 ? object.power0 : object.power1)[int(material & 3)];
 }
 
 }  // namespace
 
-void CpuBackend::State::reserveRemote(const RemoteUpdate& update) {
+void CpuBackend::State::reserveExchange(const ExchangeUpdate& update) {
     core::growTo(neighbours, update.neighbours.size());
     core::growTo(links, update.links.size());
-    blockers.reserve(update.blockers.size());
+    occluders.reserve(update.occluders.size());
 }
 
 namespace {
 
 template <class T>
-void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ranges,
+void copyRanges(std::span<const T> from, std::span<const ExchangeUpdate::Range> ranges,
                 std::pmr::vector<T>& to) noexcept {
     FW_ASSERT(from.size() <= to.capacity(), "%zu of %zu entries", from.size(), to.capacity());
     const size_t known = std::min(to.size(), from.size());
     to.resize(known);
     to.insert(to.end(), from.begin() + std::ptrdiff_t(known), from.end());
-    for (const RemoteUpdate::Range& range : ranges)
+    for (const ExchangeUpdate::Range& range : ranges)
         if (range.first < known)
             std::copy_n(from.begin() + range.first,
                         std::min<size_t>(range.count, known - range.first),
@@ -46,60 +46,61 @@ void copyRanges(std::span<const T> from, std::span<const RemoteUpdate::Range> ra
 
 }  // namespace
 
-void CpuBackend::State::placeRemote(const RemoteUpdate& update) noexcept {
-    FW_ASSERT(update.blockers.size() <= blockers.capacity(), "%zu of %zu blockers",
-              update.blockers.size(), blockers.capacity());
-    for (const RemoteUpdate::Placed& placed : update.objects)
+void CpuBackend::State::placeExchangeObject(const ExchangeUpdate& update) noexcept {
+    FW_ASSERT(update.occluders.size() <= occluders.capacity(), "%zu of %zu occluders",
+              update.occluders.size(), occluders.capacity());
+    for (const ExchangeUpdate::Placed& placed : update.objects)
         if (CpuObject* object = find(placed.object)) object->remote = placed.record;
     copyRanges(update.neighbours, update.neighbourRanges, neighbours);
     copyRanges(update.links, update.linkRanges, links);
-    blockers.assign(update.blockers.begin(), update.blockers.end());
+    occluders.assign(update.occluders.begin(), update.occluders.end());
 }
 
-void CpuBackend::State::reserveShield(const ShieldUpdate& update) {
-    shieldCells.reserve(update.words.size());
+void CpuBackend::State::reserveOcclusion(const OcclusionUpdate& update) {
+    occlusionCells.reserve(update.words.size());
 }
 
-void CpuBackend::State::placeShield(const ShieldUpdate& update) noexcept {
-    FW_ASSERT(update.words.size() <= shieldCells.capacity(), "%zu of %zu words",
-              update.words.size(), shieldCells.capacity());
-    shieldCells.assign(update.words.begin(), update.words.end());
+void CpuBackend::State::setOcclusionPush(const OcclusionUpdate& update) noexcept {
+    FW_ASSERT(update.words.size() <= occlusionCells.capacity(), "%zu of %zu words",
+              update.words.size(), occlusionCells.capacity());
+    occlusionCells.assign(update.words.begin(), update.words.end());
     shield = update;
-    shield.words = shieldCells;
+    shield.words = occlusionCells;
 }
 
-// As shaders/lib/shield.glsl.
-bool CpuBackend::State::shieldStands(uint32_t what, uint32_t texel, uint32_t now) const noexcept {
-    if ((what & kShieldStays) != 0) return true;
-    const CpuObject* found = find(what & kShieldSlot);
+// As shaders/lib/occlusion.glsl.
+bool CpuBackend::State::isOccluderStanding(uint32_t what, uint32_t texel,
+                                           uint32_t now) const noexcept {
+    if ((what & kOcclusionPermanent) != 0) return true;
+    const CpuObject* found = find(what & kOcclusionSlotMask);
     if (!found) return true;
     const CpuObject& object = *found;
     FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
     const uint32_t holes = object.materials[what >> 24 & 7].holeTicks, t = object.state[texel];
     if (!isSource(t) || t > now || now - t < holes) return true;
     return !object.heat.empty() &&
-           !gateLets(kEventGate, holes, unpackHeat(object.heat[texel]), t, now);
+           !gateOpens(kEventGate, holes, unpackHeat(object.heat[texel]), t, now);
 }
 
-bool CpuBackend::State::shieldCuts(const ShieldEnds& ends, const ivec3& a, const ivec3& b,
+bool CpuBackend::State::isOccluded(const OcclusionEnds& ends, const ivec3& a, const ivec3& b,
                                    const ExchangePush& rules) const noexcept {
-    const uint32_t words = shieldWords(rules.shieldCounts), side = rules.shieldCell;
-    for (ShieldWalk w = shieldWalk(rules, a, b); w.within; shieldStep(w, side)) {
+    const uint32_t words = occlusionWords(rules.occlusionCounts), side = rules.occlusionCell;
+    for (OcclusionWalk w = beginOcclusionWalk(rules, a, b); w.within; stepOcclusionWalk(w, side)) {
         const uint32_t at = w.cell >> 5, bit = 1u << (w.cell & 31);
-        FW_ASSERT(words + 2 * at + 1 < shieldCells.size(), "word %u of %zu", at,
-                  shieldCells.size());
-        if ((shieldCells[at] & bit) == 0) continue;
-        const uint32_t baked = shieldCells[words + 2 * at];
+        FW_ASSERT(words + 2 * at + 1 < occlusionCells.size(), "word %u of %zu", at,
+                  occlusionCells.size());
+        if ((occlusionCells[at] & bit) == 0) continue;
+        const uint32_t baked = occlusionCells[words + 2 * at];
         if ((baked & bit) == 0) {
-            if (!shieldSpares(w, ends, kNoneTexel, side)) return true;
+            if (!isNearWalkEnd(w, ends, kNoneTexel, side)) return true;
             continue;
         }
         const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
-        const uint32_t i = 3 * words + 2 * (shieldCells[words + 2 * at + 1] + before);
-        FW_ASSERT(i + 1 < shieldCells.size(), "word %u of %zu", i, shieldCells.size());
-        const uint32_t what = shieldCells[i];
-        if (!shieldSpares(w, ends, what & kShieldSlot, side) &&
-            shieldStands(what, shieldCells[i + 1], rules.now))
+        const uint32_t i = 3 * words + 2 * (occlusionCells[words + 2 * at + 1] + before);
+        FW_ASSERT(i + 1 < occlusionCells.size(), "word %u of %zu", i, occlusionCells.size());
+        const uint32_t what = occlusionCells[i];
+        if (!isNearWalkEnd(w, ends, what & kOcclusionSlotMask, side) &&
+            isOccluderStanding(what, occlusionCells[i + 1], rules.now))
             return true;
     }
     return false;
@@ -116,17 +117,17 @@ void CpuBackend::State::disturb(CpuObject& object, uint32_t end) noexcept {
 void CpuBackend::State::exchange(const ExchangePush& given, uint32_t now) noexcept {
     ExchangePush rules = given;
     rules.now = now;
-    gpu::placeShield(shield, rules);
+    gpu::setOcclusionPush(shield, rules);
     sumSources();
     settleSources(rules);
     if (rules.warms != 0) warmAll(rules);
-    if ((rules.flags & kRemoteEmbers) != 0) emberWays(rules);
-    askThen(rules.tilesMost, rules.now, [&] {
-        if ((rules.flags & kRemoteContact) != 0) {
+    if ((rules.flags & kExchangeEmbers) != 0) emberPaths(rules);
+    requestThenBurn(rules.maxTiles, rules.now, [&] {
+        if ((rules.flags & kExchangeContact) != 0) {
             contacts(rules);
             parts(rules);
         }
-        if ((rules.flags & kRemoteEmbers) != 0) embers(rules);
+        if ((rules.flags & kExchangeEmbers) != 0) embers(rules);
     });
 }
 
@@ -139,7 +140,7 @@ void CpuBackend::State::sumSources() noexcept {
     for (const BurnTile& burning : burnTiles) {
         CpuObject& object = at(burning.object);
         if (!object.exchanges()) continue;
-        const RemoteTile& tile = remoteTileOf(object, burning.tile);
+        const ExchangeTile& tile = remoteTileOf(object, burning.tile);
         FW_ASSERT(tileCell(tile) < object.sources.size(), "source %u of %zu", tileCell(tile),
                   object.sources.size());
         FireSource& source = object.sources[tileCell(tile)];
@@ -160,18 +161,18 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
         if (!exchanging(slot)) continue;
         CpuObject& object = at(slot);
         ObjectCounters& c = object.counters;
-        noteFire(c, object.remote, rules);
-        c.held = heldBits(burningTiles, rules.tilesMost, c.burningTiles, object.remote.tilesMost,
+        recordFire(c, object.remote, rules);
+        c.held = heldBits(burningTiles, rules.maxTiles, c.burningTiles, object.remote.maxTiles,
                           c.stopTick, rules.now);
         if (c.burning == 0) continue;
         const uint32_t hops = hopsOf(c.litBy);
-        const bool gives = mayGive(object.remote, hops, rules.hopsMost);
-        if (gives && (rules.flags & (kRemoteRadiation | kRemotePlume)) != 0)
+        const bool gives = mayTransfer(object.remote, hops, rules.hopsMost);
+        if (gives && (rules.flags & (kExchangeRadiation | kExchangePlume)) != 0)
             for (uint32_t n = 0; n < object.remote.neighbourCount; ++n) {
                 CpuObject* other = find(neighbourOf(object, n) & 0xFFFFFFu);
                 if (!other) continue;
                 other->counters.until =
-                    std::max(other->counters.until, rules.now + kExchangeTurns * kExchangeTicks);
+                    std::max(other->counters.until, rules.now + kExchangeRounds * kExchangeTicks);
             }
         for (uint32_t cell = 0; cell < object.sources.size(); ++cell) {
             FireSource& source = object.sources[cell];
@@ -184,7 +185,7 @@ void CpuBackend::State::settleSources(const ExchangePush& rules) noexcept {
             source.object = slot;
             source.hops = hops;
             source.ember = 0;
-            if ((rules.flags & kRemoteEmbers) != 0 && source.watts != 0)
+            if ((rules.flags & kExchangeEmbers) != 0 && source.watts != 0)
                 source.ember =
                     emberOf(rules.seed, slot, cell, rules.now, source.power, rules.brands);
         }
@@ -199,8 +200,8 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     if (before != tick && !isReceptive(before)) return false;
     const uint32_t worldTile = object.worldTileOf(texel);
     if (!mayCatch(object.counters.held, tiles[worldTile].flag)) return false;
-    if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
-    if (asksOnly || !mayBurn(worldTile)) return false;
+    if (isRequestPass && !mayBurn(worldTile)) requestToBurn(worldTile);
+    if (isRequestPass || !mayBurn(worldTile)) return false;
     litFrom(object, by);
     if (before == tick) return true;  // two flames lit it
     object.state[texel] = tick;
@@ -218,7 +219,7 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
 
 void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
     receivers = 0;
-    const uint32_t turn = rules.now / kExchangeTicks % kExchangeTurns;
+    const uint32_t turn = rules.now / kExchangeTicks % kExchangeRounds;
     for (uint32_t slot = 0; slot < objects.size(); ++slot) {
         if (!exchanging(slot)) continue;
         CpuObject& object = at(slot);
@@ -226,7 +227,7 @@ void CpuBackend::State::warmAll(const ExchangePush& rules) noexcept {
         ++receivers;
         object.counters.held |= kHeldWarm;
         gatherSources(slot, rules);
-        for (uint32_t local = turn; local < object.record.tileCount; local += kExchangeTurns)
+        for (uint32_t local = turn; local < object.record.tileCount; local += kExchangeRounds)
             warmTile(slot, local, rules);
     }
 }
@@ -244,14 +245,14 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
             if (entry >> 24 == 0 || !exchanging(slotOf)) continue;
             const CpuObject& from = at(slotOf);
             if (from.counters.burning == 0 ||
-                !mayGive(from.remote, hopsOf(from.counters.litBy), rules.hopsMost) ||
-                !mayJump(rules.seed, slotOf, slot, from.counters.litTick,
-                         bothChances(rules.chance, from.remote.chance)))
+                !mayTransfer(from.remote, hopsOf(from.counters.litBy), rules.hopsMost) ||
+                !mayReach(rules.seed, slotOf, slot, from.counters.litTick,
+                          multiplyChances(rules.chance, from.remote.chance)))
                 continue;
             for (const FireSource& source : from.sources) {
                 const uint32_t weight = sourceWeight(source, middle);
                 if (weight < low || weight >= high) continue;
-                if (!takes) ++bits[topBit(weight)];
+                if (!takes) ++bits[highestBit(weight)];
                 if (takes && warmCount < kSourcesPerReceiver)
                     warms[warmCount++] = {&source, entry >> 24};
                 ++count;
@@ -273,13 +274,13 @@ void CpuBackend::State::gatherSources(uint32_t slot, const ExchangePush& rules) 
 void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
                                  const ExchangePush& rules) noexcept {
     CpuObject& object = at(slot);
-    const RemoteTile& tile = remoteTileOf(object, local);
+    const ExchangeTile& tile = remoteTileOf(object, local);
     if (tile.texels == 0) return;
     const uint32_t worldTile = object.record.worldTileBase + local;
     const ivec3 up = upOf(rules);
-    const ivec3 at = remotePlace(object.remote, tileMiddle(tile));
-    const ivec3 normal = remoteTurn(object.remote, decodeNormal(tile.normal));
-    const bool both = (object.remote.flags & kRemoteTwoSided) != 0;
+    const ivec3 at = toWorldMm(object.remote, tileMiddle(tile));
+    const ivec3 normal = turnToWorld(object.remote, decodeNormal(tile.normal));
+    const bool both = (object.remote.flags & kExchangeTwoSided) != 0;
     const bool may = mayCatch(object.counters.held, tiles[worldTile].flag);
     uint32_t flux = 0, pilot = 0, strongest = 0, by = 0;
     for (uint32_t i = 0; may && i < warmCount; ++i) {
@@ -288,14 +289,14 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
             receivedFrom(source, rules.flags, rules.ambient, up, at, normal, both, warms[i].seen);
         if ((got.flux | got.pilot) == 0) continue;
         const ivec3 flame = alongFlame(source, up, 4);
-        if (std::any_of(blockers.begin(), blockers.end(),
-                        [&](const Blocker& b) { return blockerCuts(b, flame, at); }))
+        if (std::any_of(occluders.begin(), occluders.end(),
+                        [&](const HeatOccluder& b) { return occluderBlocks(b, flame, at); }))
             continue;
-        if (rules.shieldCell != 0 &&
-            shieldCuts(shieldEnds(source, flame, slot, at, normal, rules.shieldCell), flame, at,
-                       rules))
+        if (rules.occlusionCell != 0 &&
+            isOccluded(flameOcclusionEnds(source, flame, slot, at, normal, rules.occlusionCell),
+                       flame, at, rules))
             continue;
-        flux = std::min(flux + got.flux, kFluxMost);
+        flux = std::min(flux + got.flux, kMaxFlux);
         pilot |= got.pilot;
         const uint32_t key = litBy(source.hops, source.object);
         if (got.flux > strongest || (got.flux == strongest && key > by)) {
@@ -303,7 +304,7 @@ void CpuBackend::State::warmTile(uint32_t slot, uint32_t local,
             by = key;
         }
     }
-    if (fluxWork(flux) == kWorkAlways) disturb(object, rules.now);
+    if (workOfFlux(flux) == kWorkAlways) disturb(object, rules.now);
     if (flux != 0) litFrom(object, by);
     TileHeat& comes = tileHeat[worldTile];
     if (comes.flux == flux && comes.pilot == pilot) return;
@@ -324,7 +325,8 @@ void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
             if (!exchanging(link.fromObject)) continue;
             const CpuObject& from = at(link.fromObject);
             const uint32_t hops = hopsOf(from.counters.litBy);
-            if (from.counters.burning == 0 || !mayGive(from.remote, hops, rules.hopsMost)) continue;
+            if (from.counters.burning == 0 || !mayTransfer(from.remote, hops, rules.hopsMost))
+                continue;
             FW_ASSERT(link.fromTexel < from.state.size(), "%u of %zu texels", link.fromTexel,
                       from.state.size());
             const uint32_t material =
@@ -332,8 +334,9 @@ void CpuBackend::State::contacts(const ExchangePush& rules) noexcept {
             const uint32_t tick =
                 contactTick(from.state[link.fromTexel], from.materials[material].flameTicks,
                             link.delay, link.since, rules.now);
-            if (tick == kNever || !mayJump(rules.seed, link.fromObject, slot, from.counters.litTick,
-                                           bothChances(rules.chance, from.remote.chance)))
+            if (tick == kNever ||
+                !mayReach(rules.seed, link.fromObject, slot, from.counters.litTick,
+                          multiplyChances(rules.chance, from.remote.chance)))
                 continue;
             const uint32_t key = litBy(hops, link.fromObject);
             if (tick < best || (tick == best && key > by)) by = key;
@@ -354,7 +357,7 @@ void CpuBackend::State::parts(const ExchangePush& rules) noexcept {
             if (word == kNoneTexel) continue;
             const mesh::PartLink link =
                 mesh::readPartLink(*object.domain, burning.tile, block, word);
-            const mesh::PartWay way = mesh::partWay(*object.domain, object.materials, link);
+            const mesh::PartPath way = mesh::partPath(*object.domain, object.materials, link);
             if (partCrossed(object.state[link.from], way.left->flameTicks, way.delay, rules.now))
                 light(burning.object, link.to, rules.now, 0, rules.now);
         }
@@ -377,7 +380,7 @@ CpuBackend::State::Landing CpuBackend::State::landsOn(const ivec3& place,
     }
     if (landing.object == kNoneTexel) return landing;
     const CpuObject& object = at(landing.object);
-    const std::pmr::vector<RemoteTile>& its = remoteTiles[object.mesh];
+    const std::pmr::vector<ExchangeTile>& its = exchangeTiles[object.mesh];
     uint32_t least = kMisses;
     for (uint32_t i = 0; i < its.size(); ++i) {
         const uint32_t miss = landingMiss(object.remote, its[i], place, top, axis);
@@ -410,21 +413,21 @@ void CpuBackend::State::eachEmber(const ExchangePush& rules, Each&& each) noexce
     }
 }
 
-// Removes embers whose path a blocker or the shield crosses.
-void CpuBackend::State::emberWays(const ExchangePush& rules) noexcept {
+// Removes embers whose path an occluder or the shield crosses.
+void CpuBackend::State::emberPaths(const ExchangePush& rules) noexcept {
     const auto stopped = [&](const FireSource& source, const Ember& ember, const Landing& to) {
         if (to.tile == kNoneTexel) return true;
         const CpuObject& object = at(to.object);
         const ivec3 flame = alongFlame(source, upOf(rules), 8);
-        const ivec3 place = remotePlace(object.remote, tileMiddle(remoteTileOf(object, to.tile)));
-        for (const Blocker& blocker : blockers)
-            if (blockerCuts(blocker, flame, ember.landing) ||
-                blockerCuts(blocker, ember.landing, place))
+        const ivec3 place = toWorldMm(object.remote, tileMiddle(remoteTileOf(object, to.tile)));
+        for (const HeatOccluder& occluder : occluders)
+            if (occluderBlocks(occluder, flame, ember.landing) ||
+                occluderBlocks(occluder, ember.landing, place))
                 return true;
-        if (rules.shieldCell == 0) return false;
-        const ShieldEnds ends = emberEnds(source, to.object, rules.shieldCell);
-        return shieldCuts(ends, flame, ember.landing, rules) ||
-               shieldCuts(ends, ember.landing, place, rules);
+        if (rules.occlusionCell == 0) return false;
+        const OcclusionEnds ends = emberOcclusionEnds(source, to.object, rules.occlusionCell);
+        return isOccluded(ends, flame, ember.landing, rules) ||
+               isOccluded(ends, ember.landing, place, rules);
     };
     eachEmber(rules, [&](FireSource& source, const Ember& ember, const Landing& to) {
         if (stopped(source, ember, to)) source.ember = 0;
@@ -441,8 +444,9 @@ void CpuBackend::State::landEmber(const FireSource& source, const Ember& ember, 
                                   uint32_t axis, const ExchangePush& rules) noexcept {
     const uint32_t target = to.object, tile = to.tile;
     CpuObject& object = at(target);
-    const uint32_t chance = bothChances(emberLights(ember.energy, object.remote.catches),
-                                        bothChances(rules.chance, at(source.object).remote.chance));
+    const uint32_t chance =
+        multiplyChances(emberLights(ember.energy, object.remote.catches),
+                        multiplyChances(rules.chance, at(source.object).remote.chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;
     const uint32_t lane = nearestLane(object, tile, ember.landing, axis);
     if (lane == kNoneTexel) return;

@@ -13,9 +13,9 @@ void createHeat(CpuObject& object) {
         "%zu and %zu of %u texels", object.heat.size(), object.state.size(), domain.texelCount());
     for (uint32_t i = 0; i < domain.texelCount(); ++i) {
         const HeatMaterial& m = object.heatMaterialOf(i);
-        const HeatTexel x = heatRests(m, object.state[i] != kInert);
+        const HeatTexel x = unheatedTexel(m, object.state[i] != kInert);
         object.heat[i] = packHeat(x);
-        object.state[i] = wetState(object.state[i], heatClosed(x, m));
+        object.state[i] = wetState(object.state[i], isBarrierByWater(x, m));
     }
 }
 
@@ -38,8 +38,8 @@ bool CpuBackend::State::gatesLet(std::span<const TexelEvent> batch, uint32_t kin
                   eventKind(gate->kind));
         const CpuObject& object = at(gate->object);
         if (object.heat.empty() ||
-            !gateLets(gate->kind, gate->tick, unpackHeat(object.heat[gate->texel]),
-                      object.state[gate->texel], now))
+            !gateOpens(gate->kind, gate->tick, unpackHeat(object.heat[gate->texel]),
+                       object.state[gate->texel], now))
             return false;
         if ((gate->kind & kGateMore) == 0) return true;
     }
@@ -53,7 +53,7 @@ uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
     uint32_t after = object.state[texel];
     x = unpackHeat(object.heat[texel]);
     for (const TexelEvent& event : events) {
-        if (hasGates(event.kind) && !gatesLet(batch, event.kind, now)) continue;
+        if (eventHasGates(event.kind) && !gatesLet(batch, event.kind, now)) continue;
         const uint32_t was = after;
         after = heatEvent(x, m, after, playedKind(event.kind, object.counters.playsUntil, now),
                           event.tick, now);
@@ -63,15 +63,14 @@ uint32_t CpuBackend::State::heatEvents(const CpuObject& object, uint32_t texel,
 }
 
 void CpuBackend::State::heatComes(uint32_t worldTile, uint32_t flux) noexcept {
-    FW_ASSERT(flux <= kFluxMost, "flux %u", flux);
-    listHot(worldTile, fluxWork(flux) == kWorkAlways ? kTileWarm : 0u);
+    FW_ASSERT(flux <= kMaxFlux, "flux %u", flux);
+    listHot(worldTile, workOfFlux(flux) == kWorkAlways ? kTileWarm : 0u);
 }
 
 uint32_t CpuBackend::State::heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept {
     const TileState& tile = tiles[worldTile];
     const uint32_t local = at(tile.object).localTileOf(worldTile);
-    return heatTurn((tile.flag & kTileWarm) != 0, tile.object, local, tileHeat[worldTile].flux,
-                    now);
+    return workDue((tile.flag & kTileWarm) != 0, tile.object, local, tileHeat[worldTile].flux, now);
 }
 
 uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
@@ -80,9 +79,9 @@ uint32_t CpuBackend::State::heatTexel(const CpuObject& object, uint32_t texel, u
     const uint32_t kind = object.domain->texels[texel].materialFlags & 7;
     const HeatMaterial& m = object.heatMaterialOf(texel);
     const uint32_t before = object.state[texel], chance = heatChance(texel, hash32(now));
-    if (work == kWorkDozes) return heatDozes(x, m, before, chance);
-    const HeatMaterial waited = heatOver(m, work == kWorkRests, comes.flux);
-    return heatTexelStep(x, heatInAir(waited, airStrength(object.counters.air)), before, now,
+    if (work == kWorkColdWater) return dryColdWater(x, m, before, chance);
+    const HeatMaterial waited = heatMaterialOver(m, work == kWorkWarm, comes.flux);
+    return heatTexelStep(x, materialInAir(waited, airStrength(object.counters.air)), before, now,
                          comes.flux, comes.pilot != 0, object.materials[kind].air, chance, units);
 }
 
@@ -96,7 +95,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
     const bool held = !mayBurn(worldTile);
     const uint32_t ambient = object.heatMaterials[0].ambient;
     uint64_t energy = 0, changed = 0;
-    uint32_t lit = 0, gone = 0, left = fluxWork(comes.flux);
+    uint32_t lit = 0, gone = 0, left = workOfFlux(comes.flux);
     float watts = 0;
     for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
         const uint32_t texel = texels[lane];
@@ -104,7 +103,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         if ((kind & kTexelReal) == 0) continue;
         const uint32_t before = object.state[texel];
         HeatTexel x = unpackHeat(object.heat[texel]);
-        const uint32_t work = workInTurn(heatWork(x, before, comes.flux, ambient), turn);
+        const uint32_t work = workThisStep(workOfTexel(x, before, comes.flux, ambient), turn);
         if ((work & turn) == 0) {
             left |= work;
             continue;
@@ -118,7 +117,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         energy += uint64_t(units) * object.heatMaterials[kind & 7].energy;
         watts += float(units) * object.heatMaterials[kind & 7].watts;
         object.heat[texel] = packHeat(x);
-        left |= heatWork(x, after, comes.flux, ambient);
+        left |= workOfTexel(x, after, comes.flux, ambient);
         if (after == before) continue;
         object.state[texel] = after;
         changed |= 1ull << lane;
@@ -146,7 +145,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         burning(worldTile);
     }
     tile.lastChange = now;
-    touchReaders(object, local, changed);
+    touchDependents(object, local, changed);
 }
 
 // As rooms.comp: the air that fires used of their rooms, and how they burn in the rest.
@@ -165,18 +164,19 @@ void CpuBackend::State::airRooms(uint32_t now) noexcept {
             c.drawnLow = c.energyLow;
             c.drawnHigh = c.energyHigh;
         }
-        ofRoom[room - 1] += energySince(c.energyLow, c.energyHigh, c.drawnLow, c.drawnHigh);
+        ofRoom[room - 1] += takeWholeJoules(c.energyLow, c.energyHigh, c.drawnLow, c.drawnHigh);
     }
-    for (uint32_t i = 0; i < kMaxRooms; ++i) roomBreathes(roomAir[i], rooms[i], ofRoom[i], now);
+    for (uint32_t i = 0; i < kMaxRooms; ++i) stepRoomAir(roomAir[i], rooms[i], ofRoom[i], now);
     for (core::Owned<CpuObject>& object : objects) {
         if (!object) continue;
         const uint32_t room = roomOf(object);
-        object->counters.air = room != 0 ? roomStrength(roomAir[room - 1].oxygen) | kAirKnown : 0;
+        object->counters.air =
+            room != 0 ? burnStrengthOfOxygen(roomAir[room - 1].oxygen) | kAirKnown : 0;
     }
 }
 
 // Which tiles would catch in this heat step.
-void CpuBackend::State::askHeat(uint32_t now) noexcept {
+void CpuBackend::State::requestHeat(uint32_t now) noexcept {
     for (uint32_t worldTile : hotList) {
         const TileState& tile = tiles[worldTile];
         const CpuObject& object = at(tile.object);
@@ -193,12 +193,12 @@ void CpuBackend::State::askHeat(uint32_t now) noexcept {
                 continue;
             HeatTexel x = unpackHeat(object.heat[texel]);
             const uint32_t ambient = object.heatMaterials[0].ambient;
-            const uint32_t work = workInTurn(heatWork(x, before, comes.flux, ambient), turn);
+            const uint32_t work = workThisStep(workOfTexel(x, before, comes.flux, ambient), turn);
             if ((work & turn) == 0) continue;
             uint32_t units = 0;
             lights = isSource(heatTexel(object, texel, work, comes, now, x, units));
         }
-        if (lights) askToBurn(worldTile);
+        if (lights) requestToBurn(worldTile);
     }
 }
 

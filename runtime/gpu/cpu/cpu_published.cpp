@@ -95,15 +95,15 @@ void CpuBackend::State::publishedStep(uint32_t now) noexcept {
                 uint32_t& state = object.state[y * width + x];
                 if (crossing(from[x], to[x], spread[x]) >> 31 == 0 || !isReceptive(state)) continue;
                 const uint32_t worldTile = object.worldTileOf(y * width + x);
-                if (asksOnly && !mayBurn(worldTile)) askToBurn(worldTile);
+                if (isRequestPass && !mayBurn(worldTile)) requestToBurn(worldTile);
                 if (!mayBurn(worldTile)) to[x] = from[x];  // it passes again in the next step
-                if (asksOnly || !mayBurn(worldTile)) continue;
+                if (isRequestPass || !mayBurn(worldTile)) continue;
                 state = end;
                 object.addIgnitions(1, end);
                 burning(worldTile);
             }
         }
-        if (!asksOnly) object.publishedParity ^= 1u;
+        if (!isRequestPass) object.publishedParity ^= 1u;
     }
 }
 

@@ -22,8 +22,8 @@ void CpuBackend::State::reserveImages(ReadbackStore& store, std::span<const uint
     store.images.reserve(slots.size());
 }
 
-void CpuBackend::State::takeImages(ReadbackStore& store,
-                                   std::span<const uint32_t> slots) const noexcept {
+void CpuBackend::State::collectImages(ReadbackStore& store,
+                                      std::span<const uint32_t> slots) const noexcept {
     size_t texel = 0, heated = 0, tile = 0;
     for (const uint32_t slot : slots) {
         const CpuObject& object = at(slot);
@@ -57,7 +57,7 @@ void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
         object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
     for (uint32_t i = 0; i < object.state.size(); ++i) {
         const uint32_t flags = domain.texels[i].materialFlags;
-        const bool burns = texelBurns(flags, slow[i], object.materials[flags & 7].flags);
+        const bool burns = canTexelBurn(flags, slow[i], object.materials[flags & 7].flags);
         object.state[i] = burns ? kNever : kInert;
     }
     if (!object.heat.empty()) createHeat(object);
@@ -70,7 +70,7 @@ void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
     object.gives = false;
     const uint32_t first = object.record.worldTileBase;
     for (uint32_t worldTile = first; worldTile < first + object.record.tileCount; ++worldTile) {
-        tiles[worldTile] = {kNever, 0, kFarPast, slot};
+        tiles[worldTile] = {kNever, 0, kNeverChanged, slot};
         tileHeat[worldTile] = {};
         tileFire[worldTile] = 0;
     }
@@ -86,7 +86,7 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     s.head = s.waiting = 0;
     s.neighbours.clear();
     s.links.clear();
-    s.blockers.clear();
+    s.occluders.clear();
     s.shield = {};
     for (uint32_t slot = 0; slot < s.objects.size(); ++slot) {
         if (!s.objects[slot]) continue;

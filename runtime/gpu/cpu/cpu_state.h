@@ -10,7 +10,7 @@
 
 namespace fw::gpu::cpu {
 
-using mesh::FrontPlanes;
+using mesh::FrontArrays;
 using mesh::FrontTile;
 
 struct CpuObject {
@@ -28,8 +28,8 @@ struct CpuObject {
     std::pmr::vector<uvec2> heat;         // packed HeatTexel, one per texel; empty: none
     std::array<HeatMaterial, kMaterialsPerObject> heatMaterials{};
     uint32_t publishedParity = 0;
-    RemoteObject remote{};                 // without kRemoteLive until its first update
-    std::pmr::vector<FireSource> sources;  // by cell, see mesh/remote_tiles.h
+    ExchangeObject remote{};               // without kExchangeLive until its first update
+    std::pmr::vector<FireSource> sources;  // by cell, see mesh/exchange_tiles.h
     bool gives = false;                    // some source differs from FireSource{}
 
     [[nodiscard]] uint32_t worldTileOf(uint32_t texel) const noexcept {
@@ -45,7 +45,7 @@ struct CpuObject {
         return heatMaterials[domain->texels[texel].materialFlags & (kMaterialsPerObject - 1)];
     }
     // Whether other objects' fires reach it, and its fire reaches them.
-    [[nodiscard]] bool exchanges() const noexcept { return (remote.flags & kRemoteLive) != 0; }
+    [[nodiscard]] bool exchanges() const noexcept { return (remote.flags & kExchangeLive) != 0; }
     void addIgnitions(uint32_t texels, uint32_t tick) noexcept {
         counters.ignited += texels;
         counters.lastIgnition = std::max(counters.lastIgnition, tick);
@@ -103,7 +103,7 @@ enum Timer : uint32_t {
     kTimerHeat,
     kTimerSchedule,
     kTimerArrival,
-    kTimerGrant,
+    kTimerBurnBudget,
     kTimerCommit,
     kTimerPublished,
     kTimerReduce,
@@ -124,7 +124,7 @@ struct CpuCounts {
 struct CpuBackend::State {
     State(std::pmr::memory_resource* memory_, uint32_t maxLights_);
 
-    FrontPlanes planes(const CpuObject& object) const noexcept;
+    FrontArrays planes(const CpuObject& object) const noexcept;
     // Null: the slot is empty, or there is none of this number.
     [[nodiscard]] CpuObject* find(uint32_t slot) const noexcept {
         return slot < objects.size() ? objects[slot].get() : nullptr;
@@ -152,17 +152,17 @@ struct CpuBackend::State {
         tileList.push_back(worldTile);
     }
     void touch(uint32_t worldTile, uint32_t bits) noexcept;
-    void touchReaders(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
+    void touchDependents(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
     void burning(uint32_t worldTile) noexcept;
     // Where a limit counts the burning tiles, as shaders/lib/lists.glsl.
     [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
         FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
         return !capped || (tiles[worldTile].flag & kTileBurning) != 0;
     }
-    void askToBurn(uint32_t worldTile) noexcept;
-    void grant(uint32_t tilesMost, uint32_t now) noexcept;
+    void requestToBurn(uint32_t worldTile) noexcept;
+    void grant(uint32_t maxTiles, uint32_t now) noexcept;
     template <class Light>
-    void askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept;
+    void requestThenBurn(uint32_t maxTiles, uint32_t now, const Light& light) noexcept;
     // Of objects with heat: the tile's temperature, water or flux changes from now on.
     void hot(uint32_t worldTile) noexcept;
     void listHot(uint32_t worldTile, uint32_t bits) noexcept;
@@ -195,7 +195,7 @@ struct CpuBackend::State {
     void applyToAll(CpuObject& object, std::span<const TexelEvent> run,
                     const StepPlan& step) noexcept;
     void airRooms(uint32_t now) noexcept;
-    void askHeat(uint32_t now) noexcept;
+    void requestHeat(uint32_t now) noexcept;
     void heatStep(uint32_t now) noexcept;
     [[nodiscard]] uint32_t heatTurnOf(uint32_t worldTile, uint32_t now) const noexcept;
     void heatTile(uint32_t worldTile, uint32_t turn, uint32_t now) noexcept;
@@ -211,12 +211,13 @@ struct CpuBackend::State {
                                       float fire) const noexcept;
     void showRestored() noexcept;  // cpu_restore.cpp
     // cpu_exchange.cpp
-    void reserveRemote(const RemoteUpdate& update);  // throws std::bad_alloc
-    void placeRemote(const RemoteUpdate& update) noexcept;
-    void reserveShield(const ShieldUpdate& update);  // throws std::bad_alloc
-    void placeShield(const ShieldUpdate& update) noexcept;
-    [[nodiscard]] bool shieldStands(uint32_t what, uint32_t texel, uint32_t now) const noexcept;
-    [[nodiscard]] bool shieldCuts(const ShieldEnds& ends, const ivec3& a, const ivec3& b,
+    void reserveExchange(const ExchangeUpdate& update);  // throws std::bad_alloc
+    void placeExchangeObject(const ExchangeUpdate& update) noexcept;
+    void reserveOcclusion(const OcclusionUpdate& update);  // throws std::bad_alloc
+    void setOcclusionPush(const OcclusionUpdate& update) noexcept;
+    [[nodiscard]] bool isOccluderStanding(uint32_t what, uint32_t texel,
+                                          uint32_t now) const noexcept;
+    [[nodiscard]] bool isOccluded(const OcclusionEnds& ends, const ivec3& a, const ivec3& b,
                                   const ExchangePush& rules) const noexcept;
     void exchange(const ExchangePush& given, uint32_t now) noexcept;
     void sumSources() noexcept;
@@ -227,11 +228,11 @@ struct CpuBackend::State {
                   object.remote.neighbourFirst + n, neighbours.size());
         return neighbours[object.remote.neighbourFirst + n];
     }
-    [[nodiscard]] const RemoteTile& remoteTileOf(const CpuObject& object,
-                                                 uint32_t local) const noexcept {
-        FW_ASSERT(object.mesh < remoteTiles.size() && local < remoteTiles[object.mesh].size(),
+    [[nodiscard]] const ExchangeTile& remoteTileOf(const CpuObject& object,
+                                                   uint32_t local) const noexcept {
+        FW_ASSERT(object.mesh < exchangeTiles.size() && local < exchangeTiles[object.mesh].size(),
                   "tile %u of mesh %u", local, object.mesh);
-        return remoteTiles[object.mesh][local];
+        return exchangeTiles[object.mesh][local];
     }
     void gatherSources(uint32_t slot, const ExchangePush& rules) noexcept;
     void warmTile(uint32_t slot, uint32_t local, const ExchangePush& rules) noexcept;
@@ -242,7 +243,7 @@ struct CpuBackend::State {
     };
     template <class Each>
     void eachEmber(const ExchangePush& rules, Each&& each) noexcept;
-    void emberWays(const ExchangePush& rules) noexcept;
+    void emberPaths(const ExchangePush& rules) noexcept;
     void embers(const ExchangePush& rules) noexcept;
     bool light(uint32_t slot, uint32_t texel, uint32_t tick, uint32_t by, uint32_t now) noexcept;
     Landing landsOn(const ivec3& place, uint32_t axis) const noexcept;
@@ -258,7 +259,7 @@ struct CpuBackend::State {
     void releaseTiles(uint32_t first, uint32_t count) noexcept;
     // cpu_restore.cpp
     void reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const;  // throws
-    void takeImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
+    void collectImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
     void rest(CpuObject& object, uint32_t slot) noexcept;  // back to its state after creation
     // cpu_field.cpp
     void stepFields(const FieldUpdate& update) noexcept;
@@ -272,7 +273,7 @@ struct CpuBackend::State {
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
     std::pmr::vector<TileState> tiles;
     std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;
-    std::pmr::vector<uvec4> asks;     // of askToBurn: order, object, local tile, world tile
+    std::pmr::vector<uvec4> asks;     // of requestToBurn: order, object, local tile, world tile
     std::pmr::vector<uint8_t> asked;  // by world tile: `asks` holds it
     std::pmr::vector<TileHeat> tileHeat;
     std::pmr::vector<float> tileFire;     // W in the last heat step
@@ -286,19 +287,19 @@ struct CpuBackend::State {
     std::pmr::vector<ReadbackStore> readbacks;  // ring: [head, head + waiting)
     size_t head = 0, waiting = 0;
     uint32_t switches = 0;
-    bool capped = false;    // of the step
-    bool asksOnly = false;  // tiles that would be lit ask to burn; nothing else happens
-    uint32_t random = 1;    // of the shuffle switch
+    bool capped = false;         // of the step
+    bool isRequestPass = false;  // tiles that would be lit ask to burn; nothing else happens
+    uint32_t random = 1;         // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
     CpuCounts counts;
     // Exchange between objects.
-    std::pmr::vector<std::pmr::vector<RemoteTile>> remoteTiles{memory};  // by mesh
+    std::pmr::vector<std::pmr::vector<ExchangeTile>> exchangeTiles{memory};  // by mesh
     std::pmr::vector<uint32_t> neighbours{memory};
     std::pmr::vector<ContactLink> links{memory};
-    std::pmr::vector<Blocker> blockers{memory};
-    ShieldUpdate shield;  // its words are in shieldCells
-    std::pmr::vector<uint32_t> shieldCells{memory};
+    std::pmr::vector<HeatOccluder> occluders{memory};
+    OcclusionUpdate shield;  // its words are in occlusionCells
+    std::pmr::vector<uint32_t> occlusionCells{memory};
     std::array<Room, kMaxRooms> rooms{};
     std::array<RoomAir, kMaxRooms> roomAir{};
     bool airs = false;  // some step had rooms
@@ -322,12 +323,13 @@ struct CpuBackend::State {
 };
 
 template <class Light>
-void CpuBackend::State::askThen(uint32_t tilesMost, uint32_t now, const Light& light) noexcept {
+void CpuBackend::State::requestThenBurn(uint32_t maxTiles, uint32_t now,
+                                        const Light& light) noexcept {
     if (capped) {
-        asksOnly = true;
+        isRequestPass = true;
         light();
-        asksOnly = false;
-        grant(tilesMost, now);
+        isRequestPass = false;
+        grant(maxTiles, now);
     }
     light();
 }

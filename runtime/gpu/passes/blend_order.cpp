@@ -4,6 +4,6 @@
 
 namespace fw::gpu {
 
-uint32_t fewQuads(bool software) noexcept { return software ? 1024 : kMostFewQuads; }
+uint32_t fewQuads(bool software) noexcept { return software ? 1024 : kMaxFewQuads; }
 
 }  // namespace fw::gpu

@@ -35,7 +35,7 @@ struct ViewInput {
 // Given by the layer above, which knows how things look.
 constexpr uint32_t kLookTextureLayers = 3;
 struct LookSources {
-    std::span<const MaterialLook> table;  // by FwMaterialPreset
+    std::span<const MaterialAppearance> table;  // by FwMaterialPreset
     // RGBA8, 512^2, layer by layer, each with its 10 mips, largest first. Copied.
     std::span<const std::byte> textures;
     // R16G16_SFLOAT, kProfileWidth x kProfileHeight, kFirePresets layers. Copied.
@@ -61,9 +61,9 @@ struct DrawItem {
     float coldReach = 0;     // texels, of those
     bool refined = false;    // its triangles are in the refinement's buffers
     bool cut = false;        // and some of them are cut
-    bool told = false;       // by what stands along open edges: its holes are its texels'
-    uint32_t inner = 0;      // from a vertex's place to that on the inner skin; 0: has none
-    bool consumed = false;   // those burnt through are left out, whole: nothing is cut
+    bool perPixelHoles = false;   // the cut along open edges is too coarse: texels show the holes
+    uint32_t inner = 0;           // from a vertex's place to that on the inner skin; 0: has none
+    bool consumed = false;        // those burnt through are left out, whole: nothing is cut
     bool selfIntersects = false;  // drawn after the others, behind its own nearest depth
     SurfaceDraw draw{};
 };

@@ -12,7 +12,7 @@ bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out) 
     out.pass = field.up.w <= 0.0f   ? draw::field_emitting
                : field.up.w <= 1.0f ? draw::field_absorbing
                                     : draw::field_refracting;
-    out.vertices = field.shape == kFieldCard ? 6 : 6 * kFieldAround * kFieldUp;
+    out.vertices = field.shape == kFieldBillboard ? 6 : 6 * kFieldAround * kFieldUp;
     if (view.forward.w > 0.5f && out.depth < -radius) return false;
     // Left or right of the view, above or below it, as a whole.
     const auto row = [&](int i) {

@@ -24,8 +24,9 @@ constexpr ComputePass kComputePasses[] = {
 constexpr const char* kCompositeTexelShaders[] = {"volume_composite_texels.frag",
                                                   "volume_composite_texels_soft.frag",
                                                   "volume_composite_texels_soft_ms.frag"};
-constexpr const char* kCardTexelShaders[] = {
-    "volume_card_texels.frag", "volume_card_texels_soft.frag", "volume_card_texels_soft_ms.frag"};
+constexpr const char* kImpostorTexelShaders[] = {"volume_impostor_texels.frag",
+                                                 "volume_impostor_texels_soft.frag",
+                                                 "volume_impostor_texels_soft_ms.frag"};
 
 // Surface pipelines, in the order in which they draw within a phase.
 constexpr auto kSurfaceKeys = [] {
@@ -87,12 +88,12 @@ constexpr DrawPass surfaceOf(const SurfaceKey& row) {
 }
 
 constexpr DrawPass flipbookFlames(bool only) {
-    return {.name = "book_flames",
-            .vertexShader = "book_flames.vert",
-            .fragmentShader = "book_flames.frag",
+    return {.name = "flipbook_flames",
+            .vertexShader = "flipbook_flames.vert",
+            .fragmentShader = "flipbook_flames.frag",
             .variant = only ? 1u : 0u,
-            .softShader = "book_flames_soft.frag",
-            .softShaderMultisampled = "book_flames_soft_ms.frag",
+            .softShader = "flipbook_flames_soft.frag",
+            .softShaderMultisampled = "flipbook_flames_soft_ms.frag",
             .atHalf = AtHalf::soft,
             .textures1 = Textures::flipbooks};
 }
@@ -157,18 +158,18 @@ constexpr auto kDrawPasses = [] {
                             .softShaderMultisampled = "volume_soft_ms.frag",
                             .atHalf = AtHalf::soft,
                             .textures2 = Textures::profiles};
-    passes[draw::volume_card] = {.name = "volume_card",
-                                 .vertexShader = "volume_card.vert",
-                                 .fragmentShader = "volume_card.frag",
-                                 .pushBytes = sizeof(VolumeCard),
-                                 .softShader = "volume_card_soft.frag",
-                                 .softShaderMultisampled = "volume_card_soft_ms.frag",
-                                 .texelShaders = kCardTexelShaders,
-                                 .atHalf = AtHalf::soft};
+    passes[draw::volume_impostor] = {.name = "volume_impostor",
+                                     .vertexShader = "volume_impostor.vert",
+                                     .fragmentShader = "volume_impostor.frag",
+                                     .pushBytes = sizeof(VolumeImpostor),
+                                     .softShader = "volume_impostor_soft.frag",
+                                     .softShaderMultisampled = "volume_impostor_soft_ms.frag",
+                                     .texelShaders = kImpostorTexelShaders,
+                                     .atHalf = AtHalf::soft};
     passes[draw::volume_composite] = {.name = "volume_composite",
                                       .vertexShader = "volume_composite.vert",
                                       .fragmentShader = "volume_composite.frag",
-                                      .pushBytes = sizeof(VolumeComposite),
+                                      .pushBytes = sizeof(CompositePush),
                                       .softShader = "volume_composite_soft.frag",
                                       .softShaderMultisampled = "volume_composite_soft_ms.frag",
                                       .texelShaders = kCompositeTexelShaders,
@@ -176,7 +177,7 @@ constexpr auto kDrawPasses = [] {
     passes[draw::volume_slices] = {.name = "volume_slices",
                                    .vertexShader = "volume_slices.vert",
                                    .fragmentShader = "volume_slices.frag",
-                                   .pushBytes = sizeof(VolumeSlices),
+                                   .pushBytes = sizeof(SlicesPush),
                                    .softShader = "volume_slices_soft.frag",
                                    .softShaderMultisampled = "volume_slices_soft_ms.frag",
                                    .atHalf = AtHalf::soft,
@@ -184,7 +185,7 @@ constexpr auto kDrawPasses = [] {
     passes[draw::volume_haze] = {.name = "volume_haze",
                                  .vertexShader = "volume_haze.vert",
                                  .fragmentShader = nullptr,
-                                 .pushBytes = sizeof(VolumeHaze),
+                                 .pushBytes = sizeof(HazePush),
                                  .softShader = "volume_haze_soft.frag",
                                  .softShaderMultisampled = "volume_haze_soft_ms.frag",
                                  .drawnIn = DrawnIn::haze,

@@ -2,13 +2,13 @@
 // (compute) or draw_passes.cpp (draws). Layouts, barriers, timers and labels follow from the row
 // and from what its shaders declare.
 #pragma once
-#include "shared/arp.h"
 #include "shared/burn.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
 #include "shared/look.h"
 #include "shared/particle.h"
+#include "shared/reference_pattern.h"
 #include "shared/refine.h"
 #include "shared/spark.h"
 #include "shared/volume_draw.h"
@@ -178,7 +178,7 @@ enum Number : uint32_t {
     flipbook_flames,       // where flipbooks show some of the quads
     flipbook_flames_only,  // where they show all but sparks
     volume,
-    volume_card,
+    volume_impostor,
     volume_composite,
     volume_slices,
     volume_haze,

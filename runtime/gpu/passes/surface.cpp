@@ -12,7 +12,7 @@ namespace {
 // flags stay below.
 constexpr uint32_t kObjectsOwn = (1u << kObjectRoomShift) - 1;
 static_assert(((kDrawVertexLight | kDrawPlaced | kDrawHeat | kDrawWet | kDrawThick | kDrawCut |
-                kDrawTold | kDrawInner) &
+                kDrawPerPixelHoles | kDrawInner) &
                kObjectsOwn) == 0);
 static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectShownAgain) <= kObjectsOwn);
 
@@ -79,7 +79,7 @@ SurfaceDraw surfaceDraw(const BurnObject& object, const BurnMaterial& material,
     draw.places = places;
     const bool heated = (object.flags & kObjectHeat) != 0;
     draw.heatBase = object.heatBase;
-    draw.filmMost = heated ? float(heat.filmMost) : 0.0f;
+    draw.maxFilm = heated ? float(heat.maxFilm) : 0.0f;
     // What is thin and never doused is as hot as its age says.
     if (heated && (doused || (heat.flags & kHeatThick))) draw.flags |= kDrawHeat;
     if (heated && (heat.flags & kHeatThick)) draw.flags |= kDrawThick;

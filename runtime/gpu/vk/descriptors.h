@@ -1,4 +1,4 @@
-// Descriptor sets: one per pass for a generation of the world's buffers, made anew when a buffer is
+// Descriptor sets: one per pass for a generation of the world's buffers, rebuilt when a buffer is
 // another one; and one per image. Never touched while recording a steady frame.
 #pragma once
 #include "gpu/vk/pipelines.h"

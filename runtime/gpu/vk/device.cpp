@@ -42,7 +42,7 @@ constexpr VkQueueFlags kQueueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BI
 Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
     try {
         if (host)
-            lend(*host);
+            adoptHost(*host);
         else
             make();
         checkDevice();
@@ -51,13 +51,13 @@ Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
         throw;
     }
     log_.write(FW_LOG_INFO, "Vulkan device \"%s\", %s, Vulkan %u.%u declared, queue family %u.",
-               properties.deviceName, own ? "our own" : "lent", VK_API_VERSION_MAJOR(apiVersion),
+               properties.deviceName, own ? "own" : "of the host", VK_API_VERSION_MAJOR(apiVersion),
                VK_API_VERSION_MINOR(apiVersion), queueFamily);
 }
 
 Device::~Device() { destroy(); }
 
-void Device::lend(const FwVulkanHost& host) {
+void Device::adoptHost(const FwVulkanHost& host) {
     if (!host.getInstanceProcAddr)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::getInstanceProcAddr is null.");
     if (!host.instance) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanHost::instance is null.");
@@ -98,7 +98,8 @@ void Device::make() {
     library_ = dlopen("libvulkan.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library_)
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
-                   "No Vulkan loader: libvulkan.so.1 cannot be opened. Lend a device or use "
+                   "No Vulkan loader: libvulkan.so.1 cannot be opened. Give a device "
+                   "(FwVulkanHost) or use "
                    "FW_BACKEND_CPU.");
     const auto get =
         reinterpret_cast<PFN_vkGetInstanceProcAddr>(dlsym(library_, "vkGetInstanceProcAddr"));

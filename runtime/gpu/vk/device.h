@@ -1,4 +1,4 @@
-// The device, lent or our own: its handles, limits and what was declared. Not its memory.
+// The device, the host's or our own: its handles, limits and what was declared. Not its memory.
 #pragma once
 #include "core/log.h"
 #include "flamewright/flamewright_vulkan.h"
@@ -12,7 +12,7 @@ namespace fw::gpu::vk {
 
 class Device {
  public:
-    // Checks a lent device, or makes one where `host` is null. Throws core::Error.
+    // Checks the device of `host`, or makes one if `host` is null. Throws core::Error.
     Device(const FwVulkanHost* host, const core::Log& log);
     ~Device();
     Device(const Device&) = delete;
@@ -42,7 +42,7 @@ class Device {
     void name(VkObjectType type, uint64_t object, const char* text) const noexcept;
 
  private:
-    void lend(const FwVulkanHost& host);
+    void adoptHost(const FwVulkanHost& host);
     void make();
     void checkDevice();
     void destroy() noexcept;

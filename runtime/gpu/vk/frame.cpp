@@ -1,7 +1,7 @@
 #include "gpu/vk/frame.h"
 
 #include "gpu/vk/frame_needs.h"
-#include "shared/grant.h"
+#include "shared/burn_budget.h"
 
 #include <algorithm>
 
@@ -30,8 +30,8 @@ StepPush pushOf(const FrameLists& lists, const StepRecord& step) {
     push.now = step.now;
     push.stepShift = step.stepShift;
     push.switches = step.switches | (step.governed ? kSwitchGoverned : 0u) |
-                    (step.capped ? kSwitchCapped : 0u) | (step.plays ? kSwitchPlays : 0u);
-    push.tilesMost = step.rules.tilesMost;
+                    (step.capped ? kSwitchCapped : 0u) | (step.plays ? kSwitchPlayback : 0u);
+    push.maxTiles = step.rules.maxTiles;
     return push;
 }
 
@@ -44,14 +44,15 @@ StepPush pushOf(const TileShare& share) {
 }
 
 // Records `light`, passes that light texels. Where the number of burning tiles is limited they run
-// first to request tiles (kSwitchAsks in `switches`), `grant` allots them, then they light.
+// first to request tiles (kSwitchRequests in `switches`), `burn_budget` allots them, then they
+// light.
 template <class Grant, class Light>
-void recordLighting(bool capped, uint32_t& switches, const Grant& grant, const Light& light) {
+void recordLighting(bool capped, uint32_t& switches, const Grant& allotBudget, const Light& light) {
     if (capped) {
-        switches |= kSwitchAsks;
+        switches |= kSwitchRequests;
         light();
-        switches &= ~kSwitchAsks;
-        grant();
+        switches &= ~kSwitchRequests;
+        allotBudget();
     }
     light();
 }
@@ -72,13 +73,13 @@ void forWholeObjects(const StepRecord& step, const Record& record) {
 }
 
 void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord& step,
-                    const StepPush& grant);
+                    const StepPush& budgetPush);
 
 }  // namespace
 
 bool addressesAll(const TexelEvent& event) noexcept {
     const uint32_t kind = eventKind(event.kind);
-    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlays;
+    return event.texel == kNoneTexel && kind != kEventGate && kind != kEventPlaybackSpan;
 }
 
 // --- What changed since the last frame ---
@@ -127,9 +128,9 @@ void recordCounters(FrameRecorder& r, FrameLists& lists, uint32_t iterations) {
 void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& step) {
     const bool dense = (step.switches & kSwitchDense) != 0;
     StepPush push = pushOf(lists, step);
-    const auto grant = [&] { r.dispatch(pass::grant, push, 1); };
+    const auto allotBudget = [&] { r.dispatch(pass::burn_budget, push, 1); };
     const auto lighting = [&](const auto& light) {
-        recordLighting(step.capped, push.switches, grant, light);
+        recordLighting(step.capped, push.switches, allotBudget, light);
     };
     if (step.wakeGroups.count) {
         r.copyIn(step.wakeGroups.at, FW_BIND_WAKE_GROUPS, 0, uint64_t(step.wakeGroups.count) * 8);
@@ -169,9 +170,9 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
         r.dispatchWork(pass::arrival, push, lists.row);
         r.dispatchRim(pass::arrival_rim, push, lists.row);
         if (step.capped) {
-            push.switches |= kSwitchAsks;
-            grant();
-            push.switches &= ~kSwitchAsks;
+            push.switches |= kSwitchRequests;
+            allotBudget();
+            push.switches &= ~kSwitchRequests;
         }
         r.dispatchWork(pass::commit, push, lists.row);
         lists.row += 1;
@@ -203,32 +204,32 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
 
 namespace {
 
-// Heat from object to object. `grant`: the push of the pass.
+// Heat from object to object. `budgetPush`: the push of pass burn_budget.
 void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord& step,
-                    const StepPush& grant) {
+                    const StepPush& budgetPush) {
     ExchangePush push = step.rules;
-    push.now = grant.now;
+    push.now = budgetPush.now;
     push.row = lists.row;
     push.parity = lists.parity;
     push.burnParity = lists.burnParity;
     push.predictParity = lists.predictParity;
     push.hotParity = lists.hotParity;
-    push.switches = grant.switches;
+    push.switches = budgetPush.switches;
     push.count = step.objectSlots;
     zeroRow(r, kRowExchange);
     r.dispatchRun(pass::fire_cells, push, kRowBurn + lists.burnParity);
     r.dispatchItems(pass::fire_sources, push, push.count);
     if (push.warms != 0) {
         r.dispatchItems(pass::receivers, push, push.count);
-        if (push.shieldCell == 0) r.dispatchRun(pass::exchange, push, kRowExchange);
-        if (push.shieldCell != 0) r.dispatchRun(pass::exchange_shield, push, kRowExchange);
+        if (push.occlusionCell == 0) r.dispatchRun(pass::exchange, push, kRowExchange);
+        if (push.occlusionCell != 0) r.dispatchRun(pass::exchange_occlusion, push, kRowExchange);
     }
-    const bool touches = (push.flags & kRemoteContact) && step.links;
-    const bool parts = (push.flags & kRemoteContact) && step.parts;
-    const bool throws = (push.flags & kRemoteEmbers) != 0;
-    if (throws) r.dispatchItems(pass::ember_ways, push, push.count);
+    const bool touches = (push.flags & kExchangeContact) && step.links;
+    const bool parts = (push.flags & kExchangeContact) && step.parts;
+    const bool throws = (push.flags & kExchangeEmbers) != 0;
+    if (throws) r.dispatchItems(pass::ember_paths, push, push.count);
     if (!touches && !parts && !throws) return;
-    const auto allot = [&] { r.dispatch(pass::grant, grant, 1); };
+    const auto allot = [&] { r.dispatch(pass::burn_budget, budgetPush, 1); };
     recordLighting(step.capped, push.switches, allot, [&] {
         push.count = step.links;
         if (touches) r.dispatchItems(pass::contacts, push, step.links);
@@ -247,17 +248,18 @@ void recordShownTiles(FrameRecorder& r, const FrameLists& lists, uint32_t tick) 
     StepPush push{};
     push.burnParity = lists.burnParity;
     push.now = tick;
-    push.switches = kSwitchShows;
+    push.switches = kSwitchDisplayOnly;
     r.dispatchList(pass::reduce, push, row);
 }
 
 // --- Prediction: arrival ahead of the front, and which burnt pieces fall. Cosmetic. ---
 
-void recordPredictAnew(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles) {
+void recordPredictRestart(FrameRecorder& r, const FrameLists& lists, uint32_t object,
+                          uint32_t tiles) {
     StepPush push{};
     push.object = object;
     push.predictParity = lists.predictParity;
-    r.dispatchItems(pass::predict_anew, push, tiles);
+    r.dispatchItems(pass::predict_restart, push, tiles);
 }
 
 void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, bool seen) {
@@ -300,16 +302,16 @@ void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
     const uint32_t sheets = deform.count.nodes, springs = sheets + deform.count.sheets;
     dispatch(pass::recede, 0, deform.count.nodes, deform.steps << 1);
     // A sheet that did not move in the frame before knows of no link yet.
-    if (deform.begins && !(deform.steps > 0 && tiesAt(deform.way)))
-        dispatch(pass::ties, sheets, deform.count.sheets, 0);
+    if (deform.begins && !(deform.steps > 0 && updatesLinkCache(deform.way)))
+        dispatch(pass::link_cache, sheets, deform.count.sheets, 0);
     for (uint32_t i = 0; i < deform.steps; ++i) {
-        const uint32_t way = (deform.way + i) % kArmWays;
-        if (tiesAt(way)) dispatch(pass::ties, sheets, deform.count.sheets, i & 1);
+        const uint32_t way = (deform.way + i) % kBendSets;
+        if (updatesLinkCache(way)) dispatch(pass::link_cache, sheets, deform.count.sheets, i & 1);
         dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | way << 1);
         dispatch(pass::springs, springs, deform.count.springs, i & 1);
     }
     const uint32_t vertices = springs + deform.count.springs;
-    dispatch(pass::drape, vertices, deform.count.vertices, 0);
+    dispatch(pass::skin_to_mesh, vertices, deform.count.vertices, 0);
     dispatch(pass::inner, vertices + deform.count.vertices, deform.count.inner, 0);
 }
 
@@ -332,7 +334,8 @@ void clearMarch(FrameRecorder& r, const MarchRecord& march) {
                    uint64_t(march.end - march.first) * 4);
     // Cells of impostors that no tile has are read too.
     for (const MarchedVolume& one : march.volumes.last(march.cards))
-        r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(one.march.tiles) * 4, uint64_t(kCardWords) * 4);
+        r.fillZero(FW_BIND_VOLUME_RAYS, uint64_t(one.march.tiles) * 4,
+                   uint64_t(kImpostorWords) * 4);
     uint32_t last = 0;
     for (const MarchedVolume& one : march.volumes) last = std::max(last, one.march.flame);
     r.fillZero(FW_BIND_VOLUME_WORK, 0, (last + 1) * sizeof(VolumeWork));
@@ -372,7 +375,7 @@ void VkBackend::State::recordEffects(FrameInFlight& slot) {
         r.dispatch(pass::particles, moving, particles.emitterGroups);
         particles.particlesMove = vec3(0.0f);
     }
-    push.count = scene.books.live ? particles.flameBooks : 0;
+    push.count = scene.books.live ? particles.flameFlipbooks : 0;
     const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
     for (OutsideView* const of : from) {
         if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
@@ -444,9 +447,9 @@ void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRec
     r.dispatchItems(pass::refine_cut, push, push.objects * kMaterialsPerObject);
 }
 
-void recordRefinementAsPublished(FrameRecorder& r, const ArpPush& with, uint32_t placeGroups,
+void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& with, uint32_t placeGroups,
                                  uint32_t nameGroups) {
-    ArpPush push = with;
+    PatternPush push = with;
     for (push.phase = 0; push.phase < 2; ++push.phase) {
         const uint32_t first = push.phase ? placeGroups : 0;
         const uint32_t groups = push.phase ? nameGroups : placeGroups;

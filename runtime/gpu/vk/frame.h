@@ -95,7 +95,7 @@ struct RefineRecord {
 // Changes since the last frame: objects, fields, vertices that the host moves.
 void recordReset(FrameRecorder& r, uint32_t object, uint32_t tiles);
 void recordRestore(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles);
-// BurnTiles of the burn list as it is: see kSwitchShows.
+// BurnTiles of the burn list as it is: see kSwitchDisplayOnly.
 void recordShownTiles(FrameRecorder& r, const FrameLists& lists, uint32_t tick);
 void recordFields(FrameRecorder& r, const FieldsRecord& fields);
 void recordSkin(FrameRecorder& r, const SkinPush& push);
@@ -105,7 +105,8 @@ void recordCounters(FrameRecorder& r, FrameLists& lists, uint32_t iterations);
 // One step.
 void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& step);
 // The next ring predicts this object from its simulated state; its kObjectShownAgain is set.
-void recordPredictAnew(FrameRecorder& r, const FrameLists& lists, uint32_t object, uint32_t tiles);
+void recordPredictRestart(FrameRecorder& r, const FrameLists& lists, uint32_t object,
+                          uint32_t tiles);
 // One ring further. `seen`: some view may show predictions; else only what burns and what was put
 // out is passed on.
 void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, bool seen);
@@ -116,7 +117,7 @@ void recordProbes(FrameRecorder& r, const Staged& probes);
 // After the steps. The work buffer holds its lists, and zero before them.
 void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine);
 // Groups of vertices, then of listed triangles.
-void recordRefinementAsPublished(FrameRecorder& r, const ArpPush& push, uint32_t placeGroups,
+void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& push, uint32_t placeGroups,
                                  uint32_t nameGroups);
 // VkBackend::State::recordReadback ends the frame.
 

@@ -43,11 +43,11 @@ struct WakeGroup {
     uint32_t object, firstTile;
 };
 
-inline uint32_t wakeGroupsOf(const ObjectEntry& object) noexcept {
+inline uint32_t appendWakeGroups(const ObjectEntry& object) noexcept {
     return (object.record.tileCount + 63) / 64;
 }
 
-inline bool bringsNews(const StepPlan& step) noexcept {
+inline bool changesState(const StepPlan& step) noexcept {
     return !step.events.empty() || !step.materials.empty();
 }
 
@@ -58,12 +58,12 @@ struct FrameNeeds {
     uint64_t iterations = 0;              // of all steps
     uint32_t events = 0, wakeGroups = 0;  // of the largest step
     uint32_t neighbours = 0, links = 0;   // of the largest remote update
-    uint32_t shieldWords = 0;             // of the largest shield
+    uint32_t occlusionWords = 0;          // of the largest shield
     bool placing = false;                 // there is one
     bool exchanges = false;               // fire may come from other objects
     bool airs = false;                    // rooms have a step
     bool stimulus = false;                // an event or a latch
-    bool findsAnew = false;               // the first step wakes what forgets
+    bool rebuildsPrediction = false;      // the first step wakes what forgets
     bool burning = false, predicting = false, publishedRuns = false, heating = false;
     bool appears = false;                 // an object comes into view
     bool falling = false;                 // burnt pieces may lose their hold
@@ -99,8 +99,8 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
 void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder);
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder);
 // Where the images of a frame will lie; throws.
-void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
-               const std::function<uint64_t(uint64_t)>& place);
+void allocateImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
+                    const std::function<uint64_t(uint64_t)>& place);
 void recordImages(VkBackend::State& s, FrameRecorder& recorder);
 // Of a readback buffer; throws std::bad_alloc.
 [[nodiscard]] std::span<const ObjectImage> giveImages(VkBackend::State& s, const std::byte* from);

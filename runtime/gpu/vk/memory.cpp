@@ -25,15 +25,15 @@ DeviceMemory::~DeviceMemory() {
 uint32_t DeviceMemory::typeFor(uint32_t allowed, MemoryKind kind, const char* name) const {
     const VkMemoryPropertyFlags host =
         VK_MEMORY_PROPERTY_HOST_VISIBLE_BIT | VK_MEMORY_PROPERTY_HOST_COHERENT_BIT;
-    VkMemoryPropertyFlags needed = 0, wished = 0;
-    if (kind == MemoryKind::device) wished = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
+    VkMemoryPropertyFlags needed = 0, preferred = 0;
+    if (kind == MemoryKind::device) preferred = VK_MEMORY_PROPERTY_DEVICE_LOCAL_BIT;
     if (kind == MemoryKind::upload) needed = host;
     if (kind == MemoryKind::readback) {
         needed = host;
-        wished = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
+        preferred = VK_MEMORY_PROPERTY_HOST_CACHED_BIT;
     }
     const VkPhysicalDeviceMemoryProperties& types = device_.memoryProperties;
-    for (const VkMemoryPropertyFlags flags : {needed | wished, needed}) {
+    for (const VkMemoryPropertyFlags flags : {needed | preferred, needed}) {
         for (uint32_t type = 0; type < types.memoryTypeCount; ++type) {
             if ((allowed >> type & 1u) && (types.memoryTypes[type].propertyFlags & flags) == flags)
                 return type;

@@ -23,20 +23,20 @@ struct March {
     uint32_t count = 0;
     // Cards that are marched behind them.
     std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames> items;
-    uint32_t cardCount = 0;
-    std::array<VolumeCard, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
+    uint32_t impostorCount = 0;
+    std::array<VolumeImpostor, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
     uint32_t slicedCount = 0;
     std::array<SlicedVolume, kMaxVolumeFlames> sliced;
     VolumeOrder order;  // of all of them
     TierLives lives;
-    std::array<VolumeCardPair, kMaxVolumeFlames> pairs;  // by life
-    VolumeBookShelf books;
-    std::array<BookReader, kMaxVolumeFlames> readers;  // by life
-    uint32_t bookRoom = 0;                     // books that there is to be room for, behind pairs
-    uint32_t bookIdle = 0;                     // frames in which none was wanted
-    bool bookSpare = false;                    // there is room for books that are gone
-    uint32_t bookSlot = 0;                     // of cards: the first of theirs
-    uint32_t bookEncoding = 0;                 // of their pages
+    std::array<ImpostorPair, kMaxVolumeFlames> pairs;  // by life
+    ImpostorAtlases books;
+    std::array<AtlasCursor, kMaxVolumeFlames> readers;  // by life
+    uint32_t atlasCapacity = 0;                // books that there is to be room for, behind pairs
+    uint32_t atlasIdleFrames = 0;              // frames in which none was wanted
+    bool atlasSpare = false;                   // there is room for books that are gone
+    uint32_t impostorSlot = 0;                 // of cards: the first of theirs
+    uint32_t atlasEncoding = 0;                // of their pages
     uint32_t slots = 0;                        // pairs that there is room for, before all else
     uint32_t capacity = 0;                     // of the buffer when they were made
     uint64_t passed = 0;                       // frames

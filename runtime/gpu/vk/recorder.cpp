@@ -52,7 +52,7 @@ void FrameRecorder::dispatchAt(uint32_t pass, const void* push, uint32_t resourc
     end();
 }
 
-void FrameRecorder::dispatchVolumes(ComputePassOf<VolumeMarch> pass,
+void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
                                     std::span<const MarchedVolume> volumes, VolumesOf which) {
     const Table& vk = t_.device->table;
     const bool listed = which != VolumesOf::all;
@@ -80,8 +80,8 @@ void FrameRecorder::dispatchVolumes(ComputePassOf<VolumeMarch> pass,
                 one.march.flame * sizeof(VolumeWork) + offsetof(VolumeWork, groups));
         else
             vk.CmdDispatch(t_.commands,
-                           volumeProbeBlocks(one.composite.tilesX, one.march.apart) *
-                               volumeProbeBlocks(one.composite.tilesY, one.march.apart),
+                           probeBlockCount(one.composite.tilesX, one.march.apart) *
+                               probeBlockCount(one.composite.tilesY, one.march.apart),
                            1, 1);
     }
     end();

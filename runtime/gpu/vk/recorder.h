@@ -71,7 +71,7 @@ class FrameRecorder {
         dispatchAt(pass.number, &push, resource, at);
     }
     // Flames at once: none sees what another writes.
-    void dispatchVolumes(ComputePassOf<VolumeMarch> pass, std::span<const MarchedVolume> volumes,
+    void dispatchVolumes(ComputePassOf<MarchPush> pass, std::span<const MarchedVolume> volumes,
                          VolumesOf which);
 
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);

@@ -36,7 +36,7 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
       surfaces(pmr),
       results(pmr),
       refine(pmr),
-      arp(pmr) {
+      pattern(pmr) {
     results.times.reserve(computePasses().size() + drawPasses().size());
     flames.outsideViews[0] = core::Owned<OutsideView>::make(memory, 0u);
     const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
@@ -65,9 +65,9 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
             std::memcpy(upload.staging.mapped, limits.looks.table.data(),
                         limits.looks.table.size_bytes());
             upload.regions[upload.regionCount++] = {
-                FW_BIND_LOOKS, 0, 0,
+                FW_BIND_APPEARANCES, 0, 0,
                 std::min<uint64_t>(limits.looks.table.size_bytes(),
-                                   buffers.buffer(FW_BIND_LOOKS).size)};
+                                   buffers.buffer(FW_BIND_APPEARANCES).size)};
         }
     } catch (...) {
         for (PendingUpload& upload : scene.uploads) deviceMemory.destroy(upload.staging);

@@ -40,7 +40,7 @@ class Context {
     void fillInfo(FwContextInfo& info) const noexcept;
     [[nodiscard]] bool ownDevice() const noexcept;
     // What a host may enable for us; structSize stays. [any]
-    static void wishes(FwVulkanWishes& wishes) noexcept;
+    static void requirements(FwVulkanRequirements& requirements) noexcept;
 
     struct State;
     [[nodiscard]] State& state() noexcept { return *state_; }
@@ -51,14 +51,14 @@ class Context {
 };
 
 struct WorldLimits {
-    uint32_t maxLights = 16;                    // [0, 64]
-    uint32_t maxFlames = 4096;                  // [0, 65536]
-    uint32_t maxRefinedTriangles = 400000;      // aimed at, of all objects
-    uint32_t volumeCell = 2, volumeSteps = 64;  // as FwWorldDef
-    uint32_t seed = 1;                          // of everything cosmetic
-    float up[3] = {0, 1, 0};                    // world up
-    float paceFactor = 1;                       // as FwWorldDef
-    LookSources looks;                          // empty: recordInside draws nothing
+    uint32_t maxLights = 16;                          // [0, 64]
+    uint32_t maxFlames = 4096;                        // [0, 65536]
+    uint32_t maxRefinedTriangles = 400000;            // aimed at, of all objects
+    uint32_t volumePixelSize = 2, rayStepCount = 64;  // as FwWorldDef
+    uint32_t seed = 1;                                // of everything cosmetic
+    float up[3] = {0, 1, 0};                          // world up
+    float paceFactor = 1;                             // as FwWorldDef
+    LookSources looks;                                // empty: recordInside draws nothing
     // Buffers end where the last thing in them does, so that a validation layer sees an access past
     // it. For tests: every new object grows them.
     bool exactBuffers = false;
@@ -66,7 +66,7 @@ struct WorldLimits {
 
 // One per FwWorld.
 //
-// Lent device:  if (!beginOutside(frame, views)) return FW_NOT_READY;   may throw: bad frame
+// HostImages device:  if (!beginOutside(frame, views)) return FW_NOT_READY;   may throw: bad frame
 //               run(plan);                                       exactly once, may be without steps
 //               endOutside();
 //               recordInside(...) / recordComposite(...)         any number of times, or none
@@ -99,9 +99,9 @@ class VkBackend final : public Backend {
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;
     void setFireProfile(uint32_t slot, std::span<const uint32_t> texels) override;
-    void setBooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
-                  std::span<const uint32_t> words) override;
-    void setFlameBooks(uint32_t books) noexcept override;
+    void setFlipbooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
+                      std::span<const uint32_t> words) override;
+    void setTileFlipbooks(uint32_t books) noexcept override;
     void createField(uint32_t slot, const FieldRules& rules,
                      std::span<const uint8_t> masks) override;
     void destroyField(uint32_t slot) noexcept override;

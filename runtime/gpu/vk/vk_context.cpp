@@ -89,16 +89,16 @@ void Context::fillInfo(FwContextInfo& info) const noexcept {
     info.deviceName[sizeof info.deviceName - 1] = 0;
 }
 
-void Context::wishes(FwVulkanWishes& wishes) noexcept {
+void Context::requirements(FwVulkanRequirements& requirements) noexcept {
     static constexpr const char* kInstanceExtensions[] = {"VK_EXT_debug_utils"};
-    wishes.minimumApiVersion = VK_API_VERSION_1_0;
-    wishes.extensionCount = 0;
-    wishes.extensions = nullptr;
-    wishes.instanceExtensionCount = 1;
-    wishes.instanceExtensions = kInstanceExtensions;
-    wishes.features = {};
-    wishes.features.independentBlend = VK_TRUE;
-    wishes.queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
+    requirements.minimumApiVersion = VK_API_VERSION_1_0;
+    requirements.extensionCount = 0;
+    requirements.extensions = nullptr;
+    requirements.instanceExtensionCount = 1;
+    requirements.instanceExtensions = kInstanceExtensions;
+    requirements.features = {};
+    requirements.features.independentBlend = VK_TRUE;
+    requirements.queueFlags = VK_QUEUE_GRAPHICS_BIT | VK_QUEUE_COMPUTE_BIT;
 }
 
 }  // namespace fw::gpu::vk

@@ -56,7 +56,7 @@ class PassRecorder {
         const bool behind = pass_.cull == Cull::front;
         SurfaceDraw draw = item.draw;
         if (!burning) draw.nearness = item.coldReach;
-        if (burning && ((item.cut && !item.told) || (item.refined && item.consumed)))
+        if (burning && ((item.cut && !item.perPixelHoles) || (item.refined && item.consumed)))
             draw.flags |= kDrawCut;
         if (item.refined) {
             draw.flags |= kDrawPlaced;
@@ -67,7 +67,8 @@ class PassRecorder {
         drawItem(item, &draw,
                  burning && !item.refined && behind != turned && item.inside != kNoneTexel);
         if (!item.cut || cold) return;
-        draw.flags = (draw.flags & ~kDrawPlaced) | kDrawCut | (item.told ? kDrawTold : 0);
+        draw.flags =
+            (draw.flags & ~kDrawPlaced) | kDrawCut | (item.perPixelHoles ? kDrawPerPixelHoles : 0);
         drawCut(item, &draw);
     }
     // `inside`: on its inner skin.
@@ -226,7 +227,7 @@ bool isMixed(const FwVulkanFrame& frame) noexcept {
     return frame.transparency > 0.0f && frame.transparency < 1.0f;
 }
 
-// Haze is drawn where a frame lends its colour, so none is no fault.
+// Haze is drawn where a frame gives its colour, so none is no fault.
 void checkHostColor(const Target& target, const FwVulkanFrame& frame) {
     if (isMixed(frame) && !target.key.transparency)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -236,7 +237,8 @@ void checkHostColor(const Target& target, const FwVulkanFrame& frame) {
     if (isMixed(frame) && !frame.sampledColor)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanFrame::transparency is %g and sampledColor is null; between 0 and 1 a "
-                   "copy of what the target holds is needed. Lend one, or draw into a layer of "
+                   "copy of what the target holds is needed. Give one in FwFrameInfo, or draw into "
+                   "a layer of "
                    "your own and blend that.",
                    double(frame.transparency));
     if ((!target.key.haze && !isMixed(frame)) || !frame.sampledColor ||
@@ -359,7 +361,7 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
     const float share = part_ == DrawPart::over ? 0.5f : 1.0f;
     const VolumeScreen screen =
         s_.screenOf(target_.key, {share * viewport_.width, share * std::fabs(viewport_.height)});
-    s_.noteScreen(of, view, screen, slot_.frameIndex);
+    s_.recordScreen(of, view, screen, slot_.frameIndex);
     if (s_.marchedFor(of, view, screen)) {
         march_ = &of.march;
         slices_ = march_->sliced.data();
@@ -367,12 +369,12 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
     } else {
         const uint32_t slabs = target_.key.attachesDepth() ? kVolumeSlabs : 1;
         const uint32_t count = s_.orderVolumes(slabs, items_);
-        const uint32_t least = s_.leastRays(of, view, screen);
+        const uint32_t least = s_.minRays(of, view, screen);
         uint32_t whole = 0, cut = 0;
         for (uint32_t i = 0; i < count; ++i) {
             if (s_.flames.volumes[items_[i].flame].tier == FW_FIRE_TIER_SLICES &&
                 slicesShow(screen.encoding)) {
-                ownSlices_[cut] = layVolumeSlices(items_[i]);
+                ownSlices_[cut] = makeSlicedVolume(items_[i]);
                 ownOrder_.add(draw::volume_slices, cut++);
             } else {
                 items_[whole] = items_[i];
@@ -438,7 +440,7 @@ void ViewDraws::record(DrawPhase phase) {
         case DrawPhase::Flames:
             return recordPass(
                 !s_.scene.books.live ? draw::flames
-                : s_.pagesAlone()    ? draw::flipbook_flames_only
+                : s_.onlyFlipbooks() ? draw::flipbook_flames_only
                                      : draw::flipbook_flames,
                 [&](PassRecorder& recorder) { recorder.drawIndirect(FW_BIND_DRAW_ARGS, 0); });
         case DrawPhase::Volumes:
@@ -453,7 +455,7 @@ void ViewDraws::record(DrawPhase phase) {
         case DrawPhase::Sparks:
             return recordPass(s_.scene.books.live ? draw::half_flipbook_sparks : draw::half_sparks,
                               [&](PassRecorder& recorder) {
-                                  recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameLightDraw * 4);
+                                  recorder.drawIndirect(FW_BIND_DRAW_ARGS, kFlameEmissiveDraw * 4);
                               });
         case DrawPhase::Transparency:
             return recordPass(draw::transparency, [&](PassRecorder& recorder) {
@@ -498,8 +500,8 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
     recordPass(run.pass, [&](PassRecorder& recorder) {
         for (uint32_t i = run.first; i < run.first + run.count; ++i) {
             switch (run.pass) {
-                case draw::volume_card:
-                    recorder.drawVertices(&march_->cards[i], kVolumeSplit);
+                case draw::volume_impostor:
+                    recorder.drawVertices(&march_->cards[i], kVolumeSplitVertices);
                     break;
                 case draw::volume_composite: {
                     const MarchedVolume& one = march_->items[i];
@@ -514,7 +516,7 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
                                         kFlamePieces * kSliceVertices, slices_[i].draw.slices);
                     break;
                 default:
-                    recorder.drawVolume(items_[i].flame, &items_[i].draw, kVolumeSplit,
+                    recorder.drawVolume(items_[i].flame, &items_[i].draw, kVolumeSplitVertices,
                                         items_[i].draw.slabs);
             }
         }
@@ -604,7 +606,7 @@ VkDescriptorSet VkBackend::State::hostSetFor(FrameInFlight& slot, VkImageView vi
     return set;
 }
 
-// What the target's passes read of what the host lends; throws where that cannot be.
+// What the target's passes read of the images that the host gives; throws where that cannot be.
 HostImages VkBackend::State::hostImagesFor(FrameInFlight& slot, const Target& target,
                                            const FwVulkanFrame& frame, VkImageView depth,
                                            VkImageLayout depthLayout) {

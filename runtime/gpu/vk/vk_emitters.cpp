@@ -24,13 +24,13 @@ void VkBackend::State::makeEmitterRoom(const EmitterUpdate& update, uint64_t las
     const uint32_t tiles = tileQuads();
     const uint32_t hiding = update.particles + update.particles / 4 + 16;
     const uint32_t lights = update.sparkQuads + update.lightParticles;
-    const uint32_t wished = hiding + lights;
-    particles.lightShare = float(lights) / float(wished);
+    const uint32_t requested = hiding + lights;
+    particles.lightShare = float(lights) / float(requested);
     // Who finds no quad is not seen, so that under a limit there is room for those that show:
-    // a twelfth of them does in part (shareShows).
+    // a twelfth of them does in part (shownShare).
     const float share = detail.memory < 1 ? std::min(detail.quads * 13.0f / 12.0f, 1.0f) : 1.0f;
-    const auto shown = uint32_t(float(wished) * share);
-    buffers.fit(kPoolFlames, quadUnits(std::min(tiles + shown, kMostQuads)), detail.memory < 1,
+    const auto shown = uint32_t(float(requested) * share);
+    buffers.fit(kPoolFlames, quadUnits(std::min(tiles + shown, kMaxQuads)), detail.memory < 1,
                 last);
 }
 
@@ -45,7 +45,7 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
     }
     if (update.count == 0) return;
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
-    s.particles.particlesByBook =
+    s.particles.particlesByFlipbook =
         std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
             return emitter.books != 0 && (emitter.otherBooks != 0 || emitter.life.w == 0);
         });
@@ -55,17 +55,19 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
     recorder.copyIn(groups.at, FW_BIND_EMITTER_GROUPS, 0, update.groups.size_bytes());
 }
 
-bool VkBackend::State::pagesAlone() const noexcept {
-    const bool tiles = simulation.burnEmpty ||
-                       ((particles.flameBooks & 0xFFu) != 0 && particles.flameBooks >> 8 != 0);
-    return scene.books.live && tiles && (particles.emitterGroups == 0 || particles.particlesByBook);
+bool VkBackend::State::onlyFlipbooks() const noexcept {
+    const bool tiles = simulation.burnEmpty || ((particles.flameFlipbooks & 0xFFu) != 0 &&
+                                                particles.flameFlipbooks >> 8 != 0);
+    return scene.books.live && tiles &&
+           (particles.emitterGroups == 0 || particles.particlesByFlipbook);
 }
 
 SortPush VkBackend::State::quadRoom() const noexcept {
     SortPush room{};
     room.tiles = tileQuads();
-    const uint32_t all = std::min(buffers.capacity(kPoolFlames) - quadUnits(0), kMostQuads);
-    // What emits alone has places of its own; who has more than wished for, or less, both have.
+    const uint32_t all = std::min(buffers.capacity(kPoolFlames) - quadUnits(0), kMaxQuads);
+    // What emits alone has places of its own; an emitter with more or fewer than requested has
+    // both.
     const uint32_t behind = all - std::min(all, room.tiles);
     room.lights = std::min(uint32_t(std::ceil(float(behind) * particles.lightShare)), behind);
     room.particles = behind - room.lights;

@@ -188,8 +188,8 @@ void VkBackend::State::dropImage(ImageEntry& entry) noexcept {
     entry = {};
 }
 
-void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
-                         std::span<const uint32_t> words) {
+void VkBackend::setFlipbooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
+                             std::span<const uint32_t> words) {
     State& s = *state_;
     if (!s.scene.lookTextures.live) return;  // nothing is ever drawn
     ImageEntry fresh;
@@ -197,7 +197,7 @@ void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::b
     if (width > 0) {
         PendingUpload& upload = s.stage(words.size_bytes(), "flipbooks");
         std::memcpy(upload.staging.mapped, words.data(), words.size_bytes());
-        upload.regions[upload.regionCount++] = {FW_BIND_BOOKS, 0, 0, words.size_bytes()};
+        upload.regions[upload.regionCount++] = {FW_BIND_FLIPBOOKS, 0, 0, words.size_bytes()};
         try {
             s.addImage(fresh, width, height, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, texels, "flipbooks");
         } catch (...) {
@@ -209,7 +209,9 @@ void VkBackend::setBooks(uint32_t width, uint32_t height, std::span<const std::b
     s.scene.books = fresh;
 }
 
-void VkBackend::setFlameBooks(uint32_t books) noexcept { state_->particles.flameBooks = books; }
+void VkBackend::setTileFlipbooks(uint32_t books) noexcept {
+    state_->particles.flameFlipbooks = books;
+}
 
 void VkBackend::destroyImage(uint32_t slot) {
     State& s = *state_;

@@ -1,7 +1,7 @@
 // Meshes as they come and go: what objects of one mesh share on the device.
 #include "gpu/vk/drawn_order.h"
 #include "gpu/vk/world_state.h"
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 
 #include <glm/glm.hpp>
 
@@ -52,8 +52,8 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
     fresh.domain = &domain;
     fresh.parts = !domain.partLinks.empty();
     measureDrawn(domain, fresh);
-    std::pmr::vector<RemoteTile> remoteTiles(s.memory);
-    fresh.sourceCells = mesh::remoteTiles(domain, remoteTiles);
+    std::pmr::vector<ExchangeTile> exchangeTiles(s.memory);
+    fresh.sourceCells = mesh::exchangeTiles(domain, exchangeTiles);
     const DrawnOrder order(domain, s.memory);
     const size_t uploadsBefore = s.scene.uploads.size();
     const struct {
@@ -64,7 +64,7 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
         {&fresh.meshTiles, kPoolMeshTiles, fresh.tiles},
         {&fresh.slowness, kPoolSlowness, fresh.tiles},
         {&fresh.links, kPoolLinks, std::max(1u, uint32_t(domain.links.size() / 8))},
-        {&fresh.readers, kPoolReaders, std::max(1u, uint32_t(domain.readers.size()))},
+        {&fresh.readers, kPoolDependents, std::max(1u, uint32_t(domain.readers.size()))},
         {&fresh.vertexRange, kPoolVertices, std::max(1u, fresh.vertices)},
         {&fresh.indexRange, kPoolIndices, std::max(1u, fresh.indices)},
     };
@@ -84,13 +84,14 @@ void VkBackend::createMesh(uint32_t slot, const mesh::BurnDomain& domain) {
              uint64_t(fresh.meshTiles.first) * kTileTexels * 4},
             {FW_BIND_TILES, domain.tiles.data(), domain.tiles.size() * 32,
              uint64_t(fresh.meshTiles.first) * 32},
-            {FW_BIND_REMOTE_TILES, remoteTiles.data(), remoteTiles.size() * sizeof(RemoteTile),
-             uint64_t(fresh.meshTiles.first) * sizeof(RemoteTile)},
+            {FW_BIND_EXCHANGE_TILES, exchangeTiles.data(),
+             exchangeTiles.size() * sizeof(ExchangeTile),
+             uint64_t(fresh.meshTiles.first) * sizeof(ExchangeTile)},
             {FW_BIND_SLOWNESS, domain.slowness.data(), domain.slowness.size() * 2,
              uint64_t(fresh.slowness.first) * kTileTexels * 2},
             {FW_BIND_LINKS, domain.links.data(), domain.links.size() * 4,
              uint64_t(fresh.links.first) * 32},
-            {FW_BIND_READERS, domain.readers.data(), domain.readers.size() * 4,
+            {FW_BIND_DEPENDENTS, domain.readers.data(), domain.readers.size() * 4,
              uint64_t(fresh.readers.first) * 4},
             {kResourceVertices, domain.vertices.data(), domain.vertices.size() * 48,
              uint64_t(fresh.vertexRange.first) * 48},
@@ -157,15 +158,17 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     s.buffers.release(kPoolMeshTiles, entry.meshTiles.first, entry.meshTiles.units);
     s.buffers.release(kPoolSlowness, entry.slowness.first, entry.slowness.units);
     s.buffers.release(kPoolLinks, entry.links.first, entry.links.units);
-    s.buffers.release(kPoolReaders, entry.readers.first, entry.readers.units);
+    s.buffers.release(kPoolDependents, entry.readers.first, entry.readers.units);
     s.buffers.release(kPoolVertices, entry.vertexRange.first, entry.vertexRange.units);
     s.buffers.release(kPoolIndices, entry.indexRange.first, entry.indexRange.units);
     if (entry.innerVertices.units)
         s.buffers.release(kPoolVertices, entry.innerVertices.first, entry.innerVertices.units);
     for (RefineMesh& one : entry.refine)
         if (one.live) one.release(s.buffers);
-    if (entry.nodes.units) s.buffers.release(kPoolNodes, entry.nodes.first, entry.nodes.units);
-    if (entry.coats.units) s.buffers.release(kPoolCoats, entry.coats.first, entry.coats.units);
+    if (entry.nodes.units)
+        s.buffers.release(kPoolSheetParticles, entry.nodes.first, entry.nodes.units);
+    if (entry.embeddings.units)
+        s.buffers.release(kPoolEmbeddings, entry.embeddings.first, entry.embeddings.units);
     if (entry.skin.units) s.buffers.release(kPoolSkin, entry.skin.first, entry.skin.units);
     if (entry.skinSources.units)
         s.buffers.release(kPoolSkinSources, entry.skinSources.first, entry.skinSources.units);

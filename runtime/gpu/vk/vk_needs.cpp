@@ -62,7 +62,7 @@ ReadbackLayout layoutOf(VkBackend::State& s, const FramePlan& plan, const FrameN
         map.heat = (s.scene.objects[object].record.flags & kObjectHeat) != 0;
         if (map.heat) map.heatAt = place(uint64_t(map.texels) * sizeof(uvec2));
     }
-    layImages(s, plan.images, layout, place);
+    allocateImages(s, plan.images, layout, place);
     return layout;
 }
 
@@ -76,7 +76,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     uint64_t denseGroups = 0;
     if (needs.dense)
         for (const ObjectEntry& object : s.scene.objects)
-            denseGroups += object.live ? wakeGroupsOf(object) : 0;
+            denseGroups += object.live ? appendWakeGroups(object) : 0;
     s.simulation.published.clear();
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
@@ -90,7 +90,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     }
     if (s.scene.roomsDirty) needs.uploadBytes += uploaded(sizeof s.scene.rooms);
     const bool anyStep = !plan.steps.empty();
-    // What burns may light something anew, where no front is left.
+    // A burning object may light another after its last front tile went.
     bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
     for (const StepPlan& step : plan.steps) {
         iterates |= step.exchange && !s.simulation.burnEmpty;
@@ -100,23 +100,24 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         uint64_t wake = needs.dense ? denseGroups : 0;
         for (const MaterialUpdate& update : step.materials) {
             needs.uploadBytes += uploaded(sizeof update.materials) + kUploadAlignment;
-            if (!needs.dense) wake += wakeGroupsOf(s.scene.objects[update.object]);
+            if (!needs.dense) wake += appendWakeGroups(s.scene.objects[update.object]);
         }
         if (step.remote) {
-            const RemoteUpdate& update = *step.remote;
+            const ExchangeUpdate& update = *step.remote;
             needs.placing = true;
             needs.neighbours = std::max(needs.neighbours, uint32_t(update.neighbours.size()));
             needs.links = std::max(needs.links, uint32_t(update.links.size()));
-            needs.uploadBytes += update.objects.size() * uploaded(sizeof(RemoteObject)) +
-                                 uploaded(update.blockers.size_bytes());
-            for (const RemoteUpdate::Range& range : update.neighbourRanges)
+            needs.uploadBytes += update.objects.size() * uploaded(sizeof(ExchangeObject)) +
+                                 uploaded(update.occluders.size_bytes());
+            for (const ExchangeUpdate::Range& range : update.neighbourRanges)
                 needs.uploadBytes += uploaded(range.count * sizeof(uint32_t));
-            for (const RemoteUpdate::Range& range : update.linkRanges)
+            for (const ExchangeUpdate::Range& range : update.linkRanges)
                 needs.uploadBytes += uploaded(range.count * sizeof(ContactLink));
         }
         if (step.shield) {
             needs.placing = true;
-            needs.shieldWords = std::max(needs.shieldWords, uint32_t(step.shield->words.size()));
+            needs.occlusionWords =
+                std::max(needs.occlusionWords, uint32_t(step.shield->words.size()));
             needs.uploadBytes += uploaded(step.shield->words.size_bytes());
         }
         needs.exchanges |= step.exchange;
@@ -126,19 +127,19 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
         needs.uploadBytes +=
             uploaded(step.events.size_bytes()) + uploaded(wake * sizeof(WakeGroup));
         for (const TexelEvent& event : step.events) {
-            s.noteFire(event.object, plan.endTick);
+            s.recordFire(event.object, plan.endTick);
             if (event.kind != kEventWet && event.kind != kEventExtinguish) continue;
             ObjectEntry& object = s.scene.objects[event.object];
             object.burn.lastDouse = s.open.ringFrame;
             object.burn.douseEnds = step.now;  // water takes some heat steps
             if (object.record.flags & kObjectHeat)
-                object.burn.douseEnds += (kSoaksOut + 2) * kHeatSteps * kStepTicks;
+                object.burn.douseEnds += (kSoakSteps + 2) * kHeatSteps * kStepTicks;
         }
-        needs.stimulus |= bringsNews(step);
-        iterates |= bringsNews(step);
+        needs.stimulus |= changesState(step);
+        iterates |= changesState(step);
         if (iterates) needs.iterations += uint64_t(1) << step.substepShift;
     }
-    // Once a dousing is over, what its object sees coming is forgotten and found anew: predictions
+    // Once a dousing is over, what its object sees coming is forgotten and found again: predictions
     // that lost their fire would keep each other alive.
     bool forgets = false;
     uint64_t forgetGroups = 0;
@@ -150,10 +151,10 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                              (plan.endTick > object.burn.douseEnds || s.simulation.frontEmpty);
         if (!object.burn.forget) continue;
         forgets = true;
-        forgetGroups += wakeGroupsOf(object);
+        forgetGroups += appendWakeGroups(object);
     }
-    needs.findsAnew = forgets && anyStep && !s.simulation.frontEmpty && !needs.dense;
-    if (needs.findsAnew) {
+    needs.rebuildsPrediction = forgets && anyStep && !s.simulation.frontEmpty && !needs.dense;
+    if (needs.rebuildsPrediction) {
         needs.wakeGroups += uint32_t(forgetGroups);
         needs.uploadBytes += uploaded(forgetGroups * sizeof(WakeGroup));
     }
@@ -162,10 +163,10 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
     if (plan.burnMaps.size() > ReadbackLayout::kMaxMaps)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%zu burn maps are asked for; the limit is %u.",
                    plan.burnMaps.size(), ReadbackLayout::kMaxMaps);
-    const auto mostIterations = uint64_t(s.buffers.capacity(kPoolIterations)) - kRowIteration - 1;
-    if (needs.iterations > mostIterations)
+    const auto maxIterations = uint64_t(s.buffers.capacity(kPoolIterations)) - kRowIteration - 1;
+    if (needs.iterations > maxIterations)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "A frame has %llu iterations; the limit is %llu.",
-                   (unsigned long long)needs.iterations, (unsigned long long)mostIterations);
+                   (unsigned long long)needs.iterations, (unsigned long long)maxIterations);
     needs.publishedRuns =
         anyStep && std::any_of(s.simulation.published.begin(), s.simulation.published.end(),
                                [&](const PublishedStep& one) {
@@ -195,7 +196,7 @@ FrameNeeds needsOf(VkBackend::State& s, const FramePlan& plan) {
                              uploaded(plan.emitters->groups.size_bytes()) +
                              uploaded(plan.emitters->sparkCount * sizeof(SparkSource));
     addFieldNeeds(s, plan, needs);
-    const uint64_t refineBytes = s.planRefine(plan) + s.planArp();
+    const uint64_t refineBytes = s.planRefine(plan) + s.planPatterns();
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.deform.vertices > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||
@@ -214,7 +215,7 @@ FrameInFlight& makeRoom(VkBackend::State& s, const FramePlan& plan, const FrameN
     s.buffers.atLeast(kPoolDeformGroups, needs.deform.all(), last);
     s.buffers.atLeast(kPoolNeighbours, needs.neighbours, last);
     s.buffers.atLeast(kPoolContacts, needs.links, last);
-    s.buffers.atLeast(kPoolShield, needs.shieldWords, last);
+    s.buffers.atLeast(kPoolOcclusion, needs.occlusionWords, last);
     s.buffers.atLeast(kPoolFieldRuns, needs.fieldRuns, last);
     if (plan.fields) {
         s.buffers.atLeast(kPoolFieldDraws, uint32_t(plan.fields->drawn.size()), last);

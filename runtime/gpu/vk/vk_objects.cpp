@@ -12,29 +12,29 @@ namespace {
 
 // Records of a mesh that deforms, with vertices as the device numbers them.
 void stageDeformModel(VkBackend::State& s, const mesh::BurnDomain& domain,
-                      const mesh::DeformModel& model, uint32_t firstNode, uint32_t firstCoat) {
+                      const mesh::DeformModel& model, uint32_t firstNode, uint32_t firstEmbedding) {
     const DrawnOrder order(domain, s.memory);
-    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeviceNode);
-    const uint64_t coatBytes = model.coats.size() * sizeof(DeformCoat);
-    PendingUpload& upload = s.stage(nodeBytes + coatBytes, "deformation staging");
+    const uint64_t nodeBytes = model.nodes.size() * sizeof(DeviceParticle);
+    const uint64_t embeddingBytes = model.embeddings.size() * sizeof(DeformEmbedding);
+    PendingUpload& upload = s.stage(nodeBytes + embeddingBytes, "deformation staging");
     const auto number = [&](uint32_t& vertex) {
         if (vertex != kNoneTexel) vertex = order.numbers[vertex];
     };
     for (uint32_t i = 0; i < model.nodes.size(); ++i) {
-        DeviceNode node = mesh::deviceNode(model, i);
+        DeviceParticle node = mesh::deviceNode(model, i);
         number(node.vertex);
         mesh::putQuads(node, i, model.nodes.size(), upload.staging.mapped);
     }
     for (size_t i = 0; i < order.vertices.size(); ++i) {
-        DeformCoat coat = model.coats[order.vertices[i]];
+        DeformEmbedding coat = model.embeddings[order.vertices[i]];
         number(coat.node);
         for (uint32_t& vertex : coat.ring) number(vertex);
         mesh::putQuads(coat, i, order.vertices.size(), upload.staging.mapped + nodeBytes);
     }
-    upload.regions[0] = {FW_BIND_DEFORM_NODES, 0, uint64_t(firstNode) * sizeof(DeviceNode),
+    upload.regions[0] = {FW_BIND_DEFORM_PARTICLES, 0, uint64_t(firstNode) * sizeof(DeviceParticle),
                          nodeBytes};
-    upload.regions[1] = {FW_BIND_DEFORM_COATS, nodeBytes, uint64_t(firstCoat) * sizeof(DeformCoat),
-                         coatBytes};
+    upload.regions[1] = {FW_BIND_DEFORM_EMBEDDINGS, nodeBytes,
+                         uint64_t(firstEmbedding) * sizeof(DeformEmbedding), embeddingBytes};
     upload.regionCount = 2;
 }
 
@@ -115,7 +115,7 @@ bool rests(const VkBackend::State& s, const ObjectEntry& object) noexcept {
     const bool reached = object.burn.touched || object.burn.warmed || object.burn.charred;
     const bool moves = object.deforms.recordDirty || object.deforms.reset || object.deforms.now ||
                        object.soft.units != 0 || object.deforms.skinPlus1 != 0;
-    const bool refined = object.refine.arpPlus1 != 0 || object.refine.due || s.refines(object);
+    const bool refined = object.refine.patternPlus1 != 0 || object.refine.due || s.refines(object);
     return !reached && !moves && !refined && (object.record.flags & kObjectPublished) == 0;
 }
 
@@ -135,7 +135,8 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     State& s = *state_;
     const uint64_t last = s.ring.newest();
     MeshEntry& mesh = s.scene.meshes[init.mesh];
-    RangeOf nodes = mesh.nodes, coats = mesh.coats, skin = mesh.skin, sources = mesh.skinSources;
+    RangeOf nodes = mesh.nodes, embeddings = mesh.embeddings, skin = mesh.skin,
+            sources = mesh.skinSources;
     const size_t uploadsBefore = s.scene.uploads.size();
     ObjectEntry fresh;
     fresh.live = true;
@@ -165,12 +166,12 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
         fresh.inner = init.inner;
         if (init.refine) {
             fresh.refine.on = true;
-            fresh.refine.key = refineKey(init.arpModel != nullptr, init.refineDepth);
+            fresh.refine.key = refineKey(init.patternModel != nullptr, init.refineDepth);
             fresh.refine.pixelsPerEdge = init.refinePixelsPerEdge;
             fresh.refine.epochTick = s.simulation.shownTick;
             const RefineMesh& refined = mesh.refine[fresh.refine.key];
-            if (init.arpModel)
-                s.takeArp(fresh.refine, init, refined, last);
+            if (init.patternModel)
+                s.adoptPattern(fresh.refine, init, refined, last);
             else
                 fresh.refine.allocate(s.buffers, refined,
                                       (init.record.flags & kObjectTwoSided) == 0, last);
@@ -199,9 +200,10 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             const uint32_t shown = mesh.vertices * (init.inner ? 2 : 1);
             fresh.shown = {s.buffers.allocate(kPoolShown, shown, last), shown};
             if (nodes.units == 0) {
-                nodes = {s.buffers.allocate(kPoolNodes, count, last), count};
-                coats = {s.buffers.allocate(kPoolCoats, mesh.vertices, last), mesh.vertices};
-                stageDeformModel(s, *mesh.domain, model, nodes.first, coats.first);
+                nodes = {s.buffers.allocate(kPoolSheetParticles, count, last), count};
+                embeddings = {s.buffers.allocate(kPoolEmbeddings, mesh.vertices, last),
+                              mesh.vertices};
+                stageDeformModel(s, *mesh.domain, model, nodes.first, embeddings.first);
             }
         }
         if (init.record.flags & kObjectSkinned) {
@@ -222,11 +224,12 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
             }
         }
     } catch (...) {
-        s.dropArp(fresh.refine);
+        s.dropPattern(fresh.refine);
         fresh.refine.release(s.buffers);
         if (mesh.nodes.units == 0) {
-            if (nodes.units) s.buffers.release(kPoolNodes, nodes.first, nodes.units);
-            if (coats.units) s.buffers.release(kPoolCoats, coats.first, coats.units);
+            if (nodes.units) s.buffers.release(kPoolSheetParticles, nodes.first, nodes.units);
+            if (embeddings.units)
+                s.buffers.release(kPoolEmbeddings, embeddings.first, embeddings.units);
         }
         if (mesh.skin.units == 0) {
             if (skin.units) s.buffers.release(kPoolSkin, skin.first, skin.units);
@@ -246,7 +249,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     r.tileBase = mesh.meshTiles.first;
     r.worldTileBase = fresh.tiles.first;
     r.linkBase = mesh.links.first;
-    r.readerBase = mesh.readers.first;
+    r.dependentBase = mesh.readers.first;
     r.publishedBase = fresh.published.first * kTileTexels * 3;
     r.heatBase = fresh.heatTiles.first * kTileTexels;
     r.width = mesh.width;
@@ -262,11 +265,11 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     fresh.materialsDirty = fresh.resetDue = true;
     if (init.deform) {
         mesh.nodes = nodes;
-        mesh.coats = coats;
+        mesh.embeddings = embeddings;
         fresh.deform = *init.deform;
         fresh.deform.nodeBase = nodes.first;
         fresh.deform.nodeCount = nodes.units;
-        fresh.deform.coatBase = coats.first;
+        fresh.deform.embeddingBase = embeddings.first;
         fresh.deform.vertexCount = mesh.vertices;
         fresh.deform.shownBase = fresh.shown.first;
         fresh.deform.softBase = fresh.soft.first;
@@ -293,7 +296,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     s.scene.objects[slot] = fresh;
     s.changed(slot);
     s.simulation.seenFrame = std::max(s.simulation.seenFrame, last);
-    (fresh.refine.arpPlus1 ? s.arp.users : s.refine.users) += fresh.refine.on ? 1 : 0;
+    (fresh.refine.patternPlus1 ? s.pattern.users : s.refine.users) += fresh.refine.on ? 1 : 0;
     ++s.scene.liveObjects;
 }
 
@@ -307,8 +310,8 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
                                       s.simulation.predictWalks, s.simulation.hotWalks});
     else
         s.buffers.release(kPoolObjectTiles, entry.tiles.first, entry.tiles.units);
-    (entry.refine.arpPlus1 ? s.arp.users : s.refine.users) -= entry.refine.on ? 1 : 0;
-    s.dropArp(entry.refine);
+    (entry.refine.patternPlus1 ? s.pattern.users : s.refine.users) -= entry.refine.on ? 1 : 0;
+    s.dropPattern(entry.refine);
     entry.refine.release(s.buffers);
     releaseRanges(s, entry);
     entry = {};
@@ -329,7 +332,7 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
     if (entry.shown.units) {
         entry.deform.scale = length(vec3(rows[0]));
         entry.deforms.recordDirty = true;
-        entry.deforms.softUntil = 0;  // it swings anew
+        entry.deforms.softUntil = 0;  // it swings again
     }
     constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;

@@ -227,7 +227,7 @@ void VkBackend::State::renderOffscreen(const FwOffscreenDef& def) {
     }
     submitOwn();
     FrameInFlight& done = ring.slotFor(ringFrame);
-    if (recorded) takeShown(done.layout, done.readback.mapped);
+    if (recorded) applyShown(done.layout, done.readback.mapped);
     done.timers.read(device, 0, results.times);
     results.pictureTime = std::max(sumOf(results.times, 0), 0.0f);
     std::memcpy(def.pixels, own.pixels.mapped, size_t(def.width) * def.height * 4);

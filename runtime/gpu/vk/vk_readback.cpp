@@ -19,21 +19,22 @@ void VkBackend::State::pushPending(const PendingReadback& one) noexcept {
 }
 
 // What an object's counters say of how it is drawn from now on.
-void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_t tick) noexcept {
-    if (told.burning != 0 || told.frontTiles != 0) noteFire(slot, tick);
+void VkBackend::State::updateFromCounters(uint32_t slot, ObjectCounters& counters,
+                                          uint32_t tick) noexcept {
+    if (counters.burning != 0 || counters.frontTiles != 0) recordFire(slot, tick);
     // What others lit or warm is found here; of what rests nothing more is read.
-    if (told.ignited != 0 || told.until != 0) scene.awake.insert(slot);
+    if (counters.ignited != 0 || counters.until != 0) scene.awake.insert(slot);
     if (!scene.awake.contains(slot)) return;
     ObjectEntry& object = scene.objects[slot];
     // The published scheme's lists are the host's.
-    if (const uint32_t arpPlus1 = object.refine.arpPlus1)
-        told.refined = uint32_t(arp.arps[arpPlus1 - 1]->state.list.size());
+    if (const uint32_t patternPlus1 = object.refine.patternPlus1)
+        counters.refined = uint32_t(pattern.patternUses[patternPlus1 - 1]->state.list.size());
     // Of what burns little is left cold; what is warm may turn brown before it burns.
     const bool known = object.live && !object.resetDue;
-    const bool lit = known && told.ignited != 0;
-    const bool warm = known && told.until != 0 && (object.record.flags & kObjectHeat) != 0;
+    const bool lit = known && counters.ignited != 0;
+    const bool warm = known && counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
     const uint32_t all = object.record.width * object.record.height;
-    const bool charred = object.live && told.ignited > all / 4;
+    const bool charred = object.live && counters.ignited > all / 4;
     scene.recordsDirty |= (lit && !object.burn.touched) || (warm && !object.burn.warmed) ||
                           charred != object.burn.charred;
     object.burn.touched |= lit;
@@ -42,7 +43,7 @@ void VkBackend::State::noteCounters(uint32_t slot, ObjectCounters& told, uint32_
 }
 
 // Applies the counters that a view wrote.
-void VkBackend::State::takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept {
+void VkBackend::State::applyShown(const ReadbackLayout& layout, const std::byte* from) noexcept {
     if (layout.quads) {
         uint32_t arguments[2];  // of VkDrawIndirectCommand: vertices, instances
         std::memcpy(arguments, from + layout.flamesAt, sizeof arguments);
@@ -94,7 +95,7 @@ const Readback* VkBackend::State::nextReadback() {
                 std::memcpy(results.givenAnswers.data(), from + layout.answersAt,
                             uint64_t(layout.answers) * sizeof(ProbeAnswer));
             for (uint32_t i = 0; i < std::min(layout.objects, uint32_t(scene.objects.size())); ++i)
-                noteCounters(i, results.givenObjects[i], one.endTick);
+                updateFromCounters(i, results.givenObjects[i], one.endTick);
             uint64_t at = 0, heatAt = 0;
             for (uint32_t i = 0; i < layout.mapCount; ++i) {
                 const ReadbackLayout::MapAt& map = layout.maps[i];
@@ -129,7 +130,7 @@ const Readback* VkBackend::State::nextReadback() {
                 std::memcpy(&light, from + layout.lightsAt + i * sizeof light, sizeof light);
                 if (light.power > 0) results.givenLights.push_back(light);
             }
-            takeShown(layout, from);
+            applyShown(layout, from);
             bool spreading = false;
             for (const uint32_t i : scene.awake) spreading |= scene.objects[i].publishedTouched;
             if (one.ringFrame >= simulation.lastStimulus && !spreading) {

@@ -112,8 +112,8 @@ void recordObjects(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& w
         ObjectEntry& object = s.scene.objects[i];
         if (object.resetDue ||
             (object.recordDirty && !object.live))  // until it is placed others do not see it
-            recorder.fillZero(FW_BIND_REMOTE_OBJECTS, i * sizeof(RemoteObject),
-                              sizeof(RemoteObject));
+            recorder.fillZero(FW_BIND_EXCHANGE_OBJECTS, i * sizeof(ExchangeObject),
+                              sizeof(ExchangeObject));
         if (object.recordDirty) {
             const Staged staged = writer.write(std::span<const BurnObject>(&object.record, 1));
             recorder.copyIn(staged.at, FW_BIND_OBJECTS, uint64_t(i) * sizeof(BurnObject),
@@ -211,37 +211,37 @@ void recordMaterials(VkBackend::State& s, std::span<const MaterialUpdate> update
 }
 
 // Who is where from this step on. A record is known without sources: those are ours.
-void recordRemote(VkBackend::State& s, const RemoteUpdate& update, FrameRecorder& recorder,
-                  UploadWriter& writer) {
-    for (const RemoteUpdate::Placed& placed : update.objects) {
-        RemoteObject record = placed.record;
+void recordExchangeUpdate(VkBackend::State& s, const ExchangeUpdate& update,
+                          FrameRecorder& recorder, UploadWriter& writer) {
+    for (const ExchangeUpdate::Placed& placed : update.objects) {
+        ExchangeObject record = placed.record;
         record.sourceBase = s.scene.objects[placed.object].sources.first;
         record.sourceCount = s.scene.objects[placed.object].sources.units;
-        const Staged staged = writer.write(std::span<const RemoteObject>(&record, 1));
-        recorder.copyIn(staged.at, FW_BIND_REMOTE_OBJECTS, uint64_t(placed.object) * sizeof record,
-                        sizeof record);
+        const Staged staged = writer.write(std::span<const ExchangeObject>(&record, 1));
+        recorder.copyIn(staged.at, FW_BIND_EXCHANGE_OBJECTS,
+                        uint64_t(placed.object) * sizeof record, sizeof record);
     }
     const auto copy = [&](auto data, uint32_t resource, uint32_t first) {
         if (data.empty()) return;
         const Staged staged = writer.write(data);
         recorder.copyIn(staged.at, resource, first * sizeof(data[0]), data.size_bytes());
     };
-    for (const RemoteUpdate::Range& range : update.neighbourRanges)
+    for (const ExchangeUpdate::Range& range : update.neighbourRanges)
         copy(update.neighbours.subspan(range.first, range.count), FW_BIND_NEIGHBOURS, range.first);
-    for (const RemoteUpdate::Range& range : update.linkRanges)
+    for (const ExchangeUpdate::Range& range : update.linkRanges)
         copy(update.links.subspan(range.first, range.count), FW_BIND_CONTACTS, range.first);
-    copy(update.blockers, FW_BIND_BLOCKERS, 0);
+    copy(update.occluders, FW_BIND_HEAT_OCCLUDERS, 0);
     s.simulation.links = uint32_t(update.links.size());
-    s.simulation.blockers = uint32_t(update.blockers.size());
+    s.simulation.occluders = uint32_t(update.occluders.size());
 }
 
-void recordShield(VkBackend::State& s, const ShieldUpdate& update, FrameRecorder& recorder,
-                  UploadWriter& writer) {
+void uploadOcclusion(VkBackend::State& s, const OcclusionUpdate& update, FrameRecorder& recorder,
+                     UploadWriter& writer) {
     s.simulation.shield = update;
     s.simulation.shield.words = {};
     if (update.words.empty()) return;
     const Staged staged = writer.write(update.words);
-    recorder.copyIn(staged.at, FW_BIND_SHIELD, 0, update.words.size_bytes());
+    recorder.copyIn(staged.at, FW_BIND_HEAT_OCCLUSION, 0, update.words.size_bytes());
 }
 
 void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& writer) {
@@ -250,12 +250,13 @@ void recordRooms(VkBackend::State& s, FrameRecorder& recorder, UploadWriter& wri
     s.scene.roomsDirty = false;
 }
 
-// The tiles that a step looks at anew: those of latched objects and of forgetful ones, or all.
+// The tiles that a step looks at again: those of latched objects and of objects that restart their
+// prediction, or all.
 Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate> updates,
-                       bool dense, bool findsAnew, UploadWriter& writer) {
+                       bool dense, bool rebuildsPrediction, UploadWriter& writer) {
     Staged staged = writer.begin();
     const auto append = [&](uint32_t object) {
-        const uint32_t groups = wakeGroupsOf(s.scene.objects[object]);
+        const uint32_t groups = appendWakeGroups(s.scene.objects[object]);
         for (uint32_t g = 0; g < groups; ++g) {
             const WakeGroup group{object, g * 64};
             writer.append(staged, std::span<const WakeGroup>(&group, 1));
@@ -268,14 +269,14 @@ Staged writeWakeGroups(const VkBackend::State& s, std::span<const MaterialUpdate
         for (const MaterialUpdate& update : updates) append(update.object);
     }
     for (const uint32_t i : s.scene.awake) {
-        if (findsAnew && s.scene.objects[i].burn.forget) append(i);
+        if (rebuildsPrediction && s.scene.objects[i].burn.forget) append(i);
     }
     writer.end();
     return staged;
 }
 
 // An object that an event reaches is drawn as one that may burn from now on.
-void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
+void markObjectOfEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.scene.objects[event.object];
     object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
     object.burn.lastEvent = std::max<uint64_t>(object.burn.lastEvent, now + kStepTicks);
@@ -300,7 +301,7 @@ void noteEvent(VkBackend::State& s, const TexelEvent& event, uint32_t now) {
 // that fire came to up to the last one.
 void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
                    FrameRecorder& recorder) {
-    constexpr uint32_t kMostTiles = 16384;
+    constexpr uint32_t kMaxTiles = 16384;
     uint32_t begin = kNoneTexel, end = 0;
     float latest = 0;
     for (const uint32_t i : s.scene.awake) {
@@ -317,10 +318,10 @@ void recordFalling(VkBackend::State& s, const FramePlan& plan, bool burning,
         if (latest == 0) return;
     }
     if (end <= begin) return;
-    const uint32_t parts = (end - begin + kMostTiles - 1) / kMostTiles;
+    const uint32_t parts = (end - begin + kMaxTiles - 1) / kMaxTiles;
     const bool goesOn = s.simulation.supportFirst > begin && s.simulation.supportFirst < end;
     const uint32_t first = goesOn ? s.simulation.supportFirst : begin;
-    const uint32_t count = std::min(end - first, kMostTiles);
+    const uint32_t count = std::min(end - first, kMaxTiles);
     s.simulation.supportFirst = first + count;
     const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
     recordSupport(recorder, plan.endTick, {first, count, ticks});
@@ -336,7 +337,7 @@ void recordChanges(VkBackend::State& s, const FramePlan& plan, const FrameNeeds&
     if (!s.scene.initialized) {
         for (const uint32_t resource :
              {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
-              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_REMOTE_OBJECTS,
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_EXCHANGE_OBJECTS,
               FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
             recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
         s.scene.initialized = true;
@@ -376,19 +377,19 @@ StepRecord stepOf(VkBackend::State& s, const FramePlan& plan, const StepPlan& pl
     step.capped = planned.capped;
     step.plays = planned.plays;
     step.rules = planned.rules;
-    if (planned.remote) recordRemote(s, *planned.remote, recorder, writer);
+    if (planned.remote) recordExchangeUpdate(s, *planned.remote, recorder, writer);
     step.links = s.simulation.links;
     step.parts = s.scene.partMeshes != 0;
-    if (planned.shield) recordShield(s, *planned.shield, recorder, writer);
-    step.rules.blockers = s.simulation.blockers;
-    placeShield(s.simulation.shield, step.rules);
+    if (planned.shield) uploadOcclusion(s, *planned.shield, recorder, writer);
+    step.rules.occluders = s.simulation.occluders;
+    setOcclusionPush(s.simulation.shield, step.rules);
     recordMaterials(s, planned.materials, recorder, writer);
-    step.wakeGroups =
-        writeWakeGroups(s, planned.materials, needs.dense, needs.findsAnew && first, writer);
+    step.wakeGroups = writeWakeGroups(s, planned.materials, needs.dense,
+                                      needs.rebuildsPrediction && first, writer);
     step.events = writer.write(planned.events);
     step.eventList = planned.events;
     for (const TexelEvent& event : planned.events) {
-        noteEvent(s, event, planned.now);
+        markObjectOfEvent(s, event, planned.now);
         if (addressesAll(event))
             step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
     }
@@ -408,7 +409,7 @@ void recordSteps(VkBackend::State& s, const FramePlan& plan, const FrameNeeds& n
     layout.firstRow = s.simulation.lists.row;
     bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
     for (const StepPlan& planned : plan.steps) {
-        iterates |= bringsNews(planned) || (planned.exchange && !s.simulation.burnEmpty);
+        iterates |= changesState(planned) || (planned.exchange && !s.simulation.burnEmpty);
         const bool first = &planned == plan.steps.data();
         const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder, writer);
         recordSimulation(recorder, s.simulation.lists, step);
@@ -429,7 +430,7 @@ DeformRecord deformationOf(VkBackend::State& s, const FrameNeeds& needs, UploadW
     DeformRecord deform;
     deform.count = needs.deform;
     deform.steps = s.deforming.softSteps;
-    deform.way = s.deforming.softWay;
+    deform.way = s.deforming.bendSet;
     deform.begins = needs.sheetsBegin;
     deform.groups = writeDeformGroups(s, writer);
     DeformPush& push = deform.push;
@@ -458,14 +459,14 @@ void recordRegions(const Table& vk, VkBackend::State& s, const PendingUpload& up
 // Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
 // than hides where that part ends. Where nobody looks it is laid a few times a second.
 TileShare VkBackend::State::sootShare(bool looked) noexcept {
-    constexpr uint32_t kMostTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
+    constexpr uint32_t kMaxTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
     const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
     if (!looked && open.endTick - simulation.sootTick < kUnseenTicks) return {};
     const uint32_t tiles = buffers.capacity(kPoolObjectTiles);
-    const uint32_t parts = std::max((tiles + kMostTiles - 1) / kMostTiles, 1u);
+    const uint32_t parts = std::max((tiles + kMaxTiles - 1) / kMaxTiles, 1u);
     TileShare share;
     share.first = simulation.sootFirst < tiles ? simulation.sootFirst : 0;
-    share.count = std::min(tiles - share.first, kMostTiles);
+    share.count = std::min(tiles - share.first, kMaxTiles);
     share.ticks = std::min(open.endTick - simulation.sootTick, kTicksPerSecond);
     simulation.sootTick = open.endTick;
     if (share.count == 0 || share.ticks == 0) return {};
@@ -534,7 +535,7 @@ void VkBackend::State::followDetail(const Detail& planned) noexcept {
         now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);
     };
     detail = planned;
-    toward(flames.volumeStepsNow, detail.volumeSteps, kStepsTurn);
+    toward(flames.volumeStepsNow, detail.rayStepCount, kStepsTurn);
     toward(particles.quadShare, detail.quads, kQuadsTurn);
     toward(particles.lightCount, float(lightsOf(detail, limits.maxLights)), kLightsTurn);
 }
@@ -546,7 +547,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     const double ticks = double(plan.endTick) + double(plan.tickFraction) * kStepTicks;
     const auto softNow = uint64_t(ticks / kSoftTicks);
     deforming.softSteps = uint32_t(std::min<uint64_t>(
-        softNow > deforming.softStep ? softNow - deforming.softStep : 0, kMostSoftSteps));
+        softNow > deforming.softStep ? softNow - deforming.softStep : 0, kMaxSoftSteps));
     deforming.softStep = softNow;
     const FrameNeeds needs = needsOf(*this, plan);
     open.planFrame = plan.frameIndex;
@@ -585,7 +586,7 @@ void VkBackend::State::run(const FramePlan& plan) {
     if (needs.falling) recordFalling(*this, plan, needs.burning, recorder);
     slot.layout.predictParity = simulation.lists.predictParity;
     if (needs.deform.vertices) recordDeformation(recorder, deformationOf(*this, needs, writer));
-    deforming.softWay = (deforming.softWay + deforming.softSteps) % kArmWays;
+    deforming.bendSet = (deforming.bendSet + deforming.softSteps) % kBendSets;
     settle();
     if (!plan.probes.empty()) recordProbes(recorder, writer.write(plan.probes));
 }

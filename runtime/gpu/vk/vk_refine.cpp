@@ -165,25 +165,25 @@ void RefineUse::allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thi
     // Along rims, of up to four for a small triangle; with an inner skin and along borders more.
     const uint32_t rims = mesh.fullCount / (inner ? 3 : 4) + 64;
     const uint32_t walls = border ? mesh.openEdges << (kRefineDepth + 1) : 0;
-    take(cuts, kPoolRefineCuts, 3 * std::min(rims + walls, kRefineCutMost));
+    take(cuts, kPoolRefineCuts, 3 * std::min(rims + walls, kMaxRefineCut));
 }
 
-void RefineUse::allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last) {
+void RefineUse::allocatePattern(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last) {
     slots = {buffers.allocate(kPoolRefineSlots, mesh.slotCount, last), mesh.slotCount};
     const uint32_t listed = groupsOf(mesh.fullCount) * 64;
-    arpList = {buffers.allocate(kPoolArpList, listed, last), listed};
+    patternList = {buffers.allocate(kPoolPatternList, listed, last), listed};
     indices = {buffers.allocate(kPoolRefineIndices, listed * 3, last), listed * 3};
 }
 
 void RefineUse::release(WorldBuffers& buffers) noexcept {
     const PoolRange all[] = {{&items, kPoolRefineItems}, {&triangles, kPoolRefineTriangles},
                              {&slots, kPoolRefineSlots}, {&indices, kPoolRefineIndices},
-                             {&cuts, kPoolRefineCuts},   {&arpList, kPoolArpList}};
+                             {&cuts, kPoolRefineCuts},   {&patternList, kPoolPatternList}};
     releaseAll(buffers, all);
     *this = {};
 }
 
-void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
+void VkBackend::State::recordFire(uint32_t object, uint32_t tick) noexcept {
     scene.awake.insert(object);
     RefineUse& use = scene.objects[object].refine;
     if (!use.on) return;
@@ -198,7 +198,7 @@ void VkBackend::State::noteFire(uint32_t object, uint32_t tick) noexcept {
 // Once more after it is quiet: pictures may be seconds apart. What has a border is drawn refined
 // from the first picture on.
 bool VkBackend::State::refines(const ObjectEntry& object) const noexcept {
-    return object.live && object.refine.on && !object.refine.arpPlus1 &&
+    return object.live && object.refine.on && !object.refine.patternPlus1 &&
            (object.refine.border || double(object.refine.quietTick) > object.refine.turnTick);
 }
 
@@ -289,7 +289,7 @@ bool VkBackend::State::chooseDue(double now) noexcept {
 void VkBackend::State::refineObjects(FrameInFlight& slot) {
     RefinePush& push = refine.push;
     if (push.objects == 0) return;
-    lookFromViews();
+    visibilityFromViews();
     const double now = double(simulation.shownTick) + double(simulation.tickFraction);
     const bool turn = chooseDue(now);
     if (!turn && !refine.full) return;
@@ -329,13 +329,14 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
             object.refine.turnEye = record.eye;
             const float segments = cutSegments(object, record);
             const bool cut = segments > (object.refine.cut ? kCutTo : kCutFrom);
-            const bool told = cut && tellsByTexels(object);
+            const bool perPixelHoles = cut && hasPerPixelHoles(object);
             // What was cut is emitted again.
-            const bool was = object.refine.cut && (!cut || (told && !object.refine.told));
-            record.flags |=
-                (was ? kRefineIsWhole : 0) | (cut ? kRefineIsCut : 0) | (told ? kRefineIsTold : 0);
+            const bool was =
+                object.refine.cut && (!cut || (perPixelHoles && !object.refine.perPixelHoles));
+            record.flags |= (was ? kRefineIsWhole : 0) | (cut ? kRefineIsCut : 0) |
+                            (perPixelHoles ? kRefineHasPerPixelHoles : 0);
             object.refine.cut = cut;
-            object.refine.told = told;
+            object.refine.perPixelHoles = perPixelHoles;
             object.refine.nearness =
                 std::clamp((segments - kCutFrom) / (kCutNear - kCutFrom), 0.0f, 1.0f);
             object.refine.now = record.now;
@@ -357,7 +358,7 @@ void VkBackend::State::refineObjects(FrameInFlight& slot) {
     recordRefinement(recorder, simulation.lists, {push, turn, cuts, fresh});
 }
 
-void VkBackend::State::lookFromViews() noexcept {
+void VkBackend::State::visibilityFromViews() noexcept {
     if (!limits.looks.viewParams) return;
     refine.eyeCount = 0;
     refine.pixels = 0;
@@ -378,8 +379,8 @@ void VkBackend::State::lookFromViews() noexcept {
 void showRefined(const RefineUse& use, DrawItem& item) noexcept {
     item.refined = use.started;
     item.cut = use.cut;
-    item.told = use.told;
-    item.consumed = use.arpPlus1 != 0;
+    item.perPixelHoles = use.perPixelHoles;
+    item.consumed = use.patternPlus1 != 0;
     item.draw.now = use.now;
     item.draw.nearness = use.nearness;
 }
@@ -397,10 +398,10 @@ float VkBackend::State::cutSegments(const ObjectEntry& object,
 
 // Whether the budget leaves it so few levels that corners do not know its holes; while that is not
 // known, whether it may.
-bool VkBackend::State::tellsByTexels(const ObjectEntry& object) const noexcept {
+bool VkBackend::State::hasPerPixelHoles(const ObjectEntry& object) const noexcept {
     if (refine.full || refine.push.budget == 0) return false;
     if (refine.bias < 0) return true;
-    return refine.bias > (object.refine.told ? kFewestAgain : kFewestLevels);
+    return refine.bias > (object.refine.perPixelHoles ? kFewestAgain : kFewestLevels);
 }
 
 // m, object space, from the eye to the mesh's bounds.
@@ -449,7 +450,7 @@ bool VkBackend::State::isDue(const ObjectEntry& object, const RefineObject& reco
     turn.moved = std::hypot(record.eye.x - use.turnEye.x, record.eye.y - use.turnEye.y,
                             record.eye.z - use.turnEye.z);
     turn.perspective = record.eye.w > 0;
-    if (double(use.quietTick) <= use.turnTick) turn.since = 0;  // only its border is drawn anew
+    if (double(use.quietTick) <= use.turnTick) turn.since = 0;  // only its border is drawn again
     turn.pixels = refine.pixels;
     // How fast fire runs: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
     uint32_t least = ~0u;

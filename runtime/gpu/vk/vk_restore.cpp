@@ -1,4 +1,4 @@
-// Objects put back as they once were: every object is made anew, what the images hold is copied
+// Restores objects of a snapshot: every object is created again, what the images hold is copied
 // over that, and the tiles join their lists. All of it is recorded with the next frame.
 #include "gpu/vk/frame_needs.h"
 
@@ -95,11 +95,11 @@ void VkBackend::restore(std::span<const RestoredObject> restored, uint32_t tick)
             one.image.counters.until != 0 && (object.record.flags & kObjectHeat) != 0;
         object.burn.lastEvent = tick;
         s.scene.restoredObjects.push_back(one.image.object);
-        if (one.image.counters.ignited != 0) s.noteFire(one.image.object, tick);
+        if (one.image.counters.ignited != 0) s.recordFire(one.image.object, tick);
     }
     s.scene.recordsDirty = s.scene.restoreDue = true;
     s.simulation.shownTick = tick;
-    s.simulation.links = s.simulation.blockers = 0;
+    s.simulation.links = s.simulation.occluders = 0;
     s.simulation.shield = {};
     s.results.pendingCount = 0;
     for (FrameInFlight& slot : s.ring.slots()) slot.readbackPending = false;
@@ -138,7 +138,7 @@ void recordMovedTiles(VkBackend::State& s, FrameRecorder& recorder) {
 void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
     if (!s.scene.restoreDue) return;
     s.scene.restoreDue = false;
-    // The lists begin anew: whoever waited for a walk through them need not.
+    // The lists start empty, so nobody waits for a walk through them.
     recorder.fillZero(FW_BIND_COUNTERS, 0, VK_WHOLE_SIZE);
     ++s.simulation.frontWalks, ++s.simulation.burnWalks, ++s.simulation.predictWalks,
         ++s.simulation.hotWalks;
@@ -162,8 +162,8 @@ void recordRestores(VkBackend::State& s, FrameRecorder& recorder) {
     showTiles(s, recorder);
 }
 
-void layImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
-               const std::function<uint64_t(uint64_t)>& place) {
+void allocateImages(VkBackend::State& s, std::span<const uint32_t> slots, ReadbackLayout& layout,
+                    const std::function<uint64_t(uint64_t)>& place) {
     layout.images = !slots.empty();
     if (slots.empty()) return;
     s.results.imageLayout.clear();

@@ -15,9 +15,9 @@ namespace {
 constexpr uint64_t kSeenFrames = 64;
 constexpr uint64_t kIdleTurns = 16;  // what no fire reached is looked for once in so many frames
 static_assert(kIdleTurns < kSeenFrames);
-constexpr float kSeenRoom = 1.5f;     // of its bounds: it deforms, and the view turns
-constexpr float kLeastPixels = 3.0f;  // half as much across shows nothing of what lies ahead
-constexpr float kAnyHeight = 1080;    // px, before anything was drawn
+constexpr float kSeenRoom = 1.5f;   // of its bounds: it deforms, and the view turns
+constexpr float kMinPixels = 3.0f;  // half as much across shows nothing of what lies ahead
+constexpr float kAnyHeight = 1080;  // px, before anything was drawn
 // More rings of a frame in which an object comes into view or catches fire, which would end in
 // steps of whole texels: the next ones add to them. A picture by itself has no next frame, and
 // takes what there is to see, up to so many.
@@ -54,7 +54,7 @@ bool shows(const ViewParams& p, const Sphere& sphere) noexcept {
         }
     const bool perspective = p.forward.w > 0.5f;
     const float away = perspective ? std::max(glm::length(sphere.middle) - sphere.radius, 0.0f) : 1;
-    return sphere.radius >= kLeastPixels * p.eye.w * away;
+    return sphere.radius >= kMinPixels * p.eye.w * away;
 }
 
 // Texels that fire may cross in a tick.
@@ -150,7 +150,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
             const bool comes = (flags & kObjectUnseen) == 0;
             tell(i, comes ? flags | kObjectShownAgain : flags);
             if (comes) {
-                recordPredictAnew(recorder, s.simulation.lists, i, object.record.tileCount);
+                recordPredictRestart(recorder, s.simulation.lists, i, object.record.tileCount);
                 rings = std::max(rings, std::min(ringsOf(object), most));
             }
         }

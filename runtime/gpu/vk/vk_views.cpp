@@ -18,7 +18,7 @@ bool contains(std::span<OutsideView* const> views, const OutsideView* one) noexc
 }  // namespace
 
 // For a view that has none. One that nobody gives any more loses its history with it.
-OutsideView& VkBackend::State::takeView(std::span<OutsideView* const> taken) {
+OutsideView& VkBackend::State::validatedView(std::span<OutsideView* const> taken) {
     const auto isStale = [&](const OutsideView& of) {
         return of.frame == 0 || of.frame + kViewKept < open.ringFrame;
     };
@@ -46,7 +46,7 @@ void VkBackend::State::openViews(std::span<const FwView> from) {
         for (const core::Owned<OutsideView>& of : flames.outsideViews)
             if (of && of->frame != 0 && of->view.viewId == from[i].viewId) taken[i] = of.get();
     for (size_t i = 0; i < from.size(); ++i)
-        if (!taken[i]) taken[i] = &takeView(taken);
+        if (!taken[i]) taken[i] = &validatedView(taken);
     for (core::Owned<OutsideView>& of : flames.outsideViews) {
         if (!of) continue;
         of->given = contains(taken, of.get());

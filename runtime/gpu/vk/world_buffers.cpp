@@ -1,11 +1,11 @@
 #include "gpu/vk/world_buffers.h"
 
 #include "core/error.h"
-#include "shared/book.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
 #include "shared/field.h"
 #include "shared/field_draw.h"
+#include "shared/flipbook.h"
 #include "shared/look.h"
 #include "shared/refine.h"
 #include "shared/room.h"
@@ -38,7 +38,7 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_TILES, "tiles", kPoolMeshTiles, 32, 512, true, kComponentMeshes},
     {FW_BIND_SLOWNESS, "slowness", kPoolSlowness, 2 * kTileTexels, 512, true, kComponentMeshes},
     {FW_BIND_LINKS, "links", kPoolLinks, 32, 1024, true, kComponentMeshes},
-    {FW_BIND_READERS, "readers", kPoolReaders, 4, 1024, true, kComponentMeshes},
+    {FW_BIND_DEPENDENTS, "dependents", kPoolDependents, 4, 1024, true, kComponentMeshes},
     {kResourceVertices, "vertices", kPoolVertices, 48, 4096, true, kComponentMeshes,
      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
     {kResourceIndices, "indices", kPoolIndices, 4, 16384, true, kComponentMeshes,
@@ -84,26 +84,26 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_SHOWN, "shown vertices", kPoolShown, sizeof(ShownVertex), 1, true, kComponentObjects,
      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT | kTexels},
     {FW_BIND_SOFT, "soft nodes", kPoolSoft, 16 * kSoftQuads, 1, true, kComponentObjects, kTexels},
-    {FW_BIND_DEFORM_NODES, "nodes", kPoolNodes, sizeof(DeviceNode), 1, true, kComponentMeshes,
-     kTexels},
-    {FW_BIND_DEFORM_COATS, "coats", kPoolCoats, sizeof(DeformCoat), 1, true, kComponentMeshes,
-     kTexels},
+    {FW_BIND_DEFORM_PARTICLES, "sheet particles", kPoolSheetParticles, sizeof(DeviceParticle), 1,
+     true, kComponentMeshes, kTexels},
+    {FW_BIND_DEFORM_EMBEDDINGS, "embeddings", kPoolEmbeddings, sizeof(DeformEmbedding), 1, true,
+     kComponentMeshes, kTexels},
     {FW_BIND_DEFORM_GROUPS, "deform groups", kPoolDeformGroups, 8, 1, false, kComponentLists},
     {FW_BIND_SKIN_SOURCES, "skin sources", kPoolSkinSources, 4, 1, true, kComponentMeshes},
     {FW_BIND_SKIN_GIVEN, "skin vertices", kPoolSkinGiven, 4, 1, false, kComponentObjects},
     {FW_BIND_SKIN_TEXELS, "skin texels", kPoolSkin, 16 * kTileTexels, 1, true, kComponentMeshes},
-    {FW_BIND_REMOTE_OBJECTS, "remote objects", kPoolObjects, sizeof(RemoteObject), 64, true,
+    {FW_BIND_EXCHANGE_OBJECTS, "exchange objects", kPoolObjects, sizeof(ExchangeObject), 64, true,
      kComponentObjects},
-    {FW_BIND_REMOTE_TILES, "remote tiles", kPoolMeshTiles, sizeof(RemoteTile), 512, true,
+    {FW_BIND_EXCHANGE_TILES, "exchange tiles", kPoolMeshTiles, sizeof(ExchangeTile), 512, true,
      kComponentMeshes},
     {FW_BIND_SOURCES, "fire sources", kPoolSources, sizeof(FireSource), 1024, true,
      kComponentObjects},
     {FW_BIND_RECEIVERS, "receivers", kPoolObjects, 4 * kReceiverWords, 64, false, kComponentLists},
     {FW_BIND_NEIGHBOURS, "neighbours", kPoolNeighbours, 4, 1, true, kComponentObjects},
     {FW_BIND_CONTACTS, "contacts", kPoolContacts, sizeof(ContactLink), 1, true, kComponentObjects},
-    {FW_BIND_BLOCKERS, "blockers", kPoolFixed, sizeof(Blocker) * kMaxBlockers, 1, true,
-     kComponentObjects},
-    {FW_BIND_SHIELD, "heat shield", kPoolShield, 4, 1, true, kComponentObjects},
+    {FW_BIND_HEAT_OCCLUDERS, "occluders", kPoolFixed, sizeof(HeatOccluder) * kMaxHeatOccluders, 1,
+     true, kComponentObjects},
+    {FW_BIND_HEAT_OCCLUSION, "heat occlusion", kPoolOcclusion, 4, 1, true, kComponentObjects},
     {FW_BIND_ROOMS, "rooms", kPoolFixed, sizeof(Room) * kMaxRooms, 1, true, kComponentObjects},
     {FW_BIND_ROOM_AIR, "rooms' air", kPoolFixed, sizeof(RoomAir) * kMaxRooms, 1, true,
      kComponentObjects},
@@ -120,7 +120,7 @@ constexpr BufferRow kBuffers[] = {
      kTexels},
     {FW_BIND_PARTICLES, "particles", kPoolParticles, sizeof(ParticleWords), 1, true,
      kComponentFlames, kTexels},
-    {FW_BIND_BOOKS, "flipbooks", kPoolFixed, 4 * kBookWords, 1, true, kComponentFlames},
+    {FW_BIND_FLIPBOOKS, "flipbooks", kPoolFixed, 4 * kFlipbookWords, 1, true, kComponentFlames},
     {FW_BIND_REFINE_OBJECTS, "refined objects", kPoolObjects, sizeof(RefineObject), 64, true,
      kComponentRefine},
     {FW_BIND_REFINE_DRAWS, "refined draws", kPoolObjects, 20 * kMaterialsPerObject, 64, true,
@@ -145,8 +145,8 @@ constexpr BufferRow kBuffers[] = {
      VK_BUFFER_USAGE_VERTEX_BUFFER_BIT},
     {FW_BIND_REFINE_CUT_DRAWS, "cut draws", kPoolObjects, 16 * kMaterialsPerObject, 64, true,
      kComponentRefine, VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
-    {FW_BIND_ARP_LIST, "template triangles", kPoolArpList, 4, 1, true, kComponentRefine},
-    {FW_BIND_ARP_GROUPS, "template groups", kPoolArpGroups, 8, 1, false, kComponentRefine},
+    {FW_BIND_PATTERN_LIST, "template triangles", kPoolPatternList, 4, 1, true, kComponentRefine},
+    {FW_BIND_PATTERN_GROUPS, "template groups", kPoolPatternGroups, 8, 1, false, kComponentRefine},
     {FW_BIND_REFINE_WORK, "refinement work", kPoolRefineWork, 4, 256, false, kComponentRefine,
      VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT},
     {FW_BIND_VOLUMES, "volumes", kPoolVolumes, kVolumeFlameBytes, 1, false, kComponentFlames,
@@ -166,8 +166,8 @@ constexpr BufferRow kBuffers[] = {
     {FW_BIND_FIELD_DRAWS, "field draws", kPoolFieldDraws, sizeof(FieldDraw), 1, true,
      kComponentFlames},
     {FW_BIND_FIELD_RUNS, "field runs", kPoolFieldRuns, 8, 1, false, kComponentFlames},
-    {FW_BIND_LOOKS, "looks", kPoolFixed, sizeof(MaterialLook), 1, true, kComponentFlames,
-     VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
+    {FW_BIND_APPEARANCES, "appearances", kPoolFixed, sizeof(MaterialAppearance), 1, true,
+     kComponentFlames, VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT},
 };
 
 constexpr uint32_t initialCapacity(BufferPool pool) noexcept {
@@ -307,7 +307,7 @@ WorldBuffers::WorldBuffers(Device& device, DeviceMemory& deviceMemory, RetireQue
         if (row.binding == FW_BIND_LIGHTS) slot.row.stride *= std::max(1u, sizes.lights);
         if (row.binding == FW_BIND_LIGHT_CELLS)
             slot.row.stride *= kLightCellHeader + kLightCells * kLightCellWords;
-        if (row.binding == FW_BIND_LOOKS) slot.row.stride *= kLookRows;
+        if (row.binding == FW_BIND_APPEARANCES) slot.row.stride *= kAppearanceRows;
     }
     for (uint32_t view = 1; view < kMaxViews; ++view)
         for (size_t i = 0; i < kResourcesOfViews.size(); ++i) {

@@ -22,7 +22,7 @@ enum BufferPool : uint32_t {
     kPoolMeshTiles,    // 8x8 tiles of meshes: texels, normals
     kPoolSlowness,     // 8x8 tiles of slowness, of meshes and of painted objects
     kPoolLinks,        // rim records
-    kPoolReaders,      // words
+    kPoolDependents,   // words
     kPoolVertices,
     kPoolIndices,
     kPoolIterations,  // per frame
@@ -39,15 +39,15 @@ enum BufferPool : uint32_t {
     kPoolRefineIndices,    // words, of objects
     kPoolRefineCuts,       // vertices, of objects
     kPoolRefineWork,       // words, per frame
-    kPoolArpList,          // listed triangles, of objects
-    kPoolArpGroups,        // per frame
+    kPoolPatternList,      // listed triangles, of objects
+    kPoolPatternGroups,    // per frame
     kPoolPublished,        // 8x8 tiles of objects in as-published mode
     kPoolHeat,             // 8x8 tiles of objects with heat
     kPoolDeformers,        // objects that deform
     kPoolShown,            // drawn vertices of such objects
     kPoolSoft,             // those of sheets and springs
-    kPoolNodes,            // of meshes that deform
-    kPoolCoats,            // drawn vertices of such meshes
+    kPoolSheetParticles,   // of meshes that deform
+    kPoolEmbeddings,       // drawn vertices of such meshes
     kPoolDeformGroups,     // per frame
     kPoolSkin,             // 8x8 tiles of meshes with skinned objects
     kPoolSkinSources,      // drawn vertices of such meshes
@@ -66,7 +66,7 @@ enum BufferPool : uint32_t {
     kPoolFieldCells,       // 64 cells of particle fields
     kPoolFieldRuns,        // per frame
     kPoolFieldDraws,       // per frame
-    kPoolShield,           // words, as of the last update
+    kPoolOcclusion,        // words, as of the last update
     kPoolFixed,            // one unit
     kPoolOfViews,          // those of the second view, of the third, ...; none until it is given
     kPoolCount = kPoolOfViews + (kMaxViews - 1) * 3,

@@ -52,31 +52,31 @@ struct RefineUse {  // an object's own
     uint32_t key = 0;      // of its mesh's refinement
     float pixelsPerEdge = 8;
     uint32_t epochTick = 0;
-    uint32_t quietTick = 0;  // it is refined before this; 0: no fire yet
-    bool cut = false;        // near: its holes are cut
-    bool told = false;       // or, where it is too coarse for that, told by texels
-    uint32_t inner = 0;      // as RefineObject
-    bool border = false;     // walls stand along its open edges, whether it burns or not
-    float nearness = 0;      // as SurfaceDraw
-    float now = 0;           // s since its epoch, of the frame that last placed it
-    double turnTick = 0;     // of that frame
-    vec4 turnEye{};          // in it: m, object space; w: as refine.eye
-    bool due = false;        // it was among the last frame's that refined
+    uint32_t quietTick = 0;      // it is refined before this; 0: no fire yet
+    bool cut = false;            // near: its holes are cut
+    bool perPixelHoles = false;  // its cut is too coarse for the holes: texels show them
+    uint32_t inner = 0;          // as RefineObject
+    bool border = false;         // walls stand along its open edges, whether it burns or not
+    float nearness = 0;          // as SurfaceDraw
+    float now = 0;               // s since its epoch, of the frame that last placed it
+    double turnTick = 0;         // of that frame
+    vec4 turnEye{};              // in it: m, object space; w: as refine.eye
+    bool due = false;            // it was among the last frame's that refined
     RangeOf items, triangles, slots, indices, cuts;
-    uint32_t arpPlus1 = 0;  // by the published scheme: its ArpUse
-    RangeOf arpList;
+    uint32_t patternPlus1 = 0;  // by the published scheme: its PatternUse
+    RangeOf patternList;
     // `thick`: with an inner skin, where the mesh has an inside.
     void allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last);
-    void allocateArp(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last);
+    void allocatePattern(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last);
     void release(WorldBuffers& buffers) noexcept;
 };
 
 // What the published scheme keeps of an object.
-struct ArpUse {
-    explicit ArpUse(std::pmr::memory_resource* memory) : state(memory) {}
-    const mesh::ArpModel* model = nullptr;  // null: free
-    mesh::ArpSettings settings;
-    mesh::ArpState state;
+struct PatternUse {
+    explicit PatternUse(std::pmr::memory_resource* memory) : state(memory) {}
+    const mesh::PatternModel* model = nullptr;  // null: free
+    mesh::PatternSettings settings;
+    mesh::PatternState state;
 };
 
 constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
@@ -89,13 +89,13 @@ struct MeshEntry {
     RangeOf meshTiles, slowness, links, readers, vertexRange, indexRange;
     uint32_t materialEnd[kMaterialsPerObject] = {};  // indices are sorted by material: ends of runs
     RefineMesh refine[2 * (kRefineDepth + 1)];       // by refineKey
-    uint32_t sourceCells = 1;                        // see mesh/remote_tiles.h
+    uint32_t sourceCells = 1;                        // see mesh/exchange_tiles.h
     bool parts = false;                              // some touch
     float edge = 0;       // m at scale 1: side of a square as large as two mean triangles
     float texelEdge = 0;  // texels, longest edge in the map
     const mesh::BurnDomain* domain = nullptr;
     RangeOf innerVertices;      // of the vertices on the inner skin, once an object shows it
-    RangeOf nodes, coats;       // once an object deforms
+    RangeOf nodes, embeddings;  // once an object deforms
     RangeOf skin, skinSources;  // once one is skinned
 };
 
@@ -316,8 +316,8 @@ struct SimulationState {
     uint32_t sootFirst = 0, sootTick = 0;  // as supportFirst; when it was last laid
     uint32_t predictTick = 0;              // of the last round of predictions
     uint32_t shownTick = 0;                // tick of the state that draws show
-    uint32_t links = 0, blockers = 0;      // of the last exchange update
-    ShieldUpdate shield;                   // the last one's place, without its words
+    uint32_t links = 0, occluders = 0;     // of the last exchange update
+    OcclusionUpdate shield;                // the last one's place, without its words
     float wind[3] = {};
     float tickFraction = 0;
     std::pmr::vector<PublishedStep> published;  // scratch of run
@@ -329,7 +329,7 @@ struct DeformRenderer {
     std::pmr::vector<Skin> skins;
     uint64_t softStep = 0;   // number of the step that sheets and springs have come to
     uint32_t softSteps = 0;  // that they take in the frame
-    uint32_t softWay = 0;    // which bending constraints the next one takes
+    uint32_t bendSet = 0;    // which bending constraints the next one takes
 };
 
 struct VolumeBox {  // as in FlameRecord
@@ -340,31 +340,31 @@ struct VolumeBox {  // as in FlameRecord
     uint32_t key = 0, tier = 0;
     bool smokes = false;
     vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
-    BookKind kind;
+    AtlasKind kind;
     vec3 tip{};        // as VolumeItem's
     vec4 basePlane{};  // as volumeBasePlane has it
 };
 
 struct FlameRenderer {
     explicit FlameRenderer(std::pmr::memory_resource* pmr) : volumes(pmr) {}
-    std::pmr::vector<VolumeBox> volumes;             // volumetric flames that draws show
-    uint32_t volumeStepsNow = Detail{}.volumeSteps;  // on its way to detail's
+    std::pmr::vector<VolumeBox> volumes;              // volumetric flames that draws show
+    uint32_t volumeStepsNow = Detail{}.rayStepCount;  // on its way to detail's
     // Of RecordOutside, by number; null: not there. The first is always there.
     std::array<core::Owned<OutsideView>, kMaxViews> outsideViews;
 };
 
 struct ParticleRenderer {
     explicit ParticleRenderer(float lights) : lightCount(lights) {}
-    float lightCount;              // on its way to detail's; its fraction is the last one's share
-    float quadShare = 1;           // on its way to detail's
-    uint32_t quadsShown = 0;       // by the last view whose readback came
-    vec3 particlesMove{0.0f};      // m, with the next dispatch that moves particles
-    uint32_t emitterGroups = 0;    // of the dispatch that moves particles; 0: there are none
-    bool particlesByBook = false;  // flipbooks show all fire and smoke of them
-    uint32_t sparkSources = 0;     // that throw sparks
-    float lightShare = 0.0f;       // of particles' quads: those that emit alone, [0, 1]
-    bool emittersMove = false;     // in the open frame
-    uint32_t flameBooks = 0;       // as setFlameBooks has them
+    float lightCount;            // on its way to detail's; its fraction is the last one's share
+    float quadShare = 1;         // on its way to detail's
+    uint32_t quadsShown = 0;     // by the last view whose readback came
+    vec3 particlesMove{0.0f};    // m, with the next dispatch that moves particles
+    uint32_t emitterGroups = 0;  // of the dispatch that moves particles; 0: there are none
+    bool particlesByFlipbook = false;  // flipbooks show all fire and smoke of them
+    uint32_t sparkSources = 0;         // that throw sparks
+    float lightShare = 0.0f;           // of particles' quads: those that emit alone, [0, 1]
+    bool emittersMove = false;         // in the open frame
+    uint32_t flameFlipbooks = 0;       // as setTileFlipbooks has them
 };
 
 struct FieldRenderer {
@@ -469,7 +469,7 @@ struct VkBackend::State {
     struct Open {
         bool open = false, ran = false, recording = false, readback = false;
         bool unseen = false;   // nothing draws before the next one
-        bool refined = false;  // the budget of refinement was shared out anew
+        bool refined = false;  // the refinement budget was allocated again
         VkCommandBuffer commands = VK_NULL_HANDLE;
         uint64_t ringFrame = 0, planFrame = 0;
         uint32_t endTick = 0;
@@ -491,13 +491,13 @@ struct VkBackend::State {
         float bias = -1;    // levels that the budget takes; below 0: not known yet
         bool full = false;  // everything at its deepest, and placed in every frame
     } refine;
-    struct Arp {  // refined by the published scheme
-        explicit Arp(std::pmr::memory_resource* memory) : arps(memory) {}
-        std::pmr::vector<core::Owned<ArpUse>> arps;
+    struct PatternFrame {  // refined by the published scheme
+        explicit PatternFrame(std::pmr::memory_resource* memory) : patternUses(memory) {}
+        std::pmr::vector<core::Owned<PatternUse>> patternUses;
         uint32_t users = 0;  // objects
         uint32_t placeGroups = 0, nameGroups = 0;
         double lastTick = 0;  // of the last frame with any
-    } arp;
+    } pattern;
 
     // vk_backend.cpp
     void failIfLost() const;
@@ -527,7 +527,7 @@ struct VkBackend::State {
     // vk_views.cpp
     // The open frame is recorded for these. May throw.
     void openViews(std::span<const FwView> from);
-    [[nodiscard]] OutsideView& takeView(std::span<OutsideView* const> taken);
+    [[nodiscard]] OutsideView& validatedView(std::span<OutsideView* const> taken);
     // Buffers of the open frame's views; `marches`: they march so many flames.
     void makeViewRoom(uint32_t flameCount, bool marches, uint64_t last);
     [[nodiscard]] std::span<OutsideView* const> seenFrom() const noexcept {
@@ -540,7 +540,7 @@ struct VkBackend::State {
     void look(const FwView& view, float height, uint64_t frame) noexcept;
     // vk_refine.cpp
     void uploadRefineTable();
-    void noteFire(uint32_t object, uint32_t tick) noexcept;
+    void recordFire(uint32_t object, uint32_t tick) noexcept;
     [[nodiscard]] bool refines(const ObjectEntry& object) const noexcept;
     uint64_t planRefine(const FramePlan& plan);
     void listRefined(bool all);
@@ -552,52 +552,54 @@ struct VkBackend::State {
     [[nodiscard]] vec4 eyeFor(const ObjectEntry& object) const noexcept;
     RefineObject refineRecord(const ObjectEntry& object, bool full) const noexcept;
     float cutSegments(const ObjectEntry& object, const RefineObject& record) const noexcept;
-    bool tellsByTexels(const ObjectEntry& object) const noexcept;
-    void lookFromViews() noexcept;
+    bool hasPerPixelHoles(const ObjectEntry& object) const noexcept;
+    void visibilityFromViews() noexcept;
     // vk_published.cpp
     [[nodiscard]] bool refinesAsPublished(const ObjectEntry& object) const noexcept;
-    void takeArp(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh, uint64_t last);
-    void dropArp(RefineUse& use) noexcept;
-    uint64_t planArp();
+    void adoptPattern(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
+                      uint64_t last);
+    void dropPattern(RefineUse& use) noexcept;
+    uint64_t planPatterns();
     void refineAsPublished(FrameInFlight& slot);
     // vk_readback.cpp
     void pushPending(const PendingReadback& one) noexcept;
-    void takeShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
-    void noteCounters(uint32_t slot, ObjectCounters& told, uint32_t tick) noexcept;
+    void applyShown(const ReadbackLayout& layout, const std::byte* from) noexcept;
+    void updateFromCounters(uint32_t slot, ObjectCounters& counters, uint32_t tick) noexcept;
     const Readback* nextReadback();
     // vk_volume.cpp
     // What the view that was last pushed shows of them, farthest first; how many.
     uint32_t orderVolumes(uint32_t slabs,
                           std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
-    [[nodiscard]] uint32_t volumeSteps() const noexcept {
-        return std::min(limits.volumeSteps, flames.volumeStepsNow);
+    [[nodiscard]] uint32_t rayStepCount() const noexcept {
+        return std::min(limits.rayStepCount, flames.volumeStepsNow);
     }
     // How a target of `size` px shows what is marched for it.
     [[nodiscard]] VolumeScreen screenOf(const TargetKey& target, vec2 size) const noexcept;
     // A draw in `frame` shows `view` so.
-    static void noteScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
-                           uint64_t frame) noexcept;
+    static void recordScreen(OutsideView& of, const FwView& view, const VolumeScreen& screen,
+                             uint64_t frame) noexcept;
     // Before the first command: room for what is marched; less of it makes it coarser.
     void makeMarchRoom(OutsideView& of, uint32_t flameCount, uint64_t last);
     [[nodiscard]] uint32_t rayWords(const March& march) const noexcept;  // at the frame's detail
     // For the view that was last pushed, which is `of`'s.
     [[nodiscard]] MarchRecord marchVolumes(OutsideView& of) noexcept;
-    [[nodiscard]] MarchRecord layMarch(OutsideView& of, std::span<const VolumeItem> items) noexcept;
+    [[nodiscard]] MarchRecord allocateMarch(OutsideView& of,
+                                            std::span<const VolumeItem> items) noexcept;
     // What a flame's card shows, of the last two marches of it.
     void showPair(March& march, const VolumeItem& item, uint32_t place) const noexcept;
     // Which of `room` books each item may show.
-    void shareBooks(March& march, std::span<const VolumeItem> items, uint32_t room,
-                    std::span<uint32_t> numbers) const noexcept;
-    void showBook(March& march, const VolumeItem& item, uint32_t place,
-                  uint32_t number) const noexcept;
+    void assignAtlases(March& march, std::span<const VolumeItem> items, uint32_t room,
+                       std::span<uint32_t> numbers) const noexcept;
+    void sampleFlipbook(March& march, const VolumeItem& item, uint32_t place,
+                        uint32_t number) const noexcept;
     // Whether what is marched is for a view on a screen; else they are to be marched as they are
     // drawn.
     [[nodiscard]] static bool marchedFor(const OutsideView& of, const FwView& view,
                                          const VolumeScreen& screen) noexcept;
     // A side of a pixel, of the view as it is drawn: more where nobody could know its screen, in
     // the first picture and after a resize. A second screen of each frame takes them once.
-    static uint32_t leastRays(OutsideView& of, const FwView& view,
-                              const VolumeScreen& screen) noexcept;
+    static uint32_t minRays(OutsideView& of, const FwView& view,
+                            const VolumeScreen& screen) noexcept;
     // What bends what is behind it in the view that was last pushed, farthest first; how many.
     // `march`: that shows the flames, or null.
     uint32_t orderHazes(const March* march, float strength,
@@ -612,7 +614,7 @@ struct VkBackend::State {
                limits.looks.viewParams;
     }
     // Books show all quads but sparks.
-    [[nodiscard]] bool pagesAlone() const noexcept;
+    [[nodiscard]] bool onlyFlipbooks() const noexcept;
     void makeEmitterRoom(const EmitterUpdate& update, uint64_t last);
     [[nodiscard]] SortPush quadRoom() const noexcept;
     // vk_field.cpp

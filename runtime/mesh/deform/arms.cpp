@@ -10,7 +10,7 @@
 namespace fw::mesh {
 namespace {
 
-using gpu::DeformNode;
+using gpu::DeformParticle;
 using gpu::vec3;
 
 constexpr double kSpanShare = 0.34;  // of the narrower side of the mesh
@@ -21,23 +21,23 @@ constexpr float kEven = 0.02f;   // of the span, that the middle of two arms may
 // Squared, of the nodes at edges to all nodes: 16 for a square sheet.
 constexpr double kOpen = 4;
 
-vec3 placeOf(const DeformNode& node) { return {node.x, node.y, node.z}; }
+vec3 placeOf(const DeformParticle& node) { return {node.x, node.y, node.z}; }
 
 // The two directions in which a mesh is widest, and how wide it is there.
 struct Axes {
     std::array<vec3, 2> along;
     std::array<double, 2> wide{};
 };
-Axes axesOf(std::span<const DeformNode> nodes) {
+Axes axesOf(std::span<const DeformParticle> nodes) {
     double weights = 0;
     glm::dvec3 middle(0);
-    for (const DeformNode& node : nodes) {
+    for (const DeformParticle& node : nodes) {
         middle += glm::dvec3(placeOf(node)) * double(node.area);
         weights += double(node.area);
     }
     middle /= std::max(weights, 1e-30);
     double m[3][3]{};
-    for (const DeformNode& node : nodes) {
+    for (const DeformParticle& node : nodes) {
         const glm::dvec3 d = glm::dvec3(placeOf(node)) - middle;
         for (int r = 0; r < 3; ++r)
             for (int c = 0; c < 3; ++c) m[r][c] += d[r] * d[c] * double(node.area);
@@ -73,7 +73,7 @@ Axes axesOf(std::span<const DeformNode> nodes) {
     for (size_t i = 0; i < 2; ++i) {
         axes.along[i] = vec3(vectors[order[i]]);
         double low = 1e30, high = -1e30;
-        for (const DeformNode& node : nodes) {
+        for (const DeformParticle& node : nodes) {
             const auto at = double(gpu::dot(placeOf(node), axes.along[i]));
             low = std::min(low, at);
             high = std::max(high, at);
@@ -86,7 +86,7 @@ Axes axesOf(std::span<const DeformNode> nodes) {
 // Nodes by their cell of a grid; cells share lists by their hash.
 class Cells {
  public:
-    Cells(std::span<const DeformNode> nodes, float side, std::pmr::memory_resource* memory)
+    Cells(std::span<const DeformParticle> nodes, float side, std::pmr::memory_resource* memory)
         : side_(side), lists_(memory) {
         FW_ASSERT(side > 0, "%g m", double(side));
         mask_ = std::bit_ceil(uint32_t(nodes.size()) + 1) - 1;
@@ -122,33 +122,33 @@ class Cells {
 
 }  // namespace
 
-void findArms(DeformModel& model, std::pmr::memory_resource* memory) {
-    const std::span<DeformNode> nodes = model.nodes;
+void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
+    const std::span<DeformParticle> nodes = model.nodes;
     double area = 0, edge = 0;
-    for (DeformNode& node : nodes) {
+    for (DeformParticle& node : nodes) {
         std::fill(std::begin(node.arms), std::end(node.arms), kNone);
         area += double(node.area);
-        edge += (node.flags & gpu::kNodeClosed) ? 0 : 1;
+        edge += (node.flags & gpu::kParticleClosed) ? 0 : 1;
     }
     if (edge * edge < kOpen * double(nodes.size()) || !(area > 0)) return;
     const Axes axes = axesOf(nodes);
     const double apart = std::sqrt(area / double(nodes.size()));
     model.span = float(std::max(kSpanShare * axes.wide[1], 2 * apart));
     const Cells cells(nodes, kAside * model.span, memory);
-    const auto facing = [&](const DeformNode& node) {
-        const gpu::DeformCoat& coat = model.coats[node.vertex];
+    const auto facing = [&](const DeformParticle& node) {
+        const gpu::DeformEmbedding& coat = model.embeddings[node.vertex];
         return vec3(coat.faceX, coat.faceY, coat.faceZ);
     };
-    for (uint32_t way = 0; way < gpu::kArmWays; ++way) {
+    for (uint32_t way = 0; way < gpu::kBendSets; ++way) {
         const vec3 along = axes.along[way & 1] * (way < 2 ? model.span : kShorter * model.span);
         const uint32_t behind = 2 * way, ahead = behind + 1;
         for (uint32_t i = 0; i < nodes.size(); ++i) {
-            DeformNode& node = nodes[i];
+            DeformParticle& node = nodes[i];
             const vec3 sought = placeOf(node) + along;
             uint32_t best = kNone;
             float least = kAside * model.span;
             cells.near(sought, [&](uint32_t other) {
-                const DeformNode& there = nodes[other];
+                const DeformParticle& there = nodes[other];
                 const float off = gpu::length(placeOf(there) - sought);
                 // The lowest of several equally near ones, whatever the order of the cells.
                 if (off > least || (off == least && other >= best) || there.arms[behind] != kNone ||
@@ -161,18 +161,18 @@ void findArms(DeformModel& model, std::pmr::memory_resource* memory) {
             if (best == kNone) continue;
             node.arms[ahead] = nodes[best].vertex;
             nodes[best].arms[behind] = node.vertex;
-            node.armLength[ahead] = nodes[best].armLength[behind] =
+            node.bendLength[ahead] = nodes[best].bendLength[behind] =
                 gpu::length(placeOf(nodes[best]) - placeOf(node));
         }
-        for (DeformNode& node : nodes) {
+        for (DeformParticle& node : nodes) {
             if (node.arms[behind] == kNone || node.arms[ahead] == kNone) continue;
             const vec3 middle = (placeOf(nodes[model.nodeOf[node.arms[behind]]]) +
                                  placeOf(nodes[model.nodeOf[node.arms[ahead]]])) *
                                 0.5f;
             const vec3 normal = facing(node), off = middle - placeOf(node);
-            node.armRise[way] = gpu::dot(off, normal);
-            if (gpu::length(off - normal * node.armRise[way]) < kEven * model.span)
-                node.flags |= gpu::kNodeArmsEven << way;
+            node.bendRise[way] = gpu::dot(off, normal);
+            if (gpu::length(off - normal * node.bendRise[way]) < kEven * model.span)
+                node.flags |= gpu::kParticleBendsEven << way;
         }
     }
 }

@@ -5,7 +5,7 @@
 
 namespace fw::mesh {
 
-// Sets DeformModel::span and the nodes' arms. Needs nodes with rings and areas, and coats.
-void findArms(DeformModel& model, std::pmr::memory_resource* memory);
+// Sets DeformModel::span and the nodes' arms. Needs nodes with rings and areas, and embeddings.
+void findBends(DeformModel& model, std::pmr::memory_resource* memory);
 
 }  // namespace fw::mesh

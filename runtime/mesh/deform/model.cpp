@@ -12,8 +12,8 @@
 namespace fw::mesh {
 namespace {
 
-using gpu::DeformCoat;
-using gpu::DeformNode;
+using gpu::DeformEmbedding;
+using gpu::DeformParticle;
 using gpu::kDeformRing;
 using gpu::kDeformTexels;
 
@@ -67,7 +67,7 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
     for (const uint32_t i : order) {
         if (keeper[i] != i) continue;
         model.nodeOf[i] = uint32_t(model.nodes.size());
-        DeformNode node{};
+        DeformParticle node{};
         const RenderVertex& v = domain.vertices[i];
         node.x = v.position[0];
         node.y = v.position[1];
@@ -167,7 +167,7 @@ class Builder {
 
     // Direction in which the node recedes (see Faces), and its limit by the triangles around.
     void offset(uint32_t number) {
-        DeformNode& node = model_.nodes[number];
+        DeformParticle& node = model_.nodes[number];
         Faces faces;
         double altitude = 1e30, area = 0;
         for (const uint32_t corner : corners_.of(number)) {
@@ -202,7 +202,7 @@ class Builder {
     // The texels that a node samples, spread over its ring like the texels of one mip of its burn
     // map; and the wall behind.
     void sample(uint32_t number) {
-        DeformNode& node = model_.nodes[number];
+        DeformParticle& node = model_.nodes[number];
         texels_.clear();
         uint32_t material = 0;
         for (const uint32_t corner : corners_.of(number)) {
@@ -255,7 +255,7 @@ class Builder {
 
     // Neighbours in their order around the node.
     void neighbours(uint32_t number) {
-        DeformNode& node = model_.nodes[number];
+        DeformParticle& node = model_.nodes[number];
         steps_.clear();
         for (const uint32_t corner : corners_.of(number)) {
             addStep(corner, node.vertex);
@@ -266,14 +266,15 @@ class Builder {
         // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
         for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
             node.ring[i] = closes ? node.ring[0] : node.ring[kept - 1];
-        node.flags |= (closes ? gpu::kNodeClosed : 0u) | uint32_t(kept) << gpu::kNodeRingShift;
+        node.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
+                                                                 << gpu::kParticleRingShift;
     }
     // The vertices two steps straight on over every neighbour: ends of Provot's flexion springs.
     void farther(uint32_t number) {
-        DeformNode& node = model_.nodes[number];
+        DeformParticle& node = model_.nodes[number];
         const glm::dvec3 at = placeOf(domain_.vertices[node.vertex]);
-        for (uint32_t i = 0; i < (node.flags >> gpu::kNodeRingShift & 15u); ++i) {
-            const DeformNode& next = model_.nodes[model_.nodeOf[node.ring[i]]];
+        for (uint32_t i = 0; i < (node.flags >> gpu::kParticleRingShift & 15u); ++i) {
+            const DeformParticle& next = model_.nodes[model_.nodeOf[node.ring[i]]];
             const glm::dvec3 middle = placeOf(domain_.vertices[next.vertex]);
             const glm::dvec3 ahead = unitOr(middle - at, glm::dvec3(0));
             double straightest = 0.9;
@@ -288,25 +289,25 @@ class Builder {
         }
     }
 
-    [[nodiscard]] float restLength(const DeformNode& node, uint32_t vertex) const {
-        const DeformNode& other = model_.nodes[model_.nodeOf[vertex]];
+    [[nodiscard]] float restLength(const DeformParticle& node, uint32_t vertex) const {
+        const DeformParticle& other = model_.nodes[model_.nodeOf[vertex]];
         const glm::dvec3 d(double(other.x) - double(node.x), double(other.y) - double(node.y),
                            double(other.z) - double(node.z));
         return float(glm::length(d));
     }
     // A link that only one end lists gets no length: forces need both ends.
     void lengths() {
-        for (DeformNode& node : model_.nodes) {
+        for (DeformParticle& node : model_.nodes) {
             glm::dvec3 mean(0), turned(0), before(0), first(0);
             double links = 0;
             const auto mutual = [&](uint32_t vertex, bool ring) {
-                const DeformNode& other = model_.nodes[model_.nodeOf[vertex]];
+                const DeformParticle& other = model_.nodes[model_.nodeOf[vertex]];
                 const uint32_t* list = ring ? other.ring : other.cross_;
                 return vertex != node.vertex &&
                        std::find(list, list + kDeformRing, node.vertex) != list + kDeformRing;
             };
             float ring[kDeformRing]{}, cross[kDeformRing]{};
-            const uint32_t count = node.flags >> gpu::kNodeRingShift & 15u;
+            const uint32_t count = node.flags >> gpu::kParticleRingShift & 15u;
             for (uint32_t i = 0; i < kDeformRing; ++i) {
                 const glm::dvec3 arm = placeOf(domain_.vertices[node.ring[i]]) -
                                        placeOf(domain_.vertices[node.vertex]);
@@ -321,14 +322,14 @@ class Builder {
                 if (node.cross_[i] != kNone && mutual(node.cross_[i], false))
                     cross[i] = restLength(node, node.cross_[i]);
             }
-            if (node.flags & gpu::kNodeClosed) turned += glm::cross(before, first);
+            if (node.flags & gpu::kParticleClosed) turned += glm::cross(before, first);
             const glm::dvec3 normal = unitOr(turned, glm::dvec3(0));
             mean /= std::max(links, 1.0);
             node.rise = float(glm::dot(mean, normal));
-            const bool whole = (node.flags & gpu::kNodeClosed) && links == double(count);
+            const bool whole = (node.flags & gpu::kParticleClosed) && links == double(count);
             if (whole &&
                 glm::length(mean - normal * glm::dot(mean, normal)) < 0.06 * double(ring[0]))
-                node.flags |= gpu::kNodeEven;
+                node.flags |= gpu::kParticleEven;
             for (uint32_t i = 0; i < kDeformRing / 2; ++i) {
                 node.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
                 node.crossLength[i] = glm::packHalf2x16({cross[i * 2], cross[i * 2 + 1]});
@@ -340,7 +341,7 @@ class Builder {
     void coat(uint32_t vertex) {
         const RenderVertex& v = domain_.vertices[vertex];
         const uint32_t node = model_.nodeOf[vertex];
-        DeformCoat made{};
+        DeformEmbedding made{};
         made.node = model_.nodes[node].vertex;
         made.normal = v.normal;
         steps_.clear();
@@ -368,9 +369,9 @@ class Builder {
         made.faceX = float(face.x);
         made.faceY = float(face.y);
         made.faceZ = float(face.z);
-        FW_ASSERT(model_.coats.size() == vertex, "%zu coats, vertex %u", model_.coats.size(),
-                  vertex);
-        model_.coats.push_back(made);
+        FW_ASSERT(model_.embeddings.size() == vertex, "%zu embeddings, vertex %u",
+                  model_.embeddings.size(), vertex);
+        model_.embeddings.push_back(made);
     }
 
     const BurnDomain& domain_;
@@ -386,15 +387,16 @@ class Builder {
 // leave the loop over neighbours together.
 void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
     const size_t count = model.nodes.size();
-    const auto turnsOf = [](const DeformNode& node) {
-        return std::max(((node.flags >> gpu::kNodeRingShift & 15u) + 1) / gpu::kDeformLinks, 1u);
+    const auto turnsOf = [](const DeformParticle& node) {
+        return std::max(((node.flags >> gpu::kParticleRingShift & 15u) + 1) / gpu::kLinksPerPass,
+                        1u);
     };
     std::pmr::vector<uint32_t> moved(count, memory);
-    std::pmr::vector<DeformNode> sorted(memory);
+    std::pmr::vector<DeformParticle> sorted(memory);
     sorted.reserve(count);
     for (size_t first = 0; first < count; first += gpu::kDeformGroup) {
         const size_t last = std::min<size_t>(first + gpu::kDeformGroup, count);
-        for (uint32_t turns = 0; turns <= gpu::kDeformTurns; ++turns)
+        for (uint32_t turns = 0; turns <= gpu::kDeformLinkPasses; ++turns)
             for (size_t i = first; i < last; ++i) {
                 if (turnsOf(model.nodes[i]) != turns) continue;
                 moved[i] = uint32_t(sorted.size());
@@ -405,14 +407,14 @@ void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
     model.nodes.swap(sorted);
     for (uint32_t& node : model.nodeOf) node = moved[node];
     for (size_t first = 0; first < count; first += gpu::kDeformRun) {
-        const std::span<DeformNode> run(model.nodes.data() + first,
-                                        std::min<size_t>(gpu::kDeformRun, count - first));
+        const std::span<DeformParticle> run(model.nodes.data() + first,
+                                            std::min<size_t>(gpu::kDeformRun, count - first));
         uint32_t turns = 1, arms = 0;
-        for (const DeformNode& node : run) {
+        for (const DeformParticle& node : run) {
             turns = std::max(turns, turnsOf(node));
-            for (const uint32_t arm : node.arms) arms |= arm == kNone ? 0 : gpu::kNodeHasArms;
+            for (const uint32_t arm : node.arms) arms |= arm == kNone ? 0 : gpu::kParticleHasBends;
         }
-        for (DeformNode& node : run) node.flags |= arms | turns << gpu::kNodeTurnsShift;
+        for (DeformParticle& node : run) node.flags |= arms | turns << gpu::kParticlePassesShift;
     }
 }
 
@@ -421,17 +423,17 @@ void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory) {
     DeformModel model(memory);
     weld(domain, model, memory);
-    model.coats.reserve(domain.vertices.size());
+    model.embeddings.reserve(domain.vertices.size());
     Builder(domain, model, memory).run();
-    findArms(model, memory);
+    findBends(model, memory);
     makeRuns(model, memory);
     return model;
 }
 
-gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
+gpu::DeviceParticle deviceNode(const DeformModel& model, uint32_t number) noexcept {
     FW_ASSERT(number < model.nodes.size(), "%u of %zu nodes", number, model.nodes.size());
-    const DeformNode& node = model.nodes[number];
-    gpu::DeviceNode made{};
+    const DeformParticle& node = model.nodes[number];
+    gpu::DeviceParticle made{};
     made.vertex = node.vertex;
     made.flags = node.flags;
     made.rise = node.rise;
@@ -441,16 +443,16 @@ gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept {
         const uint32_t other = vertex == kNone ? number : model.nodeOf[vertex];
         return other | gpu::linkOdds(number, other) << 24;
     };
-    for (uint32_t i = 0; i < gpu::kDeformTurns; ++i) {
+    for (uint32_t i = 0; i < gpu::kDeformLinkPasses; ++i) {
         const uint32_t *near = node.ring + 2 * i, *far = node.cross_ + 2 * i;
         made.near_[i] = {linked(near[0]), linked(near[1]), node.ringLength[i], 0};
         made.far_[i] = {linked(far[0]), linked(far[1]), node.crossLength[i], 0};
     }
-    for (uint32_t way = 0; way < gpu::kArmWays; ++way) {
+    for (uint32_t way = 0; way < gpu::kBendSets; ++way) {
         const uint32_t* arms = node.arms + 2 * way;
-        const float* lengths = node.armLength + 2 * way;
+        const float* lengths = node.bendLength + 2 * way;
         made.arms[way] = {linked(arms[0]), linked(arms[1]),
-                          glm::packHalf2x16({lengths[0], lengths[1]}), node.armRise[way]};
+                          glm::packHalf2x16({lengths[0], lengths[1]}), node.bendRise[way]};
     }
     std::copy(std::begin(node.texels), std::end(node.texels), made.texels);
     made.x = node.x;

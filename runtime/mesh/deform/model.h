@@ -11,20 +11,21 @@ namespace fw::mesh {
 
 struct DeformModel {
     explicit DeformModel(std::pmr::memory_resource* memory)
-        : nodes(memory), coats(memory), nodeOf(memory) {}
+        : nodes(memory), embeddings(memory), nodeOf(memory) {}
 
-    std::pmr::vector<gpu::DeformNode> nodes;  // `vertex`, `ring`, `cross_`: of BurnDomain::vertices
-    std::pmr::vector<gpu::DeformCoat> coats;  // per vertex of the domain
-    std::pmr::vector<uint32_t> nodeOf;        // per vertex of the domain
-    float span = 0;                           // m, about the length of arms
+    std::pmr::vector<gpu::DeformParticle>
+        nodes;  // `vertex`, `ring`, `cross_`: of BurnDomain::vertices
+    std::pmr::vector<gpu::DeformEmbedding> embeddings;  // per vertex of the domain
+    std::pmr::vector<uint32_t> nodeOf;                  // per vertex of the domain
+    float span = 0;                                     // m, about the length of arms
 };
 
 // Vertices at one place are one node, whatever their normals and UVs.
 DeformModel makeDeformModel(const BurnDomain& domain, std::pmr::memory_resource* memory);
 
 // A node in the device's form: other nodes by number, with the odds of their links.
-gpu::DeviceNode deviceNode(const DeformModel& model, uint32_t number) noexcept;
-// Writes record `number` of `count` (nodes or coats) in the device's order: quad by quad.
+gpu::DeviceParticle deviceNode(const DeformModel& model, uint32_t number) noexcept;
+// Writes record `number` of `count` (nodes or embeddings) in the device's order: quad by quad.
 template <class Record>
 void putQuads(const Record& record, size_t number, size_t count, std::byte* to) noexcept {
     FW_ASSERT(number < count, "%zu of %zu records", number, count);

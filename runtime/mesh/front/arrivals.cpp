@@ -64,11 +64,11 @@ void nextRound(Arrivals& a) noexcept {
 }
 
 // Touches a tile and the readers of its changed texels.
-void touchReaders(Arrivals& a, uint32_t tile, uint64_t changed) noexcept {
+void touchDependents(Arrivals& a, uint32_t tile, uint64_t changed) noexcept {
     const auto touched = [&](uint32_t reader) { touch(a, reader, kTouched); };
     touched(tile);
     forEachTileBeside(*a.domain, tile, changed, touched);
-    for (const uint32_t reader : seamReaders(*a.domain, tile, changed)) touched(reader);
+    for (const uint32_t reader : seamDependents(*a.domain, tile, changed)) touched(reader);
 }
 
 // Lights the texels that the fire of these lanes' texels reaches over gaps.
@@ -80,7 +80,7 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
         const PartLink link = readPartLink(d, tile, block, word);
         const uint32_t t = a.ticks[link.from], to = link.to;
         if ((lanes >> link.lane & 1) == 0 || !gpu::isSource(t)) continue;
-        const PartWay way = partWay(d, a.materials, link);
+        const PartPath way = partPath(d, a.materials, link);
         if (way.delay >= gpu::kLiveEnd - t) continue;
         const uint32_t arrives = std::max(gpu::partArrives(t, way.delay), a.now);
         const uint32_t was = a.ticks[to];
@@ -90,13 +90,13 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
         a.ticks[to] = arrives;
         const uint32_t other = d.tileOf(to);
         const uint64_t changed = uint64_t(1) << d.laneOf(to);
-        touchReaders(a, other, changed);
+        touchDependents(a, other, changed);
         crossGaps(a, other, changed);
     }
 }
 
 void runTile(Arrivals& a, uint32_t tile) noexcept {
-    FrontPlanes planes;
+    FrontArrays planes;
     planes.state = a.ticks.data();
     planes.texels = a.domain->texels.data();
     planes.normals = a.domain->normals.data();
@@ -108,7 +108,7 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
     planes.tilesX = a.domain->tilesX;
     FW_ASSERT(a.end >= a.stride, "round %u to %u", a.end, a.stride);
     uint32_t scratch[kTileLanes];
-    const uint32_t floorTick = gpu::frontFloor(a.end - a.stride, a.window);
+    const uint32_t floorTick = gpu::windowFloor(a.end - a.stride, a.window);
     const FrontTile result = runFrontTile(planes, tile, a.end, floorTick, scratch);
     a.wake[tile] = result.wake;
     if (result.changed == 0) {
@@ -120,7 +120,7 @@ void runTile(Arrivals& a, uint32_t tile) noexcept {
         const auto lane = uint32_t(std::countr_zero(rest));
         a.ticks[texels[lane]] = scratch[lane];
     }
-    touchReaders(a, tile, result.changed);
+    touchDependents(a, tile, result.changed);
     if (a.parts) crossGaps(a, tile, result.changed);
 }
 
@@ -130,7 +130,7 @@ uint32_t Arrivals::settled() const noexcept {
     if (whole) return gpu::kLiveEnd;
     // Some tiles of an unfinished round have not run.
     const uint32_t through = end - stride;
-    return gpu::frontFloor(through, window);
+    return gpu::windowFloor(through, window);
 }
 
 void reserveArrivals(Arrivals& a, const BurnDomain& domain) {

@@ -24,7 +24,7 @@ bool anySource(const uint32_t* first, uint32_t count) noexcept {
 uint32_t chosenOfRow(const uint32_t* row, uint32_t width, uint32_t rim,
                      uint32_t floorTick) noexcept {
     uint32_t eligible = 0;
-    for (uint32_t x = 0; x < 8; ++x) eligible |= uint32_t(frontEligible(row[x], floorTick)) << x;
+    for (uint32_t x = 0; x < 8; ++x) eligible |= uint32_t(isFrontEligible(row[x], floorTick)) << x;
     const uint32_t inner = eligible & ~rim;
     if (inner == 0) return eligible;
     // The rows and columns beside an inner texel exist.
@@ -39,7 +39,7 @@ uint32_t chosenOfRow(const uint32_t* row, uint32_t width, uint32_t rim,
 
 }  // namespace
 
-FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t windowEnd,
+FrontTile runFrontTile(const FrontArrays& planes, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept {
     FrontTile out;
     const int width = int(planes.width);
@@ -55,7 +55,7 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
         chosen |= uint64_t(chosenOfRow(planes.state + corner + row * planes.width, planes.width,
                                        uint32_t(rimMask >> row * 8) & 0xFFu, floorTick))
                   << row * 8;
-    FrontPrep prep{};  // kept while normal, slowness and material stay
+    FrontDrive prep{};  // kept while normal, slowness and material stay
     uint64_t prepKey = ~0ull;
     for (; chosen != 0; chosen &= chosen - 1) {
         const auto lane = uint32_t(std::countr_zero(chosen));
@@ -83,7 +83,7 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
             }
         }
         uint32_t pending = kNever;
-        const uint32_t counts = frontSources(ring, present, windowEnd, pending);
+        const uint32_t counts = countingSources(ring, present, windowEnd, pending);
         const uint32_t future = pending;  // a source of the ring begins then: may correct us too
         uint32_t decided = t;
         uint32_t late = 0;
@@ -101,14 +101,14 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
             const uint32_t normal = planes.normals[texel];
             const uint64_t key = uint64_t(normal) << 19 | slow << 3 | material;
             if (key != prepKey) {
-                prep = frontPrep(decodeNormal(normal), slow, planes.materials[material]);
+                prep = prepareFront(decodeNormal(normal), slow, planes.materials[material]);
                 prepKey = key;
             }
             uint32_t soonest = kNever;
             const uint32_t candidate =
                 frontArrival(ring, counts, prep, planes.materials[material].windowMax, windowEnd,
                              floorTick, texel, false, pending, soonest);
-            decided = frontDecide(t, candidate, windowEnd, floorTick, pending, late);
+            decided = decideTick(t, candidate, windowEnd, floorTick, pending, late);
         }
         if (decided != t) {
             scratch[lane] = decided;

@@ -6,7 +6,7 @@
 
 namespace fw::mesh {
 
-struct FrontPlanes {  // of one object
+struct FrontArrays {  // of one object
     const uint32_t* state = nullptr;
     const TexelPosition* texels = nullptr;
     const uint32_t* normals = nullptr;
@@ -25,7 +25,7 @@ struct FrontTile {         // result of a tile's run
 };
 
 // `scratch`: 64 words, written for the lanes of `changed`.
-FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t windowEnd,
+FrontTile runFrontTile(const FrontArrays& planes, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept;
 
 // Calls visit(tile) for each neighbour on the grid that reads a changed texel of the tile (`mask`:
@@ -33,7 +33,7 @@ FrontTile runFrontTile(const FrontPlanes& planes, uint32_t tile, uint32_t window
 template <typename Visit>
 void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, const Visit& visit) {
     FW_ASSERT(tile < domain.tileCount(), "%u of %u tiles", tile, domain.tileCount());
-    const uint32_t beside = gpu::neighboursOf(uint32_t(mask), uint32_t(mask >> 32));
+    const uint32_t beside = gpu::dependentNeighbours(uint32_t(mask), uint32_t(mask >> 32));
     if (beside == 0) return;
     const int x = int(tile % domain.tilesX), y = int(tile / domain.tilesX);
     for (uint32_t k = 0; k < 8; ++k) {
@@ -46,15 +46,15 @@ void forEachTileBeside(const BurnDomain& domain, uint32_t tile, uint64_t mask, c
     }
 }
 // The tiles that read a changed texel through links.
-inline std::span<const uint32_t> seamReaders(const BurnDomain& domain, uint32_t tile,
-                                             uint64_t mask) noexcept {
+inline std::span<const uint32_t> seamDependents(const BurnDomain& domain, uint32_t tile,
+                                                uint64_t mask) noexcept {
     FW_ASSERT(tile < domain.tiles.size(), "%u of %zu tiles", tile, domain.tiles.size());
     const TileStatic& statics = domain.tiles[tile];
     const uint64_t seam = uint64_t(statics.seamMaskHigh) << 32 | statics.seamMaskLow;
     if ((seam & mask) == 0) return {};
-    FW_ASSERT(statics.readerStart + statics.readerCount <= domain.readers.size(), "%u readers",
-              statics.readerCount);
-    return {domain.readers.data() + statics.readerStart, statics.readerCount};
+    FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.readers.size(),
+              "%u readers", statics.dependentCount);
+    return {domain.readers.data() + statics.dependentStart, statics.dependentCount};
 }
 
 }  // namespace fw::mesh

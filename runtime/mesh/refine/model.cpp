@@ -10,7 +10,7 @@
 namespace fw::mesh {
 namespace {
 
-constexpr uint32_t kMostSlots = 1u << 24;
+constexpr uint32_t kMaxSlots = 1u << 24;
 
 void check(const RefineOptions& options) {
     if (!(options.wall > 0 && options.wall <= 0.6f))
@@ -122,15 +122,15 @@ void numberSlots(RefineModel& model) {
     for (gpu::RefineTriangle& t : model.triangles) {
         const uint32_t a = gpu::refineSideDepth(t.flags, 0), b = gpu::refineSideDepth(t.flags, 1),
                        c = gpu::refineSideDepth(t.flags, 2);
-        const uint32_t m = gpu::refineFit(a, b, c, std::max({a, b, c}));
+        const uint32_t m = gpu::fitInterior(a, b, c, std::max({a, b, c}));
         t.flags |= m << 16;
         t.slot = uint32_t(slots);
         slots += gpu::refineInnerCount(m);
-        if (slots > kMostSlots)
+        if (slots > kMaxSlots)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "Refinement needs more than %u vertices for %zu coarse triangles; lower "
                        "RefineOptions::depth or raise cellTexels.",
-                       kMostSlots, model.triangles.size());
+                       kMaxSlots, model.triangles.size());
     }
     model.slots.resize(slots);
     model.draws.resize(slots);

@@ -12,7 +12,7 @@ namespace {
 constexpr double kSmoothCosine = 0.77;  // 40 degrees: flatter creases count as curved surface
 constexpr double kReachUnit = 1e-5;     // m
 
-double leastAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double area) {
+double minAltitude(const CoarseMesh& coarse, const CoarseTriangle& t, double area) {
     double longest = 0;
     for (int k = 0; k < 3; ++k)
         longest = std::max(
@@ -67,7 +67,7 @@ class Offsets {
             const glm::dvec3 a = coarse_.points[t.point[0]];
             const double area = 0.5 * glm::length(glm::cross(coarse_.points[t.point[1]] - a,
                                                              coarse_.points[t.point[2]] - a));
-            const double low = leastAltitude(coarse_, t, area);
+            const double low = minAltitude(coarse_, t, area);
             for (const uint32_t p : t.point) {
                 faces[p].add(normal(i), 1);
                 altitude[p] = std::min(altitude[p], low);

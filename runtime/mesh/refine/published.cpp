@@ -11,32 +11,35 @@ namespace {
 
 constexpr float kPi = 3.14159265f;
 
-ArpTriangle make(const uint8_t (&a)[2], const uint8_t (&b)[2], const uint8_t (&c)[2],
-                 uint32_t setLevel, uint32_t parent) {
-    return {{{a[0], a[1]}, {b[0], b[1]}, {c[0], c[1]}}, uint8_t(setLevel), parent, kArpNone};
+PatternTriangle make(const uint8_t (&a)[2], const uint8_t (&b)[2], const uint8_t (&c)[2],
+                     uint32_t setLevel, uint32_t parent) {
+    return {{{a[0], a[1]}, {b[0], b[1]}, {c[0], c[1]}}, uint8_t(setLevel), parent, kPatternNone};
 }
 
 // The rules read `seen` and write `status`; serial sweeps hand over one array for both.
 class Sweep {
  public:
-    Sweep(std::span<const ArpTriangle> arp, ArpRules rules, std::span<const int8_t> seen,
-          std::span<int8_t> status)
-        : arp_(arp), repaired_(rules == ArpRules::repaired), seen_(seen), status_(status) {}
+    Sweep(std::span<const PatternTriangle> pattern, PatternRules rules,
+          std::span<const int8_t> seen, std::span<int8_t> status)
+        : pattern_(pattern),
+          repaired_(rules == PatternRules::repaired),
+          seen_(seen),
+          status_(status) {}
 
     uint32_t run(std::span<const uint8_t> eligible) {
-        const uint32_t finest = arp_.back().setLevel;
-        const uint32_t count = uint32_t(arp_.size());
+        const uint32_t finest = pattern_.back().setLevel;
+        const uint32_t count = uint32_t(pattern_.size());
         for (uint32_t i = count; i-- > 1;)
-            if (arp_[i].setLevel == finest && seen_[i] == kArpInitial && eligible[i] != 0) {
-                const uint32_t child = arp_[arp_[i].parent].firstChild;
-                for (uint32_t k = child; k < child + 4; ++k) set(k, kArpActive);
-                set(arp_[i].parent, kArpProcessed);
+            if (pattern_[i].setLevel == finest && seen_[i] == kPatternInitial && eligible[i] != 0) {
+                const uint32_t child = pattern_[pattern_[i].parent].firstChild;
+                for (uint32_t k = child; k < child + 4; ++k) set(k, kPatternActive);
+                set(pattern_[i].parent, kPatternProcessed);
             }
         for (uint32_t i = count; i-- > 1;)
-            if (arp_[i].setLevel < finest && seen_[i] > kArpInitial) raiseFamily(i);
+            if (pattern_[i].setLevel < finest && seen_[i] > kPatternInitial) raiseFamily(i);
         for (uint32_t i = count; i-- > 0;)
-            if (arp_[i].setLevel < finest && seen_[i] == kArpProcessed && childrenDone(i))
-                set(i, kArpInactive);
+            if (pattern_[i].setLevel < finest && seen_[i] == kPatternProcessed && childrenDone(i))
+                set(i, kPatternInactive);
         return changes_;
     }
 
@@ -47,22 +50,23 @@ class Sweep {
         ++changes_;
     }
     void raiseFamily(uint32_t i) {
-        const uint32_t parent = arp_[i].parent, child = arp_[parent].firstChild;
+        const uint32_t parent = pattern_[i].parent, child = pattern_[parent].firstChild;
         for (uint32_t k = child; k < child + 4; ++k) {
-            const bool may = repaired_ ? seen_[k] == kArpInitial : seen_[k] > kArpInactive;
-            if (k != i && may) set(k, kArpActive);
+            const bool may = repaired_ ? seen_[k] == kPatternInitial : seen_[k] > kPatternInactive;
+            if (k != i && may) set(k, kPatternActive);
         }
-        const bool may = !repaired_ || seen_[parent] == kArpInitial || seen_[parent] == kArpActive;
-        if (may) set(parent, kArpProcessed);
+        const bool may =
+            !repaired_ || seen_[parent] == kPatternInitial || seen_[parent] == kPatternActive;
+        if (may) set(parent, kPatternProcessed);
     }
     [[nodiscard]] bool childrenDone(uint32_t i) const {
-        const uint32_t child = arp_[i].firstChild;
+        const uint32_t child = pattern_[i].firstChild;
         for (uint32_t k = child; k < child + 4; ++k)
-            if (repaired_ ? seen_[k] == kArpInitial : seen_[k] != kArpActive) return false;
+            if (repaired_ ? seen_[k] == kPatternInitial : seen_[k] != kPatternActive) return false;
         return true;
     }
 
-    std::span<const ArpTriangle> arp_;
+    std::span<const PatternTriangle> pattern_;
     bool repaired_;
     std::span<const int8_t> seen_;
     std::span<int8_t> status_;
@@ -71,58 +75,61 @@ class Sweep {
 
 }  // namespace
 
-std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t depth, std::pmr::memory_resource* memory) {
-    std::pmr::vector<ArpTriangle> arp(memory);
-    const uint32_t coarse = kArpLevels - std::min(depth, kArpLevels);
-    arp.push_back(make({0, 0}, {kArpLattice, 0}, {0, kArpLattice}, coarse, kArpNone));
-    for (uint32_t i = 0; i < arp.size(); ++i) {
-        const ArpTriangle t = arp[i];
-        if (t.setLevel >= kArpLevels) continue;
+std::pmr::vector<PatternTriangle> makePatternTemplate(uint32_t depth,
+                                                      std::pmr::memory_resource* memory) {
+    std::pmr::vector<PatternTriangle> pattern(memory);
+    const uint32_t coarse = kPatternLevels - std::min(depth, kPatternLevels);
+    pattern.push_back(
+        make({0, 0}, {kPatternLattice, 0}, {0, kPatternLattice}, coarse, kPatternNone));
+    for (uint32_t i = 0; i < pattern.size(); ++i) {
+        const PatternTriangle t = pattern[i];
+        if (t.setLevel >= kPatternLevels) continue;
         uint8_t middle[3][2];
         for (int k = 0; k < 3; ++k)
             for (int c = 0; c < 2; ++c)
                 middle[k][c] = uint8_t((t.corner[k][c] + t.corner[(k + 1) % 3][c]) / 2);
-        arp[i].firstChild = uint32_t(arp.size());
+        pattern[i].firstChild = uint32_t(pattern.size());
         const uint32_t level = t.setLevel + 1u;
-        arp.push_back(make(t.corner[0], middle[0], middle[2], level, i));
-        arp.push_back(make(middle[0], t.corner[1], middle[1], level, i));
-        arp.push_back(make(middle[2], middle[1], t.corner[2], level, i));
-        arp.push_back(make(middle[0], middle[1], middle[2], level, i));
+        pattern.push_back(make(t.corner[0], middle[0], middle[2], level, i));
+        pattern.push_back(make(middle[0], t.corner[1], middle[1], level, i));
+        pattern.push_back(make(middle[2], middle[1], t.corner[2], level, i));
+        pattern.push_back(make(middle[0], middle[1], middle[2], level, i));
     }
-    return arp;
+    return pattern;
 }
 
-void arpMarkCircle(std::span<const ArpTriangle> arp, float x, float y, float radius,
-                   std::span<uint8_t> eligible) {
-    const uint8_t finest = arp.back().setLevel;
-    for (size_t i = 0; i < arp.size(); ++i) {
+void markPatternCircle(std::span<const PatternTriangle> pattern, float x, float y, float radius,
+                       std::span<uint8_t> eligible) {
+    const uint8_t finest = pattern.back().setLevel;
+    for (size_t i = 0; i < pattern.size(); ++i) {
         eligible[i] = 0;
-        if (arp[i].setLevel != finest) continue;
-        for (const auto& c : arp[i].corner)
+        if (pattern[i].setLevel != finest) continue;
+        for (const auto& c : pattern[i].corner)
             if (std::hypot(float(c[0]) - x, float(c[1]) - y) < radius) eligible[i] = 1;
     }
 }
 
-uint32_t arpSweep(std::span<const ArpTriangle> arp, ArpRules rules,
-                  std::span<const uint8_t> eligible, bool serial, std::span<int8_t> status,
-                  std::pmr::memory_resource* memory) {
-    if (serial) return Sweep(arp, rules, status, status).run(eligible);
+uint32_t sweepPattern(std::span<const PatternTriangle> pattern, PatternRules rules,
+                      std::span<const uint8_t> eligible, bool serial, std::span<int8_t> status,
+                      std::pmr::memory_resource* memory) {
+    if (serial) return Sweep(pattern, rules, status, status).run(eligible);
     const std::pmr::vector<int8_t> before(status.begin(), status.end(), memory);
-    return Sweep(arp, rules, before, status).run(eligible);
+    return Sweep(pattern, rules, before, status).run(eligible);
 }
 
-bool arpDrawn(std::span<const int8_t> status, uint32_t triangle) noexcept {
-    return status[triangle] > kArpInitial || (triangle == 0 && status[0] == kArpInitial);
+bool isPatternDrawn(std::span<const int8_t> status, uint32_t triangle) noexcept {
+    return status[triangle] > kPatternInitial || (triangle == 0 && status[0] == kPatternInitial);
 }
 
-float arpHeatDistance(const ArpHeat& heat, glm::vec3 point, float theta) {
+float patternHeatDistance(const PatternHeat& heat, glm::vec3 point, float theta) {
     const glm::vec3 d = point - heat.origin;
     const float square = std::sin(kPi * theta / heat.step) + std::sin(kPi * theta) +
                          heat.psi * (d.x * d.x + d.y * d.y + d.z * d.z);
     return std::sqrt(std::abs(square));
 }
 
-bool arpEligible(const ArpHeat& heat, const glm::vec3 corner[3], uint32_t depth, uint32_t seed) {
+bool isPatternEligible(const PatternHeat& heat, const glm::vec3 corner[3], uint32_t depth,
+                       uint32_t seed) {
     const uint32_t n = 1u << depth;
     for (uint32_t b = 0; b <= n; ++b)
         for (uint32_t a = 0; a + b <= n; ++a) {
@@ -130,15 +137,15 @@ bool arpEligible(const ArpHeat& heat, const glm::vec3 corner[3], uint32_t depth,
             const glm::vec3 p = corner[0] * (1 - wa - wb) + corner[1] * wa + corner[2] * wb;
             const float theta =
                 float(core::hash32(seed ^ core::hash32(b * 64 + a)) >> 8) / 8388608.0f;
-            if (arpHeatDistance(heat, p, theta) < heat.radius) return true;
+            if (patternHeatDistance(heat, p, theta) < heat.radius) return true;
         }
     return false;
 }
 
-bool arpHidden(std::span<const ArpTriangle> arp, std::span<const uint32_t> burnLevel,
-               uint32_t triangle) noexcept {
-    const uint32_t child = arp[triangle].firstChild;
-    if (child == kArpNone || arp[child].setLevel < kArpLevels) return false;
+bool isPatternHidden(std::span<const PatternTriangle> pattern, std::span<const uint32_t> burnLevel,
+                     uint32_t triangle) noexcept {
+    const uint32_t child = pattern[triangle].firstChild;
+    if (child == kPatternNone || pattern[child].setLevel < kPatternLevels) return false;
     uint32_t higher = 0;
     for (uint32_t k = child; k < child + 4; ++k) higher += burnLevel[k] > burnLevel[triangle];
     return higher >= 2;

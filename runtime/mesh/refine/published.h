@@ -12,55 +12,58 @@
 
 namespace fw::mesh {
 
-constexpr uint32_t kArpLattice = 64;  // corner coordinates of the template are in 1/64
-constexpr uint32_t kArpLevels = 5;    // SetLevel of the finest
-constexpr uint32_t kArpNone = 0xFFFFFFFFu;
+constexpr uint32_t kPatternLattice = 64;  // corner coordinates of the template are in 1/64
+constexpr uint32_t kPatternLevels = 5;    // SetLevel of the finest
+constexpr uint32_t kPatternNone = 0xFFFFFFFFu;
 
 // Status values. Drawn: active and processed, and the root while it is initial.
-constexpr int8_t kArpInactive = -1, kArpInitial = 0, kArpActive = 1, kArpProcessed = 2;
+constexpr int8_t kPatternInactive = -1, kPatternInitial = 0, kPatternActive = 1,
+                 kPatternProcessed = 2;
 
-struct ArpTriangle {       // its number is the id; parents come before children
+struct PatternTriangle {   // its number is the id; parents come before children
     uint8_t corner[3][2];  // barycentrics 1 and 2
-    uint8_t setLevel;      // kArpLevels: the finest
-    uint32_t parent;       // or kArpNone
-    uint32_t firstChild;   // of four, who are each other's siblings; or kArpNone
+    uint8_t setLevel;      // kPatternLevels: the finest
+    uint32_t parent;       // or kPatternNone
+    uint32_t firstChild;   // of four, who are each other's siblings; or kPatternNone
 };
 
-// The template of `depth` halvings, in 0..5. The finest have SetLevel kArpLevels, so with four the
-// coarse triangle has 1.
-std::pmr::vector<ArpTriangle> makeArpTemplate(uint32_t depth, std::pmr::memory_resource* memory);
+// The template of `depth` halvings, in 0..5. The finest have SetLevel kPatternLevels, so with four
+// the coarse triangle has 1.
+std::pmr::vector<PatternTriangle> makePatternTemplate(uint32_t depth,
+                                                      std::pmr::memory_resource* memory);
 
-enum class ArpRules {
+enum class PatternRules {
     printed,   // comes to no rest, and draws most of the area twice
     repaired,  // siblings change only from initial, parents only from initial or active; a parent
 };             // goes inactive when no child is initial
 
 // The finest triangles with a corner nearer than `radius` (in 1/64) to (x, y) are eligible.
-void arpMarkCircle(std::span<const ArpTriangle> arp, float x, float y, float radius,
-                   std::span<uint8_t> eligible);
+void markPatternCircle(std::span<const PatternTriangle> pattern, float x, float y, float radius,
+                       std::span<uint8_t> eligible);
 // One sweep of all three rules. serial: later triangles see what earlier ones did, from the leaves
 // up; else all read the state before. Returns how many statuses changed.
-uint32_t arpSweep(std::span<const ArpTriangle> arp, ArpRules rules,
-                  std::span<const uint8_t> eligible, bool serial, std::span<int8_t> status,
-                  std::pmr::memory_resource* memory);
-bool arpDrawn(std::span<const int8_t> status, uint32_t triangle) noexcept;
+uint32_t sweepPattern(std::span<const PatternTriangle> pattern, PatternRules rules,
+                      std::span<const uint8_t> eligible, bool serial, std::span<int8_t> status,
+                      std::pmr::memory_resource* memory);
+bool isPatternDrawn(std::span<const int8_t> status, uint32_t triangle) noexcept;
 
 // R^2 = | sin(pi Theta / dr) + sin(pi Theta) + psi |x - x0|^2 |: the boundary's own distance of a
 // point. The fire has reached it once the radius, which grows by dr per step, exceeds R.
-struct ArpHeat {
+struct PatternHeat {
     glm::vec3 origin{0};  // m
     float radius = 0;     // grows by `step`
     float step = 0.1f;    // dr, > 0
     float psi = 1;        // 1/m^2, by the size of the triangles
 };
-float arpHeatDistance(const ArpHeat& heat, glm::vec3 point, float theta);
+float patternHeatDistance(const PatternHeat& heat, glm::vec3 point, float theta);
 // Is any point of the triangle's barycentric lattice of 2^depth steps inside? Theta of each point,
 // in [0, 2), is drawn from `seed`.
-bool arpEligible(const ArpHeat& heat, const glm::vec3 corner[3], uint32_t depth, uint32_t seed);
+bool isPatternEligible(const PatternHeat& heat, const glm::vec3 corner[3], uint32_t depth,
+                       uint32_t seed);
 
 // The rule for what lies behind the fire: hide a triangle when two or more of its children, being
 // of SetLevel 5 or finer, have a higher burn level (consumed triangles) than itself.
-bool arpHidden(std::span<const ArpTriangle> arp, std::span<const uint32_t> burnLevel,
-               uint32_t triangle) noexcept;
+bool isPatternHidden(std::span<const PatternTriangle> pattern, std::span<const uint32_t> burnLevel,
+                     uint32_t triangle) noexcept;
 
 }  // namespace fw::mesh

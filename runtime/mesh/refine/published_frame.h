@@ -1,19 +1,20 @@
 // The published scheme on a whole mesh, frame by frame, on the CPU: a template on every coarse
 // triangle, a heat boundary that grows from where the fire began, and the list of the triangles
 // that the statuses draw. Where their vertices lie and what is consumed is the device's
-// (shaders/shared/arp.h). Cosmetic, and a function of ticks: equal runs give equal lists.
+// (shaders/shared/reference_pattern.h). Cosmetic, and a function of ticks: equal runs give equal
+// lists.
 #pragma once
 #include "mesh/refine/model.h"
 #include "mesh/refine/published.h"
-#include "shared/arp.h"
+#include "shared/reference_pattern.h"
 
 namespace fw::mesh {
 
 // A mesh's side of it, at one depth.
-struct ArpModel {
-    explicit ArpModel(std::pmr::memory_resource* memory)
-        : arp(memory), words(memory), corners(memory), materials(memory) {}
-    std::pmr::vector<ArpTriangle> arp;
+struct PatternModel {
+    explicit PatternModel(std::pmr::memory_resource* memory)
+        : pattern(memory), words(memory), corners(memory), materials(memory) {}
+    std::pmr::vector<PatternTriangle> pattern;
     std::pmr::vector<uint32_t> words;  // of the template's triangles
     // Per coarse triangle, in the order of the RefineModel: three corners, m; material.
     std::pmr::vector<glm::vec3> corners;
@@ -25,23 +26,24 @@ struct ArpModel {
     [[nodiscard]] uint32_t most() const noexcept { return triangles() << (2 * depth); }
 };
 // How `model` is baked: nothing split beforehand, every side down to `depth`.
-RefineOptions arpOptions(uint32_t depth);
+RefineOptions patternOptions(uint32_t depth);
 // Throws core::Error where the mesh has too many triangles for that depth.
-ArpModel makeArpModel(const BurnDomain& domain, const RefineModel& model, uint32_t depth,
-                      std::pmr::memory_resource* memory);
+PatternModel makePatternModel(const BurnDomain& domain, const RefineModel& model, uint32_t depth,
+                              std::pmr::memory_resource* memory);
 
-struct ArpSettings {
+struct PatternSettings {
     float psi = 1;            // 1/m^2, > 0
     float step = 0.1f;        // Delta r of a simulation step of 1/32 s, > 0
     float pixelsPerEdge = 8;  // > 0
 };
 
 // psi 0: one over the square of the mean finest edge; step 0: as much as `speed` (m/s).
-ArpSettings arpSettings(const ArpModel& model, float psi, float step, float speed) noexcept;
+PatternSettings patternSettings(const PatternModel& model, float psi, float step,
+                                float speed) noexcept;
 
 // An object's side.
-struct ArpState {
-    explicit ArpState(std::pmr::memory_resource* memory)
+struct PatternState {
+    explicit PatternState(std::pmr::memory_resource* memory)
         : status(memory),
           distance(memory),
           nearest(memory),
@@ -49,11 +51,11 @@ struct ArpState {
           shown(memory),
           eligible(memory),
           list(memory) {}
-    void reset(const ArpModel& model);
+    void reset(const PatternModel& model);
 
     bool lit = false;
     uint32_t litTick = 0;
-    ArpHeat heat;
+    PatternHeat heat;
     std::pmr::vector<int8_t> status;   // per coarse triangle the template's
     std::pmr::vector<float> distance;  // per coarse triangle, of the finest: the boundary's radius
                                        // when it reaches a corner
@@ -68,18 +70,18 @@ struct ArpState {
 
 // The boundary starts at `origin` (m, object space), as far out as two finest edges: the heat wave
 // that runs ahead. One source: later calls change nothing.
-void arpIgnite(const ArpModel& model, const ArpSettings& settings, glm::vec3 origin, uint32_t tick,
-               ArpState& state);
+void ignitePattern(const PatternModel& model, const PatternSettings& settings, glm::vec3 origin,
+                   uint32_t tick, PatternState& state);
 // r at a tick.
-float arpRadius(const ArpSettings& settings, const ArpState& state, double tick);
+float patternRadius(const PatternSettings& settings, const PatternState& state, double tick);
 
-struct ArpView {
+struct PatternView {
     glm::vec3 eye{0};  // m, object space
     float focal = 0;   // pixels of 1 m at 1 m; 0: no limit by size
 };
 // One sweep of the rules where the boundary is, then the list. True: the list is another one.
 // full: everything at its deepest, for comparison. Needs no memory.
-bool arpAdvance(const ArpModel& model, const ArpSettings& settings, double tick,
-                const ArpView& view, bool full, ArpState& state) noexcept;
+bool advancePattern(const PatternModel& model, const PatternSettings& settings, double tick,
+                    const PatternView& view, bool full, PatternState& state) noexcept;
 
 }  // namespace fw::mesh

@@ -1,4 +1,4 @@
-#include "components/heat_shield.h"
+#include "components/heat_occlusion.h"
 
 #include "components/pose.h"
 #include "components/wind_zone.h"
@@ -12,21 +12,21 @@
 namespace fw::components {
 namespace {
 
-constexpr float kLeastShieldCell = 0.05f, kMostShieldCell = 10;  // m
-constexpr float kFarthestShield = 1e6f;                          // m
+constexpr float kMinOcclusionCell = 0.05f, kMaxOcclusionCell = 10;  // m
+constexpr float kMaxOcclusionOrigin = 1e6f;                         // m
 constexpr uint32_t kEmpty = 0xFFFFFFFFu;
 
 int floorDiv(int value, int by) noexcept {
     return value >= 0 ? value / by : -((-value + by - 1) / by);
 }
 
-gpu::ExchangePush rulesOf(const ShieldShape& shape) noexcept {
+gpu::ExchangePush rulesOf(const OcclusionGridShape& shape) noexcept {
     gpu::ExchangePush rules{};
-    rules.shieldX = shape.origin[0];
-    rules.shieldY = shape.origin[1];
-    rules.shieldZ = shape.origin[2];
-    rules.shieldCell = shape.cell;
-    rules.shieldCounts = countsOf(shape);
+    rules.occlusionX = shape.origin[0];
+    rules.occlusionY = shape.origin[1];
+    rules.occlusionZ = shape.origin[2];
+    rules.occlusionCell = shape.cell;
+    rules.occlusionCounts = countsOf(shape);
     return rules;
 }
 
@@ -37,9 +37,9 @@ gpu::ivec3 placeOf(const float place[3]) noexcept {  // mm
 }
 
 // The cells filled so far, and the distance of each cell's texel from its middle.
-class ShieldFill {
+class OcclusionFill {
  public:
-    ShieldFill(const ShieldShape& shape, std::pmr::vector<ShieldCell>& out)
+    OcclusionFill(const OcclusionGridShape& shape, std::pmr::vector<OcclusionCell>& out)
         : shape_(shape),
           out_(out),
           index_(shape.cells(), kEmpty, out.get_allocator()),
@@ -75,16 +75,16 @@ class ShieldFill {
     }
 
  private:
-    void take(const ShieldCell& cell, uint64_t distance) {
+    void take(const OcclusionCell& cell, uint64_t distance) {
         FW_ASSERT(cell.cell < index_.size(), "%u of %zu cells", cell.cell, index_.size());
         uint32_t& entry = index_[cell.cell];
         FW_ASSERT(entry == kEmpty || entry < out_.size(), "entry %u of %zu", entry, out_.size());
         if (entry == kEmpty) {
-            if (out_.size() >= gpu::kShieldBaked)
+            if (out_.size() >= gpu::kMaxBakedOcclusionCells)
                 core::fail(FW_ERROR_INVALID_ARGUMENT,
                            "Objects fill more than %u cells of the shield, which is the limit: "
                            "larger cells are fewer.",
-                           gpu::kShieldBaked);
+                           gpu::kMaxBakedOcclusionCells);
             entry = uint32_t(out_.size());
             out_.push_back(cell);
             nearest_.push_back(distance);
@@ -94,40 +94,42 @@ class ShieldFill {
         }
     }
 
-    const ShieldShape& shape_;
-    std::pmr::vector<ShieldCell>& out_;
+    const OcclusionGridShape& shape_;
+    std::pmr::vector<OcclusionCell>& out_;
     std::pmr::vector<uint32_t> index_;    // by cell: into `out_`, or kEmpty
     std::pmr::vector<uint64_t> nearest_;  // mm^2, as `out_`
 };
 
 }  // namespace
 
-uint32_t countsOf(const ShieldShape& shape) noexcept {
+uint32_t countsOf(const OcclusionGridShape& shape) noexcept {
     return shape.counts[0] | shape.counts[1] << 10 | shape.counts[2] << 20;
 }
 
-ShieldShape makeShieldShape(const FwHeatShieldDef& def) {
-    ShieldShape shape;
-    checkFlags(def.flags, "FwHeatShieldDef::flags", FW_HEAT_SHIELD_ALL_OBJECTS);
+OcclusionGridShape makeOcclusionGridShape(const FwHeatOcclusionDef& def) {
+    OcclusionGridShape shape;
+    checkFlags(def.flags, "FwHeatOcclusionDef::flags", FW_HEAT_OCCLUSION_ALL_OBJECTS);
     for (uint32_t i = 0; i < 3; ++i)
-        if (def.counts[i] < 1 || def.counts[i] > gpu::kShieldSide)
+        if (def.counts[i] < 1 || def.counts[i] > gpu::kMaxOcclusionSide)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwHeatShieldDef::counts[%u] is %u; the limits are [1, %u].", i,
-                       def.counts[i], gpu::kShieldSide);
+                       "FwHeatOcclusionDef::counts[%u] is %u; the limits are [1, %u].", i,
+                       def.counts[i], gpu::kMaxOcclusionSide);
     std::copy_n(def.counts, 3, shape.counts.begin());
-    if (shape.cells() > gpu::kShieldCells)
+    if (shape.cells() > gpu::kMaxOcclusionCells)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwHeatShieldDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
-                   def.counts[0], def.counts[1], def.counts[2], shape.cells(), gpu::kShieldCells);
-    checkLengths(def.origin, 3, "FwHeatShieldDef::origin", -kFarthestShield, kFarthestShield);
-    checkLength(def.cellSize, "FwHeatShieldDef::cellSize", kLeastShieldCell, kMostShieldCell);
+                   "FwHeatOcclusionDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
+                   def.counts[0], def.counts[1], def.counts[2], shape.cells(),
+                   gpu::kMaxOcclusionCells);
+    checkLengths(def.origin, 3, "FwHeatOcclusionDef::origin", -kMaxOcclusionOrigin,
+                 kMaxOcclusionOrigin);
+    checkLength(def.cellSize, "FwHeatOcclusionDef::cellSize", kMinOcclusionCell, kMaxOcclusionCell);
     for (size_t i = 0; i < 3; ++i) shape.origin[i] = int32_t(millimetres(def.origin[i]));
     shape.cell = uint32_t(millimetres(def.cellSize));
     return shape;
 }
 
-void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
-                     std::pmr::vector<uint32_t>& solid) {
+void readOcclusionCells(const FwHeatOcclusionDef& def, const OcclusionGridShape& shape,
+                        std::pmr::vector<uint32_t>& solid) {
     solid.assign(shape.words(), 0);
     if (!def.cells && !def.distance) return;
     const double side = double(shape.cell) / 1000;
@@ -147,23 +149,23 @@ void readShieldCells(const FwHeatShieldDef& def, const ShieldShape& shape,
             }
 }
 
-bool plausible(const ShieldShape& shape) noexcept {
-    if (shape == ShieldShape{}) return true;
-    bool fine = shape.cell >= uint32_t(millimetres(kLeastShieldCell)) &&
-                shape.cell <= uint32_t(millimetres(kMostShieldCell));
-    const int64_t far = millimetres(kFarthestShield);
+bool plausible(const OcclusionGridShape& shape) noexcept {
+    if (shape == OcclusionGridShape{}) return true;
+    bool fine = shape.cell >= uint32_t(millimetres(kMinOcclusionCell)) &&
+                shape.cell <= uint32_t(millimetres(kMaxOcclusionCell));
+    const int64_t far = millimetres(kMaxOcclusionOrigin);
     for (size_t i = 0; i < 3; ++i)
-        fine = fine && shape.counts[i] >= 1 && shape.counts[i] <= gpu::kShieldSide &&
+        fine = fine && shape.counts[i] >= 1 && shape.counts[i] <= gpu::kMaxOcclusionSide &&
                shape.origin[i] >= -far && shape.origin[i] <= far;
-    return fine && shape.cells() <= gpu::kShieldCells;
+    return fine && shape.cells() <= gpu::kMaxOcclusionCells;
 }
 
-void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
-                std::pmr::vector<ShieldCell>& out) {
+void bakeOcclusion(const OcclusionGridShape& shape, std::span<const OcclusionObject> objects,
+                   std::pmr::vector<OcclusionCell>& out) {
     out.clear();
     if (objects.empty()) return;
-    ShieldFill fill(shape, out);
-    for (const ShieldObject& object : objects) {
+    OcclusionFill fill(shape, out);
+    for (const OcclusionObject& object : objects) {
         const mesh::BurnDomain& domain = *object.domain;
         // Half of a texel, at most a cell and a half: larger texels leave gaps.
         const double half = std::min(0.5 * object.texelSide, 1.5 * shape.cell);
@@ -172,30 +174,30 @@ void bakeShield(const ShieldShape& shape, std::span<const ShieldObject> objects,
             const mesh::TexelPosition& p = domain.texels[texel];
             const uint32_t material = p.materialFlags & (gpu::kMaterialsPerObject - 1);
             const uint32_t what = object.slot | material << 24 |
-                                  (object.stays >> material & 1 ? gpu::kShieldStays : 0u);
-            const gpu::ivec3 at = gpu::remotePlace(object.place, gpu::ivec3(p.x, p.y, p.z));
+                                  (object.stays >> material & 1 ? gpu::kOcclusionPermanent : 0u);
+            const gpu::ivec3 at = gpu::toWorldMm(object.place, gpu::ivec3(p.x, p.y, p.z));
             const gpu::ivec3 normal =
-                gpu::remoteTurn(object.place, gpu::decodeNormal(domain.normals[texel]));
+                gpu::turnToWorld(object.place, gpu::decodeNormal(domain.normals[texel]));
             fill.texel(at, normal, half, what, texel);
         }
     }
     std::sort(out.begin(), out.end(),
-              [](const ShieldCell& a, const ShieldCell& b) { return a.cell < b.cell; });
+              [](const OcclusionCell& a, const OcclusionCell& b) { return a.cell < b.cell; });
 }
 
-void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
+void packOcclusion(const HeatOcclusion& shield, std::pmr::vector<uint32_t>& words) {
     const size_t count = shield.shape.words();
     FW_ASSERT(shield.solid.size() == count, "%zu of %zu words", shield.solid.size(), count);
-    FW_ASSERT(
-        std::is_sorted(shield.baked.begin(), shield.baked.end(),
-                       [](const ShieldCell& a, const ShieldCell& b) { return a.cell < b.cell; }));
+    FW_ASSERT(std::is_sorted(
+        shield.baked.begin(), shield.baked.end(),
+        [](const OcclusionCell& a, const OcclusionCell& b) { return a.cell < b.cell; }));
     words.assign(3 * count + 2 * shield.baked.size(), 0);
     std::copy(shield.solid.begin(), shield.solid.end(), words.begin());
     size_t at = 0;
     for (size_t word = 0; word < count; ++word) {
         words[count + 2 * word + 1] = uint32_t(at);
         for (; at < shield.baked.size() && shield.baked[at].cell / 32 == word; ++at) {
-            const ShieldCell& cell = shield.baked[at];
+            const OcclusionCell& cell = shield.baked[at];
             const uint32_t bit = 1u << cell.cell % 32;
             words[word] |= bit;
             words[count + 2 * word] |= bit;
@@ -205,14 +207,15 @@ void packShield(const HeatShield& shield, std::pmr::vector<uint32_t>& words) {
     }
 }
 
-float sweepShield(const HeatShield& shield, const float from[3], const float direction[3],
-                  float most) noexcept {
+float sweepOcclusion(const HeatOcclusion& shield, const float from[3], const float direction[3],
+                     float most) noexcept {
     if (shield.solid.empty()) return most;
     const float far = std::min(most, 0.001f * float(gpu::kExchangeFar - 1));
     float to[3];
     for (int i = 0; i < 3; ++i) to[i] = from[i] + direction[i] * far;
-    gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
-    for (bool open = w.passed > 0; w.within; gpu::shieldStep(w, shield.shape.cell)) {
+    gpu::OcclusionWalk w =
+        gpu::beginOcclusionWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
+    for (bool open = w.passed > 0; w.within; gpu::stepOcclusionWalk(w, shield.shape.cell)) {
         FW_ASSERT(w.cell < shield.shape.cells(), "%u of %u cells", w.cell, shield.shape.cells());
         const bool solid = shield.solid[w.cell / 32] >> w.cell % 32 & 1;
         if (solid && open) return std::min(most, far * float(w.passed) / float(w.of));
@@ -221,28 +224,29 @@ float sweepShield(const HeatShield& shield, const float from[3], const float dir
     return most;
 }
 
-bool shieldShades(const ShieldView& shield, const float from[3], const float to[3],
-                  float spare) noexcept {
+bool isShadedByOcclusion(const OcclusionView& shield, const float from[3], const float to[3],
+                         float spare) noexcept {
     if (shield.words.empty()) return false;
     const uint32_t words = shield.shape.words(), side = shield.shape.cell;
-    gpu::ShieldEnds ends;
+    gpu::OcclusionEnds ends;
     ends.from = ends.to = gpu::kNoneTexel;  // no object's: all cells count
     ends.fromSpare = side + uint32_t(std::clamp(spare, 0.0f, 10.0f) * 1000);
     ends.toSpare = side;
-    gpu::ShieldWalk w = gpu::shieldWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
-    for (; w.within; gpu::shieldStep(w, side)) {
+    gpu::OcclusionWalk w =
+        gpu::beginOcclusionWalk(rulesOf(shield.shape), placeOf(from), placeOf(to));
+    for (; w.within; gpu::stepOcclusionWalk(w, side)) {
         const uint32_t at = w.cell / 32, bit = 1u << w.cell % 32;
         FW_ASSERT(words + 2 * at + 1 < shield.words.size(), "word %u of %zu", at,
                   shield.words.size());
         if ((shield.words[at] & bit) == 0) continue;
-        if (gpu::shieldSpares(w, ends, gpu::kNoneTexel, side)) continue;
+        if (gpu::isNearWalkEnd(w, ends, gpu::kNoneTexel, side)) continue;
         const uint32_t baked = shield.words[words + 2 * at];
         if ((baked & bit) == 0) return true;
         const uint32_t before = uint32_t(std::popcount(baked & (bit - 1)));
         const uint32_t i = shield.words[words + 2 * at + 1] + before;
         FW_ASSERT(3 * words + 2 * i < shield.words.size(), "cell %u, %zu words", i,
                   shield.words.size());
-        const uint32_t slot = shield.words[3 * words + 2 * i] & gpu::kShieldSlot;
+        const uint32_t slot = shield.words[3 * words + 2 * i] & gpu::kOcclusionSlotMask;
         if (slot >= shield.fallen.size() || shield.fallen[slot] == 0) return true;
     }
     return false;

@@ -1,4 +1,4 @@
-#include "mesh/remote_tiles.h"
+#include "mesh/exchange_tiles.h"
 
 #include <algorithm>
 #include <array>
@@ -76,12 +76,12 @@ static_assert(gpu::kContactGap <= 1u << kCellShift);
 // One object's places near another object, by cells. Cells are numbered from the lowest of them,
 // wherever in the world they are.
 struct ContactCells {
-    static constexpr size_t kMostListed = 4096;
+    static constexpr size_t kMaxListed = 4096;
     int low[3] = {}, high[3] = {};
     uint64_t sideY = 0, sideZ = 0;
-    bool listed = false;                           // few enough cells for `starts`
-    std::array<uint32_t, kMostListed + 1> starts;  // by cell: its first place
-    std::span<const Contacts::Place> places;       // by cell
+    bool listed = false;                          // few enough cells for `starts`
+    std::array<uint32_t, kMaxListed + 1> starts;  // by cell: its first place
+    std::span<const Contacts::Place> places;      // by cell
 
     [[nodiscard]] uint64_t keyOf(int x, int y, int z) const noexcept {
         FW_ASSERT(x >= low[0] && y >= low[1] && z >= low[2] && x <= high[0] && y <= high[1] &&
@@ -106,7 +106,7 @@ struct ContactCells {
         sideY = uint64_t(int64_t(high[1]) - low[1]) + 1;
         sideZ = uint64_t(int64_t(high[2]) - low[2]) + 1;
         const uint64_t cells = keyOf(high[0], high[1], high[2]) + 1;
-        listed = cells <= kMostListed;
+        listed = cells <= kMaxListed;
         if (!listed) {
             sorted.assign(given.begin(), given.end());
             std::sort(sorted.begin(), sorted.end(),
@@ -145,7 +145,7 @@ bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
 
 Box wholeBox(const ContactSide& side) noexcept {
     Box box;
-    const gpu::RemoteObject& o = *side.place;
+    const gpu::ExchangeObject& o = *side.place;
     const int low[3] = {o.turn0.w, o.turn1.w, o.turn2.w};
     for (int i = 0; i < 3; ++i) {
         box.low[i] = low[i];
@@ -161,7 +161,7 @@ bool burnsAt(const ContactSide& side, uint32_t texel) noexcept {
 
 gpu::ivec3 placeOf(const ContactSide& side, uint32_t texel) noexcept {
     const TexelPosition& p = side.domain->texels[texel];
-    return gpu::remotePlace(*side.place, gpu::ivec3(p.x, p.y, p.z));
+    return gpu::toWorldMm(*side.place, gpu::ivec3(p.x, p.y, p.z));
 }
 
 // The burnable texels of `side` that are near `other`, block by block.
@@ -251,7 +251,7 @@ struct NearestPair {
 
 void findNearest(std::span<const Contacts::Place> places, const ContactCells& cells,
                  std::pmr::vector<Contact>& out) {
-    for (size_t first = 0; first < places.size() && out.size() < kMostContacts;) {
+    for (size_t first = 0; first < places.size() && out.size() < kMaxContacts;) {
         size_t end = first + 1;
         while (end < places.size() && places[end].block == places[first].block) ++end;
         NearestPair nearest{cells};
@@ -267,7 +267,7 @@ void findNearest(std::span<const Contacts::Place> places, const ContactCells& ce
 
 }  // namespace
 
-uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>& out) {
+uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeTile>& out) {
     out.resize(domain.tileCount());
     const Grid grid = gridOf(domain);
     std::array<uint32_t, gpu::kSourcesPerObject> numbers;
@@ -275,7 +275,7 @@ uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>
     uint32_t cells = 0;
     for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
         const TileSum sum = sumTile(domain, tile);
-        gpu::RemoteTile made{};
+        gpu::ExchangeTile made{};
         if (sum.texels != 0) {
             uint32_t middle[3];
             for (int i = 0; i < 3; ++i) middle[i] = uint32_t(sum.position[i] / sum.texels);
@@ -315,11 +315,11 @@ uint32_t sourceCells(const BurnDomain& domain) noexcept {
     return std::max(cells, 1u);
 }
 
-Box placedBox(const gpu::RemoteObject& place, const uint16_t (&low)[3],
+Box placedBox(const gpu::ExchangeObject& place, const uint16_t (&low)[3],
               const uint16_t (&high)[3]) noexcept {
     const gpu::ivec4* const rows[3] = {&place.row0, &place.row1, &place.row2};
     Box box;
-    for (int i = 0; i < 3; ++i) {  // as remotePlace of the corners
+    for (int i = 0; i < 3; ++i) {  // as toWorldMm of the corners
         int least = 0, most = 0;
         for (int k = 0; k < 3; ++k) {
             const int a = (*rows[i])[k] * int(low[k]), b = (*rows[i])[k] * int(high[k]);

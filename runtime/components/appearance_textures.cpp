@@ -1,6 +1,6 @@
 // Gradient noise on an integer hash; char blocks are columns of random width, split at random,
 // because regular cells look like masonry. Cosmetic.
-#include "components/look_textures.h"
+#include "components/appearance_textures.h"
 
 #include "core/assert.h"
 #include "core/hash.h"

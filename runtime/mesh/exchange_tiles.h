@@ -7,14 +7,14 @@
 namespace fw::mesh {
 
 // One per tile, in their order; replaces `out`. Returns the number of their source cells.
-uint32_t remoteTiles(const BurnDomain& domain, std::pmr::vector<gpu::RemoteTile>& out);
+uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeTile>& out);
 // The same count, without the tiles.
 uint32_t sourceCells(const BurnDomain& domain) noexcept;
 
 struct Box {  // mm, world; low > high: empty
     int low[3] = {1, 1, 1}, high[3] = {0, 0, 0};
 };
-[[nodiscard]] Box placedBox(const gpu::RemoteObject& place, const uint16_t (&low)[3],
+[[nodiscard]] Box placedBox(const gpu::ExchangeObject& place, const uint16_t (&low)[3],
                             const uint16_t (&high)[3]) noexcept;
 // The largest of the three distances along an axis; < 0: they overlap.
 [[nodiscard]] int gapOf(const Box& a, const Box& b) noexcept;
@@ -26,12 +26,12 @@ struct Contact {
 
 struct ContactSide {
     const BurnDomain* domain = nullptr;
-    const gpu::RemoteObject* place = nullptr;
+    const gpu::ExchangeObject* place = nullptr;
     uint32_t burns = 0;  // bit i: its material i can burn
 };
 
 // Most contacts of one object; its further tiles have none.
-constexpr size_t kMostContacts = 8192;
+constexpr size_t kMaxContacts = 8192;
 
 // Memory that searches for contacts share, and the last search's contacts.
 struct Contacts {

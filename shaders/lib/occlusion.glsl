@@ -5,15 +5,15 @@
 #include "shared/heat.h"
 
 // Does the texel that fills an occlusion cell still stand?
-bool shieldStands(uint what, uint texel) {
-    bool stands = (what & kShieldStays) != 0u;
+bool isOccluderStanding(uint what, uint texel) {
+    bool stands = (what & kOcclusionPermanent) != 0u;
     for (bool asks = !stands; asks; asks = false) {
-        uint slot = what & kShieldSlot;
+        uint slot = what & kOcclusionSlotMask;
         uint holes = materials[slot * kMaterialsPerObject + ((what >> 24u) & 7u)].holeTicks;
         uint t = state[objects[slot].stateBase + texel];
         bool gone = isSource(t) && t <= push.now && push.now - t >= holes;
         if (gone && (objects[slot].flags & kObjectHeat) != 0u)
-            gone = gateLets(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t, push.now);
+            gone = gateOpens(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t, push.now);
         stands = !gone;
     }
     return stands;
@@ -21,9 +21,9 @@ bool shieldStands(uint what, uint texel) {
 
 // Two loops: a software device executes a branch's body for all lanes of its group, so the
 // expensive test of a solid cell stays out of the walk over empty ones.
-bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
-    ShieldWalk w = shieldWalk(push, a, b);
-    uint words = shieldWords(push.shieldCounts);
+bool isOccluded(OcclusionEnds ends, ivec3 a, ivec3 b) {
+    OcclusionWalk w = beginOcclusionWalk(push, a, b);
+    uint words = occlusionWords(push.occlusionCounts);
     bool cut = false;
     while (w.within && !cut) {
         uint what = 0u, texel = 0u;
@@ -32,18 +32,18 @@ bool shieldCuts(ShieldEnds ends, ivec3 a, ivec3 b) {
             uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
             for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
                 uint baked = shield[words + 2u * at];
-                what = kShieldStays | kShieldSlot;
+                what = kOcclusionPermanent | kOcclusionSlotMask;
                 if ((baked & bit) != 0u) {
                     uint i = shield[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
                     what = shield[3u * words + 2u * i];
                     texel = shield[3u * words + 2u * i + 1u];
                 }
-                uint slot = what & kShieldSlot;
-                stops = !shieldSpares(w, ends, slot == kShieldSlot ? kNoneTexel : slot, push.shieldCell);
+                uint slot = what & kOcclusionSlotMask;
+                stops = !isNearWalkEnd(w, ends, slot == kOcclusionSlotMask ? kNoneTexel : slot, push.occlusionCell);
             }
-            shieldStep(w, push.shieldCell);
+            stepOcclusionWalk(w, push.occlusionCell);
         }
-        for (; stops; stops = false) cut = shieldStands(what, texel);
+        for (; stops; stops = false) cut = isOccluderStanding(what, texel);
     }
     return cut;
 }

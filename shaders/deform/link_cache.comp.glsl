@@ -4,7 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_NODES
+#define FW_USE_DEFORM_PARTICLES
 #define FW_USE_SOFT
 #include "lib/deform_buffers.glsl"
 
@@ -24,13 +24,13 @@ void main() {
         float burnt = burntOf(mine);
 
         uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
-        uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kArmWays;
+        uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kBendSets;
         do {  // neighbours, then all bending sets
             bool arms = turn >= turns;
             uint way = turn - turns;
             uvec4 two = deformNode(at + (arms ? kParticleBends + way : kParticleLinks + turn) * sizes.y);
-            FW_UNROLL for (uint i = 0u; i < kDeformLinks; ++i) {
-                uint k = (arms ? way : turn) * kDeformLinks + i;
+            FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
+                uint k = (arms ? way : turn) * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
                 uint there = soft(seenAt - number + (two[i] & kDeformLinkIndex)).x;
                 bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there), two[i] >> 24u);
@@ -43,7 +43,7 @@ void main() {
                 count += holds ? 1u : 0u;
             }
         } while (++turn < all);
-        bool whole = (flags & kNodeClosed) != 0u && count == (flags >> kNodeRingShift & 15u);
+        bool whole = (flags & kParticleClosed) != 0u && count == (flags >> kParticleRingShift & 15u);
         holding |= whole ? kLinkCacheWhole : 0u;
 
         vec3 x = placeOf(soft(own + item.parity * sizes.y));

@@ -3,7 +3,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_COATS
+#define FW_USE_DEFORM_EMBEDDINGS
 #define FW_USE_SHOWN
 #define FW_USE_SHOWN_WORDS
 #include "lib/deform_buffers.glsl"
@@ -40,9 +40,9 @@ void main() {
         float size = length(turned);
         vec3 rest = unpackDirection(coat.y);
         vec3 normal = rest;
-        if (size > 1e-18) normal = turnedNormal(rest, uintBitsToFloat(face.xyz), turned / size);
+        if (size > 1e-18) normal = rotateNormal(rest, uintBitsToFloat(face.xyz), turned / size);
         float offset = facts.w;
-        if (tears) offset = max(offset, tornLead(square, uintBitsToFloat(face.w), facts.x));
+        if (tears) offset = max(offset, tornOffset(square, uintBitsToFloat(face.w), facts.x));
         // Exact rest normals at rest.
         uint packed = all(equal(normal, rest)) ? coat.y : packDirection(normal);
         uint self = shownBase + number;

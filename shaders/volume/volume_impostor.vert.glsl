@@ -4,7 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #include "shared/volume_draw.h"
 
-layout(push_constant) uniform Push { VolumeCard draw; };
+layout(push_constant) uniform Push { VolumeImpostor draw; };
 
 layout(location = 0) centroid out vec2 outCell;
 layout(location = 1) flat out vec2 outSlab;    // m along the view: near distance; 1/m: depth
@@ -23,7 +23,7 @@ void main() {
     // A multiple of whole pixels, so all march pixels count alike, and at least one march pixel.
     vec2 perPixel = vec2(draw.perX, draw.perY);
     outHalf = 0.5 * perPixel * ceil(max(1.0 / perPixel, 1.0));
-    ivec2 cells = ivec2(draw.tilesX, draw.tilesY) * int(kVolumeTile);
+    ivec2 cells = ivec2(draw.tilesX, draw.tilesY) * int(kMarchTileSide);
     outTaps = ivec4(ivec2(ceil(2.0 * outHalf)) + 1, cells) + zero;
     outShows = vec2(draw.from, draw.to) + float(zero);
     outSlab = vec2(draw.front, 1.0 / draw.deep);
@@ -32,9 +32,9 @@ void main() {
                      baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
                      baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
                      baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
-    outCell = mix(low, high, volumeSplit(over, vertex));
+    outCell = mix(low, high, splitQuadVertex(over, vertex));
     vec2 place = placeOf(outCell);
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
-    float depth = testedDepth(volumeTest(draw.base, draw.clip, draw.front, draw.deep, place));
+    float depth = testedDepth(makeDepthTest(draw.base, draw.clip, draw.front, draw.deep, place));
     gl_Position = vec4(place, depth, 1.0);
 }

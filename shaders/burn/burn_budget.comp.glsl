@@ -1,6 +1,6 @@
 // Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and
-// of the world, in hashed order (askOrder). They join the burn list, and only listed tiles are lit
-// afterwards. With kSwitchAsks the front's due tiles request here. One group.
+// of the world, in hashed order (requestOrder). They join the burn list, and only listed tiles are lit
+// afterwards. With kSwitchRequests the front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 layout(local_size_x = 64) in;
@@ -13,7 +13,7 @@ layout(local_size_x = 64) in;
 #define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
 #define FW_USE_BURN_LISTS coherent
 #define FW_USE_PREDICT_LISTS coherent
-#define FW_USE_REMOTE_OBJECTS
+#define FW_USE_EXCHANGE_OBJECTS
 #include "lib/buffers.glsl"
 #include "shared/front.h"
 #include "lib/lists.glsl"
@@ -27,7 +27,7 @@ void setMark(uint worldTile, uint mark) {
 
 uvec4 orderOf(uint worldTile) {
     TileRef tile = tileRef(worldTile);
-    return uvec4(askOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
+    return uvec4(requestOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
 }
 
 // Number of requests with at least this mark that precede `own`; alike: of the same object.
@@ -37,7 +37,7 @@ uint before(uvec4 own, uint count, uint mark, bool alike) {
         uint other = asked(i);
         if (markOf(other) < mark) continue;
         uvec4 theirs = orderOf(other);
-        sum += (!alike || theirs.y == own.y) && asksBefore(theirs, own) ? 1u : 0u;
+        sum += (!alike || theirs.y == own.y) && requestPrecedes(theirs, own) ? 1u : 0u;
     }
     return sum;
 }
@@ -45,13 +45,13 @@ uint before(uvec4 own, uint count, uint mark, bool alike) {
 void main() {
     uint lane = gl_LocalInvocationID.x;
     uint asks = kRowBurn + (push.burnParity ^ 1u);
-    uint due = (push.switches & kSwitchAsks) != 0u ? counters[push.row].runCount : 0u;
+    uint due = (push.switches & kSwitchRequests) != 0u ? counters[push.row].runCount : 0u;
     for (uint i = lane; i < due; i += 64u)
-        if ((masks[i].z | masks[i].w) != 0u && !mayBurn(run[i].x)) askToBurn(run[i].x);
+        if ((masks[i].z | masks[i].w) != 0u && !mayBurn(run[i].x)) requestToBurn(run[i].x);
     memoryBarrierBuffer();
     barrier();
     uint count = counters[asks].workCount;
-    uint room = roomFor(counters[kRowBurn + push.burnParity].listCount, push.tilesMost);
+    uint room = remainingTiles(counters[kRowBurn + push.burnParity].listCount, push.maxTiles);
     // Tiles lit by the host meanwhile burn without a request.
     for (uint i = lane; i < count; i += 64u)
         if ((tileState[asked(i)].flag & kTileBurning) != 0u) setMark(asked(i), 0u);
@@ -60,9 +60,9 @@ void main() {
     for (uint i = lane; i < count; i += 64u) {
         uvec4 own = orderOf(asked(i));
         if (markOf(own.w) != kRequested) continue;
-        RemoteObject limits = remoteObjects[own.y];
-        uint most = (limits.flags & kRemoteLive) != 0u ? limits.tilesMost : kNoneTexel;
-        uint objectRoom = roomFor(objectCounters[own.y].burningTiles, most);
+        ExchangeObject limits = exchangeObjects[own.y];
+        uint most = (limits.flags & kExchangeLive) != 0u ? limits.maxTiles : kNoneTexel;
+        uint objectRoom = remainingTiles(objectCounters[own.y].burningTiles, most);
         uint fits = 1u;
         if (count > objectRoom) fits = before(own, count, kRequested, true) < objectRoom ? 1u : 0u;
         // Marks of finished lanes still count as requests.

@@ -1,19 +1,19 @@
 // Presets are written as differences from a near relative.
-#include "components/look_table.h"
+#include "components/appearance_table.h"
 
 #include "flamewright/flamewright.h"
 
 namespace fw::components {
 namespace {
 
-using gpu::MaterialLook;
+using gpu::MaterialAppearance;
 using gpu::vec4;
 
 static_assert(kLookCount == FW_MATERIAL_PRESET_COUNT);
 
 // Never burns; still wet, sooty and lit like everything else.
-MaterialLook stone() {
-    MaterialLook m{};
+MaterialAppearance stone() {
+    MaterialAppearance m{};
     m.charTime = m.crackTime = m.facePeak = m.faceDecay = m.crackLife = m.ashEnd = 1.0f;
     m.charColor = vec4(0.03f, 0.03f, 0.03f, 0.6f);
     m.ashColor = vec4(0.5f, 0.5f, 0.5f, 0.0f);
@@ -29,8 +29,8 @@ MaterialLook stone() {
     return m;
 }
 
-MaterialLook pine() {
-    MaterialLook m = stone();
+MaterialAppearance pine() {
+    MaterialAppearance m = stone();
     m.spreadRate = 0.0006f;
     m.warpLarge = 0.012f;
     m.warpSmall = 0.003f;
@@ -70,8 +70,8 @@ MaterialLook pine() {
     return m;
 }
 
-MaterialLook paintedWood() {
-    MaterialLook m = pine();
+MaterialAppearance paintedWood() {
+    MaterialAppearance m = pine();
     m.warpSmall = 0.005f;
     m.jitter = 4.0f;
     m.scorchWidth = 0.06f;
@@ -84,16 +84,16 @@ MaterialLook paintedWood() {
     return m;
 }
 
-MaterialLook plywood() {
-    MaterialLook m = pine();
+MaterialAppearance plywood() {
+    MaterialAppearance m = pine();
     m.holeTime = 420.0f;
     m.holeVariation = 220.0f;
     m.thickness = 0.012f;
     return m;
 }
 
-MaterialLook paper() {
-    MaterialLook m = stone();
+MaterialAppearance paper() {
+    MaterialAppearance m = stone();
     m.spreadRate = 0.0055f;
     m.warpLarge = 0.010f;
     m.warpSmall = 0.0022f;
@@ -128,14 +128,14 @@ MaterialLook paper() {
     return m;
 }
 
-MaterialLook newspaper() {
-    MaterialLook m = paper();
+MaterialAppearance newspaper() {
+    MaterialAppearance m = paper();
     m.base = gpu::kBasePrint;
     return m;
 }
 
-MaterialLook cotton() {
-    MaterialLook m = paper();
+MaterialAppearance cotton() {
+    MaterialAppearance m = paper();
     m.spreadRate = 0.008f;
     m.warpLarge = 0.014f;
     m.warpSmall = 0.003f;
@@ -167,8 +167,8 @@ MaterialLook cotton() {
     return m;
 }
 
-MaterialLook plastic() {
-    MaterialLook m = stone();
+MaterialAppearance plastic() {
+    MaterialAppearance m = stone();
     m.spreadRate = 0.003f;
     m.warpLarge = 0.012f;
     m.warpSmall = 0.002f;
@@ -201,8 +201,8 @@ MaterialLook plastic() {
 }
 
 // Cloth that shrinks and melts: the pattern of cotton, the edges of plastic.
-MaterialLook polyester() {
-    MaterialLook m = plastic();
+MaterialAppearance polyester() {
+    MaterialAppearance m = plastic();
     m.spreadRate = 0.005f;
     m.charTime = 3.0f;
     m.blister = 0.0008f;
@@ -221,8 +221,8 @@ MaterialLook polyester() {
     return m;
 }
 
-MaterialLook dryLeaf() {
-    MaterialLook m = paper();
+MaterialAppearance dryLeaf() {
+    MaterialAppearance m = paper();
     m.spreadRate = 0.004f;
     m.warpLarge = 0.008f;
     m.warpSmall = 0.0025f;
@@ -254,8 +254,8 @@ MaterialLook dryLeaf() {
     return m;
 }
 
-MaterialLook greenLeaf() {
-    MaterialLook m = dryLeaf();
+MaterialAppearance greenLeaf() {
+    MaterialAppearance m = dryLeaf();
     m.spreadRate = 0.0022f;
     m.scorchWidth = 0.012f;
     m.charTime = 2.6f;
@@ -269,8 +269,8 @@ MaterialLook greenLeaf() {
     return m;
 }
 
-MaterialLook thatch() {
-    MaterialLook m = stone();
+MaterialAppearance thatch() {
+    MaterialAppearance m = stone();
     m.spreadRate = 0.006f;
     m.warpLarge = 0.030f;
     m.warpSmall = 0.010f;
@@ -304,8 +304,8 @@ MaterialLook thatch() {
     return m;
 }
 
-MaterialLook dryGrass() {
-    MaterialLook m = thatch();
+MaterialAppearance dryGrass() {
+    MaterialAppearance m = thatch();
     m.spreadRate = 0.012f;
     m.jitter = 2.2f;
     m.charTime = 1.3f;
@@ -320,8 +320,8 @@ MaterialLook dryGrass() {
     return m;
 }
 
-MaterialLook leather() {
-    MaterialLook m = stone();
+MaterialAppearance leather() {
+    MaterialAppearance m = stone();
     m.spreadRate = 0.0015f;
     m.warpLarge = 0.010f;
     m.warpSmall = 0.003f;
@@ -364,7 +364,7 @@ MaterialLook leather() {
 
 }  // namespace
 
-MaterialLook materialLook(uint32_t preset) noexcept {
+MaterialAppearance materialLook(uint32_t preset) noexcept {
     switch (preset) {
         case FW_MATERIAL_PINE:
             return pine();
@@ -397,12 +397,12 @@ MaterialLook materialLook(uint32_t preset) noexcept {
     }
 }
 
-float lookHoleEnd(const gpu::MaterialLook& look) noexcept {  // see holeDelay in look.glsl
+float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept {  // see holeDelay in look.glsl
     return look.holeTime + 0.45f * look.holeVariation * (0.9f + 0.8f * look.holeFine) +
            2.3f * look.jitter;
 }
 
-mesh::RefineHoles holesOf(const gpu::MaterialLook& look) noexcept {
+mesh::RefineHoles holesOf(const gpu::MaterialAppearance& look) noexcept {
     mesh::RefineHoles holes;
     if (!(look.holeTime > 0)) return holes;
     holes.variation = look.holeVariation / look.holeTime;

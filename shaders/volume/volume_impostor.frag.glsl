@@ -6,7 +6,7 @@
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 
-layout(push_constant) uniform Push { VolumeCard draw; };
+layout(push_constant) uniform Push { VolumeImpostor draw; };
 
 layout(location = 0) centroid in vec2 inCell;
 layout(location = 1) flat in vec2 inSlab;
@@ -44,12 +44,12 @@ void main() {
             int x = first.x + i;
             float weight = tall * clamp(min(high.x, float(x + 1)) - max(low.x, float(x)), 0.0, 1.0);
             if (x < 0 || x >= inTaps.z) weight = 0.0;
-            uvec4 cell = cellAt(draw.samples + kVolumeCellWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
+            uvec4 cell = cellAt(draw.samples + kMarchPixelWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
 #ifdef FW_SOFT
             weight *= slabShareNearer(cell.z, cut);
 #else
             // March pixels smaller than a pixel have bases of their own.
-            weight *= max(volumeBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
+            weight *= max(slabShareBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
 #endif
             color += weight * cellColor(cell);
         }

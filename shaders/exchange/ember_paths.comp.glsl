@@ -6,14 +6,14 @@ layout(local_size_x = 64) in;
 #define FW_USE_EXCHANGE_PUSH
 #define FW_USE_OBJECTS readonly
 #define FW_USE_OBJECT_COUNTERS readonly
-#define FW_USE_REMOTE_OBJECTS
-#define FW_USE_REMOTE_TILES
+#define FW_USE_EXCHANGE_OBJECTS
+#define FW_USE_EXCHANGE_TILES
 #define FW_USE_SOURCES FW_READ_WRITE
-#define FW_USE_BLOCKERS
-#include "lib/shield_uses.glsl"
+#define FW_USE_HEAT_OCCLUDERS
+#include "lib/occlusion_uses.glsl"
 #include "lib/buffers.glsl"
 #include "lib/ember.glsl"
-#include "lib/shield.glsl"
+#include "lib/occlusion.glsl"
 
 bool stopped(FireSource source) {
     Ember ember = emberFrom(source);
@@ -21,13 +21,13 @@ bool stopped(FireSource source) {
     uint object = landsOn(ember.landing, upAxis(worldUp()), tile);
     if (tile == kNoneTexel) return true;
     ivec3 flame = alongFlame(source, worldUp(), 8);
-    ivec3 place = remotePlace(remoteObjects[object], tileMiddle(remoteTiles[objects[object].tileBase + tile]));
-    for (uint b = 0u; b < push.blockers; ++b)
-        if (blockerCuts(blockers[b], flame, ember.landing) || blockerCuts(blockers[b], ember.landing, place))
+    ivec3 place = toWorldMm(exchangeObjects[object], tileMiddle(exchangeTiles[objects[object].tileBase + tile]));
+    for (uint b = 0u; b < push.occluders; ++b)
+        if (occluderBlocks(occluders[b], flame, ember.landing) || occluderBlocks(occluders[b], ember.landing, place))
             return true;
-    if (push.shieldCell == 0u) return false;
-    ShieldEnds ends = emberEnds(source, object, push.shieldCell);
-    return shieldCuts(ends, flame, ember.landing) || shieldCuts(ends, ember.landing, place);
+    if (push.occlusionCell == 0u) return false;
+    OcclusionEnds ends = emberOcclusionEnds(source, object, push.occlusionCell);
+    return isOccluded(ends, flame, ember.landing) || isOccluded(ends, ember.landing, place);
 }
 
 void main() { FW_EACH_EMBER(if (stopped(sources[at])) sources[at].ember = 0u;) }
