@@ -465,7 +465,7 @@ TEST(AbiDrawn, ObjectsOfAMeshShareItsBuffers) {
     const FwMeshInfo info = getState(fwWorld_GetMeshInfo, w.world, def.mesh);
     const uint64_t texels = uint64_t(info.mapWidth) * info.mapHeight;
     for (const char* shared :
-         {"texels", "normals", "tiles", "slowness", "links", "readers", "vertices", "indices"}) {
+         {"texels", "normals", "tiles", "slowness", "links", "dependents", "vertices", "indices"}) {
         ASSERT_TRUE(one.count(shared)) << shared;
         EXPECT_EQ(one.at(shared), nine.at(shared)) << shared;
     }

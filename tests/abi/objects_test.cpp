@@ -201,12 +201,12 @@ TEST(AbiObjects, CreationRefusesUnsupportedDefs) {
     FwContextDef def = fwDefaultContextDef();
     def.callbacks = host.callbacks();
     def.backend = FW_BACKEND_CPU;
-    def.abiVersion = 2;
+    def.abiVersion = 1;
     EXPECT_EQ(FW_ERROR_VERSION, fwCreateContext(&def, &context, &error));
     EXPECT_EQ(nullptr, context);
     EXPECT_EQ(FW_ERROR_VERSION, error.result);
     EXPECT_STREQ(
-        "FwContextDef::abiVersion is 2; this library serves version 1.\n"
+        "FwContextDef::abiVersion is 1; this library serves version 2.\n"
         " - While calling fwCreateContext.",
         error.message);
     def.abiVersion = FW_ABI_VERSION;
