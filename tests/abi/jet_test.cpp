@@ -56,7 +56,7 @@ struct Range : Panels {
 };
 
 // "Flamethrowers go through walls" (RMC-14#5776, #6308).
-TEST(Jet, AClosedWallBurnsAndShieldsWhatIsBehind) {
+TEST(Jet, AClosedWallBurnsAndOccludesWhatIsBehind) {
     for (const bool heat : {false, true}) {
         Range r(heat);
         r.wall(3);
@@ -72,7 +72,7 @@ TEST(Jet, AClosedWallBurnsAndShieldsWhatIsBehind) {
 }
 
 // "It stops at the tile before the wall, the wall never burns" (RMC-14 fix #7016).
-TEST(Jet, ABlockingWallBurns) {
+TEST(Jet, AWallThatStopsTheJetBurns) {
     Range r(true);
     r.wall(5);
     r.fire();

@@ -77,13 +77,13 @@ void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
     }
 }
 
-TEST(Net, BurnsAlikeThroughLoss) {
+TEST(Net, BurnsIdenticallyUnderPacketLoss) {
     for (const uint32_t seed : {1u, 2u, 3u}) burnsAlike(seed, FW_BACKEND_CPU, 200);
 }
-TEST(Net, BurnsAlikeOnADevice) { burnsAlike(4, FW_BACKEND_VULKAN, 160); }
+TEST(Net, BurnsIdenticallyOnADevice) { burnsAlike(4, FW_BACKEND_VULKAN, 160); }
 
 // Half of a burning sheet is put out: it is out there, and burns elsewhere, on both sides.
-TEST(Net, APartThatIsPutOutIsOut) {
+TEST(Net, ExtinguishedPartsStayOut) {
     struct Sheets : SheetWorld {
         Sheets() : SheetWorld(evenMaterial(0.05f, 60)) {}
     };
@@ -125,7 +125,7 @@ TEST(Net, AClientThatDivergesIsRepaired) {
 }
 
 // Where one object alone differs, its tiles that do are all that travels.
-TEST(Net, TilesThatDifferAreEnough) {
+TEST(Net, RepairsOnlyDifferingTiles) {
     struct Sheets : SheetWorld {
         Sheets() : SheetWorld(evenMaterial(0.02f, 60), 1.0f, 0.25f, 512) {}
     };
@@ -158,7 +158,7 @@ TEST(Net, TilesThatDifferAreEnough) {
 }
 
 // The server goes back in time; clients go with it.
-TEST(Net, ARewoundServerIsFollowed) {
+TEST(Net, ClientsFollowARewoundServer) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     play(session, 0, 40);
@@ -186,7 +186,7 @@ TEST(Net, SlowHostsCatchUp) {
 }
 
 // Messages come in order, each before the step it was said before: objects made by them are alike.
-TEST(Net, MessagesComeAtTheirSteps) {
+TEST(Net, MessagesArriveAtTheirSteps) {
     FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS);
     def.paceFactor = 8;
     const auto make = [&] {
@@ -222,7 +222,7 @@ TEST(Net, MessagesComeAtTheirSteps) {
 
 // ---- what is refused ----------------------------------------------------------------------------
 
-TEST(Net, RefusesWhatCannotBe) {
+TEST(Net, RefusesImpossibleCalls) {
     BusyWorld alone(FW_BACKEND_CPU, 12, 3), other(FW_BACKEND_CPU, 12, 3);
     FwNetAction turn{};
     turn.structSize = sizeof turn;
@@ -291,7 +291,7 @@ TEST(Net, RefusesWhatCannotBe) {
     EXPECT_EQ(FW_OK, fwWorld_Step(other.world, 0.5f));
 }
 
-TEST(Net, AnotherWorldIsRefused) {
+TEST(Net, RefusesAnotherWorld) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
     auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 3));
     play(session, 0, 40);
@@ -372,7 +372,7 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
 
 // One in twenty is spoilt behind its head and has a right sum all the same. Clients may
 // diverge by that; the server finds and repairs them.
-TEST(Net, DamageThatIsNotFoundAtOnceHeals) {
+TEST(Net, RepairsDivergenceFoundLate) {
     for (const uint32_t seed : {1u, 2u, 3u}) {
         Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4), seed);
         auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));

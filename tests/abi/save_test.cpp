@@ -39,10 +39,12 @@ void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
     }
 }
 
-TEST(Save, GoesOnAlike) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
-TEST(Save, GoesOnAlikeOnADevice) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150); }
-TEST(Save, FromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
-TEST(Save, FromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
+TEST(Save, ContinuesIdentically) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
+TEST(Save, ContinuesIdenticallyOnADevice) {
+    goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150);
+}
+TEST(Save, MovesFromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
+TEST(Save, MovesFromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
 
 // Back in the same world, twice, from a later and from an earlier moment.
 void goesBack(uint32_t backend) {
@@ -61,8 +63,8 @@ void goesBack(uint32_t backend) {
         EXPECT_EQ(later, w.hash());
     }
 }
-TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
-TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsTheSameWorld) { goesBack(FW_BACKEND_CPU); }
+TEST(Save, RewindsTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
 
 // Back to before anything burnt, and to before it in a world that never saw the save's wind: what
 // catches then burns by that wind.
@@ -84,12 +86,12 @@ void goesBackToBefore(uint32_t backend) {
     other.run(1, 60);
     EXPECT_EQ(then, other.hash());
 }
-TEST(Save, GoesBackToBeforeAnythingBurnt) { goesBackToBefore(FW_BACKEND_CPU); }
-TEST(Save, GoesBackToBeforeAnythingBurntOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsToBeforeTheFirstFire) { goesBackToBefore(FW_BACKEND_CPU); }
+TEST(Save, RewindsToBeforeTheFirstFireOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
 
 // A world that sleeps stays asleep: the wind of its first fire begins with that fire, and not where
 // the save was loaded.
-TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
+TEST(Save, FirstFireAfterALoadIsIdentical) {
     uint64_t hashes[2] = {};
     for (const bool loads : {false, true}) {
         FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS | FW_WORLD_RADIATION);
@@ -121,7 +123,7 @@ TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
 
 // The device goes at some frame. The last save that was fetched, or that is still in the lost
 // world, is the mirror: on another device, or on none, the fire is as it was then, and goes on.
-TEST(Save, LivesThroughALostDevice) {
+TEST(Save, SurvivesALostDevice) {
     const uint32_t losses[] = {26, 41};
     for (const uint32_t loss : losses) {
         BusyWorld w(FW_BACKEND_VULKAN);
@@ -157,7 +159,7 @@ void expectSaveRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
     EXPECT_EQ(before, w.hash()) << says;
 }
 
-TEST(Save, RefusesWhatIsNotTheWorlds) {
+TEST(Save, RefusesSavesOfOtherWorlds) {
     BusyWorld w(FW_BACKEND_CPU);
     w.run(0, 30);
     const Bytes bytes = w.save();
@@ -190,7 +192,7 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
 }
 
 // With a right checksum: it is loaded or refused with a message, and the world lives on.
-TEST(Save, DamagedOnesNeverCrash) {
+TEST(Save, DamagedSavesNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);
     w.run(0, 40);
     const Bytes bytes = w.save();

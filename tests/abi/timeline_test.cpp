@@ -99,11 +99,11 @@ void seeks(uint32_t backend) {
     EXPECT_EQ(other, w.hash());
 }
 
-TEST(Timeline, AnyMomentAsItWas) { seeks(FW_BACKEND_CPU); }
-TEST(Timeline, AnyMomentAsItWasOnADevice) { seeks(FW_BACKEND_VULKAN); }
+TEST(Timeline, SeeksAnyTick) { seeks(FW_BACKEND_CPU); }
+TEST(Timeline, SeeksAnyTickOnADevice) { seeks(FW_BACKEND_VULKAN); }
 
 // At its end the world is as it was left, with what was done after the last step; and goes on.
-TEST(Timeline, GoesOnFromItsEnd) {
+TEST(Timeline, ContinuesFromItsEnd) {
     BusyWorld straight(FW_BACKEND_CPU, 12, 6), w(FW_BACKEND_CPU, 12, 6);
     start(w.world);
     for (BusyWorld* one : {&straight, &w}) {
@@ -125,7 +125,7 @@ TEST(Timeline, GoesOnFromItsEnd) {
 }
 
 // A burn that was baked, plays, and goes live in the middle.
-TEST(Timeline, HasBakedBurnsThatWentLive) {
+TEST(Timeline, IncludesBakedBurnsThatWentLive) {
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
         BusyWorld w(backend, 12, 3);
         if (!there(w)) continue;
@@ -162,7 +162,7 @@ TEST(Timeline, HasBakedBurnsThatWentLive) {
     }
 }
 
-TEST(Timeline, StaysWithinItsBytes) {
+TEST(Timeline, StaysWithinItsByteLimit) {
     constexpr uint64_t kBytes = 3 << 16;
     BusyWorld w(FW_BACKEND_CPU);
     start(w.world, 1.0f / 32, 0.25f, kBytes);
@@ -187,7 +187,7 @@ TEST(Timeline, StaysWithinItsBytes) {
     EXPECT_EQ(hash, w.hash());
 }
 
-TEST(Timeline, NamesWhatIsWrong) {
+TEST(Timeline, RefusesBadCallsByName) {
     BusyWorld w(FW_BACKEND_CPU, 12, 3);
     const auto refused = [&](FwResult expected, FwResult result, const char* says) {
         EXPECT_EQ(expected, result) << says;
@@ -240,7 +240,7 @@ TEST(Timeline, NamesWhatIsWrong) {
     w.run(80, 82);
 }
 
-TEST(Timeline, TheWrapperGoesThere) {
+TEST(Timeline, WrapperSeeks) {
     const fw::Context context = [] {
         FwContextDef def = fw::def<FwContextDef>();
         def.backend = FW_BACKEND_CPU;

@@ -904,9 +904,9 @@ class Fuzz {
     std::vector<unsigned char> cooked_;
 };
 
-class AbiFuzz : public ::testing::TestWithParam<int> {};
+class HostFuzz : public ::testing::TestWithParam<int> {};
 
-TEST_P(AbiFuzz, SurvivesRandomHosts) {
+TEST_P(HostFuzz, SurvivesRandomHosts) {
     Fuzz fuzz{uint64_t(GetParam())};
     fuzz.run(12000);
     EXPECT_LT(400u, fuzz.accepted);
@@ -923,6 +923,6 @@ TEST_P(AbiFuzz, SurvivesRandomHosts) {
         static_cast<unsigned long long>(fuzz.refused), static_cast<unsigned long long>(fuzz.meshes),
         static_cast<unsigned long long>(fuzz.objects), static_cast<unsigned long long>(fuzz.fires));
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, AbiFuzz, ::testing::Range(1, 9));
+INSTANTIATE_TEST_SUITE_P(Seeds, HostFuzz, ::testing::Range(1, 9));
 
 }  // namespace

@@ -305,7 +305,7 @@ class Storm {
     double now_ = 0;
 };
 
-TEST(NetFuzz, RandomHostsNeitherCrashNorPartSilently) {
+TEST(NetFuzz, RandomHostsNeitherCrashNorDivergeSilently) {
     uint32_t refusals = 0, read = 0;
     for (uint32_t seed = 1; seed <= 8; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));

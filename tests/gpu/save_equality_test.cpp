@@ -155,7 +155,7 @@ class AWorld {
 
 class SaveEquality : public GpuTest {};
 
-TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
+TEST_F(SaveEquality, BothBackendsContinueFromEither) {
     if (!device_) return;
     AWorld device(device_.get()), cpu(nullptr);
     uint32_t at = 0;
@@ -186,7 +186,7 @@ TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
 
 // Frames go on while a save is under way: it is of the frame that was asked for. And a load comes
 // into frames in flight, whose readbacks are of another past.
-TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
+TEST_F(SaveEquality, HoldsTheRequestedFrame) {
     if (!device_) return;
     AWorld device(device_.get()), plain(nullptr);
     device.run(0, 40);
@@ -216,7 +216,7 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
 }
 
 // A timeline on the host's own frames: its moments come while others are under way.
-TEST_F(SaveEquality, GoesToAnyMomentOfItsTimeline) {
+TEST_F(SaveEquality, SeeksAnyTickOfItsTimeline) {
     if (!device_) return;
     AWorld device(device_.get()), plain(nullptr);
     FwTimelineDef def = fwDefaultTimelineDef();

@@ -267,7 +267,7 @@ class Replay : public ::testing::TestWithParam<const char*> {
     ReplayLog log_;
 };
 
-TEST_P(Replay, CpuAfterEveryStep) {
+TEST_P(Replay, CpuMatchesTheHashOfEveryStep) {
     const std::vector<ReplayHash> got = CpuPlayer().play(log_, 1);
     ASSERT_EQ(log_.steps, got.size());
     if (blessing()) {
@@ -289,7 +289,7 @@ TEST_P(Replay, CpuAfterEveryStep) {
 
 class ReplayOnDevice : public GpuTest, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(ReplayOnDevice, VkAsOnTheCpu) {
+TEST_P(ReplayOnDevice, MatchesTheCpu) {
     if (!device_) return;
     ReplayLog log;
     std::vector<ReplayHash> want;
@@ -310,7 +310,7 @@ INSTANTIATE_TEST_SUITE_P(Logs, Replay, ::testing::ValuesIn(kLogs), nameOf);
 INSTANTIATE_TEST_SUITE_P(Logs, ReplayOnDevice, ::testing::ValuesIn(kLogs), nameOf);
 
 // One input of a log changed: equal until then, another world from then on.
-TEST(ReplayNotices, OneInputThatIsAnother) {
+TEST(ReplayCheck, DetectsOneChangedInput) {
     const auto differsAt = [](const char* name, const auto& change, uint32_t steps) {
         ReplayLog log;
         std::string error;
@@ -352,7 +352,7 @@ TEST(ReplayNotices, OneInputThatIsAnother) {
     EXPECT_GE(32u, latched);
 }
 
-TEST(ReplayNotices, ALogThatIsNone) {
+TEST(ReplayCheck, RefusesFilesThatAreNoLogs) {
     const std::string path = ::testing::TempDir() + "no.log";
     for (const char* text :
          {"", "end 0\n", "0 ignite 1 2\nend 4\n", "5 wind 1 2 3\nend 4\n", "0 jump 1 2 3\nend 4\n",

@@ -15,7 +15,7 @@ namespace {
 using namespace fw;
 using Bytes = std::pmr::vector<std::byte>;
 
-TEST(NetPacket, AnyFlippedBitIsFound) {
+TEST(NetPacket, DetectsAnyFlippedBit) {
     Bytes packet;
     core::Writer writer = net::beginPacket(packet, {net::PacketKind::status, 7, 8, 9});
     writer.number(uint64_t(0x1234567890ABCDEF));
@@ -35,7 +35,7 @@ TEST(NetPacket, AnyFlippedBitIsFound) {
     }
 }
 
-TEST(NetPacket, WhatCameIsKnown) {
+TEST(NetPacket, ReportsReceivedPackets) {
     net::SequenceWindow window;
     EXPECT_FALSE(window.isNew(0));
     EXPECT_FALSE(window.isNew(1u << 20));  // nobody loses so many
@@ -65,7 +65,7 @@ world::Command commandOf(uint32_t i) {
                   std::make_integer_sequence<uint32_t, world::kCommandKinds>());
 }
 
-TEST(NetRecords, ComeBackAsTheyWere) {
+TEST(NetRecords, RoundTrip) {
     net::RecordLog log(std::pmr::get_default_resource());
     for (uint32_t i = 0; i < 500; ++i) {
         net::Record record;
@@ -105,7 +105,7 @@ TEST(NetRecords, ComeBackAsTheyWere) {
 }
 
 // A fifth is lost each way, pieces and answers; the state comes whole.
-TEST(NetTransfer, AStateComesWhole) {
+TEST(NetTransfer, ReassemblesAState) {
     std::mt19937 random(4);
     Bytes state(150000);
     for (std::byte& b : state) b = std::byte(random());
@@ -142,7 +142,7 @@ TEST(NetTransfer, AStateComesWhole) {
 }
 
 // Only pieces that were sent can be acknowledged.
-TEST(NetTransfer, OnlySentPiecesCanHaveCome) {
+TEST(NetTransfer, RefusesAcknowledgementsOfUnsentPieces) {
     net::ChunkSender sender;
     sender.begin(100);
     EXPECT_TRUE(sender.canHave(0, 0));
@@ -214,7 +214,7 @@ TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
     EXPECT_EQ(0u, log.bytes());
 }
 
-TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
+TEST(NetRecords, CountBytesAndRecordsThatAStateReplaces) {
     net::RecordLog log(std::pmr::get_default_resource());
     const Bytes text(10);
     const net::Record capture = captureAt(1);
@@ -234,7 +234,7 @@ TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
 
 // The table is the protocol: phases that send records have a state, and whoever takes or waits can
 // fall back.
-TEST(NetProtocol, PhasesLeadToPhases) {
+TEST(NetProtocol, TransitionsLeadToDefinedPhases) {
     using net::PeerEvent, net::PeerPhase;
     for (uint32_t i = 0; i < uint32_t(PeerPhase::count); ++i) {
         const auto phase = PeerPhase(i);
@@ -255,7 +255,7 @@ TEST(NetProtocol, PhasesLeadToPhases) {
     EXPECT_EQ(net::kRefused, net::phaseAfter(PeerPhase::calling, PeerEvent::loads));
 }
 
-TEST(NetRoundTrip, FollowsTheWayAndWaitsLonger) {
+TEST(NetRoundTrip, FollowsTheDelayAndBacksOff) {
     net::RoundTrip trip;
     EXPECT_EQ(0.5, trip.timeout());
     double now = 0;

@@ -71,13 +71,13 @@ void seeks(uint32_t notes, uint32_t plays) {
     EXPECT_EQ(moments[92].hash, fresh.hash());
 }
 
-TEST(Log, AnyMomentCanBeSought) { seeks(FW_BACKEND_CPU, FW_BACKEND_CPU); }
-TEST(Log, AnyMomentCanBeSoughtOnADevice) { seeks(FW_BACKEND_CPU, FW_BACKEND_VULKAN); }
-TEST(Log, WhatADeviceNotedTheCpuPlays) { seeks(FW_BACKEND_VULKAN, FW_BACKEND_CPU); }
+TEST(CommandLog, SeeksAnyTick) { seeks(FW_BACKEND_CPU, FW_BACKEND_CPU); }
+TEST(CommandLog, SeeksAnyTickOnADevice) { seeks(FW_BACKEND_CPU, FW_BACKEND_VULKAN); }
+TEST(CommandLog, CpuPlaysALogOfADevice) { seeks(FW_BACKEND_VULKAN, FW_BACKEND_CPU); }
 
 // What the host does after the request and before its frame is in the save, and is not done twice;
 // what it does after that frame, at the same tick, is not in it.
-TEST(Log, WhatASaveHasIsNotDoneAgain) {
+TEST(CommandLog, DoesNotRepeatCommandsOfTheSave) {
     BusyWorld w(FW_BACKEND_CPU);
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 40);
@@ -114,7 +114,7 @@ void expectLogRefused(BusyWorld& w, const Bytes& log, const char* says) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
 }
 
-TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
+TEST(CommandLog, RefusesLogsOfOtherWorlds) {
     BusyWorld w(FW_BACKEND_CPU);
     uint64_t size = 0;
     float seconds = 0;
@@ -164,7 +164,7 @@ void sign(Bytes& log) {
 }
 
 // With a right checksum: it is opened and played, or refused with a message; the world lives on.
-TEST(Log, DamagedOnesNeverCrash) {
+TEST(CommandLog, DamagedLogsNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 70);

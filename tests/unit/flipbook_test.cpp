@@ -343,7 +343,7 @@ TEST(Flipbook, RefusesBadFilesByName) {
 
 TEST(Flipbook, ResumesAnInterruptedBake) {
     const std::string path =
-        (std::filesystem::temp_directory_path() / "flamewright_book_test.part").string();
+        (std::filesystem::temp_directory_path() / "flamewright_flipbook_test.part").string();
     std::filesystem::remove(path);
     const Frame frame = spotAt(16, 5, 6);
     std::string error;

@@ -197,7 +197,7 @@ struct BentPlay {
     uint32_t seed_;
 };
 
-TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
+TEST(NetHostile, AServerSurvivesEachAlteredFieldOfAClient) {
     uint64_t refused = 0;
     std::map<std::string, uint32_t> bent;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
@@ -221,7 +221,7 @@ TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
     std::printf("%llu packets refused\n", static_cast<unsigned long long>(refused));
 }
 
-TEST(NetBent, AClientSurvivesEachBentFieldOfItsServer) {
+TEST(NetHostile, AClientSurvivesEachAlteredFieldOfItsServer) {
     std::map<std::string, uint32_t> bent;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
         BentPlay play(seed);
@@ -369,7 +369,7 @@ void joinBy(HandClient& client, Panels& server) {
 }
 
 // Records that were never sent cannot be acknowledged, nor states and pieces; the server goes on.
-TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
+TEST(NetHostile, AcknowledgementsOfUnsentDataAreRefusedAndCounted) {
     const std::unique_ptr<Panels> server = makeBentPanels();
     const FwNetDef def = netDef(0x1234);
     ASSERT_EQ(FW_OK, fwNet_Serve(server->world, &def));
@@ -425,7 +425,7 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
 
 // 63 clients, and one that knows the session and does its worst: floods, bends, asks for the state
 // again and again, acknowledges nothing.
-TEST(NetBent, OneHostileClientCostsTheOthersNothing) {
+TEST(NetHostile, OneHostileClientCostsTheOthersNothing) {
     BentSession session(makeBentPanels());
     for (int i = 0; i < 63; ++i) session.join(makeBentPanels());
     HandClient hostile(session.server->world, 0xBAD);
