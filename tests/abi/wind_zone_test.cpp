@@ -323,9 +323,9 @@ TEST(WindGrid, RefusesBadValuesByName) {
     };
     Grid good(evenly);
     ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &good.def));
-    const auto expectGrid = [&](void (*spoil)(Grid&), const char* says) {
+    const auto expectGrid = [&](void (*damage)(Grid&), const char* says) {
         Grid bad(shearing);
-        spoil(bad);
+        damage(bad);
         expectRefused(fwWorld_SetWindGrid(m.world, &bad.def), says);
     };
     expectGrid([](Grid& g) { g.def.counts[1] = 1; },
