@@ -1,5 +1,5 @@
-// FW_EVENT_STRUCTURE_BROKE: a board that burns through in the middle loses what it supported, a
-// sheet what hung from it. Each lost area is reported once, on both backends and across saves.
+// FW_EVENT_STRUCTURE_BROKE: a board that burns through in the middle loses the part above, a sheet
+// the part below. Each lost area is reported once, on both backends and across saves.
 #include "abi/busy_world.h"
 
 namespace fw::test::break_test {
@@ -140,7 +140,7 @@ TEST(Breakage, ReportsOnlyRequestedKinds) {
     EXPECT_NEAR(kHigh / 2, share.broke[0].position[1], 1e-5f);
 }
 
-// A band that is cut out bears nothing, does not count as area, and splits the board in two.
+// A band that is cut out supports nothing, does not count as area, and splits the board in two.
 TEST(Breakage, CutOutsNeitherSupportNorCount) {
     Board part(FW_BACKEND_CPU, 0, 0, 0.01f, false, 3u << 7),
         share(FW_BACKEND_CPU, 0, 0.07f, 0, false, 63u << 5);  // more than a tenth
@@ -197,8 +197,8 @@ TEST(Breakage, BothBackendsAgree) {
     EXPECT_EQ(2u, cpu.broke.size());
 }
 
-// At whatever frame a save is made and wherever it is loaded, each event comes once, at its
-// original step. Events that were not polled come at once.
+// For every frame of the save and every loading world, each event arrives once, at its original
+// step. Events that were not polled arrive at once.
 TEST(Breakage, PendingEventsKeepTheirStepAcrossSaves) {
     Board straight(FW_BACKEND_CPU, 0, 0.09f);
     const auto begin = [](Board& board) {
@@ -245,7 +245,7 @@ TEST(Breakage, PendingEventsKeepTheirStepAcrossSaves) {
     }
 }
 
-// A loading host that asks for another kind hears nothing of areas lost before.
+// A loading host that requests another kind gets no events of areas lost before.
 TEST(Breakage, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
     Board asks(FW_BACKEND_CPU, 0, 0.09f), none(FW_BACKEND_CPU, 0, 0, 0),
         other(FW_BACKEND_CPU, 0, 0.02f);

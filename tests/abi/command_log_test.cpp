@@ -36,24 +36,24 @@ void playTo(FwWorld* world, uint64_t tick, float most = 10) {
 }
 
 // Ticks of a busy world, each sought from an earlier save, in both directions.
-void seeks(uint32_t notes, uint32_t plays) {
-    struct Moment {
+void seeks(uint32_t recorder, uint32_t player) {
+    struct Expected {
         uint64_t tick = 0, hash = 0;
     };
-    BusyWorld first(notes);
+    BusyWorld first(recorder);
     if (!there(first)) GTEST_SKIP() << "there is no such backend here";
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(first.world));
-    std::map<uint32_t, Moment> moments;  // by frame
+    std::map<uint32_t, Expected> expected;  // by frame
     std::map<uint32_t, Bytes> saves;
     uint32_t frame = 0;
     for (const uint32_t next : {1u, 30u, 61u, 75u, 92u, 110u, 131u, 155u}) {
         first.run(frame, next);
         frame = next;
         if (next == 1 || next == 75 || next == 110) saves[next] = first.save();
-        moments[next] = {tickOf(first.world), first.hash()};
+        expected[next] = {tickOf(first.world), first.hash()};
     }
     const Bytes log = logOf(first.world);
-    BusyWorld other(plays);
+    BusyWorld other(player);
     if (!there(other)) GTEST_SKIP() << "there is no such backend here";
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(other.world, log.data(), log.size()))
         << lastMessage(other.world);
@@ -61,14 +61,14 @@ void seeks(uint32_t notes, uint32_t plays) {
         auto save = saves.upper_bound(wanted);
         --save;
         ASSERT_EQ(FW_OK, other.load(save->second)) << lastMessage(other.world);
-        playTo(other.world, moments[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
-        EXPECT_EQ(moments[wanted].hash, other.hash()) << "frame " << wanted;
+        playTo(other.world, expected[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
+        EXPECT_EQ(expected[wanted].hash, other.hash()) << "frame " << wanted;
     }
     // Without a save, from the beginning: the log holds the first commands, too.
-    BusyWorld fresh(plays);
+    BusyWorld fresh(player);
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(fresh.world, log.data(), log.size()));
-    playTo(fresh.world, moments[92].tick);
-    EXPECT_EQ(moments[92].hash, fresh.hash());
+    playTo(fresh.world, expected[92].tick);
+    EXPECT_EQ(expected[92].hash, fresh.hash());
 }
 
 TEST(CommandLog, SeeksAnyTick) { seeks(FW_BACKEND_CPU, FW_BACKEND_CPU); }

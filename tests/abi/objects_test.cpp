@@ -139,7 +139,7 @@ TEST(Objects, EveryRequestCanBeCancelled) {
     for (const uint32_t tag : {3u, 4u})
         ASSERT_EQ(FW_OK, fwWorld_TagPoint(w.world, w.object, point, tag));
     EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 3));
-    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 99)) << "none has it";
+    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 99)) << "no point has this tag";
     w.ball(FW_IGNITE, 0.5f, 0, 0.1f, 0.05f);
     w.run(1);
     uint32_t reached = 0;

@@ -67,34 +67,34 @@ void seeks(uint32_t backend) {
     BusyWorld straight(FW_BACKEND_CPU), w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
     start(w.world);
-    struct Moment {
+    struct Expected {
         uint64_t tick = 0, hash = 0;
     };
-    std::map<uint32_t, Moment> moments;  // by frame
+    std::map<uint32_t, Expected> expected;  // by frame
     uint32_t frame = 0;
     for (const uint32_t next : {1u, 30u, 61u, 75u, 92u, 110u, 131u, 155u}) {
         straight.run(frame, next);
         w.run(frame, next);
         frame = next;
-        moments[next] = {tickOf(straight.world), straight.hash()};
-        ASSERT_EQ(moments[next].tick, tickOf(w.world));
-        EXPECT_EQ(moments[next].hash, w.hash()) << "keeping a timeline changed frame " << next;
+        expected[next] = {tickOf(straight.world), straight.hash()};
+        ASSERT_EQ(expected[next].tick, tickOf(w.world));
+        EXPECT_EQ(expected[next].hash, w.hash()) << "keeping a timeline changed frame " << next;
     }
     EXPECT_GE(stateOf(w.world).keyframes, 4u);
-    EXPECT_EQ(moments[155].tick, stateOf(w.world).endTick);
+    EXPECT_EQ(expected[155].tick, stateOf(w.world).endTick);
     for (const uint32_t wanted : {61u, 131u, 30u, 110u, 92u, 1u, 155u, 75u}) {
-        seek(w.world, moments[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
-        EXPECT_EQ(moments[wanted].hash, w.hash()) << "frame " << wanted;
+        seek(w.world, expected[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
+        EXPECT_EQ(expected[wanted].hash, w.hash()) << "frame " << wanted;
     }
-    EXPECT_EQ(moments[155].tick, stateOf(w.world).endTick) << "who looks forgets nothing";
+    EXPECT_EQ(expected[155].tick, stateOf(w.world).endTick) << "seeking drops nothing";
     // A new command drops the future and keeps the past.
     douse(w.world);
-    EXPECT_EQ(moments[75].tick, stateOf(w.world).endTick);
+    EXPECT_EQ(expected[75].tick, stateOf(w.world).endTick);
     steps(w.world, 40);
     const uint64_t end = tickOf(w.world), other = w.hash();
     EXPECT_EQ(end, stateOf(w.world).endTick);
-    seek(w.world, moments[61].tick);
-    EXPECT_EQ(moments[61].hash, w.hash());
+    seek(w.world, expected[61].tick);
+    EXPECT_EQ(expected[61].hash, w.hash());
     seek(w.world, end);
     EXPECT_EQ(other, w.hash());
 }

@@ -1,5 +1,5 @@
-// What saves are made of: planes that come back as they were, bytes that are refused where they are
-// damaged, and a file that no end of the process leaves half written.
+// Parts of saves: compressed planes that round-trip, archives that refuse damaged bytes, and a file
+// that no killed process leaves half written.
 #include "world/save.h"
 #include "common/save_file.h"
 #include "core/error.h"
@@ -76,7 +76,7 @@ TEST(PlaneCodec, CompressesUniformData) {
         cone[i] = uint32_t(away * 160);
         half[i] = away < 90 ? 1 : 0;
     }
-    EXPECT_LT(bitsOf(cone, side), 2.5);  // of the 16 that they have
+    EXPECT_LT(bitsOf(cone, side), 2.5);  // of the 16 that each value has
     EXPECT_LT(bitsOf(still, side), 0.01);
     EXPECT_LT(bitsOf(half, side), 0.05);
 }
@@ -117,8 +117,7 @@ TEST(ArchiveReader, ChecksCountsAgainstRemainingBytes) {
     EXPECT_THROW((void)again.count("things", 1), core::Error);
 }
 
-// A child replaces a file all the time; it is killed at any moment, and the file is whole.
-// No event of a texel that no triangle covers comes from a world: heat steps never look at such.
+// A world makes no events of texels that no triangle covers, since heat steps skip those.
 TEST(SaveChecks, RefuseEventsOfUncoveredTexels) {
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
     core::Log log(FwCallbacks{});
@@ -151,6 +150,7 @@ TEST(SaveChecks, RefuseEventsOfUncoveredTexels) {
     EXPECT_THROW(world.persistence().load(bent), core::Error);
 }
 
+// A child replaces a file repeatedly; killed at any moment, it leaves the file whole.
 TEST(SaveFile, AKilledWriterLeavesAWholeFile) {
     const auto path = std::filesystem::temp_directory_path() /
                       ("flamewright_save_" + std::to_string(getpid()) + ".fwsave");
