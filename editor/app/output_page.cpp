@@ -97,13 +97,13 @@ const fwedit::Flame* chosenFlame(const App& app) {
     return &flames[size_t(std::clamp(app.output->flame, 0, int(flames.size()) - 1))];
 }
 
-void writeBook(App& app) {
+void writeFlipbook(App& app) {
     const fwedit::Flame* flame = chosenFlame(app);
     if (!flame) return;
     const fs::path file = folderOf(app) / (flame->name + ".fwbook");
     startJob(app, app.output->job, "Flipbook",
-             [file, id = flame->id, def = app.output->book](const auto& input, const auto& progress,
-                                                            OutputPage::Done& done) {
+             [file, id = flame->id, def = app.output->flipbook](
+                 const auto& input, const auto& progress, OutputPage::Done& done) {
                  done.files = {file};
                  return fwedit::writeFlipbook(input, id, def, file, progress, done.error);
              });
@@ -233,7 +233,7 @@ void addOutputActions(App& app, std::vector<Action>& list) {
         list.end(),
         {{"Write game files", "Export", "Ctrl+E", icons::exportTo, [at] { writeGame(*at); }, idle,
           page},
-         {"Write flipbook", "Export", "", icons::film, [at] { writeBook(*at); },
+         {"Write flipbook", "Export", "", icons::film, [at] { writeFlipbook(*at); },
           [at, idle] { return idle() && !at->document.scene.flames.empty(); }, page},
          {"Write burn times", "Export", "", icons::timer, [at] { writeTimes(*at); },
           [at, idle] { return idle() && !at->document.scene.meshes.empty(); }, page},
@@ -340,9 +340,9 @@ void showActs(App& app, const Rect& rect) {
             choice("flame", {rows.fieldX(), rows.y}, {rows.fieldWidth(), dp(metrics::row)}, names,
                    page.flame);
             rows.next();
-            integerRow(rows, "Frames", page.book.frames, nullptr, 4, 128);
-            integerRow(rows, "Size", page.book.side, "px", 16, 256);
-            numberRow(rows, "One turn", page.book.seconds,
+            integerRow(rows, "Frames", page.flipbook.frames, nullptr, 4, 128);
+            integerRow(rows, "Size", page.flipbook.side, "px", 16, 256);
+            numberRow(rows, "One turn", page.flipbook.seconds,
                       {.unit = "s", .format = "%.1f", .lowest = 0.2f, .highest = 10});
         } else {
             showNote(rows, "Add a flame to the scene to have it as a flipbook.");

@@ -38,7 +38,7 @@ struct OutputPage {
 
     std::filesystem::path folder;  // target folder; empty: beside the scene
     int language = 0;              // SnippetLanguage to show
-    fwedit::FlipbookDef book;
+    fwedit::FlipbookDef flipbook;
     fwedit::FilmstripDef strip;
     fwedit::TurntableDef turn;
     int flame = 0;  // index of the scene's flame for a flipbook

@@ -6,7 +6,7 @@
 
 #include "import/float_picture.h"
 #include "output/output.h"
-#include "tools/flipbook/flame_book.h"
+#include "tools/flipbook/flame_flipbook.h"
 #include "tools/whole_file.h"
 
 namespace fwedit {
@@ -118,23 +118,23 @@ bool writeFlipbook(const OutputInput& input, ObjectId id, const FlipbookDef& def
     }
     FlameShape shape;
     if (hasShape(*flame) && !shapeOf(*flame, input.folder, shape, error)) return false;
-    fwtools::FlameBookDef book;
-    book.preset = flame->preset;
-    book.power = flame->power;
-    book.diameter = flame->diameter;
-    book.texels = shape.texels;
-    book.width = shape.width;
-    book.height = shape.height;
-    book.cooked = std::as_bytes(std::span(shape.cooked));
-    book.frames = def.frames;
-    book.side = def.side;
-    book.seconds = def.seconds;
-    book.threads = std::max(1u, std::thread::hardware_concurrency());
+    fwtools::FlameFlipbookDef flipbook;
+    flipbook.preset = flame->preset;
+    flipbook.power = flame->power;
+    flipbook.diameter = flame->diameter;
+    flipbook.texels = shape.texels;
+    flipbook.width = shape.width;
+    flipbook.height = shape.height;
+    flipbook.cooked = std::as_bytes(std::span(shape.cooked));
+    flipbook.frames = def.frames;
+    flipbook.side = def.side;
+    flipbook.seconds = def.seconds;
+    flipbook.threads = std::max(1u, std::thread::hardware_concurrency());
     std::vector<std::byte> bytes;
     const auto reportStage = [&](float share) {
         return !progress || progress("Looking at " + flame->name, share);
     };
-    if (!fwtools::bakeFlameBook(book, reportStage, bytes, error)) {
+    if (!fwtools::bakeFlameFlipbook(flipbook, reportStage, bytes, error)) {
         if (error.empty()) error = kStopped;
         return false;
     }

@@ -192,13 +192,14 @@ const char* presetWord(uint32_t preset) {
 }
 
 // The library's flipbooks that emitters show, as in burn.cpp.
-struct Book {
+struct FlipbookMember {
     const char *member, *preset, *slot;
 };
-constexpr Book kBooks[] = {{"roll_book", "FW_FLIPBOOK_ROLL", "fireFlipbooks[0]"},
-                           {"puff_book", "FW_FLIPBOOK_PUFF", "fireFlipbooks[1]"},
-                           {"smoke_book", "FW_FLIPBOOK_SMOKE", "smokeFlipbooks[0]"},
-                           {"spark_book", "FW_FLIPBOOK_SPARK", "sparkFlipbook"}};
+constexpr FlipbookMember kFlipbooks[] = {
+    {"roll_flipbook", "FW_FLIPBOOK_ROLL", "fireFlipbooks[0]"},
+    {"puff_flipbook", "FW_FLIPBOOK_PUFF", "fireFlipbooks[1]"},
+    {"smoke_flipbook", "FW_FLIPBOOK_SMOKE", "smokeFlipbooks[0]"},
+    {"spark_flipbook", "FW_FLIPBOOK_SPARK", "sparkFlipbook"}};
 
 class Writer {
  public:
@@ -287,14 +288,14 @@ class Writer {
             std::any_of(scene_.sources.begin(), scene_.sources.end(),
                         [](const HeatSource& one) { return one.shape == SourceFlamethrower; });
         if (!flipbooks) return;
-        open("add_books", false, "Flipbooks of the particles, from the library.");
+        open("add_flipbooks", false, "Flipbooks of the particles, from the library.");
         line("FwFlipbookDef def = fwDefaultFlipbookDef();");
         line("FwResult result = FW_OK;");
-        for (const Book& book : kBooks) {
-            member("FwFlipbookId", book.member);
-            line(std::string("def.preset = ") + book.preset + ";");
+        for (const FlipbookMember& flipbook : kFlipbooks) {
+            member("FwFlipbookId", flipbook.member);
+            line(std::string("def.preset = ") + flipbook.preset + ";");
             line("if (result >= 0) result = fwWorld_CreateFlipbook(" + world() + ", &def, &" +
-                 in(book.member) + ");");
+                 in(flipbook.member) + ");");
         }
         functions_ += "    return result;\n}\n\n";
     }
@@ -486,8 +487,9 @@ class Writer {
         member("FwFireEmitterId", name);
         open("add_" + name, false, called);
         def("FireEmitter", made);
-        for (const Book& book : kBooks)
-            if (flipbooks) line(std::string("def.") + book.slot + " = " + in(book.member) + ";");
+        for (const FlipbookMember& flipbook : kFlipbooks)
+            if (flipbooks)
+                line(std::string("def.") + flipbook.slot + " = " + in(flipbook.member) + ";");
         if (object) line("def.object = " + in(nameOf(object)) + ";");
         line("return fwWorld_CreateFireEmitter(" + world() + ", &def, &" + in(name) + ");");
         functions_ += "}\n\n";

@@ -1,5 +1,5 @@
-// FW_EVENT_STRUCTURE_BROKE: a board that burns through in the middle loses what it supported, a
-// sheet what hung from it. Each lost area is reported once, on both backends and across saves.
+// FW_EVENT_STRUCTURE_BROKE: a board that burns through in the middle loses the part above, a sheet
+// the part below. Each lost area is reported once, on both backends and across saves.
 #include "abi/busy_world.h"
 
 namespace fw::test::break_test {
@@ -86,7 +86,7 @@ struct Board : HostedWorld {
 constexpr float kRowArea = kWide * kHigh / kRows;
 constexpr double kBurns = 20;  // s: one band burns through, with a margin
 
-TEST(AbiBreak, ReportsWhatABurntBandSupportedOnce) {
+TEST(Breakage, ReportsWhatABurntBandSupportedOnce) {
     for (const uint32_t flags : {0u, uint32_t(FW_BURNABLE_LITE)}) {
         Board board(FW_BACKEND_CPU, flags);
         board.light(11, kWide / 2, 0.02f);
@@ -107,7 +107,7 @@ TEST(AbiBreak, ReportsWhatABurntBandSupportedOnce) {
     }
 }
 
-TEST(AbiBreak, SheetsHangFromTheirPins) {
+TEST(Breakage, SheetsHangFromTheirPins) {
     Board sheet(FW_BACKEND_CPU, 0, 0, 0.01f, true);
     sheet.light(11);
     sheet.run(kBurns);
@@ -116,7 +116,7 @@ TEST(AbiBreak, SheetsHangFromTheirPins) {
     EXPECT_NEAR(5.5f * kHigh / kRows, sheet.broke[0].position[1], 0.04f);
 }
 
-TEST(AbiBreak, ReportsOnlyRequestedKinds) {
+TEST(Breakage, ReportsOnlyRequestedKinds) {
     Board none(FW_BACKEND_CPU, 0, 0, 0), large(FW_BACKEND_CPU, 0, 0, 5 * kRowArea),
         whole(FW_BACKEND_CPU, FW_BURNABLE_NO_HOLES), share(FW_BACKEND_CPU, 0, 0.09f, 0);
     for (Board* board : {&none, &large, &whole, &share}) {
@@ -140,8 +140,8 @@ TEST(AbiBreak, ReportsOnlyRequestedKinds) {
     EXPECT_NEAR(kHigh / 2, share.broke[0].position[1], 1e-5f);
 }
 
-// A band that is cut out bears nothing, does not count as area, and splits the board in two.
-TEST(AbiBreak, CutOutsNeitherSupportNorCount) {
+// A band that is cut out supports nothing, does not count as area, and splits the board in two.
+TEST(Breakage, CutOutsNeitherSupportNorCount) {
     Board part(FW_BACKEND_CPU, 0, 0, 0.01f, false, 3u << 7),
         share(FW_BACKEND_CPU, 0, 0.07f, 0, false, 63u << 5);  // more than a tenth
     for (Board* board : {&part, &share}) {
@@ -156,7 +156,7 @@ TEST(AbiBreak, CutOutsNeitherSupportNorCount) {
 }
 
 // With equal frames; a loaded save continues as the original does.
-TEST(AbiBreak, BothBackendsAgree) {
+TEST(Breakage, BothBackendsAgree) {
     Board cpu(FW_BACKEND_CPU, 0, 0.09f), device(FW_BACKEND_VULKAN, 0, 0.09f);
     if (!device.world) GTEST_SKIP() << "there is no such backend here";
     Bytes save;
@@ -197,9 +197,9 @@ TEST(AbiBreak, BothBackendsAgree) {
     EXPECT_EQ(2u, cpu.broke.size());
 }
 
-// At whatever frame a save is made and wherever it is loaded, each event comes once, at its
-// original step. Events that were not polled come at once.
-TEST(AbiBreak, PendingEventsKeepTheirStepAcrossSaves) {
+// For every frame of the save and every loading world, each event arrives once, at its original
+// step. Events that were not polled arrive at once.
+TEST(Breakage, PendingEventsKeepTheirStepAcrossSaves) {
     Board straight(FW_BACKEND_CPU, 0, 0.09f);
     const auto begin = [](Board& board) {
         board.light(11, kWide / 2, 0.02f);
@@ -245,8 +245,8 @@ TEST(AbiBreak, PendingEventsKeepTheirStepAcrossSaves) {
     }
 }
 
-// A loading host that asks for another kind hears nothing of areas lost before.
-TEST(AbiBreak, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
+// A loading host that requests another kind gets no events of areas lost before.
+TEST(Breakage, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
     Board asks(FW_BACKEND_CPU, 0, 0.09f), none(FW_BACKEND_CPU, 0, 0, 0),
         other(FW_BACKEND_CPU, 0, 0.02f);
     asks.light(11);
@@ -263,7 +263,7 @@ TEST(AbiBreak, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
     EXPECT_EQ(uint32_t(FW_BREAK_PART), other.broke[0].tag);
 }
 
-TEST(AbiBreak, RefusesBadValuesByName) {
+TEST(Breakage, RefusesBadValuesByName) {
     SheetWorld w(evenMaterial(0.02f, 5));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     EXPECT_EQ(0, def.breakShare);

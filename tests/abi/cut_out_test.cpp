@@ -63,7 +63,7 @@ Burnt burn(float alphaCutoff) {
     return result;
 }
 
-TEST(AbiCutOut, FireStopsAtTransparentTexels) {
+TEST(CutOut, FireStopsAtTransparentTexels) {
     const Burnt whole = burn(0);
     EXPECT_EQ(whole.leftAll, whole.left);
     EXPECT_EQ(whole.rightAll, whole.right);
@@ -77,7 +77,7 @@ TEST(AbiCutOut, FireStopsAtTransparentTexels) {
     EXPECT_NEAR(0.5, cut.fraction, 0.02) << "half of the opaque area";
 }
 
-TEST(AbiCutOut, IgnitingATransparentTexelLightsNothing) {
+TEST(CutOut, IgnitingATransparentTexelLightsNothing) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = w.mesh;
@@ -97,7 +97,7 @@ TEST(AbiCutOut, IgnitingATransparentTexelLightsNothing) {
     EXPECT_EQ(FW_OK, fwWorld_Ignite(w.world, &match, &texels)) << lastMessage(w.world);
 }
 
-TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsOpaque) {
+TEST(CutOut, ATexelBurnsIfAnyPartOfItIsOpaque) {
     // Lines one pixel wide: each texel holds one of them.
     SheetWorld w(host::evenMaterial(0.05f, 5), 1.0f, 0.25f, 16);
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
@@ -111,7 +111,7 @@ TEST(AbiCutOut, ATexelBurnsIfAnyPartOfItIsOpaque) {
     EXPECT_NEAR(1, w.state().burntFraction, 1e-3);
 }
 
-TEST(AbiCutOut, RefusesACutoffOutOfRange) {
+TEST(CutOut, RefusesACutoffOutOfRange) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const uint32_t pixels[4] = {};
     FwImageDef def = fwDefaultImageDef();

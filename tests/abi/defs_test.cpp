@@ -15,13 +15,13 @@ using host::lastMessage;
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-TEST(AbiC, EveryFunctionAcceptsNull) {
+TEST(CInterface, EveryFunctionAcceptsNull) {
     int calls = 0;
     EXPECT_EQ(0, fwTestCallEverything(&calls));
     EXPECT_EQ(158, calls);  // all functions of the three headers
 }
 
-TEST(AbiC, VersionAndNames) {
+TEST(CInterface, VersionAndNames) {
     EXPECT_EQ(FW_VERSION_MAJOR << 22 | FW_VERSION_MINOR << 12 | FW_VERSION_PATCH, fwGetVersion());
     EXPECT_STREQ("FW_ERROR_STALE_ID", fwResultName(FW_ERROR_STALE_ID));
     EXPECT_STREQ("an unknown FwResult", fwResultName(1234));
@@ -70,7 +70,7 @@ const DefCase kDefs[] = {
     {"composite", FW_DEF_VULKAN_COMPOSITE, sizeof(FwVulkanComposite)},
 };
 
-TEST(AbiInitDef, WritesNothingPastStructSizeAndZeroesUnknownFields) {
+TEST(InitDef, WritesNothingPastStructSizeAndZeroesUnknownFields) {
     for (const DefCase& def : kDefs) {
         std::vector<unsigned char> whole(def.size);
         fwInitDef(def.type, whole.data(), def.size);
@@ -131,7 +131,7 @@ void checkSizes(const char* name, Def whole, const std::function<FwResult(const 
     }
 }
 
-TEST(AbiSizes, ServesOlderHostsAndRefusesUnknownFields) {
+TEST(StructSizes, ServesOlderHostsAndRefusesUnknownFields) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     const auto worldMessage = [&] { return lastMessage(w.world); };
     const auto contextMessage = [&] { return lastMessage(w.context); };
@@ -315,7 +315,7 @@ TEST(AbiSizes, ServesOlderHostsAndRefusesUnknownFields) {
         worldMessage);
 }
 
-TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
+TEST(StructSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialDef def;
     std::memset(&def, 0xCD, sizeof def);
@@ -325,7 +325,7 @@ TEST(AbiSizes, AnOldHostGetsDefaultsForFieldsItDoesNotKnow) {
     EXPECT_EQ(FW_OK, fwWorld_CreateMaterial(w.world, &def, &id)) << lastMessage(w.world);
 }
 
-TEST(AbiSizes, InfosNeverWritePastTheirSize) {
+TEST(StructSizes, InfosNeverWritePastTheirSize) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     for (uint32_t size = 8; size <= sizeof(FwMeshInfo) + 32; size += 4) {
         std::vector<unsigned char> bytes(size + 16, 0xCD);
@@ -359,7 +359,7 @@ void refuseFloat(const Def& good, float Def::*field, const char* name,
     EXPECT_EQ(FW_OK, create(&good)) << message();
 }
 
-TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
+TEST(DefValues, EveryFloatOfEveryDefIsChecked) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     const auto worldMessage = [&] { return lastMessage(w.world); };
     const auto contextMessage = [&] { return lastMessage(w.context); };
@@ -650,7 +650,7 @@ TEST(AbiValues, EveryFloatOfEveryDefIsChecked) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Step(w.world, 10.5f));
 }
 
-TEST(AbiValues, PosesThatAreNotRigidAreRefusedWithTheReason) {
+TEST(DefValues, PosesThatAreNotRigidAreRefusedWithTheReason) {
     host::SheetWorld w(host::evenMaterial(0.02f, 5));
     struct Case {
         float columns[9];

@@ -76,7 +76,7 @@ bool green(const Color& c) { return 2 * c.g > 3 * c.r && c.g > 2 * c.b && c.g > 
 bool wooden(const Color& c) { return c.r > c.g && c.g > c.b && c.b > 20; }
 bool blue(const Color& c) { return c.b > 2 * c.r && c.b > 2 * c.g && c.b > 60; }
 
-TEST(AbiDrawn, EveryMaterialSlotShowsItsImage) {
+TEST(DrawnMesh, EveryMaterialSlotShowsItsImage) {
     DRAWN_WORLD_OR_SKIP(w);
     const host::Sheet sheet(1.0f, 0.5f, 4);
     FwMeshDef mesh = sheet.def(32);
@@ -144,7 +144,7 @@ double shareDrawn(DrawnWorld& w, float alphaCutoff, int radius, bool below = fal
     return drawn / (64.0 * 32);
 }
 
-TEST(AbiDrawn, CutOutsAreDrawnWhereAlphaExceedsTheCutoff) {
+TEST(DrawnMesh, CutOutsAreDrawnWhereAlphaExceedsTheCutoff) {
     DRAWN_WORLD_OR_SKIP(w);
     EXPECT_EQ(1, shareDrawn(w, 0, 12)) << "alpha is ignored";
     // Four pixels of the picture per pixel of the screen: mips keep the covered share.
@@ -156,7 +156,7 @@ TEST(AbiDrawn, CutOutsAreDrawnWhereAlphaExceedsTheCutoff) {
 }
 
 // Frames skip idle objects; changes made meanwhile apply when the object burns.
-TEST(AbiDrawn, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
+TEST(DrawnMesh, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -204,7 +204,7 @@ TEST(AbiDrawn, AnObjectMovedWhileAsleepBurnsAtItsNewPlace) {
     EXPECT_NEAR(lit(0.2f), 0.2f, 0.4f);
 }
 
-TEST(AbiDrawn, BothSidesOfAnOpenMeshShowOneBurnMap) {
+TEST(DrawnMesh, BothSidesOfAnOpenMeshShowOneBurnMap) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -260,7 +260,7 @@ void bend(const host::Sheet& sheet, float turn, float lift, std::vector<float>& 
     }
 }
 
-TEST(AbiDrawn, SkinnedStripsBurnAtTheirCurrentPlace) {
+TEST(DrawnMesh, SkinnedStripsBurnAtTheirCurrentPlace) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 10;
     DRAWN_WORLD_OR_SKIP(w, worldDef);
@@ -328,7 +328,7 @@ TEST(AbiDrawn, SkinnedStripsBurnAtTheirCurrentPlace) {
 
 // A burnt sheet of paper leaves nothing. Without damage all of it stays, without holes a charred
 // sheet.
-TEST(AbiDrawn, WithoutDamageABurntSheetLooksNew) {
+TEST(DrawnMesh, WithoutDamageABurntSheetLooksNew) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     worldDef.maxLights = 0;
@@ -400,7 +400,7 @@ TEST(AbiDrawn, WithoutDamageABurntSheetLooksNew) {
     }
 }
 
-TEST(AbiSkin, DoesNotChangeTheBurn) {
+TEST(SkinnedMesh, DoesNotChangeTheBurn) {
     uint64_t hashes[2] = {};
     for (const bool skinned : {false, true}) {
         host::SheetWorld w(host::evenMaterial(0.05f, 10), 1.0f, 0.5f, 64);
@@ -438,7 +438,7 @@ TEST(AbiSkin, DoesNotChangeTheBurn) {
 
 // Objects of one mesh share its buffers: each further object costs only its own, all the same
 // amount.
-TEST(AbiDrawn, ObjectsOfAMeshShareItsBuffers) {
+TEST(DrawnMesh, ObjectsOfAMeshShareItsBuffers) {
     DRAWN_WORLD_OR_SKIP(w);
     const host::Sheet sheet(1.0f, 0.5f, 4);
     const FwMeshDef mesh = sheet.def(64);

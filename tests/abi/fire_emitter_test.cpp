@@ -24,7 +24,7 @@ FwFireEmitterState stateOf(FireWorld& w, FwFireEmitterId id) {
     return getState(fwWorld_GetFireEmitterState, w.world, id);
 }
 
-TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
+TEST(FireEmitter, BurnsLightsAndBurnsOut) {
     FireWorld w;
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     def.userData = 77;
@@ -54,7 +54,7 @@ TEST(AbiFireEmitter, BurnsLightsAndBurnsOut) {
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 4));
 }
 
-TEST(AbiFireEmitter, RefusesInvalidDefs) {
+TEST(FireEmitter, RefusesInvalidDefs) {
     FireWorld w;
     FwFireEmitterId id{};
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
@@ -95,7 +95,7 @@ TEST(AbiFireEmitter, RefusesInvalidDefs) {
 }
 
 // The burning area feeds it: nothing at first, more as more burns, nothing in the end.
-TEST(AbiFireEmitter, OnAMeshFollowsTheBurningArea) {
+TEST(FireEmitter, OnAMeshFollowsTheBurningArea) {
     host::Panels panels(fwDefaultWorldDef(), 6);
     const FwBurnableMeshId sheet = panels.add(0, 0, 0), other = panels.add(3, 0, 0);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
@@ -128,7 +128,7 @@ TEST(AbiFireEmitter, OnAMeshFollowsTheBurningArea) {
     EXPECT_EQ(0u, alive());
 }
 
-TEST(AbiFireEmitter, ReusesSlotsOfDestroyedEmitters) {
+TEST(FireEmitter, ReusesSlotsOfDestroyedEmitters) {
     FireWorld w;
     FwFireEmitterDef def = fwDefaultFireEmitterDef();
     def.maxParticles = 4096;
@@ -150,7 +150,7 @@ TEST(AbiFireEmitter, ReusesSlotsOfDestroyedEmitters) {
     EXPECT_THAT(lastMessage(w.world), HasSubstr("256 fire emitters are there; the limit is 256."));
 }
 
-TEST(AbiFireEmitter, FramesAllocateNothing) {
+TEST(FireEmitter, FramesAllocateNothing) {
     FireWorld w;
     std::vector<FwFireEmitterId> ids;
     FwFireEmitterDef def = fwDefaultFireEmitterDef();

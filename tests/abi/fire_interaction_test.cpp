@@ -84,7 +84,7 @@ std::vector<Shape> shapesAbove() {
     return all;
 }
 
-TEST(AbiFireInteraction, FlamesGoAroundColliders) {
+TEST(FireInteraction, FlamesGoAroundColliders) {
     FireWorld free;
     const FwVolumetricFireId alone = free.make(fwDefaultVolumetricFireDef());
     free.run(2);
@@ -112,7 +112,7 @@ TEST(AbiFireInteraction, FlamesGoAroundColliders) {
     }
 }
 
-TEST(AbiFireInteraction, CollidesWithHeightfieldsAndOccluders) {
+TEST(FireInteraction, CollidesWithHeightfieldsAndOccluders) {
     // A slope east of the fire with wind onto it: the flame climbs it.
     std::vector<float> heights;
     for (int z = 0; z < 9; ++z)
@@ -170,7 +170,7 @@ TEST(AbiFireInteraction, CollidesWithHeightfieldsAndOccluders) {
 
 // A depth image of a wall bends flames and does nothing else. A new one each frame allocates
 // nothing.
-TEST(AbiFireInteraction, DepthCollidersAffectFlamesOnly) {
+TEST(FireInteraction, DepthCollidersAffectFlamesOnly) {
     FireWorld w;
     const FwVolumetricFireId fire = w.make(fwDefaultVolumetricFireDef());
     w.run(1);
@@ -199,7 +199,7 @@ TEST(AbiFireInteraction, DepthCollidersAffectFlamesOnly) {
     EXPECT_GT(w.state(fire).contactPower, 0.0f);
 }
 
-TEST(AbiFireInteraction, RefusesInvalidColliders) {
+TEST(FireInteraction, RefusesInvalidColliders) {
     FireWorld w;
     FwFireColliderId id{};
     const auto refused = [&](const FwFireColliderDef& def, const char* text) {
@@ -255,7 +255,7 @@ TEST(AbiFireInteraction, RefusesInvalidColliders) {
     refused(def, "64 fire colliders");
 }
 
-TEST(AbiFireInteraction, FollowsAScriptAndReturns) {
+TEST(FireInteraction, FollowsAScriptAndReturns) {
     FireWorld w;
     FwVolumetricFireDef fire = fwDefaultVolumetricFireDef();
     fire.position[0] = 5;
@@ -317,7 +317,7 @@ TEST(AbiFireInteraction, FollowsAScriptAndReturns) {
     refused(track, "time of key 1 is 1");
 }
 
-TEST(AbiFireInteraction, UsesTheHostsProfile) {
+TEST(FireInteraction, UsesTheHostsProfile) {
     FireWorld w;
     std::vector<float> texels;  // emits in the lower half only
     for (int y = 0; y < 16; ++y)
@@ -392,7 +392,7 @@ TEST(AbiFireInteraction, UsesTheHostsProfile) {
     refused(def, FW_ERROR_INVALID_ARGUMENT, "23 fire profiles");
 }
 
-TEST(AbiFireInteraction, ReportsHeatAtAPoint) {
+TEST(FireInteraction, ReportsHeatAtAPoint) {
     FireWorld w;
     EXPECT_EQ(293.0f, ask(w, 0, 0, 0).temperature);
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
@@ -446,7 +446,7 @@ float ridgeDistance(void*, const float point[3], float normal[3]) {  // a slab a
 }
 
 // A wall blocks radiation.
-TEST(AbiFireInteraction, WallsBlockRadiation) {
+TEST(FireInteraction, WallsBlockRadiation) {
     FireWorld w;
     (void)w.make(fwDefaultVolumetricFireDef());
     w.run(1);
@@ -524,7 +524,7 @@ TEST(AbiFireInteraction, WallsBlockRadiation) {
 }
 
 // Gas reaches a ceiling in puffs; the reported contact power is averaged over them.
-TEST(AbiFireInteraction, ContactPowerIsSteady) {
+TEST(FireInteraction, ContactPowerIsSteady) {
     FireWorld w;
     FwFireColliderDef def = fwDefaultFireColliderDef();
     def.kind = FW_COLLIDER_PLANE;
@@ -548,7 +548,7 @@ TEST(AbiFireInteraction, ContactPowerIsSteady) {
     EXPECT_LT(leap, 0.08 * mean);
 }
 
-TEST(AbiFireInteraction, NeighboursLeanTogetherAndGrowTaller) {
+TEST(FireInteraction, NeighboursLeanTogetherAndGrowTaller) {
     FireWorld apart, close;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     FwVolumetricFireId a[2], b[2];
@@ -570,7 +570,7 @@ TEST(AbiFireInteraction, NeighboursLeanTogetherAndGrowTaller) {
 }
 
 // Varying power does not split a wide fire differently; a weakening fire dies down in place.
-TEST(AbiFireInteraction, WideWeakFiresKeepTheirPieces) {
+TEST(FireInteraction, WideWeakFiresKeepTheirPieces) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.diameter = 2;
@@ -624,7 +624,7 @@ struct Kindling {
     }
 };
 
-TEST(AbiFireInteraction, IgnitesObjectsAfterEnoughContactTime) {
+TEST(FireInteraction, IgnitesObjectsAfterEnoughContactTime) {
     Kindling never(0), far(FW_FIRE_IGNITES, 3), near(FW_FIRE_IGNITES);
     for (Kindling* k : {&never, &far, &near}) k->sheets.run(6);
     EXPECT_EQ(0u, never.sheets.state().ignited);
@@ -658,7 +658,7 @@ TEST(AbiFireInteraction, IgnitesObjectsAfterEnoughContactTime) {
     EXPECT_GT(blown.sheets.state().ignited, 0u);
 }
 
-TEST(AbiFireInteraction, IgnitionIsDeterministic) {
+TEST(FireInteraction, IgnitionIsDeterministic) {
     uint64_t hashes[2] = {};
     for (uint64_t& hash : hashes) {
         Kindling k(FW_FIRE_IGNITES, 0.3f, 5);

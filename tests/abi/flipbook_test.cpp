@@ -19,7 +19,7 @@ FwFlipbookId make(FireWorld& w, uint32_t preset) {
     return created(fwWorld_CreateFlipbook, w.world, def);
 }
 
-TEST(AbiFlipbook, RefusesInvalidData) {
+TEST(CreateFlipbook, RefusesInvalidData) {
     FireWorld w;
     FwFlipbookId id{};
     FwFlipbookDef def = fwDefaultFlipbookDef();
@@ -48,7 +48,7 @@ TEST(AbiFlipbook, RefusesInvalidData) {
     refuses(FW_ERROR_INVALID_ARGUMENT, "32 flipbooks are there; the limit is 32.");
 }
 
-TEST(AbiFlipbook, LivesWhileInUse) {
+TEST(CreateFlipbook, LivesWhileInUse) {
     FireWorld w;
     const FwFlipbookId fire = make(w, FW_FLIPBOOK_FLAME), smoke = make(w, FW_FLIPBOOK_HAZE);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();

@@ -14,7 +14,7 @@ using host::lastMessage;
 using host::materialOf;
 
 // A sheet of 0.1 m; `all` acts on the whole of it.
-class AbiHeat : public ::testing::TestWithParam<uint32_t> {
+class HeatAndWater : public ::testing::TestWithParam<uint32_t> {
  protected:
     void SetUp() override {
         context_ = host::createContext(host_, GetParam());
@@ -110,7 +110,7 @@ class AbiHeat : public ::testing::TestWithParam<uint32_t> {
     FwBurnableMeshId object_{};
 };
 
-TEST_P(AbiHeat, CharDepthAfterAnHourMatchesEurocode5) {
+TEST_P(HeatAndWater, CharDepthAfterAnHourMatchesEurocode5) {
     const float limits[2][2] = {{450, 0.65f},
                                 {660, 0.50f}};  // kg/m^3, mm/min: EN 1995-1-2:2004, table 3.1
     for (const auto& [density, rate] : limits) {
@@ -133,7 +133,7 @@ TEST_P(AbiHeat, CharDepthAfterAnHourMatchesEurocode5) {
     }
 }
 
-TEST_P(AbiHeat, EnergyLedgerIsExact) {
+TEST_P(HeatAndWater, EnergyLedgerIsExact) {
     for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
         const bool pine = which == FW_MATERIAL_PINE;
         make(preset(which), pine ? 20 : 2);
@@ -170,7 +170,7 @@ TEST_P(AbiHeat, EnergyLedgerIsExact) {
 }
 
 // The overlay's figures add up at every step, and the unburnt share equals the texels' fuel.
-TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
+TEST_P(HeatAndWater, EnergyLedgerOfAWorldCloses) {
     for (const uint32_t which : {uint32_t(FW_MATERIAL_PAPER), uint32_t(FW_MATERIAL_PINE)}) {
         const bool pine = which == FW_MATERIAL_PINE;
         make(preset(which), pine ? 20 : 2);
@@ -209,7 +209,7 @@ TEST_P(AbiHeat, EnergyLedgerOfAWorldCloses) {
 
 // A LITE object keeps no fuel per texel, so its ledger counts texels that burnt out. It closes at
 // every step, never decreases while nothing is extinguished, and ends with nothing unburnt.
-TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
+TEST_P(HeatAndWater, EnergyLedgerOfALiteObjectCloses) {
     make(preset(FW_MATERIAL_PAPER), 4, FW_BURNABLE_LITE);
     const FwEnergyLedger whole = book();
     EXPECT_EQ(1u, whole.objects);
@@ -239,7 +239,7 @@ TEST_P(AbiHeat, EnergyLedgerOfALiteObjectCloses) {
     EXPECT_EQ(0.0f, book().power);
 }
 
-TEST_P(AbiHeat, ExtinguishedTexelsOfALiteObjectKeepTheirFuel) {
+TEST_P(HeatAndWater, ExtinguishedTexelsOfALiteObjectKeepTheirFuel) {
     make(preset(FW_MATERIAL_PINE), 1, FW_BURNABLE_LITE);
     const FwEnergyLedger whole = book();
     all(FW_IGNITE);
@@ -252,7 +252,7 @@ TEST_P(AbiHeat, ExtinguishedTexelsOfALiteObjectKeepTheirFuel) {
     EXPECT_EQ(whole.fuel, book().unburnt);
 }
 
-TEST_P(AbiHeat, WaterExtinguishesAndMustEvaporateBeforeReignition) {
+TEST_P(HeatAndWater, WaterExtinguishesAndMustEvaporateBeforeReignition) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);
     run(3);
@@ -289,7 +289,7 @@ TEST_P(AbiHeat, WaterExtinguishesAndMustEvaporateBeforeReignition) {
     EXPECT_EQ(0u, endedBy()) << "it burnt out";
 }
 
-TEST_P(AbiHeat, ALittleWaterEvaporates) {
+TEST_P(HeatAndWater, ALittleWaterEvaporates) {
     make(preset(FW_MATERIAL_PINE), 4);
     all(FW_IGNITE);
     run(20);
@@ -304,7 +304,7 @@ TEST_P(AbiHeat, ALittleWaterEvaporates) {
 
 // A steady spray extinguishes wood if it takes more heat than the flame's feedback leaves above the
 // losses of a surface at the flaming temperature. A weaker spray does not.
-TEST_P(AbiHeat, SprayAboveTheCriticalRateExtinguishes) {
+TEST_P(HeatAndWater, SprayAboveTheCriticalRateExtinguishes) {
     constexpr double kSigma = 5.67e-8, kAmbient = 293, kLatent = 2.26e6;
     constexpr float kPace = 8;  // a spray every second of burn time
     const FwMaterialDef wood = preset(FW_MATERIAL_PINE);
@@ -333,7 +333,7 @@ TEST_P(AbiHeat, SprayAboveTheCriticalRateExtinguishes) {
     }
 }
 
-TEST_P(AbiHeat, WetSurfacesDryInAir) {
+TEST_P(HeatAndWater, WetSurfacesDryInAir) {
     FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
     make(paper, 100);
     all(FW_WET, 60);
@@ -355,7 +355,7 @@ TEST_P(AbiHeat, WetSurfacesDryInAir) {
     EXPECT_EQ(state().texels, state().ignited);
 }
 
-TEST_P(AbiHeat, DampSurfacesDoNotCatch) {
+TEST_P(HeatAndWater, DampSurfacesDoNotCatch) {
     FwMaterialDef paper = preset(FW_MATERIAL_PAPER);
     make(paper, 1, 0, 0.5f);
     EXPECT_LT(30u, state().texels) << "it catches once dry";
@@ -366,7 +366,7 @@ TEST_P(AbiHeat, DampSurfacesDoNotCatch) {
 }
 
 // Water in such a texel would never dry and would keep its tile awake.
-TEST_P(AbiHeat, EventsOfUncoveredTexelsChangeNothing) {
+TEST_P(HeatAndWater, EventsOfUncoveredTexelsChangeNothing) {
     make(preset(FW_MATERIAL_PAPER), 1);
     std::vector<uint32_t> beside;
     EXPECT_FALSE(texels(&beside).empty());
@@ -382,7 +382,7 @@ TEST_P(AbiHeat, EventsOfUncoveredTexelsChangeNothing) {
     }
 }
 
-TEST_P(AbiHeat, GoesOutWithoutHeatFeedback) {
+TEST_P(HeatAndWater, GoesOutWithoutHeatFeedback) {
     for (const float feedback : {25000.0f, 4000.0f}) {
         FwMaterialDef wood = preset(FW_MATERIAL_PINE);
         wood.flameFeedback = feedback;
@@ -396,7 +396,7 @@ TEST_P(AbiHeat, GoesOutWithoutHeatFeedback) {
 }
 
 // A corner extinguished early does not decide the cause reported for the last flames.
-TEST_P(AbiHeat, ReportsTheCauseOfTheLastFlames) {
+TEST_P(HeatAndWater, ReportsTheCauseOfTheLastFlames) {
     make(preset(FW_MATERIAL_COTTON), 1);
     all(FW_IGNITE);
     run(2);
@@ -409,7 +409,7 @@ TEST_P(AbiHeat, ReportsTheCauseOfTheLastFlames) {
     EXPECT_EQ(0u, endedBy());
 }
 
-TEST_P(AbiHeat, LiteObjectsBurnForTheirBurnTime) {
+TEST_P(HeatAndWater, LiteObjectsBurnForTheirBurnTime) {
     make(preset(FW_MATERIAL_PAPER), 1, FW_BURNABLE_LITE);
     all(FW_IGNITE);
     run(3.5);
@@ -423,7 +423,7 @@ TEST_P(AbiHeat, LiteObjectsBurnForTheirBurnTime) {
     EXPECT_EQ(FW_POINT_EXTINGUISHED, int(point().kind));
 }
 
-TEST_P(AbiHeat, RefusesInvalidWater) {
+TEST_P(HeatAndWater, RefusesInvalidWater) {
     make(preset(FW_MATERIAL_PAPER), 1);
     FwIgnitionDef def = fwDefaultIgnitionDef();
     def.kind = FW_WET;
@@ -441,7 +441,7 @@ TEST_P(AbiHeat, RefusesInvalidWater) {
 std::string backendName(const ::testing::TestParamInfo<uint32_t>& backend) {
     return backend.param == FW_BACKEND_CPU ? "Cpu" : "OwnDevice";
 }
-INSTANTIATE_TEST_SUITE_P(Backends, AbiHeat,
+INSTANTIATE_TEST_SUITE_P(Backends, HeatAndWater,
                          ::testing::Values(uint32_t(FW_BACKEND_CPU), uint32_t(FW_BACKEND_VULKAN)),
                          backendName);
 

@@ -1,5 +1,5 @@
-// Flamethrowers against the world on the cpu backend. Each case is named after the complaint about
-// games that it settles; fire through walls is the most frequent.
+// Flamethrowers against the world on the cpu backend. Most cases settle a complaint about a game,
+// which their comment cites; fire through walls is the most frequent.
 #include "abi/panels.h"
 
 #include <gmock/gmock.h>
@@ -56,7 +56,7 @@ struct Range : Panels {
 };
 
 // "Flamethrowers go through walls" (RMC-14#5776, #6308).
-TEST(Jet, AClosedWallBurnsAndShieldsWhatIsBehind) {
+TEST(Jet, AClosedWallBurnsAndOccludesWhatIsBehind) {
     for (const bool heat : {false, true}) {
         Range r(heat);
         r.wall(3);
@@ -72,7 +72,7 @@ TEST(Jet, AClosedWallBurnsAndShieldsWhatIsBehind) {
 }
 
 // "It stops at the tile before the wall, the wall never burns" (RMC-14 fix #7016).
-TEST(Jet, ABlockingWallBurns) {
+TEST(Jet, AWallThatStopsTheJetBurns) {
     Range r(true);
     r.wall(5);
     r.fire();
@@ -97,8 +97,8 @@ TEST(Jet, PassesThroughAHole) {
     EXPECT_LT(r.jetState().blockedRays, 17u);
 }
 
-// A sheet protects what is behind until it burns through, and not longer. A sheet without holes
-// blocks the jet for ever.
+// A sheet protects the objects behind it until it burns through. A sheet without holes always
+// blocks the jet.
 TEST(Jet, PassesThroughABurntHole) {
     for (const bool holes : {true, false}) {
         Range r(true);
@@ -118,7 +118,8 @@ TEST(Jet, PassesThroughABurntHole) {
             EXPECT_EQ(0, came);
             continue;
         }
-        // The hole takes as long as its appearance says after the stream has lit it.
+        // The hole takes as long as its appearance says, from the moment at which the stream lit
+        // it.
         FwPointState point{};
         point.structSize = sizeof point;
         FwQueryId query{};
@@ -175,8 +176,8 @@ TEST(Jet, BothBackendsAgreeThroughAHole) {
     });
 }
 
-// Stuck fuel burns on after the jet stops, with its own power. None is lost: the power over all
-// eighths of a second sums to what stuck.
+// Stuck fuel burns on after the jet stops, with its own power. Nothing is lost: the power over all
+// eighths of a second sums to the stuck energy.
 TEST(Jet, StuckFuelBurnsOnAndIsConserved) {
     Range r(true);
     r.wall(3);
@@ -207,14 +208,14 @@ TEST(Jet, StuckFuelBurnsOnAndIsConserved) {
     EXPECT_EQ(0, r.jetState().stuckFuel);
     EXPECT_EQ(0u, r.jetState().stuckPatches);
     EXPECT_EQ(0, r.jetState().heated);
-    // A quarter of 0.35 of what left the nozzle in these two seconds and struck.
+    // A quarter of 0.35 of the fuel that left the nozzle in these two seconds and hit.
     EXPECT_NEAR(0.25 * 0.35 * 400 * 2, gave, 0.08 * gave);
     EXPECT_LT(0u, r.lit(0));
     EXPECT_EQ(0u, r.lit(1)) << "behind";
 }
 
 // A short burst does not light a wall; the same burst of sticking fuel does. Water removes as much
-// as it can evaporate, FW_EXTINGUISH all.
+// fuel as it can evaporate, FW_EXTINGUISH all of it.
 TEST(Jet, StuckFuelLightsAWallAndWaterRemovesIt) {
     const auto litBy = [](float stick, uint32_t kind) {
         Range r(true);
@@ -278,7 +279,7 @@ TEST(Jet, ACornerDoesNotLeak) {
     EXPECT_EQ(16u, r.jetState().blockedRays);
 }
 
-// "Through walls at an angle" (RMC-14#8951): a floor that the jet grazes protects what is below.
+// "Through walls at an angle" (RMC-14#8951): a floor that the jet grazes protects the room below.
 TEST(Jet, AGrazedFloorBurnsAndTheCellarDoesNot) {
     Range r;
     r.floor(0.4f);

@@ -157,7 +157,7 @@ struct Session {
     }
 };
 
-TEST(AbiMemory, SurvivesOneFailureAtEveryAllocation) {
+TEST(HostMemory, SurvivesOneFailureAtEveryAllocation) {
     uint64_t golden = 0;
     int64_t allocations = 0;
     {
@@ -195,7 +195,7 @@ TEST(AbiMemory, SurvivesOneFailureAtEveryAllocation) {
     EXPECT_LT(uint32_t(allocations) * 9 / 10, refused);
 }
 
-TEST(AbiMemory, SurvivesPermanentFailureFromEveryAllocation) {
+TEST(HostMemory, SurvivesPermanentFailureFromEveryAllocation) {
     int64_t allocations = 0;
     {
         Session session;
@@ -219,7 +219,7 @@ TEST(AbiMemory, SurvivesPermanentFailureFromEveryAllocation) {
     }
 }
 
-TEST(AbiMemory, WarmFramesAllocateNothing) {
+TEST(HostMemory, WarmFramesAllocateNothing) {
     ::host::SheetWorld w(::host::evenMaterial(0.02f, 5));
     FwBurnableMeshDef asked =
         fwDefaultBurnableMeshDef();  // FW_EVENT_STRUCTURE_BROKE is checked on it
@@ -241,7 +241,7 @@ TEST(AbiMemory, WarmFramesAllocateNothing) {
 // A row of touching sheets, of which each in turn lies on its neighbour, so that each time another
 // pair has many contacts. Memory must follow the sum at one time, not the sum of each pair's
 // maximum.
-TEST(AbiMemory, PastContactsHoldNoMemory) {
+TEST(HostMemory, PastContactsHoldNoMemory) {
     Host host;
     FwContext* context = ::host::createCpuContext(host);
     FwWorldDef worldDef = fwDefaultWorldDef();

@@ -1,6 +1,6 @@
-// A model of a network: a link of a delay, a loss and a rate each way, with a queue in front of it,
-// a server, a client that is there from the beginning, and one that comes in the middle. The
-// server's host changes something now and then, and for ten seconds more than a slow link carries.
+// A model of a network: a link with delay, loss and rate in each direction behind a queue, a
+// server, a client from the beginning, and one that joins in the middle. The server's host changes
+// something now and then, and for ten seconds more than a slow link carries.
 #pragma once
 #include "abi/net_session.h"
 #include "abi/panels.h"
@@ -10,13 +10,13 @@
 namespace host {
 
 struct NetModelCell {
-    double delay = 0;      // s, one way; packets vary by a tenth of it, and so overtake each other
-    double loss = 0;       // chance of a packet, each way
+    double delay = 0;      // s, one way; varies by a tenth, so packets overtake each other
+    double loss = 0;       // probability per packet, each way
     double rate = 1e6;     // bytes/s, each way
     double seconds = 120;  // of the server's session
 };
 
-// A queue in front of a line: it takes 2 s of what the line carries, and drops what is beyond.
+// A queue in front of a line: holds 2 s of the line's capacity and drops the rest.
 class ModelLink {
  public:
     ModelLink(const NetModelCell& cell, uint32_t seed) : cell_(cell), random_(seed) {}
@@ -31,7 +31,7 @@ class ModelLink {
     }
     template <class Take>
     void deliver(double now, Take&& take) {
-        // By time: that of a line's packets varies.
+        // By time, as the delay of packets varies.
         const auto due = std::stable_partition(packets_.begin(), packets_.end(),
                                                [&](const Packet& p) { return p.at > now; });
         std::stable_sort(due, packets_.end(),
@@ -62,7 +62,7 @@ class NetModel {
         ok(server_->world, fwNet_Serve(server_->world, &def));
     }
 
-    // Plays all of the session, then waits until all have come to where the server is.
+    // Plays the whole session, then waits until all have reached the server's tick.
     void play() {
         const auto steps = uint32_t(cell_.seconds * 32);
         join();
@@ -79,7 +79,8 @@ class NetModel {
             settled += double(kStep);
         }
     }
-    // Is every client's world as the server's, with each message of the host once and in order?
+    // Does every client's world equal the server's, with each message of the host once and in
+    // order?
     void expectEqual() {
         ASSERT_TRUE(together()) << what();
         const uint64_t hash = server_->hash();
@@ -100,7 +101,7 @@ class NetModel {
         EXPECT_EQ(0u, state.packetsRefused) << what();
         EXPECT_EQ(0u, state.messagesLost) << what();
         EXPECT_LT(memoryMost, int64_t(24) << 20) << what();
-        // 29 kB/s of changes for ten seconds; it is said where no such rate is there.
+        // 29 kB/s of changes for ten seconds; a smaller rate must be reported as overload.
         if (cell_.rate <= 10000) {
             EXPECT_TRUE(overloaded) << what();
         }
@@ -133,9 +134,9 @@ class NetModel {
         return all;
     }
 
-    bool overloaded = false;  // some time the server said that a rate cannot carry its changes
+    bool overloaded = false;  // the server has reported that a rate cannot carry its changes
     double mostBehind = 0, settled = 0;  // s
-    int64_t memoryMost = 0;              // bytes of the server's, worlds included
+    int64_t memoryMost = 0;              // bytes of the server, including its worlds
 
  private:
     static constexpr float kStep = 1.0f / 32;
@@ -172,8 +173,8 @@ class NetModel {
         ok(server_->world, fwNet_AddPeer(server_->world, &client.peer));
     }
     uint32_t below(uint32_t n) { return uint32_t(random_()) % n; }
-    // A match, water or wind every two seconds, a message every four; a storm of wind in the
-    // middle third; at the end nothing but what burns.
+    // A match, water or wind every two seconds, a message every four; in the middle third a storm
+    // of wind changes; at the end no commands.
     void act(uint32_t step, uint32_t steps) {
         FwWorld* world = server_->world;
         const uint32_t storm = steps / 3;

@@ -1,5 +1,5 @@
-// A server and its clients in one process, and wires between them that lose, hold up, repeat and
-// mix what is sent: what the tests of networks play.
+// A server and its clients in one process, connected by wires that lose, delay, repeat and reorder
+// packets.
 #pragma once
 #include "abi/busy_world.h"
 
@@ -9,7 +9,7 @@
 namespace host {
 
 struct Wire {
-    double loss = 0.2, repeat = 0.1;       // chances of a packet
+    double loss = 0.2, repeat = 0.1;       // probabilities per packet
     double soonest = 0.02, latest = 0.15;  // s
     std::mt19937 random{1};
     struct Packet {
@@ -17,7 +17,7 @@ struct Wire {
         Bytes bytes;
     };
     std::vector<Packet> packets;
-    std::vector<Bytes> seen;  // what was sent, if it is kept
+    std::vector<Bytes> seen;  // sent packets, if they are kept
     bool keeps = false;
 
     double chance() { return double(random() >> 8) / double(1u << 24); }
@@ -46,7 +46,7 @@ inline FwNetDef netDef(uint32_t token) {
     return def;
 }
 
-// The sum in a packet's head, so that what is behind it is looked at.
+// The checksum in a packet's head, so that the receiver reads on.
 inline void signPacket(Bytes& packet) {
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 0; i < packet.size(); ++i)
@@ -55,7 +55,7 @@ inline void signPacket(Bytes& packet) {
     std::memcpy(&packet[8], &sum, 4);
 }
 
-// World: with a context, a world, a host's log, hash() and messages it takes.
+// World: owns a context, a world and a host's log; has hash() and receives messages.
 template <class World>
 class NetSession {
  public:
@@ -65,10 +65,10 @@ class NetSession {
         Wire up, down;
         std::vector<std::pair<uint64_t, std::string>> heard;  // steps, messages
         std::function<void(const std::string&)> hears;
-        bool goes = true;  // else its host has forgotten it
+        bool updates = true;  // false: its host does not update it
         bool oneFrame = false;
-        bool spoils = false;                           // its wires do: refusals are in order
-        std::function<void(Bytes&)> bendUp, bendDown;  // what a wire does to a packet's bytes
+        bool damages = false;  // its wires damage packets: refusals are expected
+        std::function<void(Bytes&)> alterUp, alterDown;  // alter a packet's bytes on the wire
     };
 
     explicit NetSession(std::unique_ptr<World> given, uint32_t seed = 1)
@@ -87,36 +87,36 @@ class NetSession {
         EXPECT_EQ(FW_OK, fwNet_AddPeer(server->world, &client.peer)) << lastMessage(server->world);
         return client;
     }
-    // Steps of the server's, and what goes to and fro meanwhile.
+    // Steps of the server, and the packets in between.
     void run(int steps) {
         for (int i = 0; i < steps; ++i) {
             server->run(1.0 / 32);
             pass(1.0 / 32);
         }
     }
-    // After the server's host has done its part: `seconds` pass.
+    // After the server's host has acted: `seconds` pass.
     void pass(double seconds) {
         EXPECT_EQ(FW_OK, fwNet_Update(server->world, float(seconds)));
         for (const auto& client : clients) {
             take(server->world, client->peer, client->down, now);
-            const int frames = seconds > 0.03 ? 3 : 1;  // a client's are shorter
+            const int frames = seconds > 0.03 ? 3 : 1;  // a client's frames are shorter
             for (int i = 0; i < frames; ++i) {
                 const double then = now + seconds * (i + 1) / frames;
                 client->down.deliver(then, [&](Bytes bytes) {
-                    if (client->bendDown) client->bendDown(bytes);
-                    read(client->world->world, {}, bytes, client->spoils);
+                    if (client->alterDown) client->alterDown(bytes);
+                    read(client->world->world, {}, bytes, client->damages);
                 });
-                if (client->goes) go(*client, seconds / frames);
+                if (client->updates) go(*client, seconds / frames);
                 take(client->world->world, {}, client->up, then);
                 client->up.deliver(then, [&](Bytes bytes) {
-                    if (client->bendUp) client->bendUp(bytes);
-                    read(server->world, client->peer, bytes, client->spoils);
+                    if (client->alterUp) client->alterUp(bytes);
+                    read(server->world, client->peer, bytes, client->damages);
                 });
             }
         }
         now += seconds;
     }
-    // The server stands until all have come to where it is.
+    // The server stands still until all clients have reached its tick.
     bool settle(double most = 30) {
         for (double waited = 0; waited < most; waited += 1.0 / 30) {
             pass(1.0 / 30);
@@ -126,7 +126,7 @@ class NetSession {
                 all = all && state.phase == FW_NET_FOLLOWING && state.records == 0 &&
                       state.step == stateOf(server->world).step;
             }
-            if (all && ++calm_ > 30) return calm_ = 0, true;  // nor does anyone hear of a fault
+            if (all && ++calm_ > 30) return calm_ = 0, true;  // and no divergence was reported
             if (!all) calm_ = 0;
         }
         for (const auto& client : clients) {

@@ -1,6 +1,5 @@
-// Networks: whatever is lost, late, doubled or damaged on the way, a client's world burns bit by
-// bit as the server's. A client that joins late or diverges catches up, and no packet breaks
-// anything.
+// Networks: under loss, delay, repetition and damage a client's world burns bit for bit like the
+// server's. A client that joins late or diverges catches up, and no packet breaks anything.
 #include "abi/net_session.h"
 #include "abi/panels.h"
 
@@ -11,7 +10,7 @@ using Busy = NetSession<BusyWorld>;
 
 void put(float (&to)[3], float x, float y, float z) { to[0] = x, to[1] = y, to[2] = z; }
 
-// What the busy world's own script leaves alone: flames, jets and water that move.
+// Features that the busy world's own script omits: moving flames, jets and water.
 void moveMore(BusyWorld& w, uint32_t frame) {
     const auto ok = [&](FwResult result) { EXPECT_EQ(FW_OK, result) << lastMessage(w.world); };
     const float turn = 0.1f * float(frame);
@@ -48,8 +47,8 @@ void play(Busy& session, uint32_t from, uint32_t to) {
     }
 }
 
-// A client from the beginning and one that comes mid-burn. Water and a puff put out parts of what
-// burns, at frames 60 and 130.
+// One client from the beginning, one that joins mid-burn. At frames 60 and 130 water and a dousing
+// ball extinguish parts of the fire.
 void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU), seed);
     const auto add = [&] {
@@ -77,13 +76,13 @@ void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
     }
 }
 
-TEST(Net, BurnsAlikeThroughLoss) {
+TEST(Net, BurnsIdenticallyUnderPacketLoss) {
     for (const uint32_t seed : {1u, 2u, 3u}) burnsAlike(seed, FW_BACKEND_CPU, 200);
 }
-TEST(Net, BurnsAlikeOnADevice) { burnsAlike(4, FW_BACKEND_VULKAN, 160); }
+TEST(Net, BurnsIdenticallyOnADevice) { burnsAlike(4, FW_BACKEND_VULKAN, 160); }
 
-// Half of a burning sheet is put out: it is out there, and burns elsewhere, on both sides.
-TEST(Net, APartThatIsPutOutIsOut) {
+// Half of a burning sheet is extinguished: it stays out, and the rest burns, on both sides.
+TEST(Net, ExtinguishedPartsStayOut) {
     struct Sheets : SheetWorld {
         Sheets() : SheetWorld(evenMaterial(0.05f, 60)) {}
     };
@@ -103,7 +102,7 @@ TEST(Net, APartThatIsPutOutIsOut) {
     session.expectEqual("when it burns on");
 }
 
-// A client that is changed by hand is found out by a hash, and healed.
+// A hash reveals a client that was altered by hand, and the server repairs it.
 TEST(Net, AClientThatDivergesIsRepaired) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     BusyWorld& client = *session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU)).world;
@@ -116,7 +115,7 @@ TEST(Net, AClientThatDivergesIsRepaired) {
     play(session, 64, 260);
     session.expectEqual("after");
     const FwNetState state = Busy::stateOf(client.world);
-    EXPECT_GE(state.desyncs, 1u);  // its fire may have reached others meanwhile
+    EXPECT_GE(state.desyncs, 1u);  // its fire may have spread meanwhile
     EXPECT_EQ(state.desyncs + 1, state.states);
     EXPECT_EQ(1u, state.repairs);
     ASSERT_FALSE(client.host.warnings.empty());
@@ -124,8 +123,8 @@ TEST(Net, AClientThatDivergesIsRepaired) {
         << client.host.warnings[0];
 }
 
-// Where one object alone differs, its tiles that do are all that travels.
-TEST(Net, TilesThatDifferAreEnough) {
+// If one object alone differs, only its differing tiles are sent.
+TEST(Net, RepairsOnlyDifferingTiles) {
     struct Sheets : SheetWorld {
         Sheets() : SheetWorld(evenMaterial(0.02f, 60), 1.0f, 0.25f, 512) {}
     };
@@ -146,7 +145,7 @@ TEST(Net, TilesThatDifferAreEnough) {
     uint64_t count = 0;
     EXPECT_EQ(FW_OK,
               fwDebug_GetTexelPositions(client.world, client.mesh, nullptr, nullptr, 0, &count));
-    const auto middle = uint32_t(count / 2 + 400);  // to the right in a row of the middle
+    const auto middle = uint32_t(count / 2 + 400);  // a row in the middle, right half
     EXPECT_EQ(FW_OK, fwDebug_PushTexels(client.world, client.object, FW_IGNITE, &middle, 1));
     session.run(192);
     const FwNetState state = NetSession<Sheets>::stateOf(client.world);
@@ -157,8 +156,8 @@ TEST(Net, TilesThatDifferAreEnough) {
     session.expectEqual("after");
 }
 
-// The server goes back in time; clients go with it.
-TEST(Net, ARewoundServerIsFollowed) {
+// The server rewinds, and clients follow.
+TEST(Net, ClientsFollowARewoundServer) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU));
     play(session, 0, 40);
@@ -170,23 +169,24 @@ TEST(Net, ARewoundServerIsFollowed) {
     EXPECT_EQ(2u, Busy::stateOf(session.clients[0]->world->world).states);
 }
 
-// A host that is forgotten for a while, and one that records one frame at a time, get there.
+// A host that is not updated for a while, and one that records one frame at a time, catch up.
 TEST(Net, SlowHostsCatchUp) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
     auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
     client.oneFrame = true;
     play(session, 0, 40);
-    client.goes = false;
+    client.updates = false;
     play(session, 40, 120);
-    client.goes = true;
+    client.updates = true;
     play(session, 120, 200);
     EXPECT_LT(Busy::stateOf(client.world->world).behind, 0.6f);
     session.expectEqual("at the end");
     EXPECT_EQ(0u, Busy::stateOf(client.world->world).desyncs);
 }
 
-// Messages come in order, each before the step it was said before: objects made by them are alike.
-TEST(Net, MessagesComeAtTheirSteps) {
+// Messages arrive in order, each before the step it was sent before: the objects they create are
+// equal.
+TEST(Net, MessagesArriveAtTheirSteps) {
     FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS);
     def.paceFactor = 8;
     const auto make = [&] {
@@ -220,9 +220,10 @@ TEST(Net, MessagesComeAtTheirSteps) {
     EXPECT_NE(std::string::npos, lastMessage(server.world).find("1025 bytes"));
 }
 
-// ---- what is refused ----------------------------------------------------------------------------
+// ---- refusals
+// ------------------------------------------------------------------------------------
 
-TEST(Net, RefusesWhatCannotBe) {
+TEST(Net, RefusesImpossibleCalls) {
     BusyWorld alone(FW_BACKEND_CPU, 12, 3), other(FW_BACKEND_CPU, 12, 3);
     FwNetAction turn{};
     turn.structSize = sizeof turn;
@@ -291,7 +292,7 @@ TEST(Net, RefusesWhatCannotBe) {
     EXPECT_EQ(FW_OK, fwWorld_Step(other.world, 0.5f));
 }
 
-TEST(Net, AnotherWorldIsRefused) {
+TEST(Net, RefusesAnotherWorld) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
     auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 3));
     play(session, 0, 40);
@@ -301,8 +302,8 @@ TEST(Net, AnotherWorldIsRefused) {
     EXPECT_NE(std::string::npos, client.world->host.warnings[0].find("identity"));
 }
 
-// Bytes that a wire spoils, that are cut, longer, of another session, of the other way or came
-// before: refused with a message, or known, and nothing is changed.
+// Packets that are damaged, cut, extended, of another session, of the other direction or repeated
+// are refused with a message, or recognised, and change nothing.
 TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
     auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
@@ -326,8 +327,8 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
         const bool toServer = random() % 2 != 0, swapped = random() % 16 == 0;
         const std::vector<Bytes>& from = toServer != swapped ? client.up.seen : client.down.seen;
         Bytes bytes = from[random() % from.size()];
-        const bool spoiled = random() % 8 != 0;
-        if (spoiled) {
+        const bool damaged = random() % 8 != 0;
+        if (damaged) {
             const uint32_t kind = random() % 5;
             if (kind == 0) bytes.resize(random() % bytes.size());
             if (kind == 1) bytes.resize(bytes.size() + 1 + random() % 2000);
@@ -366,19 +367,19 @@ TEST(Net, TenThousandFuzzedPacketsChangeNothing) {
     EXPECT_EQ(before, session.server->hash());
     EXPECT_EQ(before, client.world->hash());
     play(session, 50, 100);
-    session.expectEqual("and it goes on");
+    session.expectEqual("and it continues");
     EXPECT_EQ(0u, Busy::stateOf(client.world->world).desyncs);
 }
 
-// One in twenty is spoilt behind its head and has a right sum all the same. Clients may
-// diverge by that; the server finds and repairs them.
-TEST(Net, DamageThatIsNotFoundAtOnceHeals) {
+// One packet in twenty is damaged behind its head but has a correct checksum. Clients may diverge;
+// the server finds and repairs them.
+TEST(Net, RepairsDivergenceFoundLate) {
     for (const uint32_t seed : {1u, 2u, 3u}) {
         Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4), seed);
         auto& client = session.join(std::make_unique<BusyWorld>(FW_BACKEND_CPU, 12.0f, 4));
         std::mt19937 random(seed);
-        uint32_t spoilt = 0;
-        const auto spoil = [&](Wire& wire) {
+        uint32_t damaged = 0;
+        const auto damage = [&](Wire& wire) {
             for (Wire::Packet& packet : wire.packets) {
                 if (packet.bytes.size() <= 24 || random() % 20 != 0) continue;
                 const size_t room = packet.bytes.size() - 24;
@@ -387,17 +388,17 @@ TEST(Net, DamageThatIsNotFoundAtOnceHeals) {
                         .bytes[24 + random() % std::min<size_t>(room, random() % 2 ? 40 : room)] ^=
                         (unsigned char)(1u << (random() % 8));
                 signPacket(packet.bytes);
-                ++spoilt;
+                ++damaged;
             }
         };
-        client.spoils = true;
+        client.damages = true;
         for (uint32_t frame = 0; frame < 300; ++frame) {
             play(session, frame, frame + 1);
-            if (frame < 200) spoil(client.up), spoil(client.down);
+            if (frame < 200) damage(client.up), damage(client.down);
         }
-        client.spoils = false;
-        EXPECT_GT(spoilt, 15u);
-        play(session, 300, 420);  // so that every object is hashed
+        client.damages = false;
+        EXPECT_GT(damaged, 15u);
+        play(session, 300, 420);  // so that the hash of every object is compared
         session.expectEqual("at the end");
     }
 }

@@ -9,7 +9,7 @@ using host::Host;
 using host::lastMessage;
 using host::SheetWorld;
 
-TEST(AbiObjects, RefusesStaleIds) {
+TEST(Objects, RefusesStaleIds) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     FwMaterialId id{};
     const FwMaterialDef def = fwDefaultMaterialDef();
@@ -36,7 +36,7 @@ TEST(AbiObjects, RefusesStaleIds) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_DestroyMaterial(w.world, id));
 }
 
-TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
+TEST(Objects, EveryFunctionRefusesAStaleObject) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwBurnableMeshId id = w.add(1);
     const float point[3] = {};
@@ -81,7 +81,7 @@ TEST(AbiObjects, EveryFunctionRefusesAStaleObject) {
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_CreateBurnableMesh(w.world, &def, &made));
 }
 
-TEST(AbiObjects, QueriesEndWithTheirObject) {
+TEST(Objects, QueriesEndWithTheirObject) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const float point[3] = {};
     FwQueryId query{};
@@ -105,7 +105,7 @@ TEST(AbiObjects, QueriesEndWithTheirObject) {
     w.run(0.1);
 }
 
-TEST(AbiObjects, EveryRequestCanBeCancelled) {
+TEST(Objects, EveryRequestCanBeCancelled) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const float point[3] = {0.5f, 0, 0.1f};
     FwQueryId query{};
@@ -139,7 +139,7 @@ TEST(AbiObjects, EveryRequestCanBeCancelled) {
     for (const uint32_t tag : {3u, 4u})
         ASSERT_EQ(FW_OK, fwWorld_TagPoint(w.world, w.object, point, tag));
     EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 3));
-    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 99)) << "none has it";
+    EXPECT_EQ(FW_OK, fwWorld_UntagPoint(w.world, w.object, 99)) << "no point has this tag";
     w.ball(FW_IGNITE, 0.5f, 0, 0.1f, 0.05f);
     w.run(1);
     uint32_t reached = 0;
@@ -148,7 +148,7 @@ TEST(AbiObjects, EveryRequestCanBeCancelled) {
     EXPECT_EQ(1u << 4, reached);
 }
 
-TEST(AbiObjects, RefusesToDestroyAMeshInUse) {
+TEST(Objects, RefusesToDestroyAMeshInUse) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_DestroyMesh(w.world, w.mesh));
     EXPECT_EQ(
@@ -159,7 +159,7 @@ TEST(AbiObjects, RefusesToDestroyAMeshInUse) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(w.world, w.mesh)) << lastMessage(w.world);
 }
 
-TEST(AbiObjects, ObjectsKeepACopyOfADestroyedMaterial) {
+TEST(Objects, ObjectsKeepACopyOfADestroyedMaterial) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(FW_OK, fwWorld_DestroyMaterial(w.world, w.materialId));
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.1f, 0, 0.1f, 0.03f));
@@ -167,7 +167,7 @@ TEST(AbiObjects, ObjectsKeepACopyOfADestroyedMaterial) {
     EXPECT_LT(0u, w.state().burning);
 }
 
-TEST(AbiObjects, ImagesAreValidatedAndMayBeDestroyedBeforeTheirUsers) {
+TEST(Objects, ImagesAreValidatedAndMayBeDestroyedBeforeTheirUsers) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const std::vector<uint32_t> pixels(16, 0xFF808080u);
     FwImageDef def = fwDefaultImageDef();
@@ -194,7 +194,7 @@ TEST(AbiObjects, ImagesAreValidatedAndMayBeDestroyedBeforeTheirUsers) {
     w.run(0.1);
 }
 
-TEST(AbiObjects, CreationRefusesUnsupportedDefs) {
+TEST(Objects, CreationRefusesUnsupportedDefs) {
     Host host;
     FwContext* context = reinterpret_cast<FwContext*>(&host);
     FwErrorInfo error{};
@@ -233,7 +233,7 @@ TEST(AbiObjects, CreationRefusesUnsupportedDefs) {
     EXPECT_EQ(0, host.blocks);
 }
 
-TEST(AbiObjects, RefusesCallsOfAnotherBackend) {
+TEST(Objects, RefusesCallsOfAnotherBackend) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwVulkanFrame frame = fwDefaultVulkanFrame();
     const FwView view = fwDefaultView();
@@ -257,7 +257,7 @@ TEST(AbiObjects, RefusesCallsOfAnotherBackend) {
     EXPECT_EQ(FW_OK, fwWorld_Step(w.world, 0.1f)) << lastMessage(w.world);
 }
 
-TEST(AbiObjects, LastMessageReportsItsLength) {
+TEST(Objects, LastMessageReportsItsLength) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     EXPECT_EQ(0u, fwWorld_GetLastMessage(w.world, nullptr, 0));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetWind(w.world, nullptr));
@@ -282,7 +282,7 @@ TEST(AbiObjects, LastMessageReportsItsLength) {
     EXPECT_EQ("FwWorldDef is null.\n - While calling fwCreateWorld.", lastMessage(w.context));
 }
 
-TEST(AbiObjects, TwoContextsShareNothing) {
+TEST(Objects, TwoContextsShareNothing) {
     SheetWorld a(host::evenMaterial(0.02f, 5));
     {
         SheetWorld b(host::evenMaterial(0.02f, 5));
@@ -298,7 +298,7 @@ TEST(AbiObjects, TwoContextsShareNothing) {
     a.run(0.1);
 }
 
-TEST(AbiObjects, DefsAreCopiedByTheCall) {
+TEST(Objects, DefsAreCopiedByTheCall) {
     SheetWorld w(host::evenMaterial(0.02f, 5), 0.5f, 0.25f, 64);
     uint64_t hashes[2] = {};
     for (int round = 0; round < 2; ++round) {
@@ -352,7 +352,7 @@ TEST(AbiObjects, DefsAreCopiedByTheCall) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-TEST(AbiObjects, InfoAndReports) {
+TEST(Objects, InfoAndReports) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwContextInfo info = getState(fwContext_GetInfo, w.context);
     EXPECT_EQ(uint32_t(FW_BACKEND_CPU), info.backend);
@@ -375,7 +375,7 @@ TEST(AbiObjects, InfoAndReports) {
     EXPECT_EQ(mesh.texels, stats.texels);
 }
 
-TEST(AbiObjects, CookedMeshesEqualTheirSource) {
+TEST(Objects, CookedMeshesEqualTheirSource) {
     SheetWorld w(host::evenMaterial(0.02f, 5));
     const FwMeshDef def = w.sheet.def(64);
     uint64_t size = 0;

@@ -108,7 +108,7 @@ DeviceSession play(FwContext* context) {
     return run;
 }
 
-TEST(AbiOwnDevice, BurnsLikeTheCpu) {
+TEST(OwnDevice, BurnsLikeTheCpu) {
     Host gpu, cpu;
     OWN_DEVICE_OR_SKIP(context, gpu);
     FwContext* reference = host::createCpuContext(cpu);
@@ -150,7 +150,7 @@ std::vector<FwLight> lightsOf(FwContext* context) {
     return lights;
 }
 
-TEST(AbiOwnDevice, LightsWithoutAPictureMatchTheCpu) {
+TEST(OwnDevice, LightsWithoutAPictureMatchTheCpu) {
     Host gpu, cpu;
     OWN_DEVICE_OR_SKIP(context, gpu);
     FwContext* reference = host::createCpuContext(cpu);
@@ -177,7 +177,7 @@ TEST(AbiOwnDevice, LightsWithoutAPictureMatchTheCpu) {
     EXPECT_EQ(0, gpu.blocks);
 }
 
-TEST(AbiOwnDevice, RefusesHostDeviceCallsAndInvalidPictures) {
+TEST(OwnDevice, RefusesHostDeviceCallsAndInvalidPictures) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
     const FwContextInfo info = getState(fwContext_GetInfo, context);
@@ -261,7 +261,7 @@ TEST(AbiOwnDevice, RefusesHostDeviceCallsAndInvalidPictures) {
 }
 
 // One failure at every allocation of a world's life on a device; the second call must succeed.
-TEST(AbiOwnDevice, SurvivesOneFailureAtEveryAllocation) {
+TEST(OwnDevice, SurvivesOneFailureAtEveryAllocation) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
     ASSERT_EQ(FW_OK, fwContext_Prepare(context)) << lastMessage(context);
@@ -321,7 +321,7 @@ TEST(AbiOwnDevice, SurvivesOneFailureAtEveryAllocation) {
     EXPECT_EQ(0, host.blocks);
 }
 
-TEST(AbiOwnDevice, RefusesATooSmallBudget) {
+TEST(OwnDevice, RefusesATooSmallBudget) {
     Host host;
     OWN_DEVICE_OR_SKIP(context, host);
     fwDestroyContext(context);

@@ -33,7 +33,7 @@ FwParticleFieldDef presetOf(uint32_t preset) {
     return def;
 }
 
-TEST(AbiParticleField, PresetsCountTheirParticles) {
+TEST(ParticleField, PresetsCountTheirParticles) {
     FieldWorld w;
     for (uint32_t preset = 0; preset < FW_FIELD_PRESET_COUNT; ++preset)
         for (const uint32_t shape : {FW_FIELD_BILLBOARD, FW_FIELD_SPHEROID}) {
@@ -58,7 +58,7 @@ TEST(AbiParticleField, PresetsCountTheirParticles) {
 }
 
 // Frames of any length run the same steps at the same ticks.
-TEST(AbiParticleField, StepsDependOnTicksAlone) {
+TEST(ParticleField, StepsDependOnTicksAlone) {
     FwParticleFieldState ends[2];
     for (int way = 0; way < 2; ++way) {
         FieldWorld w(2);
@@ -77,7 +77,7 @@ TEST(AbiParticleField, StepsDependOnTicksAlone) {
     EXPECT_EQ(ends[0].out, ends[1].out);
 }
 
-TEST(AbiParticleField, ReferenceFieldRunsTenStepsASecond) {
+TEST(ParticleField, ReferenceFieldRunsTenStepsASecond) {
     FieldWorld w;
     FwParticleFieldDef def = presetOf(FW_FIELD_FIRE);
     def.flags = FW_FIELD_AS_PUBLISHED;
@@ -86,7 +86,7 @@ TEST(AbiParticleField, ReferenceFieldRunsTenStepsASecond) {
     EXPECT_EQ(30u, w.of(id).steps);
 }
 
-TEST(AbiParticleField, FollowsSourcesWindAndWalls) {
+TEST(ParticleField, FollowsSourcesWindAndWalls) {
     FieldWorld still, windy(8);
     FwParticleFieldDef def = presetOf(FW_FIELD_SMOKE);
     def.seed = 9;
@@ -138,7 +138,7 @@ TEST(AbiParticleField, FollowsSourcesWindAndWalls) {
     EXPECT_GT(still.of(boxed).inside, 1000u);
 }
 
-TEST(AbiParticleField, RefusesInvalidDefsByName) {
+TEST(ParticleField, RefusesInvalidDefsByName) {
     FieldWorld w;
     const auto said = [&](const FwParticleFieldDef& def) {
         FwParticleFieldId id{};
@@ -169,7 +169,7 @@ TEST(AbiParticleField, RefusesInvalidDefsByName) {
     EXPECT_THAT(lastMessage(w.world), HasSubstr("Particle field 1"));
 }
 
-TEST(AbiParticleField, AllowsAtMost256) {
+TEST(ParticleField, AllowsAtMost256) {
     FieldWorld w;
     FwParticleFieldDef def = fwDefaultParticleFieldDef();
     def.width = def.height = 32;

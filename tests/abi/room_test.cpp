@@ -62,7 +62,7 @@ struct Paper : HostedWorld {
     std::vector<FwEvent> events;
 };
 
-TEST(AbiRoom, FireUsesUpTheOxygenAndGoesOut) {
+TEST(FireInRoom, FireUsesUpTheOxygenAndGoesOut) {
     Paper free(FW_BACKEND_CPU), large(FW_BACKEND_CPU), shut(FW_BACKEND_CPU);
     const FwRoomId hall = large.put(large.roomOf(20 * large.fuel));
     const FwRoomId closet = shut.put(shut.roomOf(0.3 * shut.fuel));
@@ -92,7 +92,7 @@ TEST(AbiRoom, FireUsesUpTheOxygenAndGoesOut) {
 }
 
 // Wood in thin air feeds too little heat back to itself.
-TEST(AbiRoom, WoodInThinAirGoesOutWithFuelLeft) {
+TEST(FireInRoom, WoodInThinAirGoesOutWithFuelLeft) {
     Paper wood(FW_BACKEND_CPU, FW_MATERIAL_PINE);
     FwRoomDef def = wood.roomOf(100 * wood.fuel);
     def.oxygen = 0.126f;  // a fifth of the flame's strength
@@ -104,7 +104,7 @@ TEST(AbiRoom, WoodInThinAirGoesOutWithFuelLeft) {
     EXPECT_FALSE(wood.heard(FW_EVENT_BURNT_OUT));
 }
 
-TEST(AbiRoom, OpeningADoorRevivesADyingFire) {
+TEST(FireInRoom, OpeningADoorRevivesADyingFire) {
     Paper shut(FW_BACKEND_CPU), opened(FW_BACKEND_CPU);
     FwRoomId rooms[2] = {};
     Paper* papers[] = {&shut, &opened};
@@ -134,7 +134,7 @@ TEST(AbiRoom, OpeningADoorRevivesADyingFire) {
     EXPECT_EQ(1.0f, opened.air(rooms[1]).strength);
 }
 
-TEST(AbiRoom, InertGasExtinguishesOnlyInsideTheRoom) {
+TEST(FireInRoom, InertGasExtinguishesOnlyInsideTheRoom) {
     Paper flooded(FW_BACKEND_CPU), carried(FW_BACKEND_CPU);
     FwRoomDef def = flooded.roomOf(100 * flooded.fuel);
     const FwRoomId room = flooded.put(def), other = carried.put(def);
@@ -167,7 +167,7 @@ TEST(AbiRoom, InertGasExtinguishesOnlyInsideTheRoom) {
 }
 
 // Bit for bit, also through doors, gas, moves and a save loaded on the other backend.
-TEST(AbiRoom, BothBackendsAgree) {
+TEST(FireInRoom, BothBackendsAgree) {
     uint64_t hashes[2][6] = {};
     float oxygen[2][6] = {};
     std::vector<unsigned char> save;
@@ -215,7 +215,7 @@ TEST(AbiRoom, BothBackendsAgree) {
 
 // The power at which a room flashes over: once, at the same step on both backends, and not again
 // after a load.
-TEST(AbiRoom, FlashesOverOnceAtTheFlashOverPower) {
+TEST(FireInRoom, FlashesOverOnceAtTheFlashOverPower) {
     float reported[2] = {};
     std::vector<unsigned char> save;
     const uint32_t backends[] = {FW_BACKEND_CPU, FW_BACKEND_VULKAN};
@@ -279,7 +279,7 @@ TEST(AbiRoom, FlashesOverOnceAtTheFlashOverPower) {
 }
 
 // While nothing burns, rooms still recover their air, and recovered rooms cost nothing.
-TEST(AbiRoom, AirRecoversWhileNothingBurns) {
+TEST(FireInRoom, AirRecoversWhileNothingBurns) {
     Paper steady(FW_BACKEND_CPU), coarse(FW_BACKEND_CPU);
     FwRoomDef def = steady.roomOf(steady.fuel, 0.01f);
     def.oxygen = 0.05f;
@@ -291,7 +291,7 @@ TEST(AbiRoom, AirRecoversWhileNothingBurns) {
     EXPECT_LT(steady.air(rooms[0]).oxygen, 0.2094f);
 }
 
-TEST(AbiRoom, RefusesBadValuesByName) {
+TEST(FireInRoom, RefusesBadValuesByName) {
     Paper paper(FW_BACKEND_CPU);
     FwRoomDef def = fwDefaultRoomDef();
     EXPECT_EQ(0.2095f, def.oxygen);

@@ -1,5 +1,5 @@
-// Saves: a world that is saved and loaded goes on bit by bit as the one that was not, on the same
-// backend or on another; what cannot be loaded is refused and changes nothing.
+// Saves: a loaded world continues bit for bit like the saved one, on either backend. A save that
+// does not fit is refused and changes nothing.
 #include "abi/busy_world.h"
 #include "abi/panels.h"
 
@@ -10,7 +10,7 @@ namespace {
 
 using namespace host;
 
-// Saves at several moments; each is loaded into a new world, which goes on to the end.
+// Saves at several frames; each is loaded into a new world, which runs to the end.
 void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
     BusyWorld first(saves);
     if (!there(first)) GTEST_SKIP() << "there is no such backend here";
@@ -39,12 +39,14 @@ void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
     }
 }
 
-TEST(Save, GoesOnAlike) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
-TEST(Save, GoesOnAlikeOnADevice) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150); }
-TEST(Save, FromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
-TEST(Save, FromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
+TEST(Save, ContinuesIdentically) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
+TEST(Save, ContinuesIdenticallyOnADevice) {
+    goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150);
+}
+TEST(Save, MovesFromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
+TEST(Save, MovesFromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
 
-// Back in the same world, twice, from a later and from an earlier moment.
+// Loads into the same world twice, from a later and from an earlier frame.
 void goesBack(uint32_t backend) {
     BusyWorld w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
@@ -61,11 +63,11 @@ void goesBack(uint32_t backend) {
         EXPECT_EQ(later, w.hash());
     }
 }
-TEST(Save, GoesBackInTheSameWorld) { goesBack(FW_BACKEND_CPU); }
-TEST(Save, GoesBackInTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsTheSameWorld) { goesBack(FW_BACKEND_CPU); }
+TEST(Save, RewindsTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
 
-// Back to before anything burnt, and to before it in a world that never saw the save's wind: what
-// catches then burns by that wind.
+// Rewinds to before the first fire, also in a world that never had the save's wind: a fire lit then
+// burns in that wind.
 void goesBackToBefore(uint32_t backend) {
     BusyWorld w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
@@ -84,12 +86,11 @@ void goesBackToBefore(uint32_t backend) {
     other.run(1, 60);
     EXPECT_EQ(then, other.hash());
 }
-TEST(Save, GoesBackToBeforeAnythingBurnt) { goesBackToBefore(FW_BACKEND_CPU); }
-TEST(Save, GoesBackToBeforeAnythingBurntOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsToBeforeTheFirstFire) { goesBackToBefore(FW_BACKEND_CPU); }
+TEST(Save, RewindsToBeforeTheFirstFireOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
 
-// A world that sleeps stays asleep: the wind of its first fire begins with that fire, and not where
-// the save was loaded.
-TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
+// A sleeping world stays asleep: the wind of its first fire starts with that fire, not at the load.
+TEST(Save, FirstFireAfterALoadIsIdentical) {
     uint64_t hashes[2] = {};
     for (const bool loads : {false, true}) {
         FwWorldDef def = worldDef(FW_WORLD_CONTACT | FW_WORLD_EMBERS | FW_WORLD_RADIATION);
@@ -107,7 +108,7 @@ TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
             EXPECT_EQ(FW_OK, fwWorld_RequestSave(panels.world));
             uint64_t size = 0;
             EXPECT_EQ(FW_NOT_READY, fwWorld_FetchSave(panels.world, nullptr, &size));
-            EXPECT_EQ(FW_OK, fwWorld_Step(panels.world, 0));  // that frame
+            EXPECT_EQ(FW_OK, fwWorld_Step(panels.world, 0));  // the frame of the save
             EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, nullptr, &size));
             Bytes bytes(size);
             EXPECT_EQ(FW_OK, fwWorld_FetchSave(panels.world, bytes.data(), &size));
@@ -119,9 +120,9 @@ TEST(Save, WhereNothingBurnsYetTheFirstFireIsAlike) {
     EXPECT_EQ(hashes[0], hashes[1]);
 }
 
-// The device goes at some frame. The last save that was fetched, or that is still in the lost
-// world, is the mirror: on another device, or on none, the fire is as it was then, and goes on.
-TEST(Save, LivesThroughALostDevice) {
+// The device is lost at some frame. From the last save that was fetched, or that the lost world
+// still holds, the fire continues on another device or without one.
+TEST(Save, SurvivesALostDevice) {
     const uint32_t losses[] = {26, 41};
     for (const uint32_t loss : losses) {
         BusyWorld w(FW_BACKEND_VULKAN);
@@ -137,7 +138,7 @@ TEST(Save, LivesThroughALostDevice) {
         Bytes again(mirror.size());
         EXPECT_EQ(FW_OK, fwWorld_FetchSave(w.world, again.data(), &size)) << lastMessage(w.world);
         EXPECT_EQ(mirror, again);
-        BusyWorld plain(FW_BACKEND_CPU);  // that has nothing to lose
+        BusyWorld plain(FW_BACKEND_CPU);  // a world without a device
         plain.run(0, loss + 10);
         const uint64_t later = plain.hash();
         for (const uint32_t backend : {FW_BACKEND_VULKAN, FW_BACKEND_CPU}) {
@@ -157,7 +158,7 @@ void expectSaveRefused(BusyWorld& w, const Bytes& bytes, const char* says) {
     EXPECT_EQ(before, w.hash()) << says;
 }
 
-TEST(Save, RefusesWhatIsNotTheWorlds) {
+TEST(Save, RefusesSavesOfOtherWorlds) {
     BusyWorld w(FW_BACKEND_CPU);
     w.run(0, 30);
     const Bytes bytes = w.save();
@@ -189,8 +190,8 @@ TEST(Save, RefusesWhatIsNotTheWorlds) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_Load(w.world, nullptr, 0));
 }
 
-// With a right checksum: it is loaded or refused with a message, and the world lives on.
-TEST(Save, DamagedOnesNeverCrash) {
+// With a correct checksum it is loaded or refused with a message, and the world continues.
+TEST(Save, DamagedSavesNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);
     w.run(0, 40);
     const Bytes bytes = w.save();
@@ -205,7 +206,7 @@ TEST(Save, DamagedOnesNeverCrash) {
         if (kind == 0) wrong.resize(24 + next(uint32_t(bytes.size() - 24)));
         const uint32_t changes = 1 + next(4);
         for (uint32_t k = 0; k < changes && wrong.size() > 24; ++k) {
-            // Half of them where the numbers of the world and its objects are.
+            // Half of the damage hits the numbers of the world and its objects.
             const auto most = uint32_t(wrong.size() - 24);
             const uint32_t at = 24 + next(next(2) ? most : std::min(most, 900u));
             wrong[at] = kind == 1 ? 0xFF : (unsigned char)(wrong[at] ^ (1u << next(8)));

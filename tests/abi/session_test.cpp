@@ -215,7 +215,7 @@ TEST(Save, LoadsAfterATouchingObjectWasDestroyed) {
     fwDestroyContext(context);
 }
 
-TEST(Save, ASeparatedPairBurnsAlikeAfterALoad) {
+TEST(Save, ASeparatedPairBurnsIdenticallyAfterALoad) {
     Host host;
     FwContext* context = createCpuContext(host);
     for (const int away : {1, 3, 4, 8}) {
@@ -233,7 +233,7 @@ TEST(Save, ASeparatedPairBurnsAlikeAfterALoad) {
     fwDestroyContext(context);
 }
 
-TEST(Save, AReusedSlotOfATouchingObjectBurnsAlikeAfterALoad) {
+TEST(Save, AReusedSlotOfATouchingObjectBurnsIdenticallyAfterALoad) {
     Host host;
     FwContext* context = createCpuContext(host);
     for (const int before : {4, 6, 11}) {

@@ -15,7 +15,7 @@ void makeRow(Panels& p, int count) {
     p.ignite(p.ids[0], 0.01f, 0, 0.1f);
 }
 
-TEST(AbiSpread, ContactAloneCrossesAGap) {
+TEST(Spread, ContactAloneCrossesAGap) {
     for (const uint32_t flags :
          {0u, uint32_t(FW_WORLD_RADIATION), uint32_t(FW_WORLD_PLUME), uint32_t(FW_WORLD_CONTACT)}) {
         Panels p(worldDef(flags));
@@ -67,7 +67,7 @@ double arrivalAt(Panels& p, float x) {
     return state.kind == FW_ARRIVAL_NEVER ? -1 : double(state.seconds);
 }
 
-TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
+TEST(Spread, PartsOfOneMeshLightEachOtherByContact) {
     for (const uint32_t flags : {0u, uint32_t(FW_WORLD_CONTACT)})
         for (const float gap : {0.002f, 0.01f, 0.06f}) {
             // NO_SPREAD concerns other objects only; with TTL 1 every jump must succeed.
@@ -98,7 +98,7 @@ TEST(AbiSpread, PartsOfOneMeshLightEachOtherByContact) {
         }
 }
 
-TEST(AbiSpread, DoesNotCrossAWideGap) {
+TEST(Spread, DoesNotCrossAWideGap) {
     Panels p(worldDef(FW_WORLD_CONTACT));
     p.add(0, 0, 0);
     p.add(0.46f, 0, 0);
@@ -120,7 +120,7 @@ TEST(AbiSpread, DoesNotCrossAWideGap) {
     EXPECT_EQ(2u, q.alight());
 }
 
-TEST(AbiSpread, FlagsMayChangeWhileRunning) {
+TEST(Spread, FlagsMayChangeWhileRunning) {
     Panels p(worldDef(0));
     makeRow(p, 2);
     p.run(22);
@@ -133,7 +133,7 @@ TEST(AbiSpread, FlagsMayChangeWhileRunning) {
               lastMessage(p.world));
 }
 
-TEST(AbiSpread, RespectsProbabilityHopsAndNoSpread) {
+TEST(Spread, RespectsProbabilityHopsAndNoSpread) {
     FwWorldDef never = worldDef(FW_WORLD_CONTACT);
     never.spreadChance = 0;
     Panels p(never);
@@ -184,7 +184,7 @@ TEST(AbiSpread, RespectsProbabilityHopsAndNoSpread) {
     EXPECT_NE(which[0], which[1]);
 }
 
-TEST(AbiSpread, TimeToLiveStopsAFront) {
+TEST(Spread, TimeToLiveStopsAFront) {
     FwWorldDef def = worldDef(0);
     def.timeToLive = 3;
     Panels p(def);
@@ -208,7 +208,7 @@ TEST(AbiSpread, TimeToLiveStopsAFront) {
     EXPECT_LT(q.lit(0) * 2, q.lit(1));
 }
 
-TEST(AbiSpread, BurningTilesAreCapped) {
+TEST(Spread, BurningTilesAreCapped) {
     for (const bool ofWorld : {true, false}) {
         FwWorldDef def = worldDef(0);
         if (ofWorld) def.maxBurningTiles = 2;
@@ -242,7 +242,7 @@ TEST(AbiSpread, BurningTilesAreCapped) {
     }
 }
 
-TEST(AbiSpread, ValidatesAndCountsBlockers) {
+TEST(Spread, ValidatesAndCountsOccluders) {
     Panels p(worldDef(0));
     FwHeatOccluderDef def = fwDefaultHeatOccluderDef();
     EXPECT_EQ(0.5f, def.halfSize[1]);
@@ -309,7 +309,7 @@ uint64_t mixedSession(float deltaTime, uint32_t switches) {
     return p.hash();
 }
 
-TEST(AbiSpread, IsIndependentOfFrameRateAndOrder) {
+TEST(Spread, IsIndependentOfFrameRateAndOrder) {
     const uint64_t hash = mixedSession(1.0f / 32, 0);
     EXPECT_EQ(hash, mixedSession(0.25f, 0));
     EXPECT_EQ(hash, mixedSession(1.0f / 64, 0));

@@ -19,7 +19,7 @@ FwSurroundings ask(FwWorld* world, float x, float y, float z) {
     return at;
 }
 
-TEST(AbiSurroundings, AreSafeWhereNothingBurns) {
+TEST(SurroundingsQuery, AreSafeWhereNothingBurns) {
     FireWorld w;
     const FwSurroundings at = ask(w.world, 1, 2, 3);
     EXPECT_EQ(0, at.heatFlux);
@@ -30,7 +30,7 @@ TEST(AbiSurroundings, AreSafeWhereNothingBurns) {
     EXPECT_EQ(0u, at.nearestLight);
 }
 
-TEST(AbiSurroundings, ReportTheHeatAndSmokeOfAFire) {
+TEST(SurroundingsQuery, ReportTheHeatAndSmokeOfAFire) {
     FireWorld w;
     (void)w.make(presetDef(FW_FIRE_HOUSE));
     w.run(1);
@@ -52,7 +52,7 @@ TEST(AbiSurroundings, ReportTheHeatAndSmokeOfAFire) {
 }
 
 // Burning sheets; the light named by the answer is one that the host has.
-TEST(AbiSurroundings, IncludeBurningMeshes) {
+TEST(SurroundingsQuery, IncludeBurningMeshes) {
     host::Panels panels(fwDefaultWorldDef(), 100);
     const FwBurnableMeshId sheet = panels.add(0, 0, 0);
     EXPECT_EQ(FLT_MAX, ask(panels.world, 0, 0.5f, 0).nearest);
@@ -68,7 +68,7 @@ TEST(AbiSurroundings, IncludeBurningMeshes) {
     EXPECT_LT(ask(panels.world, 0.2f, -1, 0.1f).temperature, 294) << "heat rises";
 }
 
-TEST(AbiSurroundings, FillAWalkabilityMask) {
+TEST(SurroundingsQuery, FillAWalkabilityMask) {
     FireWorld w;
     (void)w.make(presetDef(FW_FIRE_BONFIRE));
     w.run(1);
@@ -82,7 +82,7 @@ TEST(AbiSurroundings, FillAWalkabilityMask) {
     EXPECT_EQ(uint8_t(std::min(127 * at.danger, 255.0f)), mask[8 * 17 + 11]);
 }
 
-TEST(AbiSurroundings, RefuseInvalidQueries) {
+TEST(SurroundingsQuery, RefuseInvalidQueries) {
     FireWorld w;
     const float nowhere[3] = {NAN, 0, 0}, here[3] = {0, 0, 0};
     FwSurroundings at{};

@@ -1,5 +1,5 @@
-// A world's timeline: any moment of its burn again in the same world, forth and back, bit by bit
-// as it was the first time; another future from there on; within its bytes.
+// A world's timeline reaches any tick of its burn again in the same world, in both directions, bit
+// for bit; a command in the past starts another future; memory stays within the limit.
 #include "abi/busy_world.h"
 #include "flamewright/flamewright.hpp"
 
@@ -9,7 +9,7 @@ namespace fw::test::timeline_test {
 namespace {
 
 using namespace host;
-using host::lastMessage;  // not the wrapper's
+using host::lastMessage;  // not that of the wrapper
 
 uint64_t tickOf(FwWorld* world) {
     FwWorldStats stats{};
@@ -33,7 +33,7 @@ void start(FwWorld* world, float interval = 1, float longest = 32, uint64_t byte
     EXPECT_EQ(FW_OK, fwWorld_StartTimeline(world, &def)) << lastMessage(world);
 }
 
-// In pieces of at most `most` s.
+// In steps of at most `most` s.
 void seek(FwWorld* world, uint64_t tick, float most = 10) {
     float seconds = 0;
     for (int i = 0; i < 100000; ++i) {
@@ -61,49 +61,50 @@ void steps(FwWorld* world, int count) {
         ASSERT_EQ(FW_OK, fwWorld_Step(world, 1.0f / 32)) << lastMessage(world);
 }
 
-// Heat, water, holes, wind, rooms and jets: what the cpu has without a timeline is what the world
-// has at each moment, however it came there.
+// Heat, water, holes, wind, rooms and jets: at each tick the world equals one on the cpu backend
+// without a timeline, in whichever order it is reached.
 void seeks(uint32_t backend) {
     BusyWorld straight(FW_BACKEND_CPU), w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
     start(w.world);
-    struct Moment {
+    struct Expected {
         uint64_t tick = 0, hash = 0;
     };
-    std::map<uint32_t, Moment> moments;  // by frame
+    std::map<uint32_t, Expected> expected;  // by frame
     uint32_t frame = 0;
     for (const uint32_t next : {1u, 30u, 61u, 75u, 92u, 110u, 131u, 155u}) {
         straight.run(frame, next);
         w.run(frame, next);
         frame = next;
-        moments[next] = {tickOf(straight.world), straight.hash()};
-        ASSERT_EQ(moments[next].tick, tickOf(w.world));
-        EXPECT_EQ(moments[next].hash, w.hash()) << "keeping a timeline changed frame " << next;
+        expected[next] = {tickOf(straight.world), straight.hash()};
+        ASSERT_EQ(expected[next].tick, tickOf(w.world));
+        EXPECT_EQ(expected[next].hash, w.hash()) << "keeping a timeline changed frame " << next;
     }
     EXPECT_GE(stateOf(w.world).keyframes, 4u);
-    EXPECT_EQ(moments[155].tick, stateOf(w.world).endTick);
+    EXPECT_EQ(expected[155].tick, stateOf(w.world).endTick);
     for (const uint32_t wanted : {61u, 131u, 30u, 110u, 92u, 1u, 155u, 75u}) {
-        seek(w.world, moments[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
-        EXPECT_EQ(moments[wanted].hash, w.hash()) << "frame " << wanted;
+        seek(w.world, expected[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
+        EXPECT_EQ(expected[wanted].hash, w.hash()) << "frame " << wanted;
     }
-    EXPECT_EQ(moments[155].tick, stateOf(w.world).endTick) << "who looks forgets nothing";
-    // The future is gone once something else is done, and what was before it is not.
+    EXPECT_EQ(expected[155].tick, stateOf(w.world).endTick) << "seeking drops nothing";
+    // A new command drops the future and keeps the past.
     douse(w.world);
-    EXPECT_EQ(moments[75].tick, stateOf(w.world).endTick);
+    EXPECT_EQ(expected[75].tick, stateOf(w.world).endTick);
     steps(w.world, 40);
     const uint64_t end = tickOf(w.world), other = w.hash();
     EXPECT_EQ(end, stateOf(w.world).endTick);
-    seek(w.world, moments[61].tick);
-    EXPECT_EQ(moments[61].hash, w.hash());
+    seek(w.world, expected[61].tick);
+    EXPECT_EQ(expected[61].hash, w.hash());
     seek(w.world, end);
     EXPECT_EQ(other, w.hash());
 }
 
-TEST(Timeline, AnyMomentAsItWas) { seeks(FW_BACKEND_CPU); }
-TEST(Timeline, AnyMomentAsItWasOnADevice) { seeks(FW_BACKEND_VULKAN); }
+TEST(Timeline, SeeksAnyTick) { seeks(FW_BACKEND_CPU); }
+TEST(Timeline, SeeksAnyTickOnADevice) { seeks(FW_BACKEND_VULKAN); }
 
-// At its end the world is as it was left, with what was done after the last step; and goes on.
-TEST(Timeline, GoesOnFromItsEnd) {
+// At the end of its timeline the world is as it was left, including commands after the last step,
+// and continues.
+TEST(Timeline, ContinuesFromItsEnd) {
     BusyWorld straight(FW_BACKEND_CPU, 12, 6), w(FW_BACKEND_CPU, 12, 6);
     start(w.world);
     for (BusyWorld* one : {&straight, &w}) {
@@ -117,15 +118,15 @@ TEST(Timeline, GoesOnFromItsEnd) {
     for (BusyWorld* one : {&straight, &w}) steps(one->world, 48);
     EXPECT_EQ(tickOf(straight.world), tickOf(w.world));
     EXPECT_EQ(straight.hash(), w.hash());
-    // Moving on by itself from the past is another future, too.
+    // A step from the past is another future, too.
     seek(w.world, end);
     EXPECT_LT(end, stateOf(w.world).endTick);
     steps(w.world, 1);
     EXPECT_EQ(end + 128, stateOf(w.world).endTick);
 }
 
-// A burn that was baked, plays, and goes live in the middle.
-TEST(Timeline, HasBakedBurnsThatWentLive) {
+// A baked burn that plays, and goes live in the middle.
+TEST(Timeline, IncludesBakedBurnsThatWentLive) {
     for (const uint32_t backend : {FW_BACKEND_CPU, FW_BACKEND_VULKAN}) {
         BusyWorld w(backend, 12, 3);
         if (!there(w)) continue;
@@ -162,7 +163,7 @@ TEST(Timeline, HasBakedBurnsThatWentLive) {
     }
 }
 
-TEST(Timeline, StaysWithinItsBytes) {
+TEST(Timeline, StaysWithinItsByteLimit) {
     constexpr uint64_t kBytes = 3 << 16;
     BusyWorld w(FW_BACKEND_CPU);
     start(w.world, 1.0f / 32, 0.25f, kBytes);
@@ -178,7 +179,7 @@ TEST(Timeline, StaysWithinItsBytes) {
         spread |= first == 0 && state.interval > 0.1f;
     }
     EXPECT_TRUE(spread) << "first there are fewer";
-    EXPECT_GT(state.firstTick, 0u) << "then its beginning goes";
+    EXPECT_GT(state.firstTick, 0u) << "the timeline drops its beginning";
     EXPECT_LE(state.interval, 0.25f);
     EXPECT_GE(state.keyframes, 2u) << "of " << state.bytes << " bytes";
     const uint64_t hash = w.hash();
@@ -187,7 +188,7 @@ TEST(Timeline, StaysWithinItsBytes) {
     EXPECT_EQ(hash, w.hash());
 }
 
-TEST(Timeline, NamesWhatIsWrong) {
+TEST(Timeline, RefusesBadCallsByName) {
     BusyWorld w(FW_BACKEND_CPU, 12, 3);
     const auto refused = [&](FwResult expected, FwResult result, const char* says) {
         EXPECT_EQ(expected, result) << says;
@@ -221,7 +222,7 @@ TEST(Timeline, NamesWhatIsWrong) {
             "the timeline has");
     refused(FW_ERROR_INVALID_ARGUMENT, fwWorld_Seek(w.world, 1u << 20, &seconds),
             "untilTick is 1048576");
-    // Another past: the timeline starts again there.
+    // Another past: the timeline starts again here.
     const Bytes save = w.save();
     w.run(60, 70);
     ASSERT_EQ(FW_OK, w.load(save));
@@ -229,7 +230,7 @@ TEST(Timeline, NamesWhatIsWrong) {
     EXPECT_EQ(tickOf(w.world), stateOf(w.world).endTick);
     w.run(60, 80);
     ASSERT_EQ(1u, stateOf(w.world).keyframes);
-    // What goes is not on it.
+    // Destroyed objects are not on it.
     const uint64_t hash = w.hash();
     ASSERT_EQ(FW_OK, fwWorld_RemoveHeatOccluder(w.world, w.occluder));
     refused(FW_ERROR_BAD_DATA, fwWorld_Seek(w.world, stateOf(w.world).firstTick, &seconds),
@@ -240,7 +241,7 @@ TEST(Timeline, NamesWhatIsWrong) {
     w.run(80, 82);
 }
 
-TEST(Timeline, TheWrapperGoesThere) {
+TEST(Timeline, WrapperSeeks) {
     const fw::Context context = [] {
         FwContextDef def = fw::def<FwContextDef>();
         def.backend = FW_BACKEND_CPU;

@@ -16,7 +16,7 @@ using host::lastMessage;
 using host::presetDef;
 using ::testing::HasSubstr;
 
-TEST(AbiVolumetricFire, PresetsAreNamedAndBurn) {
+TEST(VolumetricFire, PresetsAreNamedAndBurn) {
     FireWorld w;
     std::set<std::string> names;
     for (uint32_t i = 0; i < FW_FIRE_PRESET_COUNT; ++i) {
@@ -42,7 +42,7 @@ TEST(AbiVolumetricFire, PresetsAreNamedAndBurn) {
 
 // Flame height: Heskestad (1984), 0.235 Q^0.4 - 1.02 D. Pulsation: Cetegen and Ahmed (1993), 1.5 /
 // sqrt(D).
-TEST(AbiVolumetricFire, HeightAndPulsationMatchTheCorrelations) {
+TEST(VolumetricFire, HeightAndPulsationMatchTheCorrelations) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.power = 1690;
@@ -61,7 +61,7 @@ TEST(AbiVolumetricFire, HeightAndPulsationMatchTheCorrelations) {
     }());
 }
 
-TEST(AbiVolumetricFire, FollowsPowerPositionAndWind) {
+TEST(VolumetricFire, FollowsPowerPositionAndWind) {
     FireWorld still, windy(4);
     const FwVolumetricFireId a = still.make(fwDefaultVolumetricFireDef());
     const FwVolumetricFireId b = windy.make(fwDefaultVolumetricFireDef());
@@ -86,7 +86,7 @@ TEST(AbiVolumetricFire, FollowsPowerPositionAndWind) {
 }
 
 // A floating origin, a portal, a respawn: faster than 100 m/s counts as a teleport.
-TEST(AbiVolumetricFire, KeepsItsShapeWhenTeleported) {
+TEST(VolumetricFire, KeepsItsShapeWhenTeleported) {
     for (const float way : {5.0f, 50.0f, 1000.0f}) {
         FireWorld stays(2), moves(2);
         FwVolumetricFireDef def = presetDef(FW_FIRE_CAMP);
@@ -119,7 +119,7 @@ TEST(AbiVolumetricFire, KeepsItsShapeWhenTeleported) {
 }
 
 // A fire that changes its flames takes the dying ones along.
-TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenTeleported) {
+TEST(VolumetricFire, LeavesNoFlameBehindWhenTeleported) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     def.diameter = 2;
@@ -135,7 +135,7 @@ TEST(AbiVolumetricFire, LeavesNoFlameBehindWhenTeleported) {
     EXPECT_GT(w.state(id).boundsLow[0], to[0] - 5) << "nothing burns at the old place";
 }
 
-TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
+TEST(VolumetricFire, FollowsTheHostsPoints) {
     FireWorld w(3);
     FwFirePoint points[3] = {{{1, 0, 0}, 0.2f}, {{1.5f, 0.5f, 0}, 0.2f}, {{2.5f, 0.6f, 0}, 0.1f}};
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
@@ -162,7 +162,7 @@ TEST(AbiVolumetricFire, FollowsTheHostsPoints) {
     EXPECT_TRUE(std::isfinite(w.state(id).tip[0] + w.state(id).boundsHigh[1]));
 }
 
-TEST(AbiVolumetricFire, IsALight) {
+TEST(VolumetricFire, IsALight) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId large = w.make(def);
@@ -188,7 +188,7 @@ TEST(AbiVolumetricFire, IsALight) {
 }
 
 // The host may set the tier at any time.
-TEST(AbiVolumetricFire, AcceptsATierAtAnyTime) {
+TEST(VolumetricFire, AcceptsATierAtAnyTime) {
     FireWorld w;
     const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
@@ -201,7 +201,7 @@ TEST(AbiVolumetricFire, AcceptsATierAtAnyTime) {
 }
 
 // A light before the first frame must match the light that the first frame computes.
-TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
+TEST(VolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
     FwFirePoint line[2] = {{{3, 0, 0}, 0.1f}, {{4, 1, 0}, 0.1f}};
     for (int kind = 0; kind < 5; ++kind) {
         FireWorld w;
@@ -247,7 +247,7 @@ TEST(AbiVolumetricFire, LightsTheSceneBeforeItsFirstFrame) {
 }
 
 // One light each; no two flicker alike.
-TEST(AbiVolumetricFire, LightsFlickerIndependently) {
+TEST(VolumetricFire, LightsFlickerIndependently) {
     constexpr int kFires = 6, kFrames = 96;
     FireWorld w;
     FwVolumetricFireId ids[kFires];
@@ -280,7 +280,7 @@ TEST(AbiVolumetricFire, LightsFlickerIndependently) {
 }
 
 // As many as a world allows, with walls, wind and queries: no allocation.
-TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
+TEST(VolumetricFire, ManyFiresAllocateNothing) {
     FireWorld w;
     FwVolumetricFireDef def = presetDef(FW_FIRE_TORCH);
     std::vector<FwVolumetricFireId> ids;
@@ -310,7 +310,7 @@ TEST(AbiVolumetricFire, ManyFiresAllocateNothing) {
     for (const FwVolumetricFireId id : ids) EXPECT_EQ(1u, w.state(id).flames);
 }
 
-TEST(AbiVolumetricFire, RefusesValuesBeyondLimitsByName) {
+TEST(VolumetricFire, RefusesValuesBeyondLimitsByName) {
     FireWorld w;
     FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     FwVolumetricFireId id{};

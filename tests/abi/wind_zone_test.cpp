@@ -73,7 +73,7 @@ FwWindZoneDef fanAt(float z, float speed) {
 }
 
 // A fan before the second sheet: its fire runs away from the fan, the others burn as without it.
-TEST(AbiWindZone, AFanDrivesOnlyTheFireInItsReach) {
+TEST(FireInWindZone, AFanDrivesOnlyTheFireInItsReach) {
     Meadow still(FW_BACKEND_CPU), blown(FW_BACKEND_CPU);
     (void)blown.blow(fanAt(1.15f, 6));
     for (Meadow* m : {&still, &blown}) {
@@ -89,7 +89,7 @@ TEST(AbiWindZone, AFanDrivesOnlyTheFireInItsReach) {
 }
 
 // A zone over everything equals the world's wind; full shelter equals none.
-TEST(AbiWindZone, EqualsTheWorldsWindEverywhere) {
+TEST(FireInWindZone, EqualsTheWorldsWindEverywhere) {
     Meadow world(FW_BACKEND_CPU), zone(FW_BACKEND_CPU), both(FW_BACKEND_CPU), still(FW_BACKEND_CPU);
     const float wind[3] = {4, 0, 0};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(world.world, wind));
@@ -113,7 +113,7 @@ TEST(AbiWindZone, EqualsTheWorldsWindEverywhere) {
     }
 }
 
-TEST(AbiWindZone, BothBackendsAgree) {
+TEST(FireInWindZone, BothBackendsAgree) {
     uint64_t hashes[2][3] = {};
     const uint32_t backends[] = {FW_BACKEND_CPU, FW_BACKEND_VULKAN};
     for (int b = 0; b < 2; ++b) {
@@ -143,7 +143,7 @@ TEST(AbiWindZone, BothBackendsAgree) {
 }
 
 // Embers fly with the wind at their fire.
-TEST(AbiWindZone, CarriesEmbers) {
+TEST(FireInWindZone, CarriesEmbers) {
     uint32_t lit[2] = {};
     for (const bool blows : {false, true}) {
         FwWorldDef def = worldDef(FW_WORLD_EMBERS);
@@ -193,7 +193,7 @@ void shearing(float x, float y, float z, float* wind) {
 }
 
 // A uniform grid equals the world's wind, instead of it or added to it, and can be removed.
-TEST(AbiWindGrid, EqualsTheWorldsWindEverywhere) {
+TEST(WindGrid, EqualsTheWorldsWindEverywhere) {
     Meadow world(FW_BACKEND_CPU), grid(FW_BACKEND_CPU), both(FW_BACKEND_CPU), gone(FW_BACKEND_CPU),
         still(FW_BACKEND_CPU);
     const float wind[3] = {4, 0, 0}, half[3] = {2, 0, 0};
@@ -218,7 +218,7 @@ TEST(AbiWindGrid, EqualsTheWorldsWindEverywhere) {
 }
 
 // The wind turns along z: the fires at its ends run in opposite directions.
-TEST(AbiWindGrid, DrivesFireByTheLocalWind) {
+TEST(WindGrid, DrivesFireByTheLocalWind) {
     Meadow m(FW_BACKEND_CPU);
     const Grid turns(turning);
     ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &turns.def)) << lastMessage(m.world);
@@ -230,7 +230,7 @@ TEST(AbiWindGrid, DrivesFireByTheLocalWind) {
     EXPECT_FALSE(m.burnt(2, 0.25f));
 }
 
-TEST(AbiWindGrid, IsTrilinearBetweenItsPoints) {
+TEST(WindGrid, IsTrilinearBetweenItsPoints) {
     Meadow m(FW_BACKEND_CPU);
     const float around[3] = {-3, 0.5f, 8};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, around));
@@ -251,7 +251,7 @@ TEST(AbiWindGrid, IsTrilinearBetweenItsPoints) {
     EXPECT_NEAR(1, m.windAt(0.5f, 0.0f, 1)[0], 0.03f);
 }
 
-TEST(AbiWindGrid, BackendsAndFrameRatesAgreeInGusts) {
+TEST(WindGrid, BackendsAndFrameRatesAgreeInGusts) {
     uint64_t hashes[3][3] = {};
     for (int k = 0; k < 3; ++k) {
         Meadow m(k == 2 ? FW_BACKEND_VULKAN : FW_BACKEND_CPU, 3,
@@ -280,7 +280,7 @@ TEST(AbiWindGrid, BackendsAndFrameRatesAgreeInGusts) {
 }
 
 // A gust drifts with the wind, and the mean wind stays the same.
-TEST(AbiWindGrid, GustsDriftWithTheWind) {
+TEST(WindGrid, GustsDriftWithTheWind) {
     Meadow m(FW_BACKEND_CPU, 1);
     const float around[3] = {4, 0, 0};
     ASSERT_EQ(FW_OK, fwWorld_SetWind(m.world, around));
@@ -315,7 +315,7 @@ TEST(AbiWindGrid, GustsDriftWithTheWind) {
     EXPECT_EQ(3, m.windAt(1, 0, 0)[2]);
 }
 
-TEST(AbiWindGrid, RefusesBadValuesByName) {
+TEST(WindGrid, RefusesBadValuesByName) {
     Meadow m(FW_BACKEND_CPU, 1);
     const auto expectRefused = [&](FwResult result, const char* says) {
         EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, result) << says;
@@ -323,9 +323,9 @@ TEST(AbiWindGrid, RefusesBadValuesByName) {
     };
     Grid good(evenly);
     ASSERT_EQ(FW_OK, fwWorld_SetWindGrid(m.world, &good.def));
-    const auto expectGrid = [&](void (*spoil)(Grid&), const char* says) {
+    const auto expectGrid = [&](void (*damage)(Grid&), const char* says) {
         Grid bad(shearing);
-        spoil(bad);
+        damage(bad);
         expectRefused(fwWorld_SetWindGrid(m.world, &bad.def), says);
     };
     expectGrid([](Grid& g) { g.def.counts[1] = 1; },
@@ -359,7 +359,7 @@ TEST(AbiWindGrid, RefusesBadValuesByName) {
     expectRefused(fwWorld_SetGusts(m.world, nullptr), "FwGustDef is null.");
 }
 
-TEST(AbiWindZone, ReportsWindAndRefusesBadValues) {
+TEST(FireInWindZone, ReportsWindAndRefusesBadValues) {
     Panels p(worldDef(0));
     float wind[3] = {-1, -1, -1};
     const float here[3] = {0.5f, 0, 0}, far[3] = {30, 0, 0};

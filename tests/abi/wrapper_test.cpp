@@ -4,7 +4,7 @@
 
 namespace {
 
-TEST(AbiWrapper, ClosesInOrderAndExplainsFailures) {
+TEST(Wrapper, ClosesInOrderAndExplainsFailures) {
     host::Host host;
     {
         FwContextDef contextDef = fw::def<FwContextDef>();

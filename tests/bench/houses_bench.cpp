@@ -2,11 +2,11 @@
 // picture down the street. Time: all threads of this process, because a software device draws on
 // them.
 //
-// Counters per frame. step_ms: fire, lists, predictions. draw_ms: every second picture drawn again
-// with nothing moved. refine_ms: what the first one costs more. triangles: mean refined triangles;
-// budget: their limit; refine_us_per_1000: refine_ms per thousand, which turns a time into a budget
-// (plugin/docs/integration.md). plain_...: the same street without refinement, interleaved; ratio:
-// to that. wall_ms: by the clock. refine_...: of the device's timers.
+// Counters per frame. step_ms: fire, lists, predictions. draw_ms: every second picture, drawn again
+// with nothing moved. refine_ms: the additional cost of the first. triangles: mean refined
+// triangles; budget: their limit; refine_us_per_1000: refine_ms per thousand, which turns a time
+// into a budget (plugin/docs/integration.md). plain_...: the same street without refinement,
+// interleaved; ratio: to that. wall_ms: by the clock. refine_...: the device's timers.
 #include "bench/bench_device.h"
 #include "support/houses.h"
 

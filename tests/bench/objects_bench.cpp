@@ -1,8 +1,8 @@
 // Ten thousand crates, ten of them burning, on the cpu backend: cost of a step at rest, while one
-// or a thousand walk, while crates come and go, at the first match, and in rain on all. A row that
-// moves crates leaves them settled for the next. Time: this process's threads. Counters: texels per
-// crate; burning: crates; slowest_ms: of all steps; bytes per crate in every pool of the memory
-// report (objects10k/memory; device: objects1k/memory_on_device).
+// or a thousand walk, while crates are created and destroyed, at the first match, and in rain on
+// all. A row that moves crates leaves them settled for the next. Time: this process's threads.
+// Counters: texels per crate; burning: crates; slowest_ms: of all steps; bytes per crate in every
+// pool of the memory report (objects10k/memory; device: objects1k/memory_on_device).
 #include "bench/bench_device.h"
 #include "flamewright/flamewright.h"
 #include "support/meshes.h"

@@ -1,6 +1,6 @@
-// Saves on the cpu backend. Rows: save/burnt1024 and load/burnt1024 (an object with a map of 1024
-// texels a side, all of which has burnt: its bytes made of a readback, and put back),
-// net/latejoin_bytes (what it comes to: bytes).
+// Saves on the cpu backend. Rows: save/burnt1024 and load/burnt1024 (an object with a burnt map of
+// 1024 texels a side: its save from a readback, and its load), net/latejoin_bytes (bytes that a
+// late client receives).
 #include "gpu/cpu/cpu_backend.h"
 #include "support/world_defs.h"
 #include "world/world.h"

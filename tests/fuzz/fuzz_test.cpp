@@ -472,22 +472,22 @@ class Fuzz {
         grid.velocities = points <= 64 && !random_.once(8) ? velocities : nullptr;
         check(fwWorld_SetWindGrid(world_, random_.once(6) ? nullptr : &grid));
     }
-    void shapeShield() {
+    void setHeatOcclusion() {
         uint8_t solid[512];  // as many as a damaged count may ask for below
         for (uint8_t& cell : solid) cell = uint8_t(random_.below(2));
-        FwHeatOcclusionDef shield = fwDefaultHeatOcclusionDef();
-        shield.cellSize = random_.number();
-        for (float& value : shield.origin) value = random_.number();
-        garble(shield);
-        shield.structSize = sizeof shield;
+        FwHeatOcclusionDef grid = fwDefaultHeatOcclusionDef();
+        grid.cellSize = random_.number();
+        for (float& value : grid.origin) value = random_.number();
+        garble(grid);
+        grid.structSize = sizeof grid;
         uint64_t cells = 1;
-        for (const uint32_t count : shield.counts) cells *= std::min(count, 257u);
-        shield.cells = cells <= 512 && !random_.once(8) ? solid : nullptr;
-        shield.distance = nullptr;
+        for (const uint32_t count : grid.counts) cells *= std::min(count, 257u);
+        grid.cells = cells <= 512 && !random_.once(8) ? solid : nullptr;
+        grid.distance = nullptr;
         const FwBurnableMeshId one{1 + random_.below(4), 1};
-        shield.objects = random_.once(4) ? nullptr : &one;
-        shield.objectCount = std::min(shield.objectCount, 1u);
-        check(fwWorld_SetHeatOcclusion(world_, random_.once(6) ? nullptr : &shield));
+        grid.objects = random_.once(4) ? nullptr : &one;
+        grid.objectCount = std::min(grid.objectCount, 1u);
+        check(fwWorld_SetHeatOcclusion(world_, random_.once(6) ? nullptr : &grid));
     }
     void shapeWind() {
         FwWindZoneDef def = fwDefaultWindZoneDef();
@@ -504,7 +504,7 @@ class Fuzz {
             return;
         }
         shapeGrid();
-        shapeShield();
+        setHeatOcclusion();
         FwWindZoneId id{};
         const FwResult result = fwWorld_CreateWindZone(world_, &def, &id);
         check(result);
@@ -904,9 +904,9 @@ class Fuzz {
     std::vector<unsigned char> cooked_;
 };
 
-class AbiFuzz : public ::testing::TestWithParam<int> {};
+class HostFuzz : public ::testing::TestWithParam<int> {};
 
-TEST_P(AbiFuzz, SurvivesRandomHosts) {
+TEST_P(HostFuzz, SurvivesRandomHosts) {
     Fuzz fuzz{uint64_t(GetParam())};
     fuzz.run(12000);
     EXPECT_LT(400u, fuzz.accepted);
@@ -923,6 +923,6 @@ TEST_P(AbiFuzz, SurvivesRandomHosts) {
         static_cast<unsigned long long>(fuzz.refused), static_cast<unsigned long long>(fuzz.meshes),
         static_cast<unsigned long long>(fuzz.objects), static_cast<unsigned long long>(fuzz.fires));
 }
-INSTANTIATE_TEST_SUITE_P(Seeds, AbiFuzz, ::testing::Range(1, 9));
+INSTANTIATE_TEST_SUITE_P(Seeds, HostFuzz, ::testing::Range(1, 9));
 
 }  // namespace

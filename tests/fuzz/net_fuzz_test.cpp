@@ -1,7 +1,7 @@
-// Networks of random hosts: calls in any order, packets lost, late, doubled, mixed up, damaged,
-// made up or handed to the wrong one, clients that come, go and diverge, servers that load,
-// leave and serve again. Nothing crashes, every refusal has its words, and once the storm is over
-// all burn bit by bit alike again. Fixed seeds.
+// Networks of random hosts: calls in any order; packets lost, late, repeated, reordered, damaged,
+// forged or sent to another peer; clients that join, leave and diverge; servers that load, leave
+// and serve again. Nothing crashes, every refusal has a message, and afterwards all worlds burn bit
+// for bit alike. Fixed seeds.
 #include "abi/net_session.h"
 
 #include <algorithm>
@@ -38,7 +38,7 @@ class Storm {
         }
     }
 
-    // Whoever was thrown out is let in again; then the wire is good, and hosts do as they should.
+    // Removed clients join again; then the wire is good, and hosts behave.
     void calm() {
         if (stateOf(server_->world).role != FW_NET_SERVER) serve();
         for (Party& party : parties_) {
@@ -50,7 +50,7 @@ class Storm {
             (void)fwNet_Leave(party.world->world);
             join(party);
         }
-        // Longer than each object's hash takes to come round.
+        // Longer than the period of each object's hash.
         for (int i = 0; i < 200; ++i) {
             server_->run(frame_, frame_ + 1);
             ++frame_;
@@ -79,7 +79,7 @@ class Storm {
         if (once(12)) return 1e30f;
         return float(below(2000)) / 1000.0f - 1.0f;
     }
-    // What a call says: fine, not yet, or no with words for it.
+    // A valid result: success, not ready, or a failure with a message.
     void heard(FwWorld* world, FwResult result) {
         if (result >= 0) return;
         ++refusals;
@@ -113,7 +113,7 @@ class Storm {
         return bytes;
     }
 
-    // What hosts do to the burn; on a client it is refused.
+    // Commands on the burn; a client refuses them.
     void changeBurn(BusyWorld& w) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
         ball.kind = below(4);
@@ -213,7 +213,7 @@ class Storm {
                 break;
             case 2:
                 heard(world, fwWorld_Step(world, std::abs(number())));
-                break;  // as it likes
+                break;  // any command
             case 3:
                 heard(world, fwWorld_Load(world, save_.data(), save_.size()));
                 break;
@@ -223,7 +223,7 @@ class Storm {
             case 5:
                 heard(world, fwNet_Update(world, number()));
                 break;
-            case 6: {  // its world goes wrong by itself
+            case 6: {  // its world diverges by itself
                 const uint32_t texels[] = {below(400), below(400)};
                 const FwBurnableMeshId id = party.world->ids[below(kThings)];
                 heard(world, fwDebug_PushTexels(world, id, FW_IGNITE, texels, 2));
@@ -240,7 +240,7 @@ class Storm {
         }
     }
 
-    // What there is to send, some of it spoilt or sent to somebody else.
+    // Packets to send, some damaged or sent to another peer.
     void send(FwWorld* world, FwPeerId to, Wire& wire, Wire& wrong, bool wild) {
         for (int i = 0; i < 200; ++i) {
             Bytes bytes(1400);
@@ -284,7 +284,7 @@ class Storm {
             heard(world, result);
             if (result != FW_OK || turn.kind == FW_NET_ACTION_WAIT) return;
             if (turn.kind != FW_NET_ACTION_STEP) continue;
-            if (wild && once(20)) continue;  // it forgets to
+            if (wild && once(20)) continue;  // the host skips an update
             heard(world, fwWorld_Step(world, turn.deltaTime));
         }
     }
@@ -305,7 +305,7 @@ class Storm {
     double now_ = 0;
 };
 
-TEST(NetFuzz, RandomHostsNeitherCrashNorPartSilently) {
+TEST(NetFuzz, RandomHostsNeitherCrashNorDivergeSilently) {
     uint32_t refusals = 0, read = 0;
     for (uint32_t seed = 1; seed <= 8; ++seed) {
         SCOPED_TRACE("seed " + std::to_string(seed));

@@ -227,7 +227,7 @@ TEST(BudgetOnDevice, FewerQuadsShowTheSameFire) {
     EXPECT_NEAR(sheet[1] / sheet[0], 1, 0.08);
 }
 
-TEST(AbiBudget, RefusesInvalidBudgets) {
+TEST(FrameBudget, RefusesInvalidBudgets) {
     host::FireWorld w;
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, -1, -1));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, setBudget(w.world, 1001, -1));
@@ -240,7 +240,7 @@ TEST(AbiBudget, RefusesInvalidBudgets) {
 }
 
 // Measured by the clock of the host's thread; the cpu backend has no other.
-TEST(AbiBudget, MeasuresProcessorTime) {
+TEST(FrameBudget, MeasuresProcessorTime) {
     host::FireWorld w;
     FwBudgetDef def = fwDefaultBudgetDef();
     def.cpuMilliseconds = 1e-6f;

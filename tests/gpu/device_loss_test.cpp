@@ -17,7 +17,7 @@ using host::LossScene;
 
 constexpr uint32_t kWidth = 64, kHeight = 36;
 
-class LossOnDevice : public GpuTest {
+class HostDeviceLoss : public GpuTest {
  protected:
     void SetUp() override {
         GpuTest::SetUp();
@@ -63,7 +63,7 @@ class LossOnDevice : public GpuTest {
         TestDevice& device;
         int64_t playedFrom = 0;  // Vulkan calls before the first frame
 
-        explicit Life(LossOnDevice& test) : frames(*test.device_, 2), device(*test.device_) {
+        explicit Life(HostDeviceLoss& test) : frames(*test.device_, 2), device(*test.device_) {
             scene.step = [this, &test](FwWorld* world, float seconds) {
                 return record(test, world, seconds);
             };
@@ -96,7 +96,7 @@ class LossOnDevice : public GpuTest {
             playedFrom = scene.calls();
             if (result == FW_OK) result = scene.play();
         }
-        FwResult record(LossOnDevice& test, FwWorld* world, float seconds) {
+        FwResult record(HostDeviceLoss& test, FwWorld* world, float seconds) {
             const FwView view =
                 viewAt({0.4f, 0.6f, 1.5f}, {0.4f, 0.1f, 0.1f}, float(kWidth) / kHeight);
             const FwVulkanFrame frame = frames.begin(seconds);
@@ -124,7 +124,7 @@ class LossOnDevice : public GpuTest {
     TestImage color_, depth_;
 };
 
-TEST_F(LossOnDevice, IsSurvivedAtEveryCallOfAHostDevice) {
+TEST_F(HostDeviceLoss, IsSurvivedAtEveryCallOfAHostDevice) {
     if (!device_) return;
     LosingVulkan& vulkan = *losingVulkan();
     LossReference reference;

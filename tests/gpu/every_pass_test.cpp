@@ -262,20 +262,19 @@ class EveryPass : public GpuTest {
         exchange_.linkRanges = {&linkRange_, 1};
         exchange_.occluders = {&blocker_, 1};
         // Its faces occlude each other, and so does a wall of the host's.
-        components::HeatOcclusion shield(std::pmr::get_default_resource());
-        shield.shape.counts = {24, 24, 24};
-        shield.shape.origin = {-600, -600, -600};
-        shield.shape.cell = 50;
-        shield.solid.assign(shield.shape.words(), 0);
-        shield.solid.front() = 0xFFFFFFu;
+        components::HeatOcclusion grid(std::pmr::get_default_resource());
+        grid.shape.counts = {24, 24, 24};
+        grid.shape.origin = {-600, -600, -600};
+        grid.shape.cell = 50;
+        grid.solid.assign(grid.shape.words(), 0);
+        grid.solid.front() = 0xFFFFFFu;
         const components::OcclusionObject walls{0, &scene_->domains[0], o, 40, 0};
-        components::bakeOcclusion(shield.shape, {&walls, 1}, shield.baked);
-        components::packOcclusion(shield, shieldWords_);
-        occlusion_.origin = {shield.shape.origin[0], shield.shape.origin[1],
-                             shield.shape.origin[2]};
-        occlusion_.cell = shield.shape.cell;
-        occlusion_.counts = components::countsOf(shield.shape);
-        occlusion_.words = shieldWords_;
+        components::bakeOcclusion(grid.shape, {&walls, 1}, grid.baked);
+        components::packOcclusion(grid, occlusionWords_);
+        occlusion_.origin = {grid.shape.origin[0], grid.shape.origin[1], grid.shape.origin[2]};
+        occlusion_.cell = grid.shape.cell;
+        occlusion_.counts = components::countsOf(grid.shape);
+        occlusion_.words = occlusionWords_;
     }
     void frame(const Frame& what) {
         std::vector<gpu::StepPlan> steps(what.steps);
@@ -534,7 +533,7 @@ class EveryPass : public GpuTest {
     gpu::ExchangeUpdate::Placed placed_{};
     gpu::ExchangeUpdate exchange_;
     gpu::OcclusionUpdate occlusion_;
-    std::pmr::vector<uint32_t> shieldWords_;
+    std::pmr::vector<uint32_t> occlusionWords_;
     std::vector<gpu::ContactLink> links_;
     gpu::HeatOccluder blocker_{};
     gpu::VolumeFlame flames_[4]{};

@@ -242,17 +242,17 @@ TEST_F(ExchangeEquality, ThousandsOfStepsWithAllModesAgree) {
             const FwBurnableMeshId walls[] = {both.ids[0], both.ids[2], both.ids[7], both.ids[9]};
             uint8_t post[40 * 24 * 40] = {};
             for (int y = 0; y < 24; ++y) post[(12 * 24 + y) * 40 + 20] = 1;
-            FwHeatOcclusionDef shield{};
-            shield.structSize = sizeof shield;
-            shield.counts[0] = shield.counts[2] = 40;
-            shield.counts[1] = 24;
-            shield.origin[0] = shield.origin[1] = shield.origin[2] = -0.2f;
-            shield.cellSize = 0.05f;
-            shield.cells = post;
-            shield.objects = walls;
-            shield.objectCount = frame % 80 == 10 ? 4 : 2;
-            if (frame % 160 == 130) shield = {};
-            both.each([&](world::World& w) { w.exchange().setHeatOcclusion(shield); });
+            FwHeatOcclusionDef grid{};
+            grid.structSize = sizeof grid;
+            grid.counts[0] = grid.counts[2] = 40;
+            grid.counts[1] = 24;
+            grid.origin[0] = grid.origin[1] = grid.origin[2] = -0.2f;
+            grid.cellSize = 0.05f;
+            grid.cells = post;
+            grid.objects = walls;
+            grid.objectCount = frame % 80 == 10 ? 4 : 2;
+            if (frame % 160 == 130) grid = {};
+            both.each([&](world::World& w) { w.exchange().setHeatOcclusion(grid); });
         }
         if (random() % 15 == 0) {
             const float wind[3] = {one(6) - 3, 0, one(6) - 3};

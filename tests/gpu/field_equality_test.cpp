@@ -28,7 +28,7 @@ struct Pair {  // the library's field and its place on the device
     uint32_t base = 0, room = 0;
 };
 
-class FieldEquality : public GpuTest {
+class FieldComparison : public GpuTest {
  protected:
     Pair make(uint32_t preset, uint32_t width, uint32_t height, uint32_t open, bool walls,
               bool painted) {
@@ -140,9 +140,9 @@ class FieldEquality : public GpuTest {
     uint32_t step_ = 0, mask_ = 0;
 };
 
-class FieldEqualityBy : public FieldEquality, public ::testing::WithParamInterface<bool> {};
+class FieldEquality : public FieldComparison, public ::testing::WithParamInterface<bool> {};
 
-TEST_P(FieldEqualityBy, EveryCellEqualsTheLibrary) {
+TEST_P(FieldEquality, EveryCellEqualsTheLibrary) {
     if (!device_) return;
     std::vector<Pair> pairs;
     for (uint32_t preset = 0; preset < field::kFieldPresets; ++preset) {
@@ -172,8 +172,8 @@ TEST_P(FieldEqualityBy, EveryCellEqualsTheLibrary) {
     expectEqual(pairs);
 }
 
-INSTANTIATE_TEST_SUITE_P(Words, FieldEqualityBy, ::testing::Values(false));
-INSTANTIATE_TEST_SUITE_P(Texels, FieldEqualityBy, ::testing::Values(true));
+INSTANTIATE_TEST_SUITE_P(Words, FieldEquality, ::testing::Values(false));
+INSTANTIATE_TEST_SUITE_P(Texels, FieldEquality, ::testing::Values(true));
 
 }  // namespace
 }  // namespace fw::test::field_equality_test

@@ -170,12 +170,12 @@ FwFireEmitterDef emitterDef(uint32_t flags, float power) {
     return def;
 }
 
-class ParticleWays : public ParticlePass, public testing::WithParamInterface<bool> {};
-INSTANTIATE_TEST_SUITE_P(, ParticleWays, testing::Values(false, true), [](const auto& way) {
+class ParticleMotion : public ParticlePass, public testing::WithParamInterface<bool> {};
+INSTANTIATE_TEST_SUITE_P(, ParticleMotion, testing::Values(false, true), [](const auto& way) {
     return std::string(way.param ? "ByTexels" : "ByWords");
 });
 
-TEST_P(ParticleWays, MoveLikeTheLibrary) {
+TEST_P(ParticleMotion, MoveLikeTheLibrary) {
     FwFireEmitterDef sticky =
         emitterDef(FW_EMITTER_JET | FW_EMITTER_IGNITES | FW_EMITTER_GROUND, 500);
     sticky.stick = 0.3f;
@@ -222,7 +222,7 @@ TEST_P(ParticleWays, MoveLikeTheLibrary) {
 }
 
 // A shift of the origin loses no particle, and each continues its path.
-TEST_P(ParticleWays, FollowAShiftedOrigin) {
+TEST_P(ParticleMotion, FollowAShiftedOrigin) {
     add(emitterDef(FW_EMITTER_JET | FW_EMITTER_GROUND, 500));
     add(emitterDef(0, 80));
     makeRig(512, GetParam());
@@ -473,7 +473,7 @@ TEST_F(ParticlePass, QuadsBeyondTheCapacityAreOmitted) {
 }
 
 // Random depths of covering and additive quads.
-class EmittingQuads : public ParticlePass {
+class AdditiveQuads : public ParticlePass {
  protected:
     static float depthOf(uint32_t quad) { return 2 + 30 * gpu::particleHash(quad * 31 + 7); }
     // The draw order of so many of both.
@@ -507,14 +507,14 @@ class EmittingQuads : public ParticlePass {
     uint32_t firstLight_ = 0;
 };
 
-TEST_F(EmittingQuads, AreNotSortedWithoutCoveringQuads) {
+TEST_F(AdditiveQuads, AreNotSortedWithoutCoveringQuads) {
     const std::vector<uint32_t> found = order(0, 5000, gpu::fewQuads(true));
     for (uint32_t i = 0; i < found.size(); ++i) ASSERT_EQ(firstLight_ + i, found[i]);
 }
 
 // Each is behind nearer covering quads and in front of farther ones: the transmitted light equals
 // that of a full sort. With more than 1,024 covering quads, to within a run of them.
-TEST_F(EmittingQuads, AreOrderedAgainstCoveringQuads) {
+TEST_F(AdditiveQuads, AreOrderedAgainstCoveringQuads) {
     struct {
         uint32_t hiding, lights, few;
     } const cases[] = {{1, 1, 1024},       {1, 700, 1024},     {300, 40, 1024},
@@ -549,7 +549,7 @@ TEST_F(EmittingQuads, AreOrderedAgainstCoveringQuads) {
 
 // Creation order is draw order: in two frames with equal covering quads and different additive
 // ones, no covering quad changes its rank.
-TEST_F(EmittingQuads, DoNotReorderCoveringQuads) {
+TEST_F(AdditiveQuads, DoNotReorderCoveringQuads) {
     const auto hiding = [&](std::vector<uint32_t> all) {
         std::erase_if(all, [&](uint32_t quad) { return quad >= firstLight_; });
         return all;
@@ -562,7 +562,7 @@ TEST_F(EmittingQuads, DoNotReorderCoveringQuads) {
 }
 
 // An additive flipbook keeps an emitter's fire out of the sort; its smoke is sorted.
-TEST_P(ParticleWays, AdditiveFireIsNotSorted) {
+TEST_P(ParticleMotion, AdditiveFireIsNotSorted) {
     FwFireEmitterDef def = emitterDef(0, 100);
     def.rate = 400;
     def.life = 1;

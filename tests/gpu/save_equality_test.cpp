@@ -1,5 +1,5 @@
-// Saves of a host device, which come some frames late, against those of the cpu backend: worlds
-// that are made of either go on alike on both.
+// Saves of a host device, which arrive some frames late, against those of the cpu backend: worlds
+// loaded from either continue identically on both.
 #include "gpu/cpu/cpu_backend.h"
 #include "support/burn_scene.h"
 #include "support/world_defs.h"
@@ -24,7 +24,7 @@ FwWorldDef saveWorldDef() {
     return def;
 }
 
-// One world on a backend of either kind, driven by frames that both count alike.
+// A world on either backend, driven by frames with equal numbers.
 class AWorld {
  public:
     AWorld(TestDevice* device, uint32_t inFlight = 3) {
@@ -76,14 +76,14 @@ class AWorld {
             poll();
         }
     }
-    // What the host has heard, but for when.
+    // Events that the host received, without their frame.
     void poll() {
         FwEvent events[16];
         while (const uint32_t count = world_->queries().pollEvents(events))
             for (const FwEvent& event : std::span(events, count))
                 heard.push_back({event.type, event.tag, event.object.index1, event.value});
     }
-    // Of the world as it is after the next frame, of no time.
+    // Of the world after the next frame, whose deltaTime is 0.
     Bytes save() {
         world_->persistence().requestSave();
         for (int i = 0; i < 8; ++i) step(0);
@@ -155,7 +155,7 @@ class AWorld {
 
 class SaveEquality : public GpuTest {};
 
-TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
+TEST_F(SaveEquality, BothBackendsContinueFromEither) {
     if (!device_) return;
     AWorld device(device_.get()), cpu(nullptr);
     uint32_t at = 0;
@@ -166,7 +166,7 @@ TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
         const uint64_t then = cpu.hash();
         EXPECT_EQ(then, device.hash());
         const uint32_t end = moment + 45;
-        AWorld plain(nullptr);  // that was never saved
+        AWorld plain(nullptr);  // never saved
         plain.run(0, end);
         const uint64_t later = plain.hash();
         EXPECT_GT(plain.burnt(), 1000u);
@@ -184,14 +184,15 @@ TEST_F(SaveEquality, BothBackendsGoOnFromEither) {
     }
 }
 
-// Frames go on while a save is under way: it is of the frame that was asked for. And a load comes
-// into frames in flight, whose readbacks are of another past.
-TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
+// Frames continue while a save is pending: it holds the requested frame. A load happens with frames
+// in flight, whose readbacks belong to another past.
+TEST_F(SaveEquality, HoldsTheRequestedFrame) {
     if (!device_) return;
     AWorld device(device_.get()), plain(nullptr);
     device.run(0, 40);
     device.world().persistence().requestSave();
-    const std::vector<AWorld::Heard> past = device.heard;  // by some frames less than the save's
+    const std::vector<AWorld::Heard> past =
+        device.heard;  // without the last frames before the save
     device.run(40, 60);
     const Bytes* bytes = device.world().persistence().fetchSave();
     ASSERT_TRUE(bytes);
@@ -201,7 +202,7 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     plain.run(41, 80);
     const uint64_t later = plain.hash();
     device.run(60, 80);
-    for (int i = 0; i < 8; ++i) device.step(0);  // what is on its way
+    for (int i = 0; i < 8; ++i) device.step(0);  // flushes pending readbacks
     device.poll();
     const std::vector<AWorld::Heard> all = device.heard;
     device.load(kept);
@@ -215,34 +216,34 @@ TEST_F(SaveEquality, IsOfTheFrameThatWasAskedFor) {
     EXPECT_EQ(all, device.heard);  // each of them once
 }
 
-// A timeline on the host's own frames: its moments come while others are under way.
-TEST_F(SaveEquality, GoesToAnyMomentOfItsTimeline) {
+// A timeline on the host's own frames: its keyframes arrive while other frames are in flight.
+TEST_F(SaveEquality, SeeksAnyTickOfItsTimeline) {
     if (!device_) return;
     AWorld device(device_.get()), plain(nullptr);
     FwTimelineDef def = fwDefaultTimelineDef();
     def.interval = 0.5f;
     device.world().persistence().startTimeline(def);
-    struct Moment {
+    struct Expected {
         uint64_t tick, hash;
     };
-    std::vector<Moment> moments;
+    std::vector<Expected> expected;
     uint32_t at = 0;
     for (const uint32_t next : {13u, 34u, 55u, 66u}) {
         device.run(at, next);
         plain.run(at, next);
-        moments.push_back({plain.world().tick(), plain.hash()});
-        ASSERT_EQ(moments.back().tick, device.world().tick());
+        expected.push_back({plain.world().tick(), plain.hash()});
+        ASSERT_EQ(expected.back().tick, device.world().tick());
         at = next;
     }
     for (const size_t wanted : {2u, 0u, 3u, 1u}) {
         float seconds = 0;
         for (int i = 0; i < 400; ++i) {
-            ASSERT_TRUE(device.world().persistence().seek(moments[wanted].tick, seconds));
+            ASSERT_TRUE(device.world().persistence().seek(expected[wanted].tick, seconds));
             if (seconds == 0) break;
             device.step(std::min(seconds, 0.1f));
         }
-        EXPECT_EQ(moments[wanted].tick, device.world().tick());
-        EXPECT_EQ(moments[wanted].hash, device.hash()) << wanted;
+        EXPECT_EQ(expected[wanted].tick, device.world().tick());
+        EXPECT_EQ(expected[wanted].hash, device.hash()) << wanted;
     }
 }
 

@@ -322,7 +322,7 @@ TEST_F(Views, WarmViewsAllocateNothing) {
 
 // A removed view is drawn like one that was never given, frees its memory, and is as before when it
 // returns.
-TEST_F(Views, MayComeAndGo) {
+TEST_F(Views, MayBeAddedAndRemoved) {
     if (!device_) return;
     FwWorld* const world = makeWorld();
     FwWorld* const alone = makeWorld();
@@ -423,7 +423,7 @@ TEST_F(Views, RefuseInvalidValues) {
 
 // A view that was not recorded is marched while it is drawn: almost the same picture, without a
 // pixel pattern in its smoke.
-TEST_F(Views, AnUnrecordedViewLooksAlike) {
+TEST_F(Views, AnUnrecordedViewLooksTheSame) {
     if (!device_) return;
     // Distance of pixels of the upper half, which holds only smoke, from the mean of their
     // neighbours.

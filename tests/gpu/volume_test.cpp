@@ -1988,7 +1988,7 @@ TEST_F(Volume, FramesNeedNoTemporalMixing) {
 }
 
 // For any number and nearness of flames, pixels grow until all fit.
-TEST(MarchPush, FitsAnyFlamesIntoTheMemory) {
+TEST(MarchLayout, FitsAnyFlamesIntoTheMemory) {
     const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = lod::volumeRayWords(screen);
     std::vector<lod::VolumeItem> items(gpu::kMaxVolumeFlames);
@@ -2045,7 +2045,7 @@ TEST(MarchPush, FitsAnyFlamesIntoTheMemory) {
 
 // When memory is short, smoke yields: fire keeps its resolution in its own window, which begins
 // where the smoke's ends.
-TEST(MarchPush, SmokeYieldsMemoryToFire) {
+TEST(MarchLayout, SmokeYieldsMemoryToFire) {
     const lod::VolumeScreen screen{{1280, 720}, gpu::kVolumeSlabs};
     const uint32_t words = lod::volumeRayWords(screen);
     std::array<lod::VolumeItem, 24> items;

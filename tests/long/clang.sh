@@ -5,7 +5,7 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 folder=${FW_LONG_FOLDER:?set FW_LONG_FOLDER to a folder for results}
 
 # Skips device tests, which test the driver, and slow real meshes, which other suites run.
-slow='Device|/device$|BothBackends|Backends(Agree|AndFrame)|^(AbiDrawn|AbiFuzz|NetModelCorner)\.|^Seeds/AbiFuzz'
+slow='Device|/device$|BothBackends|Backends(Agree|AndFrame)|^(DrawnMesh|HostFuzz|NetModelCorner)\.|^Seeds/HostFuzz'
 slow+='|^Mesh(Bake|Front)\.(Bunny|BakesInstalled|TenRandom|SeamDelays|TenUnwraps)'
 
 # An interrupted build resumes; a suite that passed is skipped.

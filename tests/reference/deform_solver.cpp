@@ -28,7 +28,7 @@ struct Links {
     }
 };
 
-// Around a node, by its present places.
+// Around a particle, by its current position.
 vec3 normalOf(const DeformParticle& node, const DeformState& state, uint32_t parity) {
     const vec3 x = state.soft[node.vertex].place[parity];
     vec3 turned(0), before(0), first(0);
@@ -85,12 +85,12 @@ void linkCachePass(const DeformModel& model, const gpu::DeformObject& object, De
     state.tied = true;
 }
 
-// m, as devices keep it.
+// m, as devices store it.
 vec3 unpackBendShare(vec3 share) {
     return gpu::unpackBendShare(gpu::packBendShare(share * gpu::kBendUnit)) / gpu::kBendUnit;
 }
 
-// Its own bends, and its shares of others', which are of the step before.
+// Its own bends, and its shares of others' bends of the step before.
 vec3 bendingOf(const DeformParticle& node, const DeformMaterial& material, const SheetDrive& drive,
                DeformState& state) {
     DeformState::Soft& self = state.soft[node.vertex];
@@ -158,7 +158,8 @@ void resetSoft(const DeformModel& model, const gpu::DeformObject& object, Deform
     for (const DeformParticle& node : model.nodes) {
         DeformState::Soft& soft = state.soft[node.vertex];
         soft.place[0] = soft.place[1] = restOf(node);
-        // Known from the start, or a sheet would fall until word of its pins came to it.
+        // Known from the start, or a sheet would fall until the distance to its pins has spread to
+        // it.
         float reach = gpu::kNoPath;
         for (uint32_t i = 0; i < object.pinCount; ++i) {
             const vec3 point =

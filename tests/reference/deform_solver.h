@@ -1,5 +1,5 @@
-// Deformation of one object on the CPU, in its own axes: the passes recede, link_cache, soft and springs
-// and the skinning of the drawn vertices are compared with it.
+// Deformation of one object on the CPU, in object axes: the reference for the passes recede,
+// link_cache, soft, springs and skin_to_mesh.
 #pragma once
 #include "mesh/deform/model.h"
 
@@ -10,24 +10,25 @@ namespace fw::mesh {
 struct DeformState {  // of one object; per vertex of the domain
     explicit DeformState(std::pmr::memory_resource* memory) : shown(memory), soft(memory) {}
     std::pmr::vector<gpu::ShownVertex> shown;
-    struct Soft {                 // of what moves; only vertices that keep a node's state count
-        gpu::vec3 place[2];       // m: where it would be without constraints, now and next
-        gpu::vec3 normal;         // unit
+    struct Soft {            // of moving vertices; only vertices with a particle of their own count
+        gpu::vec3 place[2];  // m: where it would be without constraints, now and next
+        gpu::vec3 normal;    // unit
         float reach[2] = {};      // m to a pin along links that hold; 0: pinned
         bool known = false;       // see nextPath
-        gpu::vec3 bend[2]{};      // m, by which it gives way: to neighbours, to arms
-        gpu::vec3 share[2][2]{};  // m, of each of those, in the step before and in this one
-        // As of when its ties were looked at.
+        gpu::vec3 bend[2]{};      // m, correction by neighbours and by bending constraints
+        gpu::vec3 share[2][2]{};  // m, of both, in the step before and in this one
+        // As of the last update of the link cache.
         float burnt = 0;
-        uint32_t holds = 0;   // bits of the links that count: near, arms of all ways << 8
+        uint32_t holds =
+            0;  // bits of holding links: neighbours, bending constraints of all sets << 8
         uint32_t pinned = 0;  // bits of neighbours
         gpu::vec4 anchor{0};  // m, the nearest point of a pin, and its radius
-        bool whole = false;   // no neighbour has parted
+        bool whole = false;   // no link to a neighbour has parted
     };
     std::pmr::vector<Soft> soft;
-    uint32_t parity = 0;  // of the next step: which places are now
-    uint32_t way = 0;     // and which arms it minds
-    bool tied = false;    // its ties have been looked at
+    uint32_t parity = 0;  // of the next step: which positions are current
+    uint32_t way = 0;     // and which bending constraints it uses
+    bool tied = false;    // the link cache is up to date
 };
 
 struct SheetDrive {  // object axes
@@ -36,22 +37,22 @@ struct SheetDrive {  // object axes
     float gravity = 9.81f;                       // m/s^2
     float step = float(gpu::kSoftTicks) / 4096;  // s
     float time = 0;                              // s, of its gusts
-    float updraft = 1;                           // of fire's, 0: none
+    float updraft = 1;                           // factor of the fire's updraft, 0: none
 };
 
-// At rest.
+// In its rest pose.
 void resetDeform(const DeformModel& model, DeformState& state);
-// Of what moves, after resetDeform: whatever lies within a pin is pinned.
+// Of moving vertices, after resetDeform: each vertex inside a pin is pinned.
 void resetSoft(const DeformModel& model, const gpu::DeformObject& object, DeformState& state);
 // `states`: the object's burn map (ticks or codes).
 void recede(const DeformModel& model, const gpu::DeformObject& object,
             std::span<const uint32_t> states, uint32_t now, DeformState& state);
-// `tears`: a sheet, which has holes where it was torn.
+// `tears`: a sheet, whose holes are where it was torn.
 void skinVertices(const DeformModel& model, DeformState& state, bool tears = false);
 // One step of a sheet: pass soft, and before every fourth pass link_cache.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);
-// One step of the published springs; `lost`: m that every node recedes in it.
+// One step of the published springs; `lost`: m that every particle recedes in it.
 void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,
                 std::span<const float> lost, float damping, DeformState& state);
 

@@ -1,5 +1,5 @@
-// The march of one ray through a flame on the CPU, by the shader's own text: the march pass is
-// compared with it.
+// The march of one ray through a flame on the CPU, by the shader's own text: the reference for the
+// march pass.
 #pragma once
 #include "volume/march.h"
 
@@ -8,13 +8,13 @@ namespace fw::volume {
 struct MarchRules {
     uint32_t steps = 64;                        // >= 1, over the ray's part of the tube
     uint32_t intervals = gpu::kFlameIntervals;  // between knots, see volume_march.h
-    float jitter = 0.5f;                        // [0, 1) of a step, where in it the sample lies
+    float jitter = 0.5f;                        // [0, 1) of a step, position of the sample in it
     float pixel = 0.0f;                         // m per m away, width of a pixel
     float detail = 0.0f;    // m: noise finer than this fades; 0: by step and pixel
     float farthest = 1e9f;  // m, the scene behind
     bool smoke = true;
-    // m: as the march pass takes them, `steps` samples `apart`, the first of them at `first`; smoke
-    // beyond `middle` lies behind the flame. apart 0: spread over the ray's part of the tube.
+    // m: as the march pass samples, `steps` samples `apart` from `first` on; smoke beyond `middle`
+    // lies behind the flame. apart 0: spread over the ray's part of the tube.
     float apart = 0.0f, first = 0.0f, middle = 0.0f;
     vec3 sun{0.0f};  // light on the smoke before its phase function, see FlameSun::light
     vec3 toSun{0.0f, 1.0f, 0.0f};  // unit
@@ -27,7 +27,7 @@ gpu::FlameMedium sampleFlame(const gpu::FlameRecord& flame, const Profile& profi
 vec2 flameSpan(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes, vec3 from,
                vec3 direction) noexcept;
 
-// `direction` is unit. The share of light that passes the flame is ray.through.
+// `direction` is unit. ray.through is the share of light that passes the flame.
 gpu::FlameRay marchRay(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> nodes,
                        const Profile& profile, vec3 from, vec3 direction,
                        const MarchRules& rules) noexcept;

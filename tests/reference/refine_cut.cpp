@@ -1,4 +1,4 @@
-// One lane per small triangle: keep the polygon in front of the hole's line, and close it.
+// One lane per small triangle: keeps the polygon in front of the hole's line, and closes it.
 #include "reference/refine_cut.h"
 
 #include "mesh/refine/table.h"

@@ -1,6 +1,6 @@
-// The burnt object as a closed shell: what is left of the outer skin, the inner skin behind it, and
-// walls along holes and open edges. Corners are named by slots and small edges, so that neighbours
-// agree by number; places follow from the frame's vertices.
+// The burnt object as a closed shell: the remaining outer skin, the inner skin behind it, and walls
+// along holes and open edges. Corners are named by slots and small edges, so that neighbours agree
+// by number; positions follow from the frame's vertices.
 #pragma once
 #include "reference/refine_frame.h"
 
@@ -11,7 +11,7 @@ struct RefineShell {
 
     std::pmr::vector<gpu::RefineCorner> corners;       // 3 per triangle
     uint32_t outer = 0, inner = 0, rim = 0, wall = 0;  // triangles of each kind
-    uint32_t gone = 0;                                 // small triangles with nothing left
+    uint32_t gone = 0;                                 // small triangles without a remainder
 };
 
 // inner: with the inner skin and walls (an object without a hole needs none); else the outer only.

@@ -1,6 +1,6 @@
-// Refinement of one object, frame by frame: levels from heat and views, counts, triangles, places.
-// The reference for the passes in shaders/refine: both do lane by lane what shaders/shared/refine.h
-// says. Floats, cosmetic; equal input gives equal output on one machine.
+// Refinement of one object, frame by frame: levels from heat and views, counts, triangles,
+// positions. The reference for the passes in shaders/refine: both follow shaders/shared/refine.h
+// lane by lane. Floats, cosmetic; equal input gives equal output on one machine.
 #pragma once
 #include "mesh/refine/model.h"
 
@@ -14,11 +14,11 @@ struct RefineView {
 struct RefineSettings {
     float pixelsPerEdge = 8;     // > 0, screen length of the finest segments
     float rate = 4;              // levels per s once a surface has moved
-    float cool = 1;              // s that a level outlives its heat
+    float cool = 1;              // s that a level outlasts its heat
     float grace = 0.25f;         // s of burning during which a surface counts as flat
     float recede = 0.9f;         // (0, 1), share of a slot's reach
     uint32_t budget = 400000;    // triangles aimed at; never less than one per coarse triangle
-    uint32_t capacity = 600000;  // triangles there is room for, >= budget and coarse triangles
+    uint32_t capacity = 600000;  // capacity in triangles, >= budget and coarse triangles
     bool morph = true;           // false: levels are whole, changes are sudden
     bool skipStill = true;       // false: every vertex in use is placed again each frame
 };
@@ -40,28 +40,27 @@ struct RefineState {
     std::pmr::vector<uint32_t> starts;             // triangles + 1, first output triangle
     std::pmr::vector<uint32_t> indices;            // draw vertices, 3 per output triangle
     std::pmr::vector<gpu::RefineVertex> vertices;  // per slot
-    float bias = 0;                                // levels taken off by the budget
-    bool unmorphed = false;  // the last frame had no room for levels on their way down
+    float bias = 0;                                // levels removed by the budget
+    bool unmorphed = false;  // the last frame had no capacity for levels on their way down
     uint32_t emissions = 0;  // frames in which `indices` changed
     uint32_t placed = 0;     // vertices placed in the last frame
 
-    // What the passes remember.
+    // State of the passes between frames.
     float placedAt = -gpu::kRefineNever;  // s, the last frame
     std::pmr::vector<uint8_t> edgeHeat, interiorHeat;
-    // What their vertices said when last placed: kRefineGone, Stays, Going. Where a rim crosses, or
-    // will, they stay hot.
+    // Of each edge's and interior's vertices when last placed: kRefineGone, Stays, Going. Where a
+    // rim crosses, or will, they stay hot.
     std::pmr::vector<uint8_t> edgeFate, interiorFate;
-    std::pmr::vector<uint8_t> edgeMoving, interiorMoving;  // warm a moment ago, or on their way
-    std::pmr::vector<uint8_t> edgeTops;                    // integer levels, of the last count
+    std::pmr::vector<uint8_t> edgeMoving, interiorMoving;       // warm a moment ago, or moving
+    std::pmr::vector<uint8_t> edgeTops;                         // integer levels, of the last count
     std::pmr::vector<uint32_t> emitted, emittedStarts, before;  // of the last emission
     std::pmr::vector<float> edgeShown, interiorShown;  // levels when last placed; < 0: never
     std::pmr::vector<uint8_t> edgeMoved;               // placed in this frame
 };
 
-// Heat of every tile from its TileState::flag: what is on the front list is hot, what is on the
-// burn list burns. The front list knows of fire one ring of texels before it comes, and what was
-// lit a moment ago has not moved: that is warning enough. ahead: grid neighbours and seam readers
-// are hot too, at a third to a half more triangles.
+// Heat of every tile from its TileState::flag: tiles on the front list are hot, tiles on the burn
+// list burn. The front list knows of fire one ring of texels ahead, which is warning enough. ahead:
+// grid neighbours and dependent tiles over seams are hot too, at a third to a half more triangles.
 void refineHeat(const BurnDomain& domain, std::span<const uint32_t> tileFlags, bool ahead,
                 std::span<uint8_t> tiles);
 
@@ -72,7 +71,7 @@ uint32_t refineScan(const RefineModel& model, RefineState& state);  // output tr
 void refineEmit(const RefineModel& model, RefineState& state);
 void refinePlace(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
                  RefineState& state);
-// All of them; triangles are emitted only when an integer level changed.
+// All passes; triangles are emitted only when an integer level changed.
 void refineFrame(const RefineModel& model, const RefineSettings& settings, const RefineFrame& frame,
                  RefineState& state);
 

@@ -1,4 +1,4 @@
-// Heat to levels, levels to triangles.
+// Levels from heat, triangles from levels.
 #include "mesh/refine/table.h"
 #include "reference/refine_frame.h"
 
@@ -8,7 +8,7 @@
 namespace fw::mesh {
 namespace {
 
-// As long as it opens, and where the rim of a hole stays, an item keeps its levels.
+// While it opens, and where the rim of a hole remains, an item keeps its levels.
 void keepRims(std::span<uint8_t> fates, std::span<uint8_t> heat) {
     constexpr uint8_t kRim = gpu::kRefineGone | gpu::kRefineStays;
     for (size_t i = 0; i < fates.size(); ++i) {
@@ -18,7 +18,7 @@ void keepRims(std::span<uint8_t> fates, std::span<uint8_t> heat) {
     }
 }
 
-// Heat of edges and interiors from that of the tiles. Its cost follows the fire.
+// Heat of edges and interiors from that of the tiles. The cost follows the fire.
 void warm(const RefineModel& model, const RefineFrame& frame, RefineState& state) {
     std::fill(state.edgeHeat.begin(), state.edgeHeat.end(), uint8_t(0));
     std::fill(state.interiorHeat.begin(), state.interiorHeat.end(), uint8_t(0));
@@ -51,7 +51,7 @@ float lodOf(const RefineModel& model, const RefineSettings& settings, const Refi
     return most;
 }
 
-// Has it neither heat nor anything left of it?
+// Has it neither heat nor a remainder?
 bool asleep(const gpu::RefineLevel& s, uint8_t heat) {
     return heat == 0 && s.level == 0 && s.target == 0;
 }
@@ -75,7 +75,7 @@ void aim(const RefineModel& model, const RefineSettings& settings, const RefineF
     }
 }
 
-// Levels to aim at. Numbers of edges and interiors differ, so that both lose levels in one mixed
+// Target levels. Edges and interiors use separate numbers, so that both lose levels in one mixed
 // order.
 float edgeWant(const RefineState& state, uint32_t e, float bias) {
     const float target = state.edges[e].target;
@@ -94,7 +94,7 @@ uint32_t packed(const RefineState& state, const gpu::RefineTriangle& t, uint32_t
     return gpu::refinePack(a, b, c, gpu::fitInterior(a, b, c, interior));
 }
 
-// Triangles that the targets come to with this bias; stops counting above `most`.
+// Number of triangles for this bias; stops counting above `most`.
 uint64_t aimedCount(const RefineModel& model, RefineState& state, float bias, uint64_t most) {
     for (uint32_t e = 0; e < model.edges.size(); ++e)
         state.edgeTops[e] = uint8_t(gpu::topLevel(edgeWant(state, e, bias)));
@@ -114,7 +114,7 @@ float minBias(const RefineModel& model, RefineState& state, uint32_t budget) {
     return float(gpu::kRefineBiases - 1) * gpu::kRefineBiasStep;
 }
 
-// Whether it is on its way, or was warm a moment ago.
+// Does it move, or was it warm a moment ago?
 uint8_t move(const RefineSettings& settings, const RefineFrame& frame, float want,
              gpu::RefineLevel& level) {
     const float before = level.level;
@@ -124,7 +124,7 @@ uint8_t move(const RefineSettings& settings, const RefineFrame& frame, float wan
     return level.level != before || frame.now - level.lastHot < settings.cool ? 1 : 0;
 }
 
-// Levels of all triangles from those of edges and interiors; the triangles they make.
+// Levels of all triangles from those of edges and interiors, and their number of output triangles.
 uint64_t packAll(const RefineModel& model, RefineState& state) {
     for (uint32_t e = 0; e < model.edges.size(); ++e)
         state.edgeTops[e] = uint8_t(gpu::topLevel(state.edges[e].level));
@@ -214,7 +214,7 @@ uint32_t refineScan(const RefineModel& model, RefineState& state) {
 }
 
 void refineEmit(const RefineModel& model, RefineState& state) {
-    // Triangles whose levels stayed are moved, not made again.
+    // Triangles with unchanged levels are moved, not emitted again.
     std::swap(state.indices, state.before);
     state.indices.resize(size_t(state.starts.back()) * 3);
     const bool known = state.emitted.size() == state.levels.size();

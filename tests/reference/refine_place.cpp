@@ -1,5 +1,5 @@
-// Where every vertex in use lies now, and when it burns through. Corners, then edges, then
-// interiors: each reads only what stands before it.
+// Position and hole time of every vertex in use. Corners, then edges, then interiors: each reads
+// only earlier ones.
 #include "reference/refine_frame.h"
 
 #include <algorithm>
@@ -45,7 +45,7 @@ class Placer {
         ++state_.placed;
     }
 
-    // At an unchanged level: what had burnt through when it was last placed has come to rest.
+    // At an unchanged level, a vertex that had burnt through when last placed no longer moves.
     void evaluateMoving(uint32_t s) {
         if (state_.vertices[s].hole > state_.placedAt) evaluate(s);
     }
@@ -83,7 +83,7 @@ class Placer {
                   at(gpu::refineEdgeSlot(edge, i + 1, l)), age);
     }
 
-    // What a vertex that is burnt through at some time says of its edge or interior.
+    // State of an edge or interior as one of its vertices shows it.
     [[nodiscard]] uint8_t fateOf(uint32_t s) const {
         const float hole = state_.vertices[s].hole;
         if (hole <= frame_.now) return gpu::kRefineGone;
@@ -107,7 +107,7 @@ class Placer {
                 state_.interiorFate[i] |= fateOf(gpu::refineInnerSlot(t, c1, c2, m));
     }
 
-    // A point of a triangle's lattice, or where that place is on the edge's polyline.
+    // A point of a triangle's lattice, or its position on the edge's polyline.
     [[nodiscard]] glm::vec3 latticePlace(const gpu::RefineTriangle& t, uint32_t levels, uint32_t c1,
                                          uint32_t c2) const {
         const gpu::RefineSpot spot = gpu::refineSpot(t, levels, c1, c2);
@@ -127,7 +127,7 @@ class Placer {
             return;
         }
         const float level = state_.interiors[i].level;
-        // A fit to its sides has no age of its own.
+        // A vertex fitted to its sides has no age of its own.
         const float age = gpu::topLevel(level) == m ? gpu::levelMorphAge(level, m) : 1;
         const float shown = float(m) - 1 + age;
         bool still = (state_.interiorHeat[i] & gpu::kRefineBurning) == 0 &&

@@ -1,5 +1,5 @@
-// A recorded input log: what a host did to a world, at which tick, as text that a person can write.
-// Only data and its reader; replay_test.cpp plays it. The words are explained in README.md.
+// A recorded input log: a host's commands and their ticks, as text that a person can write. Data
+// and its reader only; replay_test.cpp plays it. README.md explains the words.
 #pragma once
 #include <cstdint>
 #include <string>

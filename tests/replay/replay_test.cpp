@@ -1,5 +1,5 @@
-// Recorded input logs, played through the C ABI: the same maps after every step as when they were
-// recorded, on the cpu backend and on a host Vulkan device. README.md tells of the files.
+// Recorded input logs, played through the C ABI: after every step the maps equal the recorded ones,
+// on the cpu backend and on a host Vulkan device. See README.md.
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "replay/replay_log.h"
@@ -50,7 +50,7 @@ uint32_t presetOf(std::string name) {
     return 0;
 }
 
-// A context and a world that a log is played into. Who steps it, and how, is a backend's matter.
+// A context and a world that plays a log. Each backend steps it in its own way.
 class Player {
  public:
     Player(const FwVulkanHost* vulkan, uint32_t stepsPerFrame) : stepsPerFrame_(stepsPerFrame) {
@@ -74,7 +74,7 @@ class Player {
             for (; next < log.commands.size() && log.commands[next].tick / kStepTicks == step;
                  ++next)
                 apply(log.commands[next], step);
-            // On to the next command, hash or end.
+            // To the next command, hash or end.
             uint32_t until = std::min(log.steps, (step / every + 1) * every);
             if (next < log.commands.size())
                 until = std::min(until, log.commands[next].tick / kStepTicks);
@@ -205,7 +205,7 @@ class Player {
             uint64_t hash = 0, tick = 0;
             FwResult result = FW_NOT_READY;
             for (int i = 0; i < 8 && result == FW_NOT_READY; ++i) {
-                if (i > 0) frame(world_, 0);  // brings what is still out
+                if (i > 0) frame(world_, 0);  // flushes pending readbacks
                 result =
                     fwDebug_FetchBurnMap(world_, living->id, nullptr, 0, nullptr, &hash, &tick);
             }
@@ -249,7 +249,7 @@ class VkPlayer final : public Player {
     HostFrames frames_;
 };
 
-// Which log differs where: the first step whose hash is another one, 0 if none.
+// The first step at which two logs differ, 0 if none.
 uint32_t firstDifference(const std::vector<ReplayHash>& want, const std::vector<ReplayHash>& got) {
     for (const ReplayHash& one : got) {
         if (one.step == 0 || one.step > want.size()) return one.step;
@@ -267,7 +267,7 @@ class Replay : public ::testing::TestWithParam<const char*> {
     ReplayLog log_;
 };
 
-TEST_P(Replay, CpuAfterEveryStep) {
+TEST_P(Replay, CpuMatchesTheHashOfEveryStep) {
     const std::vector<ReplayHash> got = CpuPlayer().play(log_, 1);
     ASSERT_EQ(log_.steps, got.size());
     if (blessing()) {
@@ -281,7 +281,7 @@ TEST_P(Replay, CpuAfterEveryStep) {
     EXPECT_EQ(0u, firstDifference(want, got))
         << "is the first step that ends differently. If a change of bake or front is meant to: "
            "tests/run --filter Replay --bless";
-    // The log must be about something: most of its steps change something.
+    // A useful log: most of its steps change something.
     uint32_t changes = 0;
     for (size_t i = 1; i < got.size(); ++i) changes += got[i].hash != got[i - 1].hash ? 1u : 0u;
     EXPECT_LT(log_.steps / 2, changes);
@@ -289,7 +289,7 @@ TEST_P(Replay, CpuAfterEveryStep) {
 
 class ReplayOnDevice : public GpuTest, public ::testing::WithParamInterface<const char*> {};
 
-TEST_P(ReplayOnDevice, VkAsOnTheCpu) {
+TEST_P(ReplayOnDevice, MatchesTheCpu) {
     if (!device_) return;
     ReplayLog log;
     std::vector<ReplayHash> want;
@@ -309,8 +309,8 @@ const auto nameOf = [](const ::testing::TestParamInfo<const char*>& info) {
 INSTANTIATE_TEST_SUITE_P(Logs, Replay, ::testing::ValuesIn(kLogs), nameOf);
 INSTANTIATE_TEST_SUITE_P(Logs, ReplayOnDevice, ::testing::ValuesIn(kLogs), nameOf);
 
-// One input of a log changed: equal until then, another world from then on.
-TEST(ReplayNotices, OneInputThatIsAnother) {
+// One input of a log changed: equal until then, different afterwards.
+TEST(ReplayCheck, DetectsOneChangedInput) {
     const auto differsAt = [](const char* name, const auto& change, uint32_t steps) {
         ReplayLog log;
         std::string error;
@@ -319,18 +319,18 @@ TEST(ReplayNotices, OneInputThatIsAnother) {
         const uint32_t tick = change(log);
         log.steps = std::min(log.steps, tick / kStepTicks + steps);
         const uint32_t first = firstDifference(want, CpuPlayer().play(log, 1));
-        EXPECT_LT(tick / kStepTicks, first) << name;  // not before it happens
+        EXPECT_LT(tick / kStepTicks, first) << name;  // not earlier
         return first == 0 ? 0u : first - tick / kStepTicks;
     };
     const auto find = [](ReplayLog& log, ReplayVerb verb) -> ReplayCommand& {
         return *std::find_if(log.commands.rbegin(), log.commands.rend(),
                              [&](const ReplayCommand& c) { return c.verb == verb; });
     };
-    // A tick earlier: seen in the very step.
+    // A tick earlier: the same step differs.
     EXPECT_EQ(1u, differsAt(
                       "doused_and_lit_again",
                       [&](ReplayLog& log) { return --find(log, ReplayVerb::Ignite).tick; }, 4));
-    // Water that is a spark.
+    // Ignition instead of water.
     EXPECT_EQ(1u, differsAt(
                       "doused_and_lit_again",
                       [&](ReplayLog& log) {
@@ -339,7 +339,7 @@ TEST(ReplayNotices, OneInputThatIsAnother) {
                           return command.tick;
                       },
                       4));
-    // A wind from elsewhere: at its next latch.
+    // Wind from another direction: differs from its next latch on.
     const uint32_t latched = differsAt(
         "turning_wind",
         [&](ReplayLog& log) {
@@ -352,7 +352,7 @@ TEST(ReplayNotices, OneInputThatIsAnother) {
     EXPECT_GE(32u, latched);
 }
 
-TEST(ReplayNotices, ALogThatIsNone) {
+TEST(ReplayCheck, RefusesFilesThatAreNoLogs) {
     const std::string path = ::testing::TempDir() + "no.log";
     for (const char* text :
          {"", "end 0\n", "0 ignite 1 2\nend 4\n", "5 wind 1 2 3\nend 4\n", "0 jump 1 2 3\nend 4\n",

@@ -1,5 +1,5 @@
-// A scene with a little of every feature for the loss of a device at one call after another. A
-// failing call ends it; the last save is the mirror.
+// A scene with a little of every feature, for losing a device at one call after another. A failing
+// call ends it; the last save is the mirror.
 #pragma once
 #include "abi/abi_support.h"
 #include "support/losing_vulkan.h"

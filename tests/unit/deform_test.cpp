@@ -126,7 +126,7 @@ TEST(DeformModel, BendingConstraintsAreMutualAndRunsAgree) {
     }
 }
 
-TEST(DeformTierA, VerticesSplitBySeamsStayTogether) {
+TEST(RecedingSolid, VerticesSplitBySeamsStayTogether) {
     const Mesh sphere = randomUnwrap(makeCube(0.4, 12, true), 7, 20);
     const BurnDomain domain = bakeOf(sphere.input(128));
     const DeformModel model = modelOf(domain);
@@ -147,7 +147,7 @@ TEST(DeformTierA, VerticesSplitBySeamsStayTogether) {
     }
 }
 
-TEST(DeformTierA, UnburntMeshesDoNotChange) {
+TEST(RecedingSolid, UnburntMeshesDoNotChange) {
     const Mesh sphere = makeCube(0.4, 8, true);
     const BurnDomain domain = bakeOf(sphere.input(64));
     const DeformModel model = modelOf(domain);
@@ -160,7 +160,7 @@ TEST(DeformTierA, UnburntMeshesDoNotChange) {
 }
 
 // The lost volume equals the burnt skin: exact on flat faces, close on round ones.
-TEST(DeformTierA, LostVolumeEqualsBurntFuel) {
+TEST(RecedingSolid, LostVolumeEqualsBurntFuel) {
     for (const bool sphere : {false, true}) {
         const Mesh mesh = makeCube(0.4, 16, sphere);
         const BurnDomain domain = bakeOf(mesh.input(64));
@@ -177,7 +177,7 @@ TEST(DeformTierA, LostVolumeEqualsBurntFuel) {
     }
 }
 
-TEST(DeformTierA, NeverRecedesThroughTheFarWallOrBack) {
+TEST(RecedingSolid, NeverRecedesThroughTheFarWallOrBack) {
     const Mesh sphere = makeCube(0.2, 16, true);
     const BurnDomain domain = bakeOf(sphere.input(128));
     const DeformModel model = modelOf(domain);
@@ -199,7 +199,7 @@ TEST(DeformTierA, NeverRecedesThroughTheFarWallOrBack) {
 }
 
 // A slab eaten from both sides at 0.65 mm/min opens in half the time, on both sides together.
-TEST(DeformTierA, SlabsOpenOnBothSidesTogether) {
+TEST(RecedingSolid, SlabsOpenOnBothSidesTogether) {
     constexpr float kSlab = 0.010f, kCharRate = 0.65e-3f / 60;
     Mesh mesh;
     constexpr int kCells = 12;

@@ -206,7 +206,7 @@ TEST(JetStream, ConservesPowerOnStretchedMeshes) {
         const auto& areas = r.book.areas[id.index1 - 1];
         EXPECT_LE(given, all);
         EXPECT_LT(all - given, *std::max_element(areas.begin(), areas.end())) << c.x;
-        EXPECT_EQ(0u, r.book.heat.count(1)) << "the wall behind gets nothing";
+        EXPECT_EQ(0u, r.book.heat.count(1)) << "the wall behind is not heated";
     }
 }
 

@@ -1,5 +1,5 @@
-// What packets are made of: heads that tell damage, numbers that came before, records that come
-// back as they were, states in pieces over a way that loses them.
+// Packets and their parts: heads with a checksum, the window of received numbers, records that
+// round-trip, and states in pieces over a lossy link.
 #include "net/packet.h"
 #include "net/protocol.h"
 #include "net/records.h"
@@ -15,7 +15,7 @@ namespace {
 using namespace fw;
 using Bytes = std::pmr::vector<std::byte>;
 
-TEST(NetPacket, AnyFlippedBitIsFound) {
+TEST(NetPacket, DetectsAnyFlippedBit) {
     Bytes packet;
     core::Writer writer = net::beginPacket(packet, {net::PacketKind::status, 7, 8, 9});
     writer.number(uint64_t(0x1234567890ABCDEF));
@@ -35,16 +35,16 @@ TEST(NetPacket, AnyFlippedBitIsFound) {
     }
 }
 
-TEST(NetPacket, WhatCameIsKnown) {
+TEST(NetPacket, ReportsReceivedPackets) {
     net::SequenceWindow window;
     EXPECT_FALSE(window.isNew(0));
-    EXPECT_FALSE(window.isNew(1u << 20));  // nobody loses so many
+    EXPECT_FALSE(window.isNew(1u << 20));  // more than can be lost
     for (const uint32_t sequence : {3u, 1u, 70u, 69u}) {
         EXPECT_TRUE(window.isNew(sequence)) << sequence;
         EXPECT_EQ(sequence == 3 || sequence == 70, window.take(sequence));
         EXPECT_FALSE(window.isNew(sequence)) << sequence;
     }
-    EXPECT_FALSE(window.isNew(2));  // too old to tell
+    EXPECT_FALSE(window.isNew(2));  // too old to know
     EXPECT_TRUE(window.isNew(68));
     EXPECT_TRUE(window.isNew(71));
 }
@@ -65,7 +65,7 @@ world::Command commandOf(uint32_t i) {
                   std::make_integer_sequence<uint32_t, world::kCommandKinds>());
 }
 
-TEST(NetRecords, ComeBackAsTheyWere) {
+TEST(NetRecords, RoundTrip) {
     net::RecordLog log(std::pmr::get_default_resource());
     for (uint32_t i = 0; i < 500; ++i) {
         net::Record record;
@@ -104,8 +104,8 @@ TEST(NetRecords, ComeBackAsTheyWere) {
     EXPECT_THROW(net::readRecord(cut, record), core::Error);
 }
 
-// A fifth is lost each way, pieces and answers; the state comes whole.
-TEST(NetTransfer, AStateComesWhole) {
+// A fifth of pieces and answers is lost; the state still arrives completely.
+TEST(NetTransfer, ReassemblesAState) {
     std::mt19937 random(4);
     Bytes state(150000);
     for (std::byte& b : state) b = std::byte(random());
@@ -142,7 +142,7 @@ TEST(NetTransfer, AStateComesWhole) {
 }
 
 // Only pieces that were sent can be acknowledged.
-TEST(NetTransfer, OnlySentPiecesCanHaveCome) {
+TEST(NetTransfer, RefusesAcknowledgementsOfUnsentPieces) {
     net::ChunkSender sender;
     sender.begin(100);
     EXPECT_TRUE(sender.canHave(0, 0));
@@ -155,7 +155,7 @@ TEST(NetTransfer, OnlySentPiecesCanHaveCome) {
     EXPECT_FALSE(sender.canHave(2, 0x8));
     EXPECT_FALSE(sender.canHave(6, 0));
     EXPECT_FALSE(sender.canHave(0xFFFFFFFFu, 0));
-    // Pieces 0 and 2 did not come; packets before number 12 are settled.
+    // Pieces 0 and 2 did not arrive; packets before number 12 are settled.
     EXPECT_EQ(5u, sender.next(0.1, 1));
     sender.acknowledge(0, 0x1A, 12);
     EXPECT_EQ(0u, sender.next(0.1, 1));
@@ -178,7 +178,7 @@ net::Record messageOf(std::span<const std::byte> text) {
     return record;
 }
 
-// A client that gets a state instead of records gets each message between them all the same.
+// A client that gets a state instead of records still gets each message between them.
 TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
     net::RecordLog log(std::pmr::get_default_resource());
     const Bytes text(3);
@@ -214,7 +214,7 @@ TEST(NetRecords, MessagesOutliveTheRecordsAroundThem) {
     EXPECT_EQ(0u, log.bytes());
 }
 
-TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
+TEST(NetRecords, CountBytesAndRecordsThatAStateReplaces) {
     net::RecordLog log(std::pmr::get_default_resource());
     const Bytes text(10);
     const net::Record capture = captureAt(1);
@@ -232,9 +232,9 @@ TEST(NetRecords, CountBytesAndWhatAStateCanStandFor) {
     EXPECT_EQ(5u * 14, log.bytes());
 }
 
-// The table is the protocol: phases that send records have a state, and whoever takes or waits can
-// fall back.
-TEST(NetProtocol, PhasesLeadToPhases) {
+// The table is the protocol: phases that send records have a state, and each phase that receives or
+// waits can fall back.
+TEST(NetProtocol, TransitionsLeadToDefinedPhases) {
     using net::PeerEvent, net::PeerPhase;
     for (uint32_t i = 0; i < uint32_t(PeerPhase::count); ++i) {
         const auto phase = PeerPhase(i);
@@ -255,7 +255,7 @@ TEST(NetProtocol, PhasesLeadToPhases) {
     EXPECT_EQ(net::kRefused, net::phaseAfter(PeerPhase::calling, PeerEvent::loads));
 }
 
-TEST(NetRoundTrip, FollowsTheWayAndWaitsLonger) {
+TEST(NetRoundTrip, FollowsTheDelayAndBacksOff) {
     net::RoundTrip trip;
     EXPECT_EQ(0.5, trip.timeout());
     double now = 0;

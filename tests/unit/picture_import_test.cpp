@@ -307,7 +307,8 @@ TEST(SheetImport, FramesRunRightThenDown) {
         EXPECT_NEAR(texels[best].y, 1.0f, 1e-5f);
     }
     // The motion between frames is found: 2 texels of 32 per frame.
-    const auto book = fwtools::finishBook(def.facts, frames, 1, std::pmr::get_default_resource());
+    const auto book =
+        fwtools::finishFlipbook(def.facts, frames, 1, std::pmr::get_default_resource());
     const auto motion = fw::book::motionAt(book, 2, {(12.5f) / 32, 1 - 12.5f / 32});
     EXPECT_NEAR(motion.x, 2.0f / 32, 0.3f / 32);
     EXPECT_NEAR(motion.y, 0.0f, 0.3f / 32);

@@ -1,5 +1,5 @@
-// What saves are made of: planes that come back as they were, bytes that are refused where they are
-// damaged, and a file that no end of the process leaves half written.
+// Parts of saves: compressed planes that round-trip, archives that refuse damaged bytes, and a file
+// that no killed process leaves half written.
 #include "world/save.h"
 #include "common/save_file.h"
 #include "core/error.h"
@@ -46,7 +46,7 @@ double bitsOf(const Values& values, uint32_t width, const Mask& mask = {}) {
     return 8.0 * double(bytes.size()) / double(values.size());
 }
 
-TEST(SavedPlane, ComesBackAsItWas) {
+TEST(PlaneCodec, RoundTrips) {
     std::mt19937 random(3);
     for (int turn = 0; turn < 200; ++turn) {
         const uint32_t width = 1 + random() % 40, height = 1 + random() % 40;
@@ -68,7 +68,7 @@ TEST(SavedPlane, ComesBackAsItWas) {
     EXPECT_EQ(0u, written({}, 1, {}).size());
 }
 
-TEST(SavedPlane, IsSmallWhereThereIsLittleToSay) {
+TEST(PlaneCodec, CompressesUniformData) {
     const uint32_t side = 256;
     Values cone(side * side), still(side * side, 12345), half(side * side);
     for (uint32_t i = 0; i < side * side; ++i) {
@@ -76,12 +76,12 @@ TEST(SavedPlane, IsSmallWhereThereIsLittleToSay) {
         cone[i] = uint32_t(away * 160);
         half[i] = away < 90 ? 1 : 0;
     }
-    EXPECT_LT(bitsOf(cone, side), 2.5);  // of the 16 that they have
+    EXPECT_LT(bitsOf(cone, side), 2.5);  // of the 16 that each value has
     EXPECT_LT(bitsOf(still, side), 0.01);
     EXPECT_LT(bitsOf(half, side), 0.05);
 }
 
-TEST(SavedPlane, DamagedOnesEnd) {
+TEST(PlaneCodec, DamagedDataEndsOrIsRefused) {
     std::mt19937 random(9);
     Values values(1000);
     for (uint32_t& value : values) value = uint32_t(random() % 3 == 0 ? random() : 4);
@@ -97,7 +97,7 @@ TEST(SavedPlane, DamagedOnesEnd) {
     EXPECT_GT(refused, 200u);
 }
 
-TEST(SavedBytes, AreCheckedAgainstWhatIsLeft) {
+TEST(ArchiveReader, ChecksCountsAgainstRemainingBytes) {
     Bytes bytes;
     core::Writer writer(bytes);
     writer.number(uint32_t(0x01020304));
@@ -117,9 +117,8 @@ TEST(SavedBytes, AreCheckedAgainstWhatIsLeft) {
     EXPECT_THROW((void)again.count("things", 1), core::Error);
 }
 
-// A child replaces a file all the time; it is killed at any moment, and the file is whole.
-// No event of a texel that no triangle covers comes from a world: heat steps never look at such.
-TEST(SavedEvents, AreOfTexelsOfTheSurface) {
+// A world makes no events of texels that no triangle covers, since heat steps skip those.
+TEST(SaveChecks, RefuseEventsOfUncoveredTexels) {
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
     core::Log log(FwCallbacks{});
     gpu::cpu::CpuBackend backend(memory, 4);
@@ -151,7 +150,8 @@ TEST(SavedEvents, AreOfTexelsOfTheSurface) {
     EXPECT_THROW(world.persistence().load(bent), core::Error);
 }
 
-TEST(SaveFile, AKillLeavesAWholeFile) {
+// A child replaces a file repeatedly; killed at any moment, it leaves the file whole.
+TEST(SaveFile, AKilledWriterLeavesAWholeFile) {
     const auto path = std::filesystem::temp_directory_path() /
                       ("flamewright_save_" + std::to_string(getpid()) + ".fwsave");
     const auto content = [](uint32_t seed) {

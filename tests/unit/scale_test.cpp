@@ -478,7 +478,7 @@ TEST(Contacts, AreFoundAnywhereInTheWorld) {
         EXPECT_NEAR(double(here), double(count(at)), 0.5 * double(here)) << at;
 }
 
-TEST(World, RefusesABlockerScaledTooLarge) {
+TEST(World, RefusesAnOccluderScaledTooLarge) {
     Square square(1, 0);
     FwHeatOccluderDef def{};
     def.structSize = sizeof def;

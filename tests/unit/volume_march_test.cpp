@@ -14,7 +14,7 @@ using namespace volume_scene;
 using fw::gpu::FlameMedium;
 using fw::gpu::FlameRay;
 
-TEST(MarchPush, ConstantMediumIsExactForAnyStepCount) {
+TEST(VolumeMarch, ConstantMediumIsExactForAnyStepCount) {
     for (const float k : {0.0f, 1e-5f, 0.01f, 0.5f, 3.0f, 20.0f})
         for (const float chord : {0.05f, 0.6f, 4.0f})
             for (uint32_t n = 4; n <= 64; ++n) {
@@ -35,7 +35,7 @@ TEST(MarchPush, ConstantMediumIsExactForAnyStepCount) {
 }
 
 // Gas that emits without absorbing must not lose its light to a small-number guard.
-TEST(MarchPush, EmittingGasWithoutAbsorptionIsExact) {
+TEST(VolumeMarch, EmittingGasWithoutAbsorptionIsExact) {
     FlameMedium m{0.0f, 0.0f, 0.5f, vec3(0.1f, 0.5f, 4.0f)};
     FlameRay ray{vec3(0.0f), vec3(1.0f)};
     for (int s = 0; s < 10; ++s) ray = fw::gpu::flameStep(ray, m, vec3(0), 0.03f);
@@ -57,7 +57,7 @@ double meanRadiance(const Shown& f, uint32_t steps, float detail) {
     return sum;
 }
 
-TEST(MarchPush, BrightnessIsIndependentOfTheStepCount) {
+TEST(VolumeMarch, BrightnessIsIndependentOfTheStepCount) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(3.0);
     const float apart = rounds(0.03f, 0.08f);  // m between rays
@@ -68,7 +68,7 @@ TEST(MarchPush, BrightnessIsIndependentOfTheStepCount) {
     }
 }
 
-TEST(MarchPush, NothingIsVisibleOutsideTheBounds) {
+TEST(VolumeMarch, NothingIsVisibleOutsideTheBounds) {
     std::mt19937 random(3);
     std::uniform_real_distribution<float> unit(0.0f, 1.0f);
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
@@ -93,7 +93,7 @@ TEST(MarchPush, NothingIsVisibleOutsideTheBounds) {
     }
 }
 
-TEST(MarchPush, RaysFindEverythingInTheTube) {
+TEST(VolumeMarch, RaysFindEverythingInTheTube) {
     Shown f = Shown::preset(FlamePreset::Torch);
     f.run(0.9);
     std::mt19937 random(9);
@@ -115,7 +115,7 @@ TEST(MarchPush, RaysFindEverythingInTheTube) {
 }
 
 // Knots replace a ray's samples: no flame is missed or moved.
-TEST(MarchPush, KnotsKeepTheFlameInPlace) {
+TEST(VolumeMarch, KnotsKeepTheFlameInPlace) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     Curve bent;
     const float r = 0.5f * f.size.diameter, tall = f.size.height;
@@ -156,7 +156,7 @@ TEST(MarchPush, KnotsKeepTheFlameInPlace) {
     EXPECT_LT(off, 0.02 * lit);
 }
 
-TEST(MarchPush, MarchesFromInsideAndUpToAWall) {
+TEST(VolumeMarch, MarchesFromInsideAndUpToAWall) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(1.0);
     MarchRules rules;
@@ -179,7 +179,7 @@ TEST(MarchPush, MarchesFromInsideAndUpToAWall) {
     EXPECT_EQ(before, 0.0f) << "a wall in front hides the flame";
 }
 
-TEST(MarchPush, NoiseIsInMetres) {
+TEST(VolumeMarch, NoiseIsInMetres) {
     // The same fire ten times as large looks the same from ten times the distance.
     const FlameLook look = presetDef(FlamePreset::CampFire).look;
     Shown small(look, 60.0f, 0.6f, 0.6f), large(look, 60.0f, 6.0f, 6.0f);
@@ -190,7 +190,7 @@ TEST(MarchPush, NoiseIsInMetres) {
 }
 
 // At the intersection with a wall no edge is harder than the flame's own unevenness.
-TEST(MarchPush, NoHardEdgeWhereAWallCutsTheFlame) {
+TEST(VolumeMarch, NoHardEdgeWhereAWallCutsTheFlame) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     f.run(1.3);
     MarchRules rules;
@@ -217,7 +217,7 @@ TEST(MarchPush, NoHardEdgeWhereAWallCutsTheFlame) {
 }
 
 // Faults of a known port: a mirror seam at the axis, a hollow core, a straight base.
-TEST(MarchPush, HasNoAxisSeamHollowCoreOrStraightBase) {
+TEST(VolumeMarch, HasNoAxisSeamHollowCoreOrStraightBase) {
     Shown f = Shown::preset(FlamePreset::CampFire);
     double core = 0, rim = 0, mirrored = 0, plain = 0;
     double across = 0, beside = 0;
@@ -254,7 +254,7 @@ TEST(MarchPush, HasNoAxisSeamHollowCoreOrStraightBase) {
     EXPECT_LT(mean(0.002f), 0.2 * mean(0.08f));
 }
 
-TEST(MarchPush, NoiseDoesNotRepeatWithinAMinute) {
+TEST(VolumeMarch, NoiseDoesNotRepeatWithinAMinute) {
     for (uint32_t k = 0; k < uint32_t(FlamePreset::Count); ++k) {
         Shown f = Shown::preset(FlamePreset(k));
         FlameScroll s;
@@ -264,7 +264,7 @@ TEST(MarchPush, NoiseDoesNotRepeatWithinAMinute) {
     }
 }
 
-TEST(MarchPush, NoiseIsUnbiasedAndWraps) {
+TEST(VolumeMarch, NoiseIsUnbiasedAndWraps) {
     std::mt19937 random(5);
     std::uniform_real_distribution<float> unit(0.0f, 4096.0f);
     double sum = 0, magnitude = 0;
@@ -285,7 +285,7 @@ TEST(MarchPush, NoiseIsUnbiasedAndWraps) {
 }
 
 // Eddies displace fire within their limit, without bias and smoothly.
-TEST(MarchPush, EddiesAreUnbiasedAndLimited) {
+TEST(VolumeMarch, EddiesAreUnbiasedAndLimited) {
     std::mt19937 random(6);
     std::uniform_real_distribution<float> unit(0.0f, 400.0f);
     vec3 sum(0.0f);

@@ -86,7 +86,7 @@ TEST(VolumeProfile, RefusesBadInputWithValueAndLimit) {
     EXPECT_THAT(paint(64, 128), HasSubstr("soot of texel (0, 0) of the fire profile is -0.25"));
     std::fill(kelvin.begin(), kelvin.end(), 0.0f), std::fill(soot.begin(), soot.end(), 0.0f);
     EXPECT_THAT(paint(64, 128), HasSubstr("neither soot nor hot gas"));
-    EXPECT_EQ(p.texels, before.texels) << "what failed changed nothing";
+    EXPECT_EQ(p.texels, before.texels) << "a failed read changes nothing";
 }
 
 TEST(VolumeProfile, RefusesBadFilesWithAReason) {

@@ -53,7 +53,7 @@ float volumeOf(const Shown& flame, uint32_t piece) {
     return sum;
 }
 
-TEST(SlicesPush, FillTheLattice) {
+TEST(VolumeSlices, FillTheLattice) {
     Shown flame = Shown::preset(FlamePreset::CampFire);
     flame.record.smoke = 0;
     const vec3 eye(1.3f, 0.7f, 4.0f), forward = glm::normalize(vec3(-0.31f, 0.11f, -1.0f));
@@ -68,7 +68,7 @@ TEST(SlicesPush, FillTheLattice) {
 
 // A slice's sample stands for the span to the next one, so the number of slices does not change the
 // brightness.
-TEST(SlicesPush, BrightnessIsIndependentOfTheirSpacing) {
+TEST(VolumeSlices, BrightnessIsIndependentOfTheirSpacing) {
     Shown flame = Shown::preset(FlamePreset::CampFire);
     gpu::FlameRecord& r = flame.record;
     r.smoke = r.turbulence = r.radial = r.warp = r.columns = r.filament = r.erode = r.puff = 0;

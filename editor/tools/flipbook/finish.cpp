@@ -257,8 +257,8 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
     return motion;
 }
 
-book::Book finishBook(const book::Facts& facts, std::vector<Frame>& frames, uint32_t threads,
-                      std::pmr::memory_resource* memory) {
+book::Book finishFlipbook(const book::Facts& facts, std::vector<Frame>& frames, uint32_t threads,
+                          std::pmr::memory_resource* memory) {
     fade(facts, frames);
     if (facts.loops != 0) startAtSmallestChange(frames);
     for (Frame& frame : frames) extendTemperatures(frame, facts.width, facts.height);

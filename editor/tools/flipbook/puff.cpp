@@ -1,6 +1,6 @@
 // Flipbooks of one-shot effects: a ball of burning gas or smoke, rolled up by a vortex ring and
 // torn by eddies. Each point carries its origin, and its density is noise at that origin, so
-// nothing blurs. Book space: [-1, 1], y along the particle's motion, z away from the camera.
+// nothing blurs. Flipbook space: [-1, 1], y along the particle's motion, z away from the camera.
 #include "scene.h"
 
 #include "shared/volume.h"

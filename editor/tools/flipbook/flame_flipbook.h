@@ -9,7 +9,7 @@
 
 namespace fwtools {
 
-struct FlameBookDef {
+struct FlameFlipbookDef {
     uint32_t preset = 0;                // FwFirePreset, for its appearance
     float power = 60, diameter = 0.6f;  // kW, m
     std::span<const float> texels;      // profile as in FwFireProfileDef; empty: see cooked
@@ -22,7 +22,7 @@ struct FlameBookDef {
 };
 // Returns the bytes of a .fwbook. `progress`: receives the share done, from one thread at a time;
 // false cancels, with an empty `error`. On failure returns false with `error`.
-bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& progress,
-                   std::vector<std::byte>& bytes, std::string& error);
+bool bakeFlameFlipbook(const FlameFlipbookDef& def, const std::function<bool(float)>& progress,
+                       std::vector<std::byte>& bytes, std::string& error);
 
 }  // namespace fwtools

@@ -2,13 +2,13 @@
 #include "support/own_world.h"
 #include "support/refine_scene.h"
 
-namespace fw::test::boards_test {
+namespace fw::test::burning_board_test {
 namespace {
 
 constexpr uint32_t kWidth = 192, kHeight = 192;
 constexpr float kSide = 0.5f;  // m
 
-class Boards : public OwnWorld {
+class BurningBoard : public OwnWorld {
  protected:
     Picture draw(float zoom = 12) {
         const glm::vec3 target(0.5f * kSide, 0.5f * kSide, 0);
@@ -31,7 +31,7 @@ class Boards : public OwnWorld {
 
 // Detail coordinates run around the board, so its back mirrors its front. Holes that followed them
 // would open both walls at the same places, like an inkblot.
-TEST_F(Boards, HolesAreNotMirrored) {
+TEST_F(BurningBoard, HolesAreNotMirrored) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
     std::vector<float> details;
@@ -68,7 +68,7 @@ TEST_F(Boards, HolesAreNotMirrored) {
 
 // Browning ahead of a front is several texels wide. When a board catches, all of it shows in the
 // same frame instead of ending at the prediction's first round.
-TEST_F(Boards, ScorchShowsInTheFirstFrame) {
+TEST_F(BurningBoard, ScorchShowsInTheFirstFrame) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
     addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.02f);
@@ -93,7 +93,7 @@ TEST_F(Boards, ScorchShowsInTheFirstFrame) {
 
 // Only the back burns; its holes are the front's. Near the camera they are cut, far away they are
 // per-pixel holes: the open share must agree.
-TEST_F(Boards, HolesBurntFromBehindAreOpenNearAndFar) {
+TEST_F(BurningBoard, HolesBurntFromBehindAreOpenNearAndFar) {
     makeWorld(1, 32);
     const Mesh mesh = gridBox(double(kSide), double(kSide), 0.012, 1, 1, 1);
     addBoard(mesh, std::vector<float>(mesh.positions.size() / 3 * 2, 0), 0.3f, FW_BURNABLE_REFINE);
@@ -125,4 +125,4 @@ TEST_F(Boards, HolesBurntFromBehindAreOpenNearAndFar) {
 }
 
 }  // namespace
-}  // namespace fw::test::boards_test
+}  // namespace fw::test::burning_board_test

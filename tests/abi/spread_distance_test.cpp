@@ -37,7 +37,7 @@ struct Hearth : Panels {
     }
 };
 
-TEST(AbiSpread, RadiationIgnitesExposedObjects) {
+TEST(Spread, RadiationIgnitesExposedObjects) {
     const auto caught = [](uint32_t flags, float x, const FwHeatOccluderDef* wall, double seconds) {
         Hearth p(worldDef(flags));
         p.add(p.paper(x, 0, 0, true));
@@ -133,7 +133,7 @@ FwMaterialDef receiverOf(float thickness, bool thick) {
     return def;
 }
 
-TEST(AbiSpread, IgnitionTimeOfFacingBoardsMatchesTheFluxFormula) {
+TEST(Spread, IgnitionTimeOfFacingBoardsMatchesTheFluxFormula) {
     const double flux = 0.9 * TwoBoards::formula();  // absorbed
     for (const bool thick : {false, true}) {
         const FwMaterialDef def = receiverOf(thick ? 0.05f : 0.0019f, thick);
@@ -151,7 +151,7 @@ TEST(AbiSpread, IgnitionTimeOfFacingBoardsMatchesTheFluxFormula) {
     }
 }
 
-TEST(AbiSpread, AWallBetweenBoardsPreventsIgnition) {
+TEST(Spread, AWallBetweenBoardsPreventsIgnition) {
     FwHeatOccluderDef wall = fwDefaultHeatOccluderDef();
     wall.transform[12] = 0.05f;
     wall.halfSize[0] = 0.01f;
@@ -174,7 +174,7 @@ TEST(AbiSpread, AWallBetweenBoardsPreventsIgnition) {
 }
 
 // A window in a wall of four boxes: a board behind it is lit, a board beside it is not.
-TEST(AbiSpread, AHoleInTheWallLetsRadiationThrough) {
+TEST(Spread, AHoleInTheWallLetsRadiationThrough) {
     for (const float beside : {0.0f, 3.0f}) {  // m from the board to the window, sideways
         TwoBoards p(worldDef(FW_WORLD_RADIATION), receiverOf(0.0018f, false));
         const auto wall = [&](float y, float z, float high, float wide) {
@@ -198,7 +198,7 @@ TEST(AbiSpread, AHoleInTheWallLetsRadiationThrough) {
     }
 }
 
-TEST(AbiSpread, PlumesIgniteObjectsAbove) {
+TEST(Spread, PlumesIgniteObjectsAbove) {
     for (const uint32_t flags : {uint32_t(FW_WORLD_PLUME), uint32_t(FW_WORLD_CONTACT)}) {
         for (const float height : {1.0f, -1.0f}) {
             Hearth p(worldDef(flags));
@@ -210,7 +210,7 @@ TEST(AbiSpread, PlumesIgniteObjectsAbove) {
     }
 }
 
-TEST(AbiSpread, RespectsTheHostsSightAnswers) {
+TEST(Spread, RespectsTheHostsSightAnswers) {
     for (const float seen : {0.0f, 1.0f}) {
         FwWorldDef def = worldDef(FW_WORLD_RADIATION);
         float part = seen;
@@ -227,7 +227,7 @@ TEST(AbiSpread, RespectsTheHostsSightAnswers) {
     }
 }
 
-TEST(AbiSpread, ClearingTheFlagStopsReceivedHeat) {
+TEST(Spread, ClearingTheFlagStopsReceivedHeat) {
     // Switched off before it is hot enough, the object cools and never catches.
     for (const bool off : {false, true}) {
         Hearth p(worldDef(FW_WORLD_RADIATION));
@@ -252,7 +252,7 @@ void makeEmbers(Panels& p) {
         for (float z = 0.02f; z < 0.2f; z += 0.06f) p.ignite(p.ids[0], x, 0, z, 0.04f);
 }
 
-TEST(AbiSpread, EmbersIgniteObjectsDownwind) {
+TEST(Spread, EmbersIgniteObjectsDownwind) {
     FwWorldDef def = worldDef(FW_WORLD_EMBERS);
     def.paceFactor = 30;
     def.wind[0] = 3;

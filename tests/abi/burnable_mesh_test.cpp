@@ -20,7 +20,7 @@ const FwEvent* find(const std::vector<FwEvent>& events, uint32_t type) {
     return found == events.end() ? nullptr : &*found;
 }
 
-TEST(AbiFire, APlankBurnsFromEndToEnd) {
+TEST(BurnableMesh, APlankBurnsFromEndToEnd) {
     SheetWorld w(host::evenMaterial(kRate, 4));
     // Lights a line across one end so that the front is straight.
     const float tagAt[3] = {0.8f, 0, 0.125f};
@@ -71,7 +71,7 @@ TEST(AbiFire, APlankBurnsFromEndToEnd) {
     EXPECT_EQ(uint32_t(FW_POINT_BURNT), w.point(0.5f, 0, 0.1f).kind);
 }
 
-TEST(AbiFire, PointQueriesReportTheNearestTexel) {
+TEST(BurnableMesh, PointQueriesReportTheNearestTexel) {
     SheetWorld w(host::evenMaterial(kRate, 100));
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.5f, 0, 0.1f).kind);
     EXPECT_GT(0.0f, w.point(0.5f, 0, 0.1f).age);
@@ -92,7 +92,7 @@ TEST(AbiFire, PointQueriesReportTheNearestTexel) {
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0.9f, 0, 0.125f).kind);
 }
 
-TEST(AbiFire, ExtinguishingReportsAnEvent) {
+TEST(BurnableMesh, ExtinguishingReportsAnEvent) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f);
     w.run(3.0);
@@ -121,7 +121,7 @@ TEST(AbiFire, ExtinguishingReportsAnEvent) {
     EXPECT_EQ(uint32_t(FW_EXTINGUISHED_BY_CALL), find(last, FW_EVENT_EXTINGUISHED)->tag);
 }
 
-TEST(AbiFire, IgnitesOnlyTexelsInsideTheBall) {
+TEST(BurnableMesh, IgnitesOnlyTexelsInsideTheBall) {
     SheetWorld w(host::evenMaterial(kRate, 10));
     EXPECT_EQ(0u, w.ball(FW_IGNITE, 0.5f, 1.0f, 0.1f, 0.5f));  // half a metre above
     EXPECT_EQ(0u, w.ball(FW_IGNITE, 5.0f, 0.0f, 0.1f, 0.5f));  // beside
@@ -148,7 +148,7 @@ TEST(AbiFire, IgnitesOnlyTexelsInsideTheBall) {
               }));
 }
 
-TEST(AbiFire, AScaledObjectBurnsInWorldMetres) {
+TEST(BurnableMesh, AScaledObjectBurnsInWorldMetres) {
     SheetWorld w(host::evenMaterial(kRate, 1000), 0.25f, 0.0625f, 256);
     const float four[16] = {4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 1};
     ASSERT_EQ(FW_OK, fwWorld_SetTransform(w.world, w.object, four));
@@ -165,7 +165,7 @@ TEST(AbiFire, AScaledObjectBurnsInWorldMetres) {
 
 // A sheet stretched fourfold along one axis, mirrored and turned: fire covers equal world distances
 // along both axes.
-TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
+TEST(BurnableMesh, AStretchedObjectBurnsInWorldMetres) {
     SheetWorld w(host::evenMaterial(kRate, 1000), 0.25f, 1.0f, 256);
     for (const bool mirrored : {false, true}) {
         SCOPED_TRACE(mirrored ? "mirrored" : "stretched");
@@ -210,7 +210,7 @@ TEST(AbiFire, AStretchedObjectBurnsInWorldMetres) {
     }
 }
 
-TEST(AbiFire, ShapesAreSharedAndFreedWithTheirLastUser) {
+TEST(BurnableMesh, ShapesAreSharedAndFreedWithTheirLastUser) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
     def.mesh = w.mesh;
@@ -235,7 +235,7 @@ TEST(AbiFire, ShapesAreSharedAndFreedWithTheirLastUser) {
     EXPECT_EQ(FW_OK, fwWorld_DestroyMesh(w.world, w.mesh)) << lastMessage(w.world);
 }
 
-TEST(AbiFire, PaceMultipliesSpreadAndBurnOut) {
+TEST(BurnableMesh, PaceMultipliesSpreadAndBurnOut) {
     FwWorldDef def = fwDefaultWorldDef();
     def.paceFactor = 8;
     SheetWorld w(host::evenMaterial(kRate / 8, 32), 1.0f, 0.25f, 64, def);
@@ -254,7 +254,7 @@ TEST(AbiFire, PaceMultipliesSpreadAndBurnOut) {
     EXPECT_NEAR(expected, double(reached->value), 0.03 * expected);
 }
 
-TEST(AbiFire, WindDrivesTheFrontDownwind) {
+TEST(BurnableMesh, WindDrivesTheFrontDownwind) {
     FwMaterialDef material = host::evenMaterial(0.01f, 1000);
     material.windGain = 1;
     material.headGain = 1;
@@ -274,7 +274,7 @@ TEST(AbiFire, WindDrivesTheFrontDownwind) {
     EXPECT_EQ(uint32_t(FW_POINT_BURNING), w.point(0.4f - 0.2f, 0, 0.25f).kind);
 }
 
-TEST(AbiFire, GravityFollowsAPoseAtTheNextLatch) {
+TEST(BurnableMesh, GravityFollowsAPoseAtTheNextLatch) {
     FwMaterialDef material = host::evenMaterial(0.01f, 1000);
     material.upGain = 1;
     material.headGain = 3;
@@ -291,7 +291,7 @@ TEST(AbiFire, GravityFollowsAPoseAtTheNextLatch) {
     EXPECT_EQ(uint32_t(FW_POINT_UNBURNT), w.point(0, 0.3f - 0.15f, 0.125f).kind);
 }
 
-TEST(AbiFire, FireDoesNotCrossAZeroSpreadMultiplier) {
+TEST(BurnableMesh, FireDoesNotCrossAZeroSpreadMultiplier) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     std::vector<uint8_t> multiplier(64 * 16, 128);
     for (int y = 0; y < 16; ++y)
@@ -321,7 +321,7 @@ TEST(AbiFire, FireDoesNotCrossAZeroSpreadMultiplier) {
     EXPECT_GT(0.51f, w.state().burntFraction);
 }
 
-TEST(AbiFire, NonCombustibleDoesNotBurnAndRaisesNothing) {
+TEST(BurnableMesh, NonCombustibleDoesNotBurnAndRaisesNothing) {
     FwMaterialDef stone = materialOf(FW_MATERIAL_NONCOMBUSTIBLE);
     SheetWorld w(stone);
     EXPECT_LT(0u, w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.05f));
@@ -363,7 +363,7 @@ uint64_t hashAfter(float deltaTime, double seconds) {
     return hash;
 }
 
-TEST(AbiTime, BurnIsIndependentOfTheFrameRate) {
+TEST(WorldTime, BurnIsIndependentOfTheFrameRate) {
     const uint64_t golden = hashAfter(1.0f / 60, 12);
     EXPECT_EQ(golden, hashAfter(1.0f / 120, 12));
     EXPECT_EQ(golden, hashAfter(1.0f / 7, 12));
@@ -371,7 +371,7 @@ TEST(AbiTime, BurnIsIndependentOfTheFrameRate) {
     EXPECT_NE(golden, hashAfter(1.0f / 60, 11));
 }
 
-TEST(AbiTime, DoesNotDriftOverAnHour) {
+TEST(WorldTime, DoesNotDriftOverAnHour) {
     SheetWorld w(host::evenMaterial(kRate, 4));
     for (int i = 0; i < 60 * 3600; ++i) ASSERT_EQ(FW_OK, fwWorld_Step(w.world, 1.0f / 60));
     const FwWorldStats stats = getState(fwWorld_GetStats, w.world);
@@ -381,7 +381,7 @@ TEST(AbiTime, DoesNotDriftOverAnHour) {
     EXPECT_EQ(0u, stats.droppedSteps);
 }
 
-TEST(AbiTime, DropsExcessTimeAndReportsIt) {
+TEST(WorldTime, DropsExcessTimeAndReportsIt) {
     FwWorldDef def = fwDefaultWorldDef();
     def.maxStepsPerFrame = 4;
     SheetWorld w(host::evenMaterial(kRate, 4), 1.0f, 0.25f, 64, def);
@@ -395,7 +395,7 @@ TEST(AbiTime, DropsExcessTimeAndReportsIt) {
     EXPECT_EQ(4u * 128, stats.tick);
 }
 
-TEST(AbiTime, RefusesTimeBeyondTwelveDays) {
+TEST(WorldTime, RefusesTimeBeyondTwelveDays) {
     if (fw::test::kSanitized) {
         GTEST_SKIP() << "thirty million idle steps take too long under a sanitizer";
     }
@@ -420,7 +420,7 @@ TEST(AbiTime, RefusesTimeBeyondTwelveDays) {
     EXPECT_EQ(burnt, w.hash());
 }
 
-TEST(AbiTime, DelayedCommandsRunAtTheirTime) {
+TEST(WorldTime, DelayedCommandsRunAtTheirTime) {
     SheetWorld w(host::evenMaterial(kRate, 100));
     w.ball(FW_IGNITE, 0.5f, 0, 0.125f, 0.03f, 1.5f);
     w.run(1.4);
@@ -433,7 +433,7 @@ TEST(AbiTime, DelayedCommandsRunAtTheirTime) {
     EXPECT_NEAR(0.5f, w.point(0.5f, 0, 0.125f).age, 0.05f);
 }
 
-TEST(AbiTime, IdleWorldsSkipSteps) {
+TEST(WorldTime, IdleWorldsSkipSteps) {
     SheetWorld w(host::evenMaterial(0.2f, 0.5f), 0.25f, 0.25f, 32);
     w.run(3.0);
     FwWorldStats stats = getState(fwWorld_GetStats, w.world);
@@ -451,7 +451,7 @@ TEST(AbiTime, IdleWorldsSkipSteps) {
     EXPECT_EQ(0u, stats.burningTiles);
 }
 
-TEST(AbiEvents, DropsTheOldestWhenNotPolled) {
+TEST(EventQueueLimits, DropsTheOldestWhenNotPolled) {
     FwWorldDef def = fwDefaultWorldDef();
     def.maxStepsPerFrame = 1;
     SheetWorld w(host::evenMaterial(kRate, 4), 0.1f, 0.1f, 64, def);
@@ -463,7 +463,7 @@ TEST(AbiEvents, DropsTheOldestWhenNotPolled) {
     EXPECT_EQ(0u, fwWorld_PollEvents(w.world, nullptr, 0));
 }
 
-TEST(AbiEvents, LimitsOpenQueriesAndTags) {
+TEST(EventQueueLimits, LimitsOpenQueriesAndTags) {
     SheetWorld w(host::evenMaterial(kRate, 4));
     const float point[3] = {0.5f, 0, 0.1f};
     FwQueryId query{};
@@ -481,7 +481,7 @@ TEST(AbiEvents, LimitsOpenQueriesAndTags) {
     EXPECT_LT(4000u, events.size());
 }
 
-TEST(AbiLights, LightsOfAFireKeepTheirIds) {
+TEST(FireLights, LightsOfAFireKeepTheirIds) {
     SheetWorld w(host::evenMaterial(kRate, 1000));
     FwLight lights[64];
     EXPECT_EQ(0u, fwWorld_GetLights(w.world, lights, 64));

@@ -48,7 +48,7 @@ book::Book spots(uint32_t side, vec2 first, vec2 by) {
     std::vector<Frame> frames;
     for (uint32_t i = 0; i < facts.frames; ++i)
         frames.push_back(spotAt(side, first.x + by.x * float(i), first.y + by.y * float(i)));
-    return fwtools::finishBook(facts, frames, 1, memory());
+    return fwtools::finishFlipbook(facts, frames, 1, memory());
 }
 
 TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
@@ -99,7 +99,7 @@ book::Book smallBook(std::string_view scene, uint32_t side, uint32_t frames) {
     const auto made = fwtools::makeScene(def);
     std::vector<Frame> rendered(made->frames());
     for (uint32_t i = 0; i < made->frames(); ++i) made->render(i, rendered[i]);
-    return fwtools::finishBook(def.facts, rendered, 1, memory());
+    return fwtools::finishFlipbook(def.facts, rendered, 1, memory());
 }
 
 double seamOf(const book::Book& made, double& others, double& most) {
@@ -343,7 +343,7 @@ TEST(Flipbook, RefusesBadFilesByName) {
 
 TEST(Flipbook, ResumesAnInterruptedBake) {
     const std::string path =
-        (std::filesystem::temp_directory_path() / "flamewright_book_test.part").string();
+        (std::filesystem::temp_directory_path() / "flamewright_flipbook_test.part").string();
     std::filesystem::remove(path);
     const Frame frame = spotAt(16, 5, 6);
     std::string error;

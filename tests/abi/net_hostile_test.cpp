@@ -1,7 +1,7 @@
-// Peers that know the session and bend its numbers: packets of a real session with one field
-// changed and the right sum, each field in turn and each way; a client made by hand that answers
-// with the server's own numbers; and one such client among 64. Nothing crashes, other clients'
-// worlds stay the server's, packets that cannot be are refused and counted, and memory is bounded.
+// Hostile peers that know the session: packets of a real session with one field altered and a
+// correct checksum, each field in turn, in both directions; a client written by hand that answers
+// with the server's own numbers; and one such client among 64. Nothing crashes, the worlds of other
+// clients equal the server's, impossible packets are refused and counted, and memory is bounded.
 #include "abi/net_session.h"
 #include "abi/panels.h"
 
@@ -16,7 +16,7 @@ using namespace host;
 
 struct PacketField {
     const char* name;
-    uint16_t kind;  // of packets that have it; kAnyKind: all
+    uint16_t kind;  // of packets with this field; kAnyKind: all
     size_t at, size;
 };
 constexpr uint16_t kAnyKind = 0xFFFF, kStatusKind = 2, kStreamKind = 3, kChunkKind = 4,
@@ -74,13 +74,14 @@ uint64_t numberIn(const Bytes& packet, const PacketField& field) {
     return value;
 }
 
-// Changes one field at a time, in turn with each of its values: near the right one, none, the most,
-// an old one, one of the future, any.
-class Bender {
+// Changes one field at a time and cycles through its values: near the correct one, zero, the
+// maximum, an old one, a future one, a random one.
+class FieldMutator {
  public:
-    Bender(std::span<const PacketField> fields, uint32_t seed) : fields_(fields), random_(seed) {}
-    // The field's number; fields_.size(): the packet has none of the kind whose turn it is.
-    size_t bend(Bytes& packet) {
+    FieldMutator(std::span<const PacketField> fields, uint32_t seed)
+        : fields_(fields), random_(seed) {}
+    // Index of the field; fields_.size(): the packet has no field of that kind.
+    size_t alter(Bytes& packet) {
         const auto kind = uint16_t(packet[6] | packet[7] << 8);
         size_t& turn = turn_[kind];
         for (size_t i = 0; i < fields_.size(); ++i) {
@@ -95,11 +96,11 @@ class Bender {
             const uint64_t values[] = {value + 1,  value - 1,    0,        most,
                                        old,        value + 1000, most / 2, random_(),
                                        value + 64, value * 2 + 1};
-            const uint64_t bent = values[round_[at]++ % std::size(values)] & most;
+            const uint64_t altered = values[round_[at]++ % std::size(values)] & most;
             old = value;
-            if (bent == value) continue;
+            if (altered == value) continue;
             for (size_t k = 0; k < field.size; ++k)
-                packet[field.at + k] = (unsigned char)(bent >> (8 * k));
+                packet[field.at + k] = (unsigned char)(altered >> (8 * k));
             signPacket(packet);
             return at;
         }
@@ -109,12 +110,12 @@ class Bender {
  private:
     std::span<const PacketField> fields_;
     std::mt19937 random_;
-    std::map<uint16_t, size_t> turn_;  // of fields, for each kind of packet
+    std::map<uint16_t, size_t> turn_;  // next field, per kind of packet
     std::array<uint32_t, 64> round_{};
     std::array<uint64_t, 64> old_{};
 };
 
-std::unique_ptr<Panels> makeBentPanels() {
+std::unique_ptr<Panels> makePanels() {
     FwWorldDef def = fwDefaultWorldDef();
     def.flags = FW_WORLD_CONTACT;
     def.paceFactor = 4;
@@ -122,9 +123,9 @@ std::unique_ptr<Panels> makeBentPanels() {
     for (int i = 0; i < 3; ++i) (void)made->add(0.43f * float(i), 0, 0);
     return made;
 }
-using BentSession = NetSession<Panels>;
+using PanelSession = NetSession<Panels>;
 
-void actBent(BentSession& session, uint32_t frame) {
+void actOnPanels(PanelSession& session, uint32_t frame) {
     Panels& server = *session.server;
     if (frame % 40 == 10) {
         FwIgnitionDef ball = fwDefaultIgnitionDef();
@@ -142,103 +143,104 @@ void actBent(BentSession& session, uint32_t frame) {
         EXPECT_EQ(FW_OK, fwNet_SendMessage(server.world, "hello", 5));
     }
 }
-void playBent(BentSession& session, uint32_t from, uint32_t to) {
+void playPanels(PanelSession& session, uint32_t from, uint32_t to) {
     for (uint32_t frame = from; frame < to; ++frame) {
-        actBent(session, frame);
+        actOnPanels(session, frame);
         EXPECT_EQ(FW_OK, fwWorld_Step(session.server->world, 1.0f / 32));
         session.pass(1.0 / 32);
     }
 }
 
-// The client's own world goes wrong now and then, so that it asks for tiles and for states.
-void leadWrong(BentSession::Client& client, uint32_t frame) {
+// The client's own world diverges now and then, so that it requests tiles and states.
+void diverge(PanelSession::Client& client, uint32_t frame) {
     if (frame % 90 != 60) return;
     const uint32_t texels[] = {frame % 300, frame % 300 + 1};
     EXPECT_LE(0, fwDebug_PushTexels(client.world->world, client.world->ids[frame / 90 % 3],
                                     FW_IGNITE, texels, 2));
 }
 
-// A session of an honest client and of one whose packets are bent for 900 frames; then all are
-// equal.
-struct BentPlay {
-    explicit BentPlay(uint32_t seed)
-        : session(makeBentPanels(), seed),
-          honest(session.join(makeBentPanels())),
-          other(session.join(makeBentPanels())),
+// A session of an honest client and of one whose packets are altered for 900 frames. At the end all
+// worlds are equal.
+struct HostilePlay {
+    explicit HostilePlay(uint32_t seed)
+        : session(makePanels(), seed),
+          honest(session.join(makePanels())),
+          other(session.join(makePanels())),
           seed_(seed) {
-        other.spoils = true;
+        other.damages = true;
     }
-    // `hook`: of the other client. `bends`: whether it bends its packet of that number. Counts by
+    // `hook`: of the other client. `alters`: whether it alters its packet of that number. Counts by
     // name.
-    template <class Bends>
-    void run(std::function<void(Bytes&)> BentSession::Client::*hook,
-             std::span<const PacketField> fields, Bends bends, uint32_t until,
-             std::map<std::string, uint32_t>& bent) {
-        Bender bender(fields, seed_);
+    template <class Alters>
+    void run(std::function<void(Bytes&)> PanelSession::Client::*hook,
+             std::span<const PacketField> fields, Alters alters, uint32_t until,
+             std::map<std::string, uint32_t>& altered) {
+        FieldMutator mutator(fields, seed_);
         uint32_t packets = 0;
         other.*hook = [&](Bytes& packet) {
-            if (!bends(++packets)) return;
-            const size_t field = bender.bend(packet);
-            if (field < fields.size()) ++bent[fields[field].name];
+            if (!alters(++packets)) return;
+            const size_t field = mutator.alter(packet);
+            if (field < fields.size()) ++altered[fields[field].name];
         };
         for (uint32_t frame = 0; frame < 900; ++frame) {
-            playBent(session, frame, frame + 1);
-            leadWrong(other, frame);
+            playPanels(session, frame, frame + 1);
+            diverge(other, frame);
         }
         other.*hook = nullptr;
-        playBent(session, 900, until);
+        playPanels(session, 900, until);
         session.expectEqual("at the end");
     }
 
-    BentSession session;
-    BentSession::Client &honest, &other;
+    PanelSession session;
+    PanelSession::Client &honest, &other;
 
  private:
     uint32_t seed_;
 };
 
-TEST(NetBent, AServerSurvivesEachBentFieldOfAClient) {
+TEST(NetHostile, AServerSurvivesEachAlteredFieldOfAClient) {
     uint64_t refused = 0;
-    std::map<std::string, uint32_t> bent;
+    std::map<std::string, uint32_t> altered;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
-        BentPlay play(seed);
-        const auto bends = [&](uint32_t packet) {
-            return packet % 4 != seed % 2;  // so that the session gets on
+        HostilePlay play(seed);
+        const auto alters = [&](uint32_t packet) {
+            return packet % 4 != seed % 2;  // so that the session continues
         };
-        play.run(&BentSession::Client::bendUp, kUpFields, bends, 1000, bent);
-        const FwNetState good = BentSession::stateOf(play.session.server->world, play.honest.peer);
+        play.run(&PanelSession::Client::alterUp, kUpFields, alters, 1000, altered);
+        const FwNetState good = PanelSession::stateOf(play.session.server->world, play.honest.peer);
         EXPECT_EQ(0u, good.packetsRefused);
         EXPECT_EQ(1u, good.states);
-        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).desyncs);
-        const FwNetState bad = BentSession::stateOf(play.session.server->world, play.other.peer);
+        EXPECT_EQ(0u, PanelSession::stateOf(play.honest.world->world).desyncs);
+        const FwNetState bad = PanelSession::stateOf(play.session.server->world, play.other.peer);
         EXPECT_GT(bad.packetsRefused, 40u);
         EXPECT_FALSE(play.session.server->host.warnings.empty());
         refused += bad.packetsRefused;
     }
     for (const PacketField& field : kUpFields)
-        EXPECT_GT(bent[field.name], field.kind == kTilesKind || field.at > 58 ? 0u : 20u)
+        EXPECT_GT(altered[field.name], field.kind == kTilesKind || field.at > 58 ? 0u : 20u)
             << field.name;
     std::printf("%llu packets refused\n", static_cast<unsigned long long>(refused));
 }
 
-TEST(NetBent, AClientSurvivesEachBentFieldOfItsServer) {
-    std::map<std::string, uint32_t> bent;
+TEST(NetHostile, AClientSurvivesEachAlteredFieldOfItsServer) {
+    std::map<std::string, uint32_t> altered;
     for (const uint32_t seed : {1u, 2u, 3u, 4u}) {
-        BentPlay play(seed);
-        const auto bends = [&](uint32_t packet) { return packet % 4 == seed % 4; };
-        play.run(&BentSession::Client::bendDown, kDownFields, bends, 1100, bent);
-        EXPECT_EQ(0u, BentSession::stateOf(play.honest.world->world).desyncs);
-        EXPECT_GT(BentSession::stateOf(play.other.world->world).packetsRefused, 20u);
+        HostilePlay play(seed);
+        const auto alters = [&](uint32_t packet) { return packet % 4 == seed % 4; };
+        play.run(&PanelSession::Client::alterDown, kDownFields, alters, 1100, altered);
+        EXPECT_EQ(0u, PanelSession::stateOf(play.honest.world->world).desyncs);
+        EXPECT_GT(PanelSession::stateOf(play.other.world->world).packetsRefused, 20u);
     }
     for (const PacketField& field : kDownFields)
         if (field.kind != 1 && field.kind != kChunkKind) {
-            EXPECT_GT(bent[field.name], 2u) << field.name;
+            EXPECT_GT(altered[field.name], 2u) << field.name;
         }
 }
 
-// ---- a client made by hand ----------------------------------------------------------------------
+// ---- a client written by hand
+// --------------------------------------------------------------------
 
-// It takes part in a session with a right word for everything; a test bends one of them.
+// It takes part in a session with correct values; a test alters one of them.
 class HandClient {
  public:
     HandClient(FwWorld* server, uint32_t token) : server_(server), token_(token) {
@@ -264,7 +266,7 @@ class HandClient {
         for (uint32_t i = 0; i < count; ++i) put(body, i, 4);
         return send(kTilesKind, session, body);
     }
-    // Takes what the server has for it, and keeps its numbers right.
+    // Reads the server's packets for it, and keeps its values correct.
     void drain() {
         for (int i = 0; i < 10000; ++i) {
             Bytes packet(1400);
@@ -283,7 +285,7 @@ class HandClient {
         }
         ADD_FAILURE() << "packets do not end";
     }
-    // It takes what has come whole.
+    // Accepts what has arrived completely.
     bool load() {
         if (pieces_ == 0 || right.base < pieces_) return false;
         right.loaded = stateId_;
@@ -306,7 +308,7 @@ class HandClient {
     FwPeerId peer{};
     uint32_t session = 0;
     uint64_t bytes = 0;
-    Status right;  // what an honest client would say
+    Status right;  // values of an honest client
 
  private:
     static void put(Bytes& to, uint64_t value, size_t size) {
@@ -338,7 +340,7 @@ class HandClient {
             right.state = stateId_;
             right.base = 0;
         }
-        if (word(packet, 40) == right.base) ++right.base;  // in order on this wire
+        if (word(packet, 40) == right.base) ++right.base;  // this wire keeps the order
     }
 
     FwWorld* server_;
@@ -368,9 +370,9 @@ void joinBy(HandClient& client, Panels& server) {
     EXPECT_EQ(FW_OK, client.say(client.right)) << lastMessage(server.world);
 }
 
-// Records that were never sent cannot be acknowledged, nor states and pieces; the server goes on.
-TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
-    const std::unique_ptr<Panels> server = makeBentPanels();
+// Unsent records, states and pieces cannot be acknowledged, and the server continues.
+TEST(NetHostile, AcknowledgementsOfUnsentDataAreRefusedAndCounted) {
+    const std::unique_ptr<Panels> server = makePanels();
     const FwNetDef def = netDef(0x1234);
     ASSERT_EQ(FW_OK, fwNet_Serve(server->world, &def));
     HandClient client(server->world, 99);
@@ -383,10 +385,10 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
         passFrames(*server, 2);
         using Status = HandClient::Status;
         const Status right = client.right;
-        const auto refused = [&](const char* what, auto&& bend) {
-            Status bent = right;
-            bend(bent);
-            EXPECT_EQ(FW_ERROR_BAD_DATA, client.say(bent)) << what;
+        const auto refused = [&](const char* what, auto&& alter) {
+            Status altered = right;
+            alter(altered);
+            EXPECT_EQ(FW_ERROR_BAD_DATA, client.say(altered)) << what;
             EXPECT_NE(std::string::npos, lastMessage(server->world).find("status"))
                 << lastMessage(server->world);
             ++expected;
@@ -409,25 +411,25 @@ TEST(NetBent, AcknowledgingWhatWasNotSentIsRefusedAndCounted) {
             EXPECT_EQ(FW_OK, fwNet_SendMessage(server->world, text.data(), 1000));
             passFrames(*server);
         }
-        // Correct packets are accepted all the same.
+        // Correct packets are still accepted.
         EXPECT_EQ(FW_OK, client.say(client.right)) << lastMessage(server->world);
         client.drain();
         EXPECT_EQ(FW_OK, client.say(client.right)) << lastMessage(server->world);
     }
-    EXPECT_EQ(expected, BentSession::stateOf(server->world, client.peer).packetsRefused);
-    EXPECT_EQ(expected, BentSession::stateOf(server->world).packetsRefused);
-    EXPECT_EQ(0u, BentSession::stateOf(server->world).messagesLost);
+    EXPECT_EQ(expected, PanelSession::stateOf(server->world, client.peer).packetsRefused);
+    EXPECT_EQ(expected, PanelSession::stateOf(server->world).packetsRefused);
+    EXPECT_EQ(0u, PanelSession::stateOf(server->world).messagesLost);
     ASSERT_FALSE(server->host.warnings.empty());
     EXPECT_NE(std::string::npos, server->host.warnings[0].find("peer 1 is refused"))
         << server->host.warnings[0];
-    EXPECT_LT(server->host.warnings.size(), 20u);  // a flood of them is no flood of the log
+    EXPECT_LT(server->host.warnings.size(), 20u);  // a flood of packets does not flood the log
 }
 
-// 63 clients, and one that knows the session and does its worst: floods, bends, asks for the state
-// again and again, acknowledges nothing.
-TEST(NetBent, OneHostileClientCostsTheOthersNothing) {
-    BentSession session(makeBentPanels());
-    for (int i = 0; i < 63; ++i) session.join(makeBentPanels());
+// 63 honest clients and a hostile one: it floods, alters fields, requests the state again and
+// again, and acknowledges nothing.
+TEST(NetHostile, OneHostileClientCostsTheOthersNothing) {
+    PanelSession session(makePanels());
+    for (int i = 0; i < 63; ++i) session.join(makePanels());
     HandClient hostile(session.server->world, 0xBAD);
     FwWorld* server = session.server->world;
     std::mt19937 random(5);
@@ -435,7 +437,7 @@ TEST(NetBent, OneHostileClientCostsTheOthersNothing) {
     int64_t before = 0, most = 0;
     uint32_t frames = 0;
     for (uint32_t at = 0; at < 200; ++at, ++frames) {
-        playBent(session, at, at + 1);
+        playPanels(session, at, at + 1);
         if (at == 60) before = session.server->host.bytes;
         most = std::max<int64_t>(most, session.server->host.bytes);
         hostile.drain();
@@ -459,16 +461,16 @@ TEST(NetBent, OneHostileClientCostsTheOthersNothing) {
     }
     session.expectEqual("with a hostile one among them");
     for (const auto& client : session.clients) {
-        const FwNetState state = BentSession::stateOf(server, client->peer);
+        const FwNetState state = PanelSession::stateOf(server, client->peer);
         EXPECT_EQ(0u, state.packetsRefused);
         EXPECT_EQ(1u, state.states);
-        EXPECT_EQ(0u, BentSession::stateOf(client->world->world).desyncs);
+        EXPECT_EQ(0u, PanelSession::stateOf(client->world->world).desyncs);
     }
-    const FwNetState state = BentSession::stateOf(server, hostile.peer);
+    const FwNetState state = PanelSession::stateOf(server, hostile.peer);
     EXPECT_GT(state.packetsRefused, 500u);
-    EXPECT_GT(state.packetsIgnored, 30000u);  // beyond 512 a second nothing is looked at
+    EXPECT_GT(state.packetsIgnored, 30000u);  // the server ignores packets beyond 512 a second
     EXPECT_LT(most - before, int64_t(4) << 20);
-    // No more than its rate: 10 s of it, and what may be sent at once.
+    // At most its rate: 10 s of it, plus one burst.
     EXPECT_LT(double(state.bytesOut), 262144 * (double(frames) / 32 + 0.5));
 }
 

@@ -77,7 +77,7 @@ bool kilnCatches(const std::function<void(Kiln&)>& walls) {
     return kiln.caught();
 }
 
-TEST(AbiHeatShield, ABurnableWallOccludes) {
+TEST(HeatOcclusionGrid, ABurnableWallOccludes) {
     EXPECT_TRUE(kilnCatches([](Kiln&) {}));
     EXPECT_TRUE(kilnCatches([](Kiln& k) { k.wall(); }));  // not an occluder
     EXPECT_FALSE(kilnCatches([](Kiln& k) { k.bake({k.wall()}); }));
@@ -96,7 +96,7 @@ TEST(AbiHeatShield, ABurnableWallOccludes) {
     EXPECT_TRUE(kilnCatches(all(false)));
 }
 
-TEST(AbiHeatShield, BurntPartsStopOccluding) {
+TEST(HeatOcclusionGrid, BurntPartsStopOccluding) {
     const auto burnt = [](float height, float radius, double seconds) {
         return [=](Kiln& k) {
             const FwBurnableMeshId wall = k.wall();
@@ -110,7 +110,7 @@ TEST(AbiHeatShield, BurntPartsStopOccluding) {
     EXPECT_FALSE(kilnCatches(burnt(1.4f, 0.1f, 200)));  // its top
 }
 
-TEST(AbiHeatShield, FollowsMovedObjectsAfterTheNextCall) {
+TEST(HeatOcclusionGrid, FollowsMovedObjectsAfterTheNextCall) {
     Kiln kiln;
     const FwBurnableMeshId wall = kiln.wall();
     kiln.bake({wall});
@@ -133,7 +133,7 @@ TEST(AbiHeatShield, FollowsMovedObjectsAfterTheNextCall) {
     EXPECT_TRUE(none.caught());
 }
 
-TEST(AbiHeatShield, HostOccludersOcclude) {
+TEST(HeatOcclusionGrid, HostOccludersOcclude) {
     static uint32_t asked = 0;
     const auto plane = [](float x) {  // no thickness, and slanted
         return [x](Kiln& k) {
@@ -167,7 +167,7 @@ TEST(AbiHeatShield, HostOccludersOcclude) {
 }
 
 // Jets end at the host's cells, and heat queries behind them are in shade.
-TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
+TEST(HeatOcclusionGrid, JetsAndHeatQueriesRespectOccluders) {
     for (const bool walled : {false, true}) {
         Kiln kiln;
         FwHeatOcclusionDef def = Kiln::cells();
@@ -207,7 +207,7 @@ TEST(AbiHeatShield, JetsAndHeatQueriesRespectOccluders) {
     EXPECT_LT(shaded, 0.2f * open);
 }
 
-TEST(AbiHeatShield, RefusesBadValuesByName) {
+TEST(HeatOcclusionGrid, RefusesBadValuesByName) {
     Kiln kiln;
     const auto refused = [&](const std::function<void(FwHeatOcclusionDef&)>& change,
                              const std::string& says) {

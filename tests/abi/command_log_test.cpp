@@ -1,5 +1,5 @@
-// A log of what a host did to a burn: with a save that stands before it, any moment can be had
-// again, bit by bit, on whatever backend and at whatever frame rate.
+// A log of a host's commands: with an earlier save it reproduces any tick bit for bit, on either
+// backend and at any frame rate.
 #include "abi/busy_world.h"
 
 #include <map>
@@ -23,7 +23,7 @@ uint64_t tickOf(FwWorld* world) {
     return stats.tick;
 }
 
-// To `tick`, in pieces of at most `most` s.
+// Up to `tick`, in steps of at most `most` s.
 void playTo(FwWorld* world, uint64_t tick, float most = 10) {
     float seconds = 0;
     for (int i = 0; i < 100000; ++i) {
@@ -35,25 +35,25 @@ void playTo(FwWorld* world, uint64_t tick, float most = 10) {
     EXPECT_EQ(tick, tickOf(world));
 }
 
-// Moments at frames of a busy world, each sought from the save before it, forth and back.
-void seeks(uint32_t notes, uint32_t plays) {
-    struct Moment {
+// Ticks of a busy world, each sought from an earlier save, in both directions.
+void seeks(uint32_t recorder, uint32_t player) {
+    struct Expected {
         uint64_t tick = 0, hash = 0;
     };
-    BusyWorld first(notes);
+    BusyWorld first(recorder);
     if (!there(first)) GTEST_SKIP() << "there is no such backend here";
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(first.world));
-    std::map<uint32_t, Moment> moments;  // by frame
+    std::map<uint32_t, Expected> expected;  // by frame
     std::map<uint32_t, Bytes> saves;
     uint32_t frame = 0;
     for (const uint32_t next : {1u, 30u, 61u, 75u, 92u, 110u, 131u, 155u}) {
         first.run(frame, next);
         frame = next;
         if (next == 1 || next == 75 || next == 110) saves[next] = first.save();
-        moments[next] = {tickOf(first.world), first.hash()};
+        expected[next] = {tickOf(first.world), first.hash()};
     }
     const Bytes log = logOf(first.world);
-    BusyWorld other(plays);
+    BusyWorld other(player);
     if (!there(other)) GTEST_SKIP() << "there is no such backend here";
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(other.world, log.data(), log.size()))
         << lastMessage(other.world);
@@ -61,23 +61,23 @@ void seeks(uint32_t notes, uint32_t plays) {
         auto save = saves.upper_bound(wanted);
         --save;
         ASSERT_EQ(FW_OK, other.load(save->second)) << lastMessage(other.world);
-        playTo(other.world, moments[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
-        EXPECT_EQ(moments[wanted].hash, other.hash()) << "frame " << wanted;
+        playTo(other.world, expected[wanted].tick, wanted % 2 ? 10.0f : 0.02f);
+        EXPECT_EQ(expected[wanted].hash, other.hash()) << "frame " << wanted;
     }
-    // Without a save, from the beginning on: what was done first is in the log, too.
-    BusyWorld fresh(plays);
+    // Without a save, from the beginning: the log holds the first commands, too.
+    BusyWorld fresh(player);
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(fresh.world, log.data(), log.size()));
-    playTo(fresh.world, moments[92].tick);
-    EXPECT_EQ(moments[92].hash, fresh.hash());
+    playTo(fresh.world, expected[92].tick);
+    EXPECT_EQ(expected[92].hash, fresh.hash());
 }
 
-TEST(Log, AnyMomentCanBeSought) { seeks(FW_BACKEND_CPU, FW_BACKEND_CPU); }
-TEST(Log, AnyMomentCanBeSoughtOnADevice) { seeks(FW_BACKEND_CPU, FW_BACKEND_VULKAN); }
-TEST(Log, WhatADeviceNotedTheCpuPlays) { seeks(FW_BACKEND_VULKAN, FW_BACKEND_CPU); }
+TEST(CommandLog, SeeksAnyTick) { seeks(FW_BACKEND_CPU, FW_BACKEND_CPU); }
+TEST(CommandLog, SeeksAnyTickOnADevice) { seeks(FW_BACKEND_CPU, FW_BACKEND_VULKAN); }
+TEST(CommandLog, CpuPlaysALogOfADevice) { seeks(FW_BACKEND_VULKAN, FW_BACKEND_CPU); }
 
-// What the host does after the request and before its frame is in the save, and is not done twice;
-// what it does after that frame, at the same tick, is not in it.
-TEST(Log, WhatASaveHasIsNotDoneAgain) {
+// A save holds the host's commands between its request and its frame, so the log does not repeat
+// them. Commands after that frame, at the same tick, are in the log alone.
+TEST(CommandLog, DoesNotRepeatCommandsOfTheSave) {
     BusyWorld w(FW_BACKEND_CPU);
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 40);
@@ -114,7 +114,7 @@ void expectLogRefused(BusyWorld& w, const Bytes& log, const char* says) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find(says)) << lastMessage(w.world);
 }
 
-TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
+TEST(CommandLog, RefusesLogsOfOtherWorlds) {
     BusyWorld w(FW_BACKEND_CPU);
     uint64_t size = 0;
     float seconds = 0;
@@ -148,7 +148,7 @@ TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
     expectLogRefused(fewer, log, "other rules, objects or meshes");
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(w.world, log.data(), log.size()));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayCommandLog(w.world, 1000000, nullptr));
-    ASSERT_EQ(FW_OK, fwWorld_PlayCommandLog(w.world, 5, &seconds));  // behind it
+    ASSERT_EQ(FW_OK, fwWorld_PlayCommandLog(w.world, 5, &seconds));  // in its past
     EXPECT_EQ(0.0f, seconds);
     ASSERT_EQ(FW_OK, fwWorld_OpenCommandLog(w.world, nullptr, 0));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_PlayCommandLog(w.world, 1000000, &seconds));
@@ -156,15 +156,15 @@ TEST(Log, RefusesWhatIsNoneOfTheWorlds) {
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_FetchCommandLog(w.world, nullptr, &size));
 }
 
-// The checksum that a log's head has, so that what is behind it is looked at.
+// The checksum in a log's head, so that the reader goes on.
 void sign(Bytes& log) {
     uint64_t hash = 1469598103934665603ull;
     for (size_t i = 24; i < log.size(); ++i) hash = (hash ^ log[i]) * 1099511628211ull;
     std::memcpy(&log[16], &hash, 8);
 }
 
-// With a right checksum: it is opened and played, or refused with a message; the world lives on.
-TEST(Log, DamagedOnesNeverCrash) {
+// With a correct checksum it is opened and played, or refused with a message; the world continues.
+TEST(CommandLog, DamagedLogsNeverCrash) {
     BusyWorld w(FW_BACKEND_CPU, 12, 5);
     ASSERT_EQ(FW_OK, fwWorld_StartCommandLog(w.world));
     w.run(0, 70);

@@ -10,7 +10,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::test::book_picture_test {
+namespace fw::test::flipbook_picture_test {
 namespace {
 
 using gpu::vec2;
@@ -58,7 +58,7 @@ struct Shown {
     bool mirrored = false;
 };
 
-class BookPicture : public OwnWorld {
+class FlipbookPicture : public OwnWorld {
  protected:
     void SetUp() override {
         OwnWorld::SetUp();
@@ -124,7 +124,7 @@ class BookPicture : public OwnWorld {
     }
 };
 
-TEST_F(BookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
+TEST_F(FlipbookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
     const book::Book made = spots(book::Kind::Smoke);
     (void)create(FW_FLIPBOOK_SPARK);  // one of several flipbooks
     const FwFlipbookId id = create(made);
@@ -169,7 +169,7 @@ TEST_F(BookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
 
 // Stripes of two texels at four texels per pixel show their mean at any pixel offset. Sampling
 // level 0 would show every other stripe or none.
-TEST_F(BookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
+TEST_F(FlipbookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
     book::Book striped = spots(book::Kind::Smoke);
     for (size_t i = 0; i < striped.texels.size() / 4; ++i)
         striped.texels[4 * i + 2] = i % 64 / 2 % 2 ? 240 : 0;
@@ -196,7 +196,7 @@ TEST_F(BookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
     EXPECT_LT(*high / *low, 1.03);
 }
 
-TEST_F(BookPicture, FlipbooksMayBeCreatedAndDestroyed) {
+TEST_F(FlipbookPicture, FlipbooksMayBeCreatedAndDestroyed) {
     const book::Book made = spots(book::Kind::Smoke);
     const FwFlipbookId roll = create(FW_FLIPBOOK_ROLL), id = create(made);
     const Shown before = smokeAt(id, 0.25f);
@@ -212,7 +212,7 @@ TEST_F(BookPicture, FlipbooksMayBeCreatedAndDestroyed) {
 }
 
 // If flipbooks cover all particles but sparks, the device skips the noise of the others.
-TEST_F(BookPicture, LooksTheSameBesideEmittersWithoutFlipbooks) {
+TEST_F(FlipbookPicture, LooksTheSameBesideEmittersWithoutFlipbooks) {
     const auto picture = [&](bool beside) {
         fwDestroyWorld(world_);
         world_ = nullptr;
@@ -256,7 +256,7 @@ book::Book glow(float hides) {
 // Additive fire is a sum, so the picture is the same in any order but for 8-bit rounding. It is not
 // sorted; its order in a frame is the order of creation. Fire that covers is sorted and not
 // additive.
-TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
+TEST_F(FlipbookPicture, AdditiveFireLooksTheSameInAnyOrder) {
     const auto picture = [&](const book::Book& made, bool backwards) {
         fwDestroyWorld(world_);  // eddies depend on its clock
         world_ = nullptr;
@@ -309,4 +309,4 @@ TEST_F(BookPicture, AdditiveFireLooksTheSameInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace fw::test::book_picture_test
+}  // namespace fw::test::flipbook_picture_test
