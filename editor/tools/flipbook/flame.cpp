@@ -50,7 +50,7 @@ class FlameScene final : public Scene {
         flame.power = preset.power;
         flame.diameter = preset.diameter;
         flame.seed = def.seed;
-        const book::Facts& f = def.facts;
+        const flipbook::Facts& f = def.facts;
         faded_ = f.frames / 4;
         volume::Flame now;
         const volume::FlameAir air;
@@ -65,7 +65,7 @@ class FlameScene final : public Scene {
     [[nodiscard]] uint32_t frames() const override { return uint32_t(flames_.size()); }
 
     void render(uint32_t frame, Frame& out) const override {
-        const book::Facts& f = def_.facts;
+        const flipbook::Facts& f = def_.facts;
         const RecordedFlame& flame = flames_[frame];
         out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
         out.motion.clear();
@@ -191,7 +191,7 @@ bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& pr
         BakeDef bake;
         bake.seed = def.seed;
         bake.samples = def.samples;
-        book::Facts& facts = bake.facts;
+        flipbook::Facts& facts = bake.facts;
         facts.frames = def.frames;
         facts.width = facts.height = def.side;
         facts.motionWidth = facts.motionHeight = std::max(def.side / 2, 4u);
@@ -208,9 +208,9 @@ bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& pr
             stopped = stopped || !progress(float(++done) / float(frames.size()));
         });
         if (stopped) return false;
-        const book::Book made =
+        const flipbook::Flipbook made =
             finishBook(facts, frames, def.threads, std::pmr::get_default_resource());
-        const auto cooked = book::cookFlipbook(made, std::pmr::get_default_resource());
+        const auto cooked = flipbook::cookFlipbook(made, std::pmr::get_default_resource());
         bytes.assign(cooked.begin(), cooked.end());
         return true;
     } catch (const core::Error& failure) {

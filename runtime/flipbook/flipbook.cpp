@@ -1,5 +1,5 @@
 // Flipbooks: the file, whose reader trusts nothing, and samples.
-#include "book/book.h"
+#include "flipbook/flipbook.h"
 
 #include "core/hash.h"
 #include "core/stream.h"
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::book {
+namespace fw::flipbook {
 namespace {
 
 constexpr uint32_t kMagic = 0x4B425746;  // "FWBK"
@@ -70,7 +70,7 @@ void checkFacts(const Facts& f) {
     check("seconds", double(f.seconds), 1e-3, 600);
 }
 
-std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_resource* memory) {
+std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_resource* memory) {
     const Facts& f = book.facts;
     checkFacts(f);
     const Sizes sizes = sizesOf(f);
@@ -104,7 +104,7 @@ std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_reso
     return out;
 }
 
-void readFlipbook(std::span<const std::byte> bytes, Book& book) {
+void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
     if (bytes.size() < kHeaderBytes)
         core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; its header alone has %zu.",
                    bytes.size(), kHeaderBytes);
@@ -136,7 +136,7 @@ void readFlipbook(std::span<const std::byte> bytes, Book& book) {
         core::fail(FW_ERROR_BAD_DATA,
                    "the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
                    static_cast<unsigned long long>(sum), static_cast<unsigned long long>(found));
-    Book made(book.texels.get_allocator().resource());
+    Flipbook made(book.texels.get_allocator().resource());
     made.facts = f;
     made.rects.resize(f.frames);
     made.texels.resize(sizes.texels);
@@ -156,13 +156,13 @@ void readFlipbook(std::span<const std::byte> bytes, Book& book) {
     book = std::move(made);
 }
 
-bool emitsAlone(const Book& book) noexcept {
+bool emitsAlone(const Flipbook& book) noexcept {
     for (size_t i = 2; i < book.texels.size(); i += 4)
         if (book.texels[i] != 0) return false;
     return true;
 }
 
-vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
+vec4 frameAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
     FW_ASSERT(frame < f.frames && book.texels.size() == sizesOf(f).texels, "frame %u of %u", frame,
               f.frames);
@@ -170,7 +170,7 @@ vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
                      uv, false);
 }
 
-vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
+vec2 motionAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
     FW_ASSERT(frame < f.frames && book.motion.size() == sizesOf(f).motion, "frame %u of %u", frame,
               f.frames);
@@ -180,7 +180,7 @@ vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     return gpu::decodeFlipbookMotion(vec2(m), f.maxMotion);
 }
 
-vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept {
+vec4 sampleFlipbook(const Flipbook& book, float time, vec2 uv) noexcept {
     const gpu::FlipbookPlace p =
         gpu::flipbookPlaceAt(time, book.facts.frames, book.facts.loops != 0);
     const vec2 before = gpu::bookBefore(uv, motionAt(book, p.before, uv), p.part);
@@ -189,4 +189,4 @@ vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept {
                                   p.part);
 }
 
-}  // namespace fw::book
+}  // namespace fw::flipbook
