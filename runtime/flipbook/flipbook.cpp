@@ -26,8 +26,7 @@ float floatAt(std::span<const std::byte> bytes, size_t at) {
 
 void check(const char* name, double value, double low, double high) {
     if (!(value >= low && value <= high))
-        core::fail(FW_ERROR_BAD_DATA, "the book's %s is %g; it must lie in [%g, %g].", name, value,
-                   low, high);
+        core::failData("the book's %s is %g; it must lie in [%g, %g].", name, value, low, high);
 }
 
 struct Sizes {
@@ -76,11 +75,11 @@ std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_
     const Sizes sizes = sizesOf(f);
     if (book.texels.size() != sizes.texels || book.motion.size() != sizes.motion ||
         book.rects.size() != f.frames)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the book has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
-                   "%zu and %zu.",
-                   book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect),
-                   sizes.texels, sizes.motion, f.frames * sizeof(Rect));
+        core::failData(
+            "the book has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
+            "%zu and %zu.",
+            book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect), sizes.texels,
+            sizes.motion, f.frames * sizeof(Rect));
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion);
     const auto put = [&](uint64_t value, uint32_t bytes) {
@@ -106,11 +105,11 @@ std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_
 
 void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
     if (bytes.size() < kHeaderBytes)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; its header alone has %zu.",
-                   bytes.size(), kHeaderBytes);
+        core::failData("the .fwbook has %zu bytes; its header alone has %zu.", bytes.size(),
+                       kHeaderBytes);
     if (wordAt(bytes, 0) != kMagic)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook begins with 0x%08x; it must begin with 0x%08x.",
-                   wordAt(bytes, 0), kMagic);
+        core::failData("the .fwbook begins with 0x%08x; it must begin with 0x%08x.",
+                       wordAt(bytes, 0), kMagic);
     if (wordAt(bytes, 4) != kVersion)
         core::fail(FW_ERROR_VERSION, "the .fwbook has version %u; this library reads version %u.",
                    wordAt(bytes, 4), kVersion);
@@ -123,19 +122,18 @@ void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
     f.maxMotion = floatAt(bytes, 44), f.seconds = floatAt(bytes, 48);
     checkFacts(f);
     if (wordAt(bytes, 52) != 0)
-        core::fail(FW_ERROR_BAD_DATA, "the book's reserved word is %u; it is zero.",
-                   wordAt(bytes, 52));
+        core::failData("the book's reserved word is %u; it is zero.", wordAt(bytes, 52));
     const Sizes sizes = sizesOf(f);
     const size_t expected = kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion;
     if (bytes.size() != expected)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; %u frames of %u x %u need %zu.",
-                   bytes.size(), f.frames, f.width, f.height, expected);
+        core::failData("the .fwbook has %zu bytes; %u frames of %u x %u need %zu.", bytes.size(),
+                       f.frames, f.width, f.height, expected);
     const uint64_t sum = wordAt(bytes, 8) | uint64_t(wordAt(bytes, 12)) << 32;
     const uint64_t found = core::hashBytes(bytes.subspan(kSumEnd));
     if (sum != found)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
-                   static_cast<unsigned long long>(sum), static_cast<unsigned long long>(found));
+        core::failData("the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
+                       static_cast<unsigned long long>(sum),
+                       static_cast<unsigned long long>(found));
     Flipbook made(book.texels.get_allocator().resource());
     made.facts = f;
     made.rects.resize(f.frames);
@@ -146,9 +144,8 @@ void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
         const uint32_t low = wordAt(bytes, at), high = wordAt(bytes, at + 4);
         const Rect r{uint16_t(low), uint16_t(low >> 16), uint16_t(high), uint16_t(high >> 16)};
         if (r.left > r.right || r.right > f.width || r.low > r.high || r.high > f.height)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "the book's rect %u is [%u, %u) x [%u, %u); a frame has %u x %u texels.", i,
-                       r.left, r.right, r.low, r.high, f.width, f.height);
+            core::failData("the book's rect %u is [%u, %u) x [%u, %u); a frame has %u x %u texels.",
+                           i, r.left, r.right, r.low, r.high, f.width, f.height);
         made.rects[i] = r;
     }
     std::memcpy(made.texels.data(), bytes.data() + at, sizes.texels);
