@@ -14,10 +14,9 @@ namespace {
 
 void checkCallbacks(const FwCallbacks& callbacks) {
     if ((callbacks.allocate == nullptr) != (callbacks.release == nullptr))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwCallbacks::%s is null and %s is not; give both or neither.",
-                   callbacks.allocate ? "release" : "allocate",
-                   callbacks.allocate ? "allocate" : "release");
+        core::refuse("FwCallbacks::%s is null and %s is not; give both or neither.",
+                     callbacks.allocate ? "release" : "allocate",
+                     callbacks.allocate ? "allocate" : "release");
 }
 
 FwContext* makeContext(const FwContextDef& def) {
@@ -62,9 +61,9 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
         error->result = FW_OK;
         error->message[0] = 0;
     }
-    return edge::guard("fwCreateContext", report, [&] {
+    return edge::guard(__func__, report, [&] {
         checkPointer(out, "context");
-        const FwContextDef def = edge::readDef(given, FW_DEF_CONTEXT, "FwContextDef");
+        const FwContextDef def = edge::readDef(given);
         if (def.abiVersion != FW_ABI_VERSION)
             core::fail(FW_ERROR_VERSION,
                        "FwContextDef::abiVersion is %u; this library serves version %u.",
@@ -72,16 +71,14 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
         checkCallbacks(def.callbacks);
         callbacks = def.callbacks;
         if (def.backend != FW_BACKEND_VULKAN && def.backend != FW_BACKEND_CPU)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwContextDef::backend is %u; it is FW_BACKEND_VULKAN (0) or "
-                       "FW_BACKEND_CPU (1).",
-                       def.backend);
-        if (def.flags != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwContextDef::flags is 0x%x; it is zero.",
-                       def.flags);
+            core::refuse(
+                "FwContextDef::backend is %u; it is FW_BACKEND_VULKAN (0) or "
+                "FW_BACKEND_CPU (1).",
+                def.backend);
+        if (def.flags != 0) core::refuse("FwContextDef::flags is 0x%x; it is zero.", def.flags);
         if (def.backend == FW_BACKEND_CPU && def.vulkan)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
+            core::refuse(
+                "FwContextDef::vulkan is given and backend is FW_BACKEND_CPU; choose one.");
         FwContext* context = makeContext(def);
         try {
             context->backend = def.backend;
@@ -94,7 +91,6 @@ FwResult FW_CALL fwCreateContext(const FwContextDef* given, FwContext** out, FwE
             throw;
         }
         *out = context;
-        return FW_OK;
     });
 }
 
@@ -106,14 +102,13 @@ void FW_CALL fwDestroyContext(FwContext* context) {
 }
 
 FwResult FW_CALL fwContext_GetInfo(FwContext* context, FwContextInfo* info) {
-    return onContext("fwContext_GetInfo", context, [&](FwContext& c) {
-        const uint32_t size = edge::checkInfo(info, "FwContextInfo");
+    return onContext(__func__, context, [&](FwContext& c) {
+        const uint32_t size = edge::checkInfo(info);
         FwContextInfo filled{};
         c.device->fillInfo(filled);
         filled.backend = c.backend;
         filled.cpuMemoryUsed = c.memory.bytes();
         edge::writeInfo(info, size, filled);
-        return FW_OK;
     });
 }
 
@@ -122,16 +117,13 @@ size_t FW_CALL fwContext_GetLastMessage(FwContext* context, char* text, size_t c
 }
 
 FwResult FW_CALL fwContext_Prepare(FwContext* context) {
-    return onContext("fwContext_Prepare", context, [&](FwContext& c) {
-        c.device->prepare();
-        return FW_OK;
-    });
+    return onContext(__func__, context, [&](FwContext& c) { c.device->prepare(); });
 }
 
 uint32_t FW_CALL fwContext_GetMemoryReport(FwContext* context, FwMemoryRow* rows,
                                            uint32_t capacity) {
     uint32_t count = 0;
-    (void)onContext("fwContext_GetMemoryReport", context, [&](FwContext& c) {
+    (void)onContext(__func__, context, [&](FwContext& c) {
         std::pmr::vector<FwMemoryRow> sums(&c.memory);
         std::pmr::vector<gpu::MemoryRow> given(&c.memory);
         const auto add = [&] {
@@ -167,14 +159,12 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
                             uint64_t* size) {
     edge::Unit unit;
     const auto cookMesh = [&](FwContext& c) {
-        FwMeshDef def = edge::readDef(given, FW_DEF_MESH, "FwMeshDef");
+        FwMeshDef def = edge::readDef(given);
         checkPointer(size, "size");
         unit = edge::checkedUnit(def.metersPerUnit, "FwMeshDef::metersPerUnit", {});
         edge::MetreArrays arrays(unit, &c.memory);
         edge::visitArrays(def, arrays);
-        if (def.cooked)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwMeshDef::cooked is given; only arrays can be cooked.");
+        if (def.cooked) core::refuse("FwMeshDef::cooked is given; only arrays can be cooked.");
         const uint64_t key = world::cookKey(def, &c.memory);
         std::pmr::vector<std::byte> bytes(&c.memory);
         {
@@ -191,31 +181,28 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
             c.cookedKey = key;
         }
         if (buffer && !fits)
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT, "*size is %llu and the cooked mesh has %llu bytes.",
-                static_cast<unsigned long long>(*size), static_cast<unsigned long long>(needed));
+            core::refuse("*size is %llu and the cooked mesh has %llu bytes.",
+                         static_cast<unsigned long long>(*size),
+                         static_cast<unsigned long long>(needed));
         *size = needed;
-        return FW_OK;
     };
-    return onContext("fwCookMesh", context, cookMesh, unit);
+    return onContext(__func__, context, cookMesh, unit);
 }
 
 FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* given, void* buffer,
                                    uint64_t* size) {
-    return onContext("fwCookFireProfile", context, [&](FwContext& c) {
-        const FwFireProfileDef def = edge::readDef(given, FW_DEF_FIRE_PROFILE, "FwFireProfileDef");
+    return onContext(__func__, context, [&](FwContext& c) {
+        const FwFireProfileDef def = edge::readDef(given);
         checkPointer(size, "size");
         const auto profile = core::Owned<volume::Profile>::make(&c.memory);
         components::readFireProfile(def, &c.memory, *profile);
         const std::pmr::vector<std::byte> bytes = volume::cookProfile(*profile, &c.memory);
         const bool fits = buffer && *size >= bytes.size();
         if (buffer && !fits)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "*size is %llu and the cooked fire profile has %zu bytes.",
-                       static_cast<unsigned long long>(*size), bytes.size());
+            core::refuse("*size is %llu and the cooked fire profile has %zu bytes.",
+                         static_cast<unsigned long long>(*size), bytes.size());
         if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
         *size = bytes.size();
-        return FW_OK;
     });
 }
 

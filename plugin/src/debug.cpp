@@ -12,7 +12,7 @@ extern "C" {
 
 uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld* world, FwPassTime* times, uint32_t capacity) {
     uint32_t count = 0;
-    (void)onWorld("fwDebug_GetPassTimes", world, [&](world::World&) {
+    (void)onWorld(__func__, world, [&](world::World&) {
         if (capacity > 0) checkPointer(times, "times");
         const std::span<const gpu::PassTime> given = world->backend->passTimes();
         count = uint32_t(given.size());
@@ -23,24 +23,22 @@ uint32_t FW_CALL fwDebug_GetPassTimes(FwWorld* world, FwPassTime* times, uint32_
             times[i].frameIndex = given[i].frameIndex;
             times[i].count = given[i].count;
         }
-        return FW_OK;
     });
     return count;
 }
 
 FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld* world, FwBurnableMeshId id) {
-    return onWorld("fwDebug_RequestBurnMap", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         w.queries().requestBurnMap(id);
         edge::Device& device = *world->context->device;
         if (device.answersAtOnce()) device.step(*world->backend, w, 0.0f);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld* world, FwBurnableMeshId id, uint32_t* ticks,
                                       uint64_t capacity, uint64_t* count, uint64_t* hash,
                                       uint64_t* tick) {
-    return onWorld("fwDebug_FetchBurnMap", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         if (capacity > 0) checkPointer(ticks, "ticks");
         const world::BurnMapCopy* map = w.queries().fetchBurnMap(id);
         if (!map) return FW_NOT_READY;
@@ -54,25 +52,21 @@ FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld* world, FwBurnableMeshId id, uint3
 }
 
 FwResult FW_CALL fwDebug_SetSwitches(FwWorld* world, uint32_t switches) {
-    return onWorld("fwDebug_SetSwitches", world, [&](world::World& w) {
-        w.setSwitches(switches);
-        return FW_OK;
-    });
+    return onWorld(__func__, world, [&](world::World& w) { w.setSwitches(switches); });
 }
 
 FwResult FW_CALL fwDebug_PushTexels(FwWorld* world, FwBurnableMeshId id, uint32_t kind,
                                     const uint32_t* texels, uint32_t count) {
-    return onWorld("fwDebug_PushTexels", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         if (count > 0) checkPointer(texels, "texels");
         w.burn().pushTexels(id, kind, {texels, count});
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* positions,
                                            uint32_t* flags, uint64_t capacityTexels,
                                            uint64_t* count) {
-    return onWorld("fwDebug_GetTexelPositions", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const mesh::BurnDomain& domain = w.scene().domain(id);
         const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityTexels, domain.texelCount());
@@ -88,13 +82,12 @@ FwResult FW_CALL fwDebug_GetTexelPositions(FwWorld* world, FwMeshId id, float* p
             if (flags) flags[i] = domain.real(uint32_t(i)) ? 1u : 0u;
         }
         if (count) *count = domain.texelCount();
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwDebug_GetUnwrap(FwWorld* world, FwMeshId id, float* corners,
                                    uint64_t capacityCorners, uint64_t* count) {
-    return onWorld("fwDebug_GetUnwrap", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const mesh::BurnDomain& domain = w.scene().domain(id);
         const edge::Scale host(edge::meshUnit(*world, id).inverse());
         const uint64_t given = std::min<uint64_t>(capacityCorners, domain.indices.size());
@@ -105,7 +98,6 @@ FwResult FW_CALL fwDebug_GetUnwrap(FwWorld* world, FwMeshId id, float* corners,
             std::copy_n(vertex.atlasUv, 2, corners + 5 * i + 3);
         }
         if (count) *count = domain.indices.size();
-        return FW_OK;
     });
 }
 

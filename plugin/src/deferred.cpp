@@ -18,11 +18,10 @@ Id idOf(const FwObjectRef& object) noexcept {
 
 void checkRef(const FwObjectRef& object) {
     if (object.kind < 1 || object.kind >= FW_OBJECT_KIND_COUNT)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwObjectRef::kind is %u; the limits are [1, %u].",
-                   object.kind, uint32_t(FW_OBJECT_KIND_COUNT) - 1);
+        core::refuse("FwObjectRef::kind is %u; the limits are [1, %u].", object.kind,
+                     uint32_t(FW_OBJECT_KIND_COUNT) - 1);
     if (object.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwObjectRef::reserved is %u; it is zero.",
-                   object.reserved);
+        core::refuse("FwObjectRef::reserved is %u; it is zero.", object.reserved);
     if (object.index1 == 0)
         core::fail(FW_ERROR_STALE_ID, "FwObjectRef::index1 is 0; the id is null.");
 }
@@ -145,39 +144,36 @@ void destroyDoomed(FwWorld& handle) {
 extern "C" {
 
 FwResult FW_CALL fwWorld_DestroyLater(FwWorld* world, const FwObjectRef* object) {
-    return onWorld("fwWorld_DestroyLater", world, [&](world::World&) {
+    return onWorld(__func__, world, [&](world::World&) {
         checkPointer(object, "object");
         checkRef(*object);
         const std::lock_guard lock(world->doomedMutex);
         world->doomed.push_back(*object);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_DestroyAfterFrame(FwWorld* world, uint64_t frameIndex) {
-    return onWorld("fwWorld_DestroyAfterFrame", world, [&](world::World&) {
+    return onWorld(__func__, world, [&](world::World&) {
         const uint64_t frame = frameIndex ? frameIndex : world->newestFrame.load();
         FwContext& context = *world->context;
         const std::lock_guard lock(context.mutex);
         defer(context.deferredWorlds, {world, frame});
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwContext_UnregisterTargetAfterFrame(FwContext* context, FwTargetId id,
                                                       uint64_t frameIndex) {
-    return onContext("fwContext_UnregisterTargetAfterFrame", context, [&](FwContext& c) {
+    return onContext(__func__, context, [&](FwContext& c) {
         if (id.index1 == 0) core::fail(FW_ERROR_STALE_ID, "Target id is null.");
         c.device->checkTarget(id);
         const std::lock_guard lock(c.mutex);
         defer(c.deferredTargets, {id, frameIndex});
-        return FW_OK;
     });
 }
 
 uint32_t FW_CALL fwContext_Collect(FwContext* context, uint64_t completedFrameIndex) {
     uint32_t waiting = 0;
-    (void)onContext("fwContext_Collect", context, [&](FwContext& c) {
+    (void)onContext(__func__, context, [&](FwContext& c) {
         for (;;) {
             FwWorld* world = nullptr;
             FwTargetId target{};

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <mutex>
 #include <new>
+#include <span>
 #include <stdexcept>
 
 namespace fw::edge {
@@ -54,15 +55,20 @@ inline void composeMessage(char (&out)[sizeof FwErrorInfo::message], const char*
 inline constexpr char kNoMemoryText[] =
     "Memory is exhausted: the allocator refused a request. Nothing was changed.";
 
-// Runs `body` (which may return FwResult) and hands any failure to report(result, text), whose
-// lengths are in the unit that `unit` then is.
+// Runs `body` (which returns FwResult or nothing) and hands any failure to report(result, text),
+// whose lengths are in the unit that `unit` then is.
 template <class Body, class Report>
 FwResult guard(const char* function, const Report& report, Body&& body,
                const Unit& unit = {}) noexcept {
     FwResult result = FW_ERROR_INTERNAL;
     char text[sizeof FwErrorInfo::message];
     try {
-        return body();
+        if constexpr (std::is_void_v<std::invoke_result_t<Body>>) {
+            body();
+            return FW_OK;
+        } else {
+            return body();
+        }
     } catch (const core::Error& error) {
         result = error.result;
         composeMessage(text, error.marked, function, unit);
@@ -79,22 +85,33 @@ FwResult guard(const char* function, const Report& report, Body&& body,
     return result;
 }
 
+// The same of a call without a context or world, which has nowhere to report to.
+template <class Body>
+FwResult guardAlone(const char* function, Body&& body) noexcept {
+    return guard(
+        function, [](FwResult, const char*) {}, body);
+}
+
 inline constexpr uint32_t kLargestStruct = 64 * 1024;  // bytes: beyond it structSize is garbage
 
 // ---- defs: what an older or newer host gives ---------------------------------------------------
 
-// Implemented in init_def.cpp; false when the type is unknown. `def` is of the library's own size.
-bool writeDefaults(uint32_t type, void* def) noexcept;
-size_t defSize(uint32_t type) noexcept;  // 0: unknown
-// Turns the lengths of a host's def from metres into its unit. Throws for an unknown type.
-void defFromMetres(uint32_t type, const Unit& unit, void* def);
+struct DefRow {  // a def by its FwDefType
+    uint32_t type;
+    size_t size;
+    void (*writeDefaults)(void* def) noexcept;
+    // Turns the lengths of a host's def from metres into its unit. Null: the def has none.
+    void (*fromMetres)(const Unit& unit, void* def);
+};
+const DefRow* findDef(uint32_t type) noexcept;     // null: unknown
+std::span<const DefRow> vulkanDefRows() noexcept;  // vulkan.cpp
 
-// A def of zeros but for its size and what `fill` sets, to where there is room for one.
-template <class Def, class Fill>
-void writeDef(void* out, Fill fill) noexcept {
+// A def of zeros but for its size and what kFill sets, to where there is room for one.
+template <class Def, void (*kFill)(Def&) noexcept>
+void writeDefaultsOf(void* out) noexcept {
     Def def;
     std::memset(&def, 0, sizeof def);
-    fill(def);
+    kFill(def);
     def.structSize = sizeof def;
     std::memcpy(out, &def, sizeof def);
 }
@@ -103,7 +120,7 @@ void writeDef(void* out, Fill fill) noexcept {
 // not know.
 template <class Def>
 void overlayDef(Def& def, const Def* given, const char* name) {
-    if (!given) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+    if (!given) core::refuse("%s is null.", name);
     uint32_t size = 0;
     std::memcpy(&size, given, sizeof size);
     if (size < 8 || size % alignof(Def) != 0 || size > kLargestStruct)
@@ -124,25 +141,11 @@ void overlayDef(Def& def, const Def* given, const char* name) {
     def.structSize = sizeof def;
 }
 
+// The def of a host whose lengths are in `unit`; those that are left out are the defaults' metres.
 template <class Def>
-Def defaultDef(uint32_t type) noexcept {
+Def readDef(const Def* given, const Unit& unit = {}, const char* name = StructOf<Def>::kName) {
     Def def;
-    std::memset(&def, 0, sizeof def);
-    (void)writeDefaults(type, &def);
-    return def;
-}
-
-template <class Def>
-Def readDef(const Def* given, uint32_t type, const char* name) {
-    Def def = defaultDef<Def>(type);
-    overlayDef(def, given, name);
-    return def;
-}
-
-// The same of a host whose lengths are in `unit`; those that are left out are the defaults' metres.
-template <class Def>
-Def readDef(const Unit& unit, const Def* given, uint32_t type, const char* name) {
-    Def def = defaultDef<Def>(type);
+    findDef(StructOf<Def>::kType)->writeDefaults(&def);
     fromMetres(unit, def);
     overlayDef(def, given, name);
     toMetres(unit, def);
@@ -151,8 +154,9 @@ Def readDef(const Unit& unit, const Def* given, uint32_t type, const char* name)
 
 // Checks a struct that the library fills; returns how many bytes the caller has.
 template <class Info>
-uint32_t checkInfo(const Info* info, const char* name) {
-    if (!info) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+uint32_t checkInfo(const Info* info) {
+    constexpr const char* name = StructOf<Info>::kName;
+    if (!info) core::refuse("%s is null.", name);
     uint32_t size = 0;
     std::memcpy(&size, info, sizeof size);
     if (size < 8 || size > kLargestStruct)

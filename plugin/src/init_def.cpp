@@ -3,8 +3,6 @@
 #include "components/volumetric_fire.h"
 #include "edge.h"
 #include "flamewright/flamewright.h"
-#include "units.h"
-#include "vulkan_defs.h"
 #include "world/material.h"
 
 #include <algorithm>
@@ -187,180 +185,89 @@ void defaults(FwOffscreenDef& def) noexcept {
     def.background[3] = 1;
 }
 
-// Calls body.template operator()<Def>() for the def of that type. False: unknown type.
-template <class Body>
-bool visitDef(uint32_t type, Body body) {
-    switch (type) {
-        case FW_DEF_CONTEXT:
-            body.template operator()<FwContextDef>();
-            return true;
-        case FW_DEF_WORLD:
-            body.template operator()<FwWorldDef>();
-            return true;
-        case FW_DEF_MATERIAL:
-            body.template operator()<FwMaterialDef>();
-            return true;
-        case FW_DEF_IMAGE:
-            body.template operator()<FwImageDef>();
-            return true;
-        case FW_DEF_MESH:
-            body.template operator()<FwMeshDef>();
-            return true;
-        case FW_DEF_BURNABLE_MESH:
-            body.template operator()<FwBurnableMeshDef>();
-            return true;
-        case FW_DEF_IGNITION:
-            body.template operator()<FwIgnitionDef>();
-            return true;
-        case FW_DEF_VIEW:
-            body.template operator()<FwView>();
-            return true;
-        case FW_DEF_OFFSCREEN:
-            body.template operator()<FwOffscreenDef>();
-            return true;
-        case FW_DEF_HEAT_OCCLUDER:
-            body.template operator()<FwHeatOccluderDef>();
-            return true;
-        case FW_DEF_VOLUMETRIC_FIRE:
-            body.template operator()<FwVolumetricFireDef>();
-            return true;
-        case FW_DEF_FIRE_PROFILE:
-            body.template operator()<FwFireProfileDef>();
-            return true;
-        case FW_DEF_FLIPBOOK:
-            body.template operator()<FwFlipbookDef>();
-            return true;
-        case FW_DEF_BUDGET:
-            body.template operator()<FwBudgetDef>();
-            return true;
-        case FW_DEF_NET:
-            body.template operator()<FwNetDef>();
-            return true;
-        case FW_DEF_WIND_ZONE:
-            body.template operator()<FwWindZoneDef>();
-            return true;
-        case FW_DEF_HEAT_OCCLUSION:
-            body.template operator()<FwHeatOcclusionDef>();
-            return true;
-        case FW_DEF_WIND_GRID:
-            body.template operator()<FwWindGridDef>();
-            return true;
-        case FW_DEF_GUSTS:
-            body.template operator()<FwGustDef>();
-            return true;
-        case FW_DEF_TIMELINE:
-            body.template operator()<FwTimelineDef>();
-            return true;
-        case FW_DEF_ROOM:
-            body.template operator()<FwRoomDef>();
-            return true;
-        case FW_DEF_FIRE_COLLIDER:
-            body.template operator()<FwFireColliderDef>();
-            return true;
-        case FW_DEF_FIRE_TRACK:
-            body.template operator()<FwFireTrackDef>();
-            return true;
-        case FW_DEF_FIRE_EMITTER:
-            body.template operator()<FwFireEmitterDef>();
-            return true;
-        case FW_DEF_PARTICLE_FIELD:
-            body.template operator()<FwParticleFieldDef>();
-            return true;
-        default:
-            return false;
-    }
+template <class Def>
+void fromMetresOf(const Unit& unit, void* def) {
+    const auto given = static_cast<Def*>(def);
+    Def filled = readDef<Def>(given, {}, "def");
+    fromMetres(unit, filled);
+    writeInfo(given, checkInfo(given), filled);
 }
+
+constexpr DefRow kDefs[] = {
+#define FW_INFO(T, ...)
+#define FW_DEF(T, number, ...) {number, sizeof(T), &writeDefaultsOf<T, defaults>, &fromMetresOf<T>},
+#include "structs.inl"
+#undef FW_DEF
+#undef FW_INFO
+};
 
 }  // namespace
 
-size_t defSize(uint32_t type) noexcept {
-    size_t size = 0;
-    const bool known = visitDef(type, [&]<class Def>() { size = sizeof(Def); });
-    return known ? size : vulkanDefSize(type);
-}
-
-bool writeDefaults(uint32_t type, void* def) noexcept {
-    return visitDef(type,
-                    [&]<class Def>() { writeDef<Def>(def, [](Def& one) { defaults(one); }); }) ||
-           writeVulkanDefaults(type, def);
+const DefRow* findDef(uint32_t type) noexcept {
+    for (const std::span<const DefRow> rows : {std::span<const DefRow>(kDefs), vulkanDefRows()})
+        for (const DefRow& row : rows)
+            if (row.type == type) return &row;
+    return nullptr;
 }
 
 Unit checkedUnit(float metersPerUnit, const char* field, const Unit& otherwise) {
     if (metersPerUnit == 0) return otherwise;
     if (!(metersPerUnit >= 1e-4f && metersPerUnit <= 1e3f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s is %g; the limits are [0.0001, 1000] m. Centimetres are 0.01.", field,
-                   double(metersPerUnit));
+        core::refuse("%s is %g; the limits are [0.0001, 1000] m. Centimetres are 0.01.", field,
+                     double(metersPerUnit));
     return Unit::of(metersPerUnit);
-}
-
-void defFromMetres(uint32_t type, const Unit& unit, void* def) {
-    const bool known = visitDef(type, [&]<class Def>() {
-        Def filled = readDef<Def>(static_cast<Def*>(def), type, "def");
-        uint32_t size = 0;
-        std::memcpy(&size, def, sizeof size);
-        fromMetres(unit, filled);
-        writeInfo(static_cast<Def*>(def), size, filled);
-    });
-    if (!known && vulkanDefSize(type) == 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "defType is %u, which is no FwDefType.", type);
 }
 
 }  // namespace fw::edge
 
 using namespace fw;
 
+namespace {
+
+template <class Def, class Make>
+FwResult initPreset(const char* function, Def* def, uint32_t preset, uint32_t count,
+                    const Make& make) noexcept {
+    return edge::guardAlone(function, [&] {
+        if (preset >= count) core::refuse("preset is %u; the limit is %u.", preset, count - 1);
+        const uint32_t size = edge::checkInfo(def);
+        edge::writeInfo(def, size, make());
+    });
+}
+
+}  // namespace
+
 extern "C" {
 
 void FW_CALL fwInitDef(uint32_t defType, void* def, uint32_t structSize) {
     if (!def || structSize == 0 || structSize > edge::kLargestStruct) return;
     alignas(16) unsigned char known[sizeof(FwOffscreenDef) + sizeof(FwMaterialDef) + 256];
-    const size_t size = edge::defSize(defType);
+    const edge::DefRow* row = edge::findDef(defType);
     std::memset(def, 0, structSize);
-    if (size > 0 && size <= sizeof known && edge::writeDefaults(defType, known))
-        std::memcpy(def, known, std::min<size_t>(size, structSize));
+    if (row && row->size <= sizeof known) {
+        row->writeDefaults(known);
+        std::memcpy(def, known, std::min<size_t>(row->size, structSize));
+    }
     std::memcpy(def, &structSize, std::min<size_t>(sizeof structSize, structSize));
 }
 
 FwResult FW_CALL fwInitMaterialPreset(FwMaterialDef* def, uint32_t preset) {
-    // Without a context there is no log or last message.
-    const auto nobody = [](FwResult, const char*) {};
-    return edge::guard("fwInitMaterialPreset", nobody, [&] {
-        if (preset >= FW_MATERIAL_PRESET_COUNT)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
-                       uint32_t(FW_MATERIAL_PRESET_COUNT) - 1);
-        const uint32_t size = edge::checkInfo(def, "FwMaterialDef");
-        edge::writeInfo(def, size, world::presetDef(preset));
-        return FW_OK;
-    });
+    return initPreset(__func__, def, preset, FW_MATERIAL_PRESET_COUNT,
+                      [&] { return world::presetDef(preset); });
 }
 
 FwResult FW_CALL fwInitFirePreset(FwVolumetricFireDef* def, uint32_t preset) {
-    const auto nobody = [](FwResult, const char*) {};
-    return edge::guard("fwInitFirePreset", nobody, [&] {
-        if (preset >= FW_FIRE_PRESET_COUNT)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
-                       uint32_t(FW_FIRE_PRESET_COUNT) - 1);
-        const uint32_t size = edge::checkInfo(def, "FwVolumetricFireDef");
-        FwVolumetricFireDef filled =
-            edge::readDef(def, FW_DEF_VOLUMETRIC_FIRE, "FwVolumetricFireDef");
+    return initPreset(__func__, def, preset, FW_FIRE_PRESET_COUNT, [&] {
+        FwVolumetricFireDef filled = edge::readDef(def);
         components::setFirePreset(filled, preset);
-        edge::writeInfo(def, size, filled);
-        return FW_OK;
+        return filled;
     });
 }
 
 FwResult FW_CALL fwInitFieldPreset(FwParticleFieldDef* def, uint32_t preset) {
-    const auto nobody = [](FwResult, const char*) {};
-    return edge::guard("fwInitFieldPreset", nobody, [&] {
-        if (preset >= FW_FIELD_PRESET_COUNT)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "preset is %u; the limit is %u.", preset,
-                       uint32_t(FW_FIELD_PRESET_COUNT) - 1);
-        const uint32_t size = edge::checkInfo(def, "FwParticleFieldDef");
-        FwParticleFieldDef filled = edge::readDef(def, FW_DEF_PARTICLE_FIELD, "FwParticleFieldDef");
+    return initPreset(__func__, def, preset, FW_FIELD_PRESET_COUNT, [&] {
+        FwParticleFieldDef filled = edge::readDef(def);
         components::setFieldPreset(filled, preset);
-        edge::writeInfo(def, size, filled);
-        return FW_OK;
+        return filled;
     });
 }
 
@@ -377,34 +284,28 @@ uint32_t FW_CALL fwGetVersion(void) {
 }
 
 const char* FW_CALL fwResultName(int32_t result) {
-    switch (result) {
-        case FW_NOTHING_THERE:
-            return "FW_NOTHING_THERE";
-        case FW_NOT_READY:
-            return "FW_NOT_READY";
-        case FW_OK:
-            return "FW_OK";
-        case FW_ERROR_INVALID_ARGUMENT:
-            return "FW_ERROR_INVALID_ARGUMENT";
-        case FW_ERROR_STALE_ID:
-            return "FW_ERROR_STALE_ID";
-        case FW_ERROR_VERSION:
-            return "FW_ERROR_VERSION";
-        case FW_ERROR_OUT_OF_MEMORY:
-            return "FW_ERROR_OUT_OF_MEMORY";
-        case FW_ERROR_UNSUPPORTED_DEVICE:
-            return "FW_ERROR_UNSUPPORTED_DEVICE";
-        case FW_ERROR_DEVICE_LOST:
-            return "FW_ERROR_DEVICE_LOST";
-        case FW_ERROR_BAD_DATA:
-            return "FW_ERROR_BAD_DATA";
-        case FW_ERROR_WRONG_BACKEND:
-            return "FW_ERROR_WRONG_BACKEND";
-        case FW_ERROR_INTERNAL:
-            return "FW_ERROR_INTERNAL";
-        default:
-            return "an unknown FwResult";
-    }
+    static constexpr struct {
+        int32_t result;
+        const char* name;
+    } kNames[] = {
+#define FW_NAMED(result) {result, #result}
+        FW_NAMED(FW_NOTHING_THERE),
+        FW_NAMED(FW_NOT_READY),
+        FW_NAMED(FW_OK),
+        FW_NAMED(FW_ERROR_INVALID_ARGUMENT),
+        FW_NAMED(FW_ERROR_STALE_ID),
+        FW_NAMED(FW_ERROR_VERSION),
+        FW_NAMED(FW_ERROR_OUT_OF_MEMORY),
+        FW_NAMED(FW_ERROR_UNSUPPORTED_DEVICE),
+        FW_NAMED(FW_ERROR_DEVICE_LOST),
+        FW_NAMED(FW_ERROR_BAD_DATA),
+        FW_NAMED(FW_ERROR_WRONG_BACKEND),
+        FW_NAMED(FW_ERROR_INTERNAL),
+#undef FW_NAMED
+    };
+    for (const auto& row : kNames)
+        if (row.result == result) return row.name;
+    return "an unknown FwResult";
 }
 
 }  // extern "C"

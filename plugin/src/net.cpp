@@ -9,26 +9,24 @@ namespace {
 
 void mustBeFree(const FwWorld& world) {
     if (world.server || world.client)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world is a %s already; fwNet_Leave ends that.",
-                   world.server ? "server's" : "client's");
+        core::refuse("The world is a %s already; fwNet_Leave ends that.",
+                     world.server ? "server's" : "client's");
 }
 
 FwNetDef netDef(const FwNetDef* given) {
-    const FwNetDef def = edge::readDef(given, FW_DEF_NET, "FwNetDef");
+    const FwNetDef def = edge::readDef(given);
     net::checkNetDef(def);
     return def;
 }
 
 net::Server& serverOf(FwWorld& world) {
-    if (!world.server)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "The world is no server's; see fwNet_Serve.");
+    if (!world.server) core::refuse("The world is no server's; see fwNet_Serve.");
     return *world.server;
 }
 
 void mustBeShared(const FwWorld& world) {
     if (!world.server && !world.client)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The world is nobody's but its own; see fwNet_Serve and fwNet_Join.");
+        core::refuse("The world is nobody's but its own; see fwNet_Serve and fwNet_Join.");
 }
 
 }  // namespace
@@ -36,50 +34,43 @@ void mustBeShared(const FwWorld& world) {
 extern "C" {
 
 FwResult FW_CALL fwNet_Serve(FwWorld* world, const FwNetDef* given) {
-    return onWorld("fwNet_Serve", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const FwNetDef def = netDef(given);
         mustBeFree(*world);
         world->server.emplace(def, w, &world->context->memory);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_Join(FwWorld* world, const FwNetDef* given) {
-    return onWorld("fwNet_Join", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const FwNetDef def = netDef(given);
         mustBeFree(*world);
         world->client.emplace(def, w, &world->context->memory);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_Leave(FwWorld* world) {
-    return onWorld("fwNet_Leave", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         world->server.reset();
         world->client.reset();
         w.persistence().stopRecording();
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_AddPeer(FwWorld* world, FwPeerId* id) {
-    return onWorld("fwNet_AddPeer", world, [&](world::World&) {
+    return onWorld(__func__, world, [&](world::World&) {
         checkPointer(id, "id");
         *id = {};
         *id = serverOf(*world).addPeer();
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_RemovePeer(FwWorld* world, FwPeerId id) {
-    return onWorld("fwNet_RemovePeer", world, [&](world::World&) {
-        serverOf(*world).removePeer(id);
-        return FW_OK;
-    });
+    return onWorld(__func__, world, [&](world::World&) { serverOf(*world).removePeer(id); });
 }
 
 FwResult FW_CALL fwNet_Update(FwWorld* world, float deltaTime) {
-    return onWorld("fwNet_Update", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         mustBeShared(*world);
         components::checkValue(deltaTime, "deltaTime", 0.0f, 10.0f);
         if (world->server) {
@@ -87,12 +78,11 @@ FwResult FW_CALL fwNet_Update(FwWorld* world, float deltaTime) {
             if (world->server->awaitsFrame()) edge::answerAtOnce(world);
         }
         if (world->client) world->client->update(w, deltaTime);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_Write(FwWorld* world, FwPeerId to, void* packet, uint32_t* size) {
-    return onWorld("fwNet_Write", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         checkPointer(packet, "packet");
         checkPointer(size, "size");
         mustBeShared(*world);
@@ -104,7 +94,7 @@ FwResult FW_CALL fwNet_Write(FwWorld* world, FwPeerId to, void* packet, uint32_t
 }
 
 FwResult FW_CALL fwNet_Read(FwWorld* world, FwPeerId from, const void* packet, uint32_t size) {
-    return onWorld("fwNet_Read", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         checkPointer(packet, "packet");
         mustBeShared(*world);
         const std::span<const std::byte> bytes(static_cast<const std::byte*>(packet), size);
@@ -112,41 +102,36 @@ FwResult FW_CALL fwNet_Read(FwWorld* world, FwPeerId from, const void* packet, u
             world->server->read(w, from, bytes);
         else
             world->client->read(bytes);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_SendMessage(FwWorld* world, const void* message, uint32_t size) {
-    return onWorld("fwNet_SendMessage", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         if (size > 0) checkPointer(message, "message");
         serverOf(*world).sendMessage(w, {static_cast<const std::byte*>(message), size});
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_NextAction(FwWorld* world, FwNetAction* action) {
-    return onWorld("fwNet_NextAction", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(action, "FwNetAction");
+    return onWorld(__func__, world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(action);
         if (size < sizeof(FwNetAction))
             core::fail(FW_ERROR_VERSION, "FwNetAction::structSize is %u; it has %zu bytes.", size,
                        sizeof(FwNetAction));
-        if (!world->client)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "The world is no client's; see fwNet_Join.");
+        if (!world->client) core::refuse("The world is no client's; see fwNet_Join.");
         FwNetAction filled{};
         world->client->takeTurn(w, filled);
         edge::writeInfo(action, size, filled);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwNet_GetState(FwWorld* world, FwPeerId peer, FwNetState* state) {
-    return onWorld("fwNet_GetState", world, [&](world::World& w) {
-        const uint32_t size = edge::checkInfo(state, "FwNetState");
+    return onWorld(__func__, world, [&](world::World& w) {
+        const uint32_t size = edge::checkInfo(state);
         FwNetState filled{};
         if (world->server) world->server->fillState(w, peer, filled);
         if (world->client) world->client->fillState(w, filled);
         edge::writeInfo(state, size, filled);
-        return FW_OK;
     });
 }
 

@@ -128,10 +128,9 @@ System& systemOf(world::World& w) noexcept {
 template <class Def>
 class InMetres {
  public:
-    InMetres(FwWorld& world, const Def* given, uint32_t type, const char* name)
-        : InMetres(world, given, type, name, world.unit) {}
-    InMetres(FwWorld& world, const Def* given, uint32_t type, const char* name, const Unit& arrays)
-        : arrays_(arrays, &world.context->memory), def_(readDef(world.unit, given, type, name)) {
+    InMetres(FwWorld& world, const Def* given) : InMetres(world, given, world.unit) {}
+    InMetres(FwWorld& world, const Def* given, const Unit& arrays)
+        : arrays_(arrays, &world.context->memory), def_(readDef(given, world.unit)) {
         visitArrays(def_, arrays_);
     }
     operator const Def&() const noexcept { return def_; }
@@ -147,7 +146,7 @@ class OcclusionInMetres {
  public:
     OcclusionInMetres(FwWorld& world, const FwHeatOcclusionDef* given)
         : unitsPerMetre_(float(world.unit.perMetre())),
-          def_(readDef(world.unit, given, FW_DEF_HEAT_OCCLUSION, "FwHeatOcclusionDef")),
+          def_(readDef(given, world.unit)),
           ask_(def_.distance),
           data_(def_.distanceData) {
         if (!def_.distance || world.unit.isMetre()) return;
@@ -204,7 +203,7 @@ void publish(FwWorld& handle) noexcept;
 
 template <class T>
 void checkPointer(T* pointer, const char* name) {
-    if (!pointer) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+    if (!pointer) core::refuse("%s is null.", name);
 }
 
 }  // namespace fw::edge

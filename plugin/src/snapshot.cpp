@@ -43,8 +43,8 @@ extern "C" {
 
 FwResult FW_CALL fwWorld_ReadObjectState(FwWorld* world, FwBurnableMeshId id,
                                          FwObjectState* state) {
-    return onWorld("fwWorld_ReadObjectState", world, [&](world::World&) {
-        const uint32_t size = edge::checkInfo(state, "FwObjectState");
+    return onWorld(__func__, world, [&](world::World&) {
+        const uint32_t size = edge::checkInfo(state);
         if (id.index1 == 0) core::fail(FW_ERROR_STALE_ID, "Burnable mesh id is null.");
         const auto lock = openSnapshot(*world);
         const auto& objects = world->snapshot.objects;
@@ -62,7 +62,7 @@ FwResult FW_CALL fwWorld_ReadObjectState(FwWorld* world, FwBurnableMeshId id,
 }
 
 FwResult FW_CALL fwWorld_ReadLights(FwWorld* world, FwLight* lights, uint32_t* count) {
-    return onWorld("fwWorld_ReadLights", world, [&](world::World&) {
+    return onWorld(__func__, world, [&](world::World&) {
         checkPointer(count, "count");
         const uint32_t room = std::exchange(*count, 0);
         if (room > 0) checkPointer(lights, "lights");

@@ -1,5 +1,5 @@
-// Conversion of lengths and speeds between a host's unit and metres. This file lists the fields of
-// the ABI's structs that are lengths or speeds; a struct without an entry does not compile in the
+// Conversion of lengths and speeds between a host's unit and metres. structs.inl lists the fields
+// of the ABI's structs that are lengths or speeds; a struct without a row does not compile in the
 // functions of a world.
 #pragma once
 #include "flamewright/flamewright.h"
@@ -74,113 +74,32 @@ class Scale {
     Unit unit_;
 };
 
-// ---- lengths of each struct, except those behind pointers
+// ---- structs of the ABI: structs.inl
 
 template <class T>
-inline constexpr bool kHasNoLengths = false;
-#define FW_NO_LENGTHS(T) \
-    template <>          \
-    inline constexpr bool kHasNoLengths<T> = true
-FW_NO_LENGTHS(FwContextDef);
-FW_NO_LENGTHS(FwMaterialDef);  // SI in every world
-FW_NO_LENGTHS(FwImageDef);
-FW_NO_LENGTHS(FwMeshDef);  // arrays; noiseFeature is metres in every world
-FW_NO_LENGTHS(FwFireProfileDef);
-FW_NO_LENGTHS(FwFlipbookDef);
-FW_NO_LENGTHS(FwBudgetDef);
-FW_NO_LENGTHS(FwNetDef);
-FW_NO_LENGTHS(FwTimelineDef);
-FW_NO_LENGTHS(FwFireTrackDef);
-FW_NO_LENGTHS(FwRoomState);
-FW_NO_LENGTHS(FwFireForce);
-FW_NO_LENGTHS(FwParticleFieldState);
-FW_NO_LENGTHS(FwObjectState);
-FW_NO_LENGTHS(FwWorldStats);
-FW_NO_LENGTHS(FwEnergyLedger);
-FW_NO_LENGTHS(FwBudgetState);
-FW_NO_LENGTHS(FwTimelineState);
-#undef FW_NO_LENGTHS
-
-template <class T>
-requires kHasNoLengths<T>
-void visitLengths(T&, const Scale&) noexcept {}
-inline void visitLengths(FwWorldDef& def, const Scale& scale) noexcept { scale(def.wind); }
-inline void visitLengths(FwMeshInfo& info, const Scale& scale) noexcept {
-    scale(info.boundsLow, info.boundsHigh);
-}
-inline void visitLengths(FwBurnableMeshDef& def, const Scale& scale) noexcept {
-    scale.transform(def.transform);
-    scale(def.ground);
-}
-inline void visitLengths(FwIgnitionDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.radius);
-}
-inline void visitLengths(FwHeatOccluderDef& def, const Scale& scale) noexcept {
-    scale.transform(def.transform);
-    scale(def.halfSize);
-}
-inline void visitLengths(FwHeatOcclusionDef& def, const Scale& scale) noexcept {
-    scale(def.origin, def.cellSize);
-}
-inline void visitLengths(FwWindZoneDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.size, def.speed);
-}
-inline void visitLengths(FwWindGridDef& def, const Scale& scale) noexcept {
-    scale(def.origin, def.cellSize, def.fade);
-}
-inline void visitLengths(FwGustDef& def, const Scale& scale) noexcept { scale(def.size); }
-inline void visitLengths(FwRoomDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.halfSize);
-}
-inline void visitLengths(FwVolumetricFireDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.diameter);
-}
-inline void visitLengths(FwVolumetricFireState& state, const Scale& scale) noexcept {
-    scale(state.height, state.boundsLow, state.boundsHigh, state.tip, state.lightPosition,
-          state.contact);
-}
-inline void visitLengths(FwFireColliderDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.end, def.halfSize, def.radius, def.cellSize);
-    scale.view(def.view, def.projection);
-}
-inline void visitLengths(FwFireSample& answer, const Scale& scale) noexcept { scale(answer.gas); }
-inline void visitLengths(FwFireEmitterDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.extent, def.radius, def.speed, def.size0, def.size1, def.ground,
-          def.behind);
-}
-inline void visitLengths(FwFireEmitterState& state, const Scale& scale) noexcept {
-    scale(state.speed, state.reach, state.lightPosition, state.clearDistance);
-}
-inline void visitLengths(FwParticleFieldDef& def, const Scale& scale) noexcept {
-    scale(def.position, def.size);
-}
-inline void visitLengths(FwView& view, const Scale& scale) noexcept {
-    scale.view(view.view, view.projection);
-}
-inline void visitLengths(FwOffscreenDef& def, const Scale& scale) noexcept {
-    visitLengths(def.view, scale);
-}
-inline void visitLengths(FwEvent& event, const Scale& scale) noexcept { scale(event.position); }
-inline void visitLengths(FwPointState& state, const Scale& scale) noexcept {
-    scale(state.distance, state.position);
-}
-inline void visitLengths(FwArrivalState& state, const Scale& scale) noexcept {
-    scale(state.distance, state.position);
-}
-inline void visitLengths(FwLight& light, const Scale& scale) noexcept {
-    scale(light.position, light.radius);
-}
-inline void visitLengths(FwSurroundings& around, const Scale& scale) noexcept {
-    scale(around.nearest, around.nearestPosition);
-}
+struct StructOf;  // name; FwDefType, 0: no def; lengths
+#define FW_STRUCT(T, number, ...)                                                                \
+    template <>                                                                                  \
+    struct StructOf<T> {                                                                         \
+        static constexpr const char* kName = #T;                                                 \
+        static constexpr uint32_t kType = number;                                                \
+        static void visit([[maybe_unused]] T& s, [[maybe_unused]] const Scale& scale) noexcept { \
+            __VA_ARGS__;                                                                         \
+        }                                                                                        \
+    };
+#define FW_DEF FW_STRUCT
+#define FW_INFO(T, ...) FW_STRUCT(T, 0, __VA_ARGS__)
+#include "structs.inl"
+#undef FW_INFO
+#undef FW_DEF
 
 template <class T>
 void toMetres(const Unit& unit, T& given) noexcept {
-    if (!unit.isMetre()) visitLengths(given, Scale(unit));
+    if (!unit.isMetre()) StructOf<T>::visit(given, Scale(unit));
 }
 template <class T>
 void fromMetres(const Unit& unit, T& filled) noexcept {
-    if (!unit.isMetre()) visitLengths(filled, Scale(unit.inverse()));
+    if (!unit.isMetre()) StructOf<T>::visit(filled, Scale(unit.inverse()));
 }
 
 // ---- function arguments besides structs

@@ -11,10 +11,10 @@ void checkRange(const float* values, unsigned count, const char* name, const cha
     for (unsigned i = 0; i < count; ++i) {
         if (values[i] >= low && values[i] <= high) continue;
         if (count == 1)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.%s is %g; the limits are [%g, %g].", name,
-                       field, double(values[i]), double(low), double(high));
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.%s[%u] is %g; the limits are [%g, %g].", name,
-                   field, i, double(values[i]), double(low), double(high));
+            core::refuse("%s.%s is %g; the limits are [%g, %g].", name, field, double(values[i]),
+                         double(low), double(high));
+        core::refuse("%s.%s[%u] is %g; the limits are [%g, %g].", name, field, i, double(values[i]),
+                     double(low), double(high));
     }
 }
 
@@ -24,8 +24,7 @@ void checkMatrices(const FwView& view, const char* name) {
     for (unsigned i = 0; i < 4; ++i) {
         const float wanted = i == 3 ? 1.0f : 0.0f, value = view.view[kLastRow[i]];
         if (std::fabs(value - wanted) > 1e-3f)
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT,
+            core::refuse(
                 "%s.view[%u] is %g; the last row of a view matrix is 0 0 0 1, elements 3, 7, 11 "
                 "and 15. Matrices are column-major.",
                 name, kLastRow[i], double(value));
@@ -37,8 +36,7 @@ void checkMatrices(const FwView& view, const char* name) {
                                at(1, 0) * (at(0, 1) * at(2, 2) - at(2, 1) * at(0, 2)) +
                                at(2, 0) * (at(0, 1) * at(1, 2) - at(1, 1) * at(0, 2));
     if (std::fabs(determinant) < 1e-12)
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "%s.view has determinant %g; a view turns and moves the world, it does not flatten "
             "it.",
             name, determinant);
@@ -47,18 +45,17 @@ void checkMatrices(const FwView& view, const char* name) {
         for (unsigned column = 0; column < 4; ++column)
             empty &= view.projection[column * 4 + row] == 0.0f;
         if (empty)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s.projection has zeros in all of row %u; nothing would show. Matrices are "
-                       "column-major.",
-                       name, row);
+            core::refuse(
+                "%s.projection has zeros in all of row %u; nothing would show. Matrices are "
+                "column-major.",
+                name, row);
     }
 }
 
 }  // namespace
 
 void validatedView(const Unit& unit, FwView& view, const char* name) {
-    if (view.flags != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s.flags is 0x%x; it is zero.", name, view.flags);
+    if (view.flags != 0) core::refuse("%s.flags is 0x%x; it is zero.", name, view.flags);
     checkRange(view.view, 16, name, "view", -1e9f, 1e9f);
     checkRange(view.projection, 16, name, "projection", -1e9f, 1e9f);
     checkMatrices(view, name);
@@ -66,9 +63,8 @@ void validatedView(const Unit& unit, FwView& view, const char* name) {
     const float* sun = view.sunDirection;
     const float length = std::sqrt(sun[0] * sun[0] + sun[1] * sun[1] + sun[2] * sun[2]);
     if (std::fabs(length - 1.0f) > 1e-2f)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s.sunDirection has length %g; it is a unit vector within 0.01.", name,
-                   double(length));
+        core::refuse("%s.sunDirection has length %g; it is a unit vector within 0.01.", name,
+                     double(length));
     checkRange(view.sunColor, 3, name, "sunColor", 0.0f, 1e6f);
     checkRange(view.ambientSky, 3, name, "ambientSky", 0.0f, 1e6f);
     checkRange(view.ambientGround, 3, name, "ambientGround", 0.0f, 1e6f);

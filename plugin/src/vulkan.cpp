@@ -7,7 +7,6 @@
 #include "components/volumetric_fire.h"
 #include "gpu/vk/vk_backend.h"
 #include "objects.h"
-#include "vulkan_defs.h"
 
 #include <algorithm>
 #include <array>
@@ -22,7 +21,19 @@ using edge::checkPointer;
 using edge::onContext;
 using edge::onWorld;
 
+#define FW_EACH_VULKAN_DEF(ROW)                           \
+    ROW(FwVulkanHost, FW_DEF_VULKAN_HOST)                 \
+    ROW(FwVulkanTargetDef, FW_DEF_VULKAN_TARGET)          \
+    ROW(FwVulkanFrame, FW_DEF_VULKAN_FRAME)               \
+    ROW(FwVulkanRequirements, FW_DEF_VULKAN_REQUIREMENTS) \
+    ROW(FwVulkanComposite, FW_DEF_VULKAN_COMPOSITE)       \
+    ROW(FwVulkanVertices, FW_DEF_VULKAN_VERTICES)
+
 namespace fw::edge {
+
+FW_EACH_VULKAN_DEF(FW_STRUCT)
+FW_STRUCT(FwPipelineProgress, 0)
+
 namespace {
 
 void defaults(FwVulkanHost& def) noexcept { def.apiVersion = VK_API_VERSION_1_0; }
@@ -37,32 +48,9 @@ void defaults(FwVulkanRequirements& def) noexcept { def.minimumApiVersion = VK_A
 void defaults(FwVulkanComposite&) noexcept {}
 void defaults(FwVulkanVertices& def) noexcept { def.stride = 12; }
 
-// Calls body.template operator()<Def>() for the def of that type. False: unknown type.
-template <class Body>
-bool visitVulkanDef(uint32_t type, Body body) noexcept {
-    switch (type) {
-        case FW_DEF_VULKAN_HOST:
-            body.template operator()<FwVulkanHost>();
-            return true;
-        case FW_DEF_VULKAN_TARGET:
-            body.template operator()<FwVulkanTargetDef>();
-            return true;
-        case FW_DEF_VULKAN_FRAME:
-            body.template operator()<FwVulkanFrame>();
-            return true;
-        case FW_DEF_VULKAN_REQUIREMENTS:
-            body.template operator()<FwVulkanRequirements>();
-            return true;
-        case FW_DEF_VULKAN_COMPOSITE:
-            body.template operator()<FwVulkanComposite>();
-            return true;
-        case FW_DEF_VULKAN_VERTICES:
-            body.template operator()<FwVulkanVertices>();
-            return true;
-        default:
-            return false;
-    }
-}
+#define FW_ROW(T, number) {number, sizeof(T), &writeDefaultsOf<T, defaults>, nullptr},
+constexpr DefRow kVulkanDefs[] = {FW_EACH_VULKAN_DEF(FW_ROW)};
+#undef FW_ROW
 
 // View parameters for the backend, which does not include the components.
 void fillViewParams(const gpu::ViewInput& input, gpu::ViewParams& out) {
@@ -201,12 +189,10 @@ void checkHost(const FwVulkanHost& host) {
     checkPointer(host.device, "FwVulkanHost::device");
     const auto names = [](uint32_t count, const char* const* list, const char* field) {
         if (count == 0) return;
-        if (count > 4096)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "%sCount is %u; the limit is 4096.", field,
-                       count);
+        if (count > 4096) core::refuse("%sCount is %u; the limit is 4096.", field, count);
         checkPointer(list, field);
         for (uint32_t i = 0; i < count; ++i)
-            if (!list[i]) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s[%u] is null.", field, i);
+            if (!list[i]) core::refuse("%s[%u] is null.", field, i);
     };
     names(host.enabledExtensionCount, host.enabledExtensions, "FwVulkanHost::enabledExtensions");
     names(host.enabledInstanceExtensionCount, host.enabledInstanceExtensions,
@@ -216,59 +202,52 @@ void checkHost(const FwVulkanHost& host) {
 void checkScissor(const VkRect2D& scissor) {
     const auto check = [](int32_t offset, uint32_t extent, const char* axis, const char* size) {
         if (offset < 0 || offset > 32768)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::scissor.offset.%s is %d; the limits are [0, 32768].", axis,
-                       offset);
+            core::refuse("FwVulkanFrame::scissor.offset.%s is %d; the limits are [0, 32768].", axis,
+                         offset);
         if (extent > 32768)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::scissor.extent.%s is %u; the limits are [0, 32768].", size,
-                       extent);
+            core::refuse("FwVulkanFrame::scissor.extent.%s is %u; the limits are [0, 32768].", size,
+                         extent);
     };
     check(scissor.offset.x, scissor.extent.width, "x", "width");
     check(scissor.offset.y, scissor.extent.height, "y", "height");
     if ((scissor.extent.width == 0) != (scissor.extent.height == 0))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::scissor.extent is %u x %u; both are 0 (no scissor) or neither. "
-                   "Where nothing is to be drawn leave out the call.",
-                   scissor.extent.width, scissor.extent.height);
+        core::refuse(
+            "FwVulkanFrame::scissor.extent is %u x %u; both are 0 (no scissor) or neither. "
+            "Where nothing is to be drawn leave out the call.",
+            scissor.extent.width, scissor.extent.height);
 }
 
 FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
-    const FwVulkanFrame frame = readDef(given, FW_DEF_VULKAN_FRAME, "FwVulkanFrame");
+    const FwVulkanFrame frame = readDef(given);
     constexpr uint32_t kKnown = FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING;
     if (frame.flags & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::flags is 0x%x; the known flags are 0x%x.", frame.flags, kKnown);
+        core::refuse("FwVulkanFrame::flags is 0x%x; the known flags are 0x%x.", frame.flags,
+                     kKnown);
     checkPointer(frame.commandBuffer, "FwVulkanFrame::commandBuffer");
     if (frame.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved is %u; it is zero.",
-                   frame.reserved);
+        core::refuse("FwVulkanFrame::reserved is %u; it is zero.", frame.reserved);
     checkScissor(frame.scissor);
     if (!(frame.transparency >= 0.0f && frame.transparency <= 1.0f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::transparency is %g; the limits are [0, 1].",
-                   double(frame.transparency));
+        core::refuse("FwVulkanFrame::transparency is %g; the limits are [0, 1].",
+                     double(frame.transparency));
     if (frame.reserved1 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::reserved1 is %u; it is zero.",
-                   frame.reserved1);
-    if (frame.frameIndex == 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanFrame::frameIndex is 0; it starts at 1.");
+        core::refuse("FwVulkanFrame::reserved1 is %u; it is zero.", frame.reserved1);
+    if (frame.frameIndex == 0) core::refuse("FwVulkanFrame::frameIndex is 0; it starts at 1.");
     if (frame.flags & FW_FRAME_SLOT_PACING) {
         if (frame.framesInFlight == 0 || frame.framesInFlight > 16)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::framesInFlight is %u; the limits are [1, 16].",
-                       frame.framesInFlight);
+            core::refuse("FwVulkanFrame::framesInFlight is %u; the limits are [1, 16].",
+                         frame.framesInFlight);
         if (frame.frameSlot >= frame.framesInFlight)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::frameSlot is %u and framesInFlight is %u; the slot is "
-                       "smaller.",
-                       frame.frameSlot, frame.framesInFlight);
+            core::refuse(
+                "FwVulkanFrame::frameSlot is %u and framesInFlight is %u; the slot is "
+                "smaller.",
+                frame.frameSlot, frame.framesInFlight);
     } else if (frame.completedFrameIndex >= frame.frameIndex) {
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanFrame::completedFrameIndex is %llu and frameIndex is %llu; a frame "
-                   "cannot be complete before it is recorded.",
-                   static_cast<unsigned long long>(frame.completedFrameIndex),
-                   static_cast<unsigned long long>(frame.frameIndex));
+        core::refuse(
+            "FwVulkanFrame::completedFrameIndex is %llu and frameIndex is %llu; a frame "
+            "cannot be complete before it is recorded.",
+            static_cast<unsigned long long>(frame.completedFrameIndex),
+            static_cast<unsigned long long>(frame.frameIndex));
     }
     return frame;
 }
@@ -279,7 +258,7 @@ void recordFrameUse(FwWorld& world, const FwVulkanFrame& frame) noexcept {
 }
 
 FwView checkedView(const FwWorld& world, const FwView* given) {
-    FwView view = readDef(given, FW_DEF_VIEW, "FwView");
+    FwView view = readDef(given);
     validatedView(world.unit, view, "FwView");
     return view;
 }
@@ -290,29 +269,27 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
     static_assert(FW_MAX_VIEWS == gpu::kMaxViews);
     checkPointer(given, "views");
     if (count == 0 || count > FW_MAX_VIEWS)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "viewCount is %u; the limits are [1, %u].", count,
-                   FW_MAX_VIEWS);
+        core::refuse("viewCount is %u; the limits are [1, %u].", count, FW_MAX_VIEWS);
     const uint32_t stride = given->structSize;
     for (uint32_t i = 0; i < count; ++i) {
         char name[16];
         std::snprintf(name, sizeof name, "views[%u]", i);
         const auto* bytes = reinterpret_cast<const std::byte*>(given) + size_t(i) * stride;
-        out[i] = readDef(reinterpret_cast<const FwView*>(bytes), FW_DEF_VIEW, "FwView");
+        out[i] = readDef(reinterpret_cast<const FwView*>(bytes));
         uint32_t size = 0;
         std::memcpy(&size, bytes, sizeof size);
         if (size != stride)
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT,
+            core::refuse(
                 "views[%u].structSize is %u and views[0].structSize is %u; it is the array's "
                 "stride, so it is the same in all.",
                 i, size, stride);
         validatedView(world.unit, out[i], name);
         for (uint32_t j = 0; j < i; ++j)
             if (out[j].viewId == out[i].viewId)
-                core::fail(FW_ERROR_INVALID_ARGUMENT,
-                           "views[%u].viewId and views[%u].viewId are both %u; give each view of a "
-                           "frame its own number.",
-                           j, i, out[i].viewId);
+                core::refuse(
+                    "views[%u].viewId and views[%u].viewId are both %u; give each view of a "
+                    "frame its own number.",
+                    j, i, out[i].viewId);
     }
     return std::span(out).first(count);
 }
@@ -351,26 +328,25 @@ void checkEncoding(const FwVulkanTargetDef& def, const core::Log& log) {
                   int(def.colorFormat), encodingName(def.encoding));
         return;
     }
-    core::fail(FW_ERROR_INVALID_ARGUMENT,
-               "FwVulkanTargetDef::encoding is %s and colorFormat is %d, %s; use %s or "
-               "FW_OUTPUT_AUTO (3).",
-               encodingName(def.encoding), int(def.colorFormat),
-               asked == FW_OUTPUT_LINEAR ? "a float format"
-               : asked == FW_OUTPUT_SRGB_VIEW
-                   ? "an sRGB format, which encodes by itself"
-                   : "a UNORM format, which ends at 1 and encodes nothing",
-               encodingName(asked));
+    core::refuse(
+        "FwVulkanTargetDef::encoding is %s and colorFormat is %d, %s; use %s or "
+        "FW_OUTPUT_AUTO (3).",
+        encodingName(def.encoding), int(def.colorFormat),
+        asked == FW_OUTPUT_LINEAR      ? "a float format"
+        : asked == FW_OUTPUT_SRGB_VIEW ? "an sRGB format, which encodes by itself"
+                                       : "a UNORM format, which ends at 1 and encodes nothing",
+        encodingName(asked));
 }
 
 // Surfaces need written depth to hide each other.
 void checkSurfaces(const FwVulkanTargetDef& def, const core::Log& log) {
     if (def.flags & FW_TARGET_NO_SURFACES) return;
     if (def.depthMode == FW_DEPTH_TEST_ONLY)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthMode is FW_DEPTH_TEST_ONLY (2) and flags is 0x%x; "
-                   "surfaces that write no depth show their far sides. Use FW_DEPTH_TEST (1), or "
-                   "FW_TARGET_NO_SURFACES (4) and a target of another mode for them.",
-                   def.flags);
+        core::refuse(
+            "FwVulkanTargetDef::depthMode is FW_DEPTH_TEST_ONLY (2) and flags is 0x%x; "
+            "surfaces that write no depth show their far sides. Use FW_DEPTH_TEST (1), or "
+            "FW_TARGET_NO_SURFACES (4) and a target of another mode for them.",
+            def.flags);
     if (def.depthMode == FW_DEPTH_NONE)
         log.write(FW_LOG_WARNING,
                   "FwVulkanTargetDef::depthMode is FW_DEPTH_NONE without FW_TARGET_NO_SURFACES; "
@@ -378,71 +354,66 @@ void checkSurfaces(const FwVulkanTargetDef& def, const core::Log& log) {
 }
 
 void checkTarget(const FwVulkanTargetDef& def, const core::Log& log) {
-    const auto limit = [](uint32_t value, const char* field, uint32_t low, uint32_t high) {
-        if (value < low || value > high)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanTargetDef::%s is %u; the limits are [%u, %u].", field, value, low,
-                       high);
-    };
     constexpr uint32_t kNothing = FW_TARGET_NO_FLAMES | FW_TARGET_NO_SURFACES;
-    constexpr uint32_t kKnown = FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE |
-                                FW_TARGET_HALF_EFFECTS | FW_TARGET_AS_NEEDED |
-                                FW_TARGET_TRANSPARENCY;
-    if (def.flags & ~kKnown)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags is 0x%x; the known flags are 0x%x.", def.flags,
-                   kKnown);
-    if ((def.flags & FW_TARGET_HALF_EFFECTS) &&
-        (def.depthMode != FW_DEPTH_SAMPLED || !(def.flags & FW_TARGET_COMPOSITE)))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags is 0x%x and depthMode is %u; FW_TARGET_HALF_EFFECTS "
-                   "needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED (3).",
-                   def.flags, def.depthMode);
-    if ((def.flags & FW_TARGET_HAZE) && def.depthMode != FW_DEPTH_SAMPLED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags has FW_TARGET_HAZE and depthMode is %u; haze needs "
-                   "FW_DEPTH_SAMPLED (3), or foreground would smear into it.",
-                   def.depthMode);
-    if ((def.flags & kNothing) == kNothing)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags is 0x%x; FW_TARGET_NO_FLAMES and "
-                   "FW_TARGET_NO_SURFACES together leave nothing to draw.",
-                   def.flags);
+    components::checkFlags(def.flags, "FwVulkanTargetDef::flags",
+                           FW_TARGET_COMPOSITE | kNothing | FW_TARGET_HAZE |
+                               FW_TARGET_HALF_EFFECTS | FW_TARGET_AS_NEEDED |
+                               FW_TARGET_TRANSPARENCY);
     const bool composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
+    const bool sampled = def.depthMode == FW_DEPTH_SAMPLED;
+    if ((def.flags & FW_TARGET_HALF_EFFECTS) && !(sampled && composite))
+        core::refuse(
+            "FwVulkanTargetDef::flags is 0x%x and depthMode is %u; FW_TARGET_HALF_EFFECTS "
+            "needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED (3).",
+            def.flags, def.depthMode);
+    if ((def.flags & FW_TARGET_HAZE) && !sampled)
+        core::refuse(
+            "FwVulkanTargetDef::flags has FW_TARGET_HAZE and depthMode is %u; haze needs "
+            "FW_DEPTH_SAMPLED (3), or foreground would smear into it.",
+            def.depthMode);
+    if ((def.flags & kNothing) == kNothing)
+        core::refuse(
+            "FwVulkanTargetDef::flags is 0x%x; FW_TARGET_NO_FLAMES and "
+            "FW_TARGET_NO_SURFACES together leave nothing to draw.",
+            def.flags);
     if (!composite) checkPointer(def.renderPass, "FwVulkanTargetDef::renderPass");
-    limit(def.samples, "samples", 1, 16);
-    if (def.samples & (def.samples - 1))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::samples is %u; it is 1, 2, 4, 8 or 16.", def.samples);
-    limit(def.colorAttachmentCount, "colorAttachmentCount", 1, 8);
-    limit(def.viewMask, "viewMask", 0, 0);
-    limit(def.depthMode, "depthMode", 0, FW_DEPTH_SAMPLED);
-    limit(def.reversedDepth, "reversedDepth", 0, 1);
-    limit(def.encoding, "encoding", 0, FW_OUTPUT_AUTO);
-    if (composite) limit(def.subpass, "subpass", 0, 0);
-    if (def.depthMode == FW_DEPTH_SAMPLED && (def.flags & FW_TARGET_NO_FLAMES))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::flags has FW_TARGET_NO_FLAMES and depthMode is "
-                   "FW_DEPTH_SAMPLED, which draws flames alone.");
-    limit(def.depthSamples, "depthSamples", 0, 16);
-    if (def.depthSamples & (def.depthSamples - 1))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthSamples is %u; it is 0, 1, 2, 4, 8 or 16.",
-                   def.depthSamples);
-    if (def.depthSamples && def.depthMode != FW_DEPTH_SAMPLED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthSamples is %u and depthMode is %u; it is for "
-                   "FW_DEPTH_SAMPLED alone.",
-                   def.depthSamples, def.depthMode);
+    const struct {
+        uint32_t value;
+        const char* name;
+        uint32_t low, most;
+        bool isPower;  // of two, or 0
+    } limits[] = {
+        {def.samples, "FwVulkanTargetDef::samples", 1, 16, true},
+        {def.depthSamples, "FwVulkanTargetDef::depthSamples", 0, 16, true},
+        {def.colorAttachmentCount, "FwVulkanTargetDef::colorAttachmentCount", 1, 8, false},
+        {def.viewMask, "FwVulkanTargetDef::viewMask", 0, 0, false},
+        {def.depthMode, "FwVulkanTargetDef::depthMode", 0, FW_DEPTH_SAMPLED, false},
+        {def.reversedDepth, "FwVulkanTargetDef::reversedDepth", 0, 1, false},
+        {def.encoding, "FwVulkanTargetDef::encoding", 0, FW_OUTPUT_AUTO, false},
+        {composite ? def.subpass : 0, "FwVulkanTargetDef::subpass", 0, 0, false},
+    };
+    for (const auto& one : limits) {
+        components::checkWhole(one.value, one.name, one.low, one.most);
+        if (one.isPower && (one.value & (one.value - 1)))
+            core::refuse("%s is %u; it is a power of two in [%u, %u].", one.name, one.value,
+                         one.low, one.most);
+    }
+    if (sampled && (def.flags & FW_TARGET_NO_FLAMES))
+        core::refuse(
+            "FwVulkanTargetDef::flags has FW_TARGET_NO_FLAMES and depthMode is "
+            "FW_DEPTH_SAMPLED, which draws flames alone.");
+    if (def.depthSamples && !sampled)
+        core::refuse(
+            "FwVulkanTargetDef::depthSamples is %u and depthMode is %u; it is for "
+            "FW_DEPTH_SAMPLED alone.",
+            def.depthSamples, def.depthMode);
     if (def.colorFormat == VK_FORMAT_UNDEFINED)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::colorFormat is VK_FORMAT_UNDEFINED.");
-    const bool depth = def.depthMode != FW_DEPTH_NONE;
-    if (depth != (def.depthFormat != VK_FORMAT_UNDEFINED))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanTargetDef::depthMode is %u and depthFormat is %d; a format is given if "
-                   "and only if there is depth.",
-                   def.depthMode, int(def.depthFormat));
+        core::refuse("FwVulkanTargetDef::colorFormat is VK_FORMAT_UNDEFINED.");
+    if ((def.depthMode != FW_DEPTH_NONE) != (def.depthFormat != VK_FORMAT_UNDEFINED))
+        core::refuse(
+            "FwVulkanTargetDef::depthMode is %u and depthFormat is %d; a format is given if "
+            "and only if there is depth.",
+            def.depthMode, int(def.depthFormat));
     checkEncoding(def, log);
     checkSurfaces(def, log);
 }
@@ -451,24 +422,21 @@ void checkVertices(const FwVulkanVertices& def) {
     checkPointer(def.buffer, "FwVulkanVertices::buffer");
     const auto limit = [](uint32_t value, const char* field) {
         if (value < 12 || value > 2048 || value % 4 != 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanVertices::%s is %u; it is a multiple of 4 in [12, 2048].", field,
-                       value);
+            core::refuse("FwVulkanVertices::%s is %u; it is a multiple of 4 in [12, 2048].", field,
+                         value);
     };
     limit(def.stride, "stride");
     if (def.normalOffset) limit(def.normalOffset, "normalOffset");
     const auto stages = [](VkPipelineStageFlags given, const char* field, const char* which) {
         if (given == 0)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanVertices::%s is 0; name the stages that %s the buffer.", field,
-                       which);
+            core::refuse("FwVulkanVertices::%s is 0; name the stages that %s the buffer.", field,
+                         which);
     };
     stages(def.stageBefore, "stageBefore", "wrote");
     stages(def.stageAfter, "stageAfter", "use");
     if (def.offset % 4 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwVulkanVertices::offset is %llu; it is a multiple of 4.",
-                   static_cast<unsigned long long>(def.offset));
+        core::refuse("FwVulkanVertices::offset is %llu; it is a multiple of 4.",
+                     static_cast<unsigned long long>(def.offset));
 }
 
 // False: the viewport is empty.
@@ -481,29 +449,20 @@ bool checkViewport(const VkViewport* given) {
     static constexpr float kHigh[6] = {32767, 32767, 32768, 32768, 1, 1};
     for (int i = 0; i < 6; ++i)
         if (!(values[i] >= kLow[i] && values[i] <= kHigh[i]))
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "viewport->%s is %g; the limits are [%g, %g].",
-                       kNames[i], double(values[i]), double(kLow[i]), double(kHigh[i]));
+            core::refuse("viewport->%s is %g; the limits are [%g, %g].", kNames[i],
+                         double(values[i]), double(kLow[i]), double(kHigh[i]));
     return given->width > 0 && given->height > 0;
 }
 
 }  // namespace
 
-size_t vulkanDefSize(uint32_t type) noexcept {
-    size_t size = 0;
-    (void)visitVulkanDef(type, [&]<class Def>() { size = sizeof(Def); });
-    return size;
-}
-
-bool writeVulkanDefaults(uint32_t type, void* def) noexcept {
-    return visitVulkanDef(
-        type, [&]<class Def>() { writeDef<Def>(def, [](Def& one) { defaults(one); }); });
-}
+std::span<const DefRow> vulkanDefRows() noexcept { return kVulkanDefs; }
 
 Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
                            core::Memory& memory, const core::Log& log) {
     FwVulkanHost host;
     if (given) {
-        host = readDef(given, FW_DEF_VULKAN_HOST, "FwVulkanHost");
+        host = readDef(given);
         checkHost(host);
     }
     return std::pmr::polymorphic_allocator<>(&memory).new_object<VulkanDevice>(
@@ -515,33 +474,29 @@ Device* createVulkanDevice(const FwVulkanHost* given, uint64_t gpuMemoryBudget,
 extern "C" {
 
 FwResult FW_CALL fwQueryVulkanRequirements(FwVulkanRequirements* requirements) {
-    const auto nobody = [](FwResult, const char*) {};  // no context to report to
-    return edge::guard("fwQueryVulkanRequirements", nobody, [&] {
-        const uint32_t size = edge::checkInfo(requirements, "FwVulkanRequirements");
-        FwVulkanRequirements filled;
-        (void)edge::writeVulkanDefaults(FW_DEF_VULKAN_REQUIREMENTS, &filled);
+    return edge::guardAlone(__func__, [&] {
+        const uint32_t size = edge::checkInfo(requirements);
+        FwVulkanRequirements filled{};
+        edge::defaults(filled);
         gpu::vk::Context::requirements(filled);
         edge::writeInfo(requirements, size, filled);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwContext_RegisterTarget(FwContext* context, const FwVulkanTargetDef* given,
                                           FwTargetId* id) {
-    return onContext("fwContext_RegisterTarget", context, [&](FwContext& c) {
+    return onContext(__func__, context, [&](FwContext& c) {
         checkPointer(id, "id");
         *id = {};
         auto& device = edge::vulkanOf(c);
-        const FwVulkanTargetDef def =
-            edge::readDef(given, FW_DEF_VULKAN_TARGET, "FwVulkanTargetDef");
+        const FwVulkanTargetDef def = edge::readDef(given);
         edge::checkTarget(def, c.log);
         *id = device.context().registerTarget(def);
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwContext_UnregisterTarget(FwContext* context, FwTargetId id) {
-    return onContext("fwContext_UnregisterTarget", context, [&](FwContext& c) {
+    return onContext(__func__, context, [&](FwContext& c) {
         edge::vulkanOf(c).context().unregisterTarget(id);
         const std::lock_guard lock(c.mutex);
         std::erase_if(c.deferredTargets, [&](const auto& one) {
@@ -552,8 +507,8 @@ FwResult FW_CALL fwContext_UnregisterTarget(FwContext* context, FwTargetId id) {
 }
 
 FwResult FW_CALL fwTarget_IsReady(FwContext* context, FwTargetId id, FwPipelineProgress* progress) {
-    return onContext("fwTarget_IsReady", context, [&](FwContext& c) {
-        const uint32_t size = progress ? edge::checkInfo(progress, "FwPipelineProgress") : 0;
+    return onContext(__func__, context, [&](FwContext& c) {
+        const uint32_t size = progress ? edge::checkInfo(progress) : 0;
         FwPipelineProgress filled{};
         const bool ready = edge::vulkanOf(c).context().targetReady(id, filled);
         if (progress) edge::writeInfo(progress, size, filled);
@@ -562,15 +517,14 @@ FwResult FW_CALL fwTarget_IsReady(FwContext* context, FwTargetId id, FwPipelineP
 }
 
 void FW_CALL fwContext_NotifyDeviceLost(FwContext* context) {
-    (void)onContext("fwContext_NotifyDeviceLost", context, [&](FwContext& c) {
+    (void)onContext(__func__, context, [&](FwContext& c) {
         if (c.backend == FW_BACKEND_VULKAN) edge::vulkanOf(c).context().notifyDeviceLost();
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                        const FwView* givenView) {
-    return onWorld("fwWorld_RecordOutside", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
@@ -581,7 +535,7 @@ FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* give
 
 FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame* givenFrame,
                                             const FwView* givenViews, uint32_t viewCount) {
-    return onWorld("fwWorld_RecordOutsideViews", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
@@ -594,7 +548,7 @@ FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame*
 FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                       FwTargetId target, const FwView* givenView,
                                       const VkViewport* viewport) {
-    return onWorld("fwWorld_RecordInside", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
@@ -607,40 +561,35 @@ FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* given
 
 FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
                                          const FwVulkanVertices* given) {
-    return onWorld("fwWorld_SetVertexBuffer", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
-        const FwVulkanVertices def =
-            edge::readDef(given, FW_DEF_VULKAN_VERTICES, "FwVulkanVertices");
+        const FwVulkanVertices def = edge::readDef(given);
         edge::checkVertices(def);
         backend.setVertexBuffer(w.scene().skinnedSlot(id, def.vertexCount), def,
                                 float(edge::objectUnit(*world, id).inverse().perMetre()));
-        return FW_OK;
     });
 }
 
 FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* givenFrame,
                                          FwTargetId target, const FwView* givenView,
                                          const FwVulkanComposite* givenImages) {
-    return onWorld("fwWorld_RecordComposite", world, [&](world::World& w) {
+    return onWorld(__func__, world, [&](world::World& w) {
         const edge::Stopwatch time(w);
         gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
         const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
         const FwView view = edge::checkedView(*world, givenView);
-        const FwVulkanComposite images =
-            edge::readDef(givenImages, FW_DEF_VULKAN_COMPOSITE, "FwVulkanComposite");
+        const FwVulkanComposite images = edge::readDef(givenImages);
         if (images.flags & ~uint32_t(FW_COMPOSITE_KEEP))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanComposite::flags is 0x%x; only bit 0 is known.", images.flags);
+            core::refuse("FwVulkanComposite::flags is 0x%x; only bit 0 is known.", images.flags);
         if (frame.flags & FW_FRAME_SECONDARY)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "
-                       "pass, which needs a primary command buffer.");
+            core::refuse(
+                "FwVulkanFrame::flags has FW_FRAME_SECONDARY; a composite begins a render "
+                "pass, which needs a primary command buffer.");
         edge::recordFrameUse(*world, frame);
         if (images.width == 0 || images.height == 0) return FW_OK;
         if (images.width > 32768 || images.height > 32768)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwVulkanComposite is %u x %u pixels; the limit is 32768.", images.width,
-                       images.height);
+            core::refuse("FwVulkanComposite is %u x %u pixels; the limit is 32768.", images.width,
+                         images.height);
         checkPointer(images.color.image, "FwVulkanComposite::color.image");
         checkPointer(images.color.view, "FwVulkanComposite::color.view");
         return backend.recordComposite(frame, target, view, images) ? FW_OK : FW_NOT_READY;

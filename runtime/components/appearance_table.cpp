@@ -3,6 +3,9 @@
 
 #include "flamewright/flamewright.h"
 
+#include <array>
+#include <span>
+
 namespace fw::components {
 namespace {
 
@@ -11,390 +14,188 @@ using gpu::vec4;
 
 static_assert(kLookCount == FW_MATERIAL_PRESET_COUNT);
 
+using M = MaterialAppearance;
+
+struct Number {
+    float M::*field;
+    float value;
+};
+struct Colour {
+    vec4 M::*field;
+    float value[4];
+};
+
 // Never burns; still wet, sooty and lit like everything else.
-MaterialAppearance stone() {
-    MaterialAppearance m{};
-    m.charTime = m.crackTime = m.facePeak = m.faceDecay = m.crackLife = m.ashEnd = 1.0f;
-    m.charColor = vec4(0.03f, 0.03f, 0.03f, 0.6f);
-    m.ashColor = vec4(0.5f, 0.5f, 0.5f, 0.0f);
-    m.cellX = m.cellY = 0.02f;
-    m.rimWidth = m.thickness = 0.001f;
-    m.holeTiles = 7.0f;
-    m.holeFine = 1.0f;
-    m.drip = 1.0f;
-    m.wetDark = 0.5f;
-    m.wetGloss = 0.3f;
-    m.base = gpu::kBaseStone;
-    m.baseScale = 1.0f;
-    return m;
-}
-
-MaterialAppearance pine() {
-    MaterialAppearance m = stone();
-    m.spreadRate = 0.0006f;
-    m.warpLarge = 0.012f;
-    m.warpSmall = 0.003f;
-    m.jitter = 8.0f;
-    m.scorchWidth = 0.030f;
-    m.scorchGain = 1.5f;
-    m.charTime = 30.0f;
-    m.charColor = vec4(0.030f, 0.029f, 0.029f, 0.50f);
-    m.sheen = 0.8f;
-    m.cellX = 0.019f;
-    m.cellY = 0.023f;
-    m.crackWidth = 0.0021f;
-    m.crackDepth = 0.0045f;
-    m.crackTime = 42.0f;
-    m.faceKelvin = 1010.0f;
-    m.facePeak = 12.0f;
-    m.faceDecay = 26.0f;
-    m.crackKelvin = 1125.0f;
-    m.crackLife = 180.0f;
-    m.glowVariation = 170.0f;
-    m.ashMax = 0.6f;
-    m.ashStart = 260.0f;
-    m.ashEnd = 1100.0f;
-    m.ashColor = vec4(0.25f, 0.245f, 0.24f, 0.0f);
-    m.holeTime = 620.0f;
-    m.holeVariation = 260.0f;
-    m.rimKelvin = 1190.0f;
-    m.rimWidth = 0.018f;
-    m.thickness = 0.018f;
-    m.wetDark = 0.6f;
-    m.wetGloss = 0.35f;
-    m.holeTiles = 2.6f;
-    m.holeFine = 0.08f;
-    m.base = gpu::kBaseWood;
-    m.flame = 1.35f;
-    m.smoke = 1.0f;
-    return m;
-}
-
-MaterialAppearance paintedWood() {
-    MaterialAppearance m = pine();
-    m.warpSmall = 0.005f;
-    m.jitter = 4.0f;
-    m.scorchWidth = 0.06f;
-    m.blister = 0.0032f;
-    m.ashColor.w = 0.0006f;
-    m.wetDark = 0.15f;
-    m.wetGloss = 0.9f;
-    m.base = gpu::kBasePaint;
-    m.smoke = 1.6f;
-    return m;
-}
-
-MaterialAppearance plywood() {
-    MaterialAppearance m = pine();
-    m.holeTime = 420.0f;
-    m.holeVariation = 220.0f;
-    m.thickness = 0.012f;
-    return m;
-}
-
-MaterialAppearance paper() {
-    MaterialAppearance m = stone();
-    m.spreadRate = 0.0055f;
-    m.warpLarge = 0.010f;
-    m.warpSmall = 0.0022f;
-    m.jitter = 0.08f;
-    m.scorchWidth = 0.011f;
-    m.scorchGain = 1.5f;
-    m.charTime = 0.7f;
-    m.charColor = vec4(0.028f, 0.027f, 0.028f, 0.7f);
-    m.sheen = 0.5f;
-    m.crumple = 0.0011f;
-    m.faceKelvin = 960.0f;
-    m.facePeak = 0.35f;
-    m.faceDecay = 0.5f;
-    m.glowVariation = 170.0f;
-    m.wormKelvin = 1080.0f;
-    m.ashMax = 0.35f;
-    m.ashStart = 1.5f;
-    m.ashEnd = 5.0f;
-    m.ashColor = vec4(0.36f, 0.36f, 0.37f, 0.0f);
-    m.holeTime = 3.0f;
-    m.holeVariation = 2.2f;
-    m.holeFine = 0.3f;
-    m.rimKelvin = 1280.0f;
-    m.rimWidth = 0.0024f;
-    m.thickness = 0.0008f;
-    m.curl = 0.8f;
-    m.wetDark = 0.55f;
-    m.wetGloss = 0.15f;
-    m.base = gpu::kBasePaper;
-    m.flame = 1.1f;
-    m.smoke = 0.4f;
-    return m;
-}
-
-MaterialAppearance newspaper() {
-    MaterialAppearance m = paper();
-    m.base = gpu::kBasePrint;
-    return m;
-}
-
-MaterialAppearance cotton() {
-    MaterialAppearance m = paper();
-    m.spreadRate = 0.008f;
-    m.warpLarge = 0.014f;
-    m.warpSmall = 0.003f;
-    m.jitter = 0.25f;
-    m.scorchWidth = 0.012f;
-    m.charTime = 1.2f;
-    m.charColor = vec4(0.026f, 0.026f, 0.026f, 0.85f);
-    m.sheen = 0.15f;
-    m.crumple = 0.0014f;
-    m.faceKelvin = 1000.0f;
-    m.facePeak = 0.7f;
-    m.faceDecay = 1.2f;
-    m.glowVariation = 160.0f;
-    m.ashMax = 0.6f;
-    m.ashStart = 2.5f;
-    m.ashEnd = 7.0f;
-    m.ashColor = vec4(0.40f, 0.39f, 0.38f, 0.0f);
-    m.holeTime = 5.0f;
-    m.holeVariation = 3.4f;
-    m.holeFine = 0.4f;
-    m.rimKelvin = 1230.0f;
-    m.rimWidth = 0.0036f;
-    m.thickness = 0.0014f;
-    m.curl = 0.35f;
-    m.wetDark = 0.75f;
-    m.wetGloss = 0.05f;
-    m.base = gpu::kBaseWeave;
-    m.smoke = 0.6f;
-    return m;
-}
-
-MaterialAppearance plastic() {
-    MaterialAppearance m = stone();
-    m.spreadRate = 0.003f;
-    m.warpLarge = 0.012f;
-    m.warpSmall = 0.002f;
-    m.scorchWidth = 0.035f;
-    m.scorchGain = 0.9f;
-    m.charTime = 9.0f;
-    m.blister = 0.0025f;
-    m.charColor = vec4(0.018f, 0.018f, 0.018f, 0.30f);
-    m.sheen = 0.2f;
-    m.faceKelvin = 600.0f;
-    m.facePeak = 2.0f;
-    m.faceDecay = 5.0f;
-    m.glowVariation = 60.0f;
-    m.holeTime = 34.0f;
-    m.holeVariation = 18.0f;
-    m.rimWidth = 0.004f;
-    m.thickness = 0.004f;
-    m.lip = 0.003f;
-    m.wetDark = 0.0f;
-    m.wetGloss = 1.0f;
-    m.melt = 1.0f;
-    m.holeTiles = 5.0f;
-    m.holeFine = 0.0f;
-    m.drip = 2.2f;
-    m.blur = 0.006f;
-    m.base = gpu::kBasePlastic;
-    m.flame = 1.1f;
-    m.smoke = 3.0f;
-    return m;
-}
-
+constexpr Number kStone[] = {
+    {&M::charTime, 1.0f},   {&M::crackTime, 1.0f},   {&M::facePeak, 1.0f},  {&M::faceDecay, 1.0f},
+    {&M::crackLife, 1.0f},  {&M::ashEnd, 1.0f},      {&M::cellX, 0.02f},    {&M::cellY, 0.02f},
+    {&M::rimWidth, 0.001f}, {&M::thickness, 0.001f}, {&M::holeTiles, 7.0f}, {&M::holeFine, 1.0f},
+    {&M::drip, 1.0f},       {&M::wetDark, 0.5f},     {&M::wetGloss, 0.3f},  {&M::baseScale, 1.0f}};
+constexpr Colour kStoneColours[] = {{&M::charColor, {0.03f, 0.03f, 0.03f, 0.6f}},
+                                    {&M::ashColor, {0.5f, 0.5f, 0.5f, 0.0f}}};
+constexpr Number kPine[] = {
+    {&M::spreadRate, 0.0006f},   {&M::warpLarge, 0.012f},    {&M::warpSmall, 0.003f},
+    {&M::jitter, 8.0f},          {&M::scorchWidth, 0.030f},  {&M::scorchGain, 1.5f},
+    {&M::charTime, 30.0f},       {&M::sheen, 0.8f},          {&M::cellX, 0.019f},
+    {&M::cellY, 0.023f},         {&M::crackWidth, 0.0021f},  {&M::crackDepth, 0.0045f},
+    {&M::crackTime, 42.0f},      {&M::faceKelvin, 1010.0f},  {&M::facePeak, 12.0f},
+    {&M::faceDecay, 26.0f},      {&M::crackKelvin, 1125.0f}, {&M::crackLife, 180.0f},
+    {&M::glowVariation, 170.0f}, {&M::ashMax, 0.6f},         {&M::ashStart, 260.0f},
+    {&M::ashEnd, 1100.0f},       {&M::holeTime, 620.0f},     {&M::holeVariation, 260.0f},
+    {&M::rimKelvin, 1190.0f},    {&M::rimWidth, 0.018f},     {&M::thickness, 0.018f},
+    {&M::wetDark, 0.6f},         {&M::wetGloss, 0.35f},      {&M::holeTiles, 2.6f},
+    {&M::holeFine, 0.08f},       {&M::flame, 1.35f},         {&M::smoke, 1.0f}};
+constexpr Colour kPineColours[] = {{&M::charColor, {0.030f, 0.029f, 0.029f, 0.50f}},
+                                   {&M::ashColor, {0.25f, 0.245f, 0.24f, 0.0f}}};
+constexpr Number kPaintedWood[] = {
+    {&M::warpSmall, 0.005f}, {&M::jitter, 4.0f},   {&M::scorchWidth, 0.06f}, {&M::blister, 0.0032f},
+    {&M::wetDark, 0.15f},    {&M::wetGloss, 0.9f}, {&M::smoke, 1.6f}};
+constexpr Colour kPaintedWoodColours[] = {{&M::ashColor, {0.25f, 0.245f, 0.24f, 0.0006f}}};
+constexpr Number kPlywood[] = {
+    {&M::holeTime, 420.0f}, {&M::holeVariation, 220.0f}, {&M::thickness, 0.012f}};
+constexpr Number kPaper[] = {{&M::spreadRate, 0.0055f},   {&M::warpLarge, 0.010f},
+                             {&M::warpSmall, 0.0022f},    {&M::jitter, 0.08f},
+                             {&M::scorchWidth, 0.011f},   {&M::scorchGain, 1.5f},
+                             {&M::charTime, 0.7f},        {&M::sheen, 0.5f},
+                             {&M::crumple, 0.0011f},      {&M::faceKelvin, 960.0f},
+                             {&M::facePeak, 0.35f},       {&M::faceDecay, 0.5f},
+                             {&M::glowVariation, 170.0f}, {&M::wormKelvin, 1080.0f},
+                             {&M::ashMax, 0.35f},         {&M::ashStart, 1.5f},
+                             {&M::ashEnd, 5.0f},          {&M::holeTime, 3.0f},
+                             {&M::holeVariation, 2.2f},   {&M::holeFine, 0.3f},
+                             {&M::rimKelvin, 1280.0f},    {&M::rimWidth, 0.0024f},
+                             {&M::thickness, 0.0008f},    {&M::curl, 0.8f},
+                             {&M::wetDark, 0.55f},        {&M::wetGloss, 0.15f},
+                             {&M::flame, 1.1f},           {&M::smoke, 0.4f}};
+constexpr Colour kPaperColours[] = {{&M::charColor, {0.028f, 0.027f, 0.028f, 0.7f}},
+                                    {&M::ashColor, {0.36f, 0.36f, 0.37f, 0.0f}}};
+constexpr Number kCotton[] = {
+    {&M::spreadRate, 0.008f}, {&M::warpLarge, 0.014f},   {&M::warpSmall, 0.003f},
+    {&M::jitter, 0.25f},      {&M::scorchWidth, 0.012f}, {&M::charTime, 1.2f},
+    {&M::sheen, 0.15f},       {&M::crumple, 0.0014f},    {&M::faceKelvin, 1000.0f},
+    {&M::facePeak, 0.7f},     {&M::faceDecay, 1.2f},     {&M::glowVariation, 160.0f},
+    {&M::ashMax, 0.6f},       {&M::ashStart, 2.5f},      {&M::ashEnd, 7.0f},
+    {&M::holeTime, 5.0f},     {&M::holeVariation, 3.4f}, {&M::holeFine, 0.4f},
+    {&M::rimKelvin, 1230.0f}, {&M::rimWidth, 0.0036f},   {&M::thickness, 0.0014f},
+    {&M::curl, 0.35f},        {&M::wetDark, 0.75f},      {&M::wetGloss, 0.05f},
+    {&M::smoke, 0.6f}};
+constexpr Colour kCottonColours[] = {{&M::charColor, {0.026f, 0.026f, 0.026f, 0.85f}},
+                                     {&M::ashColor, {0.40f, 0.39f, 0.38f, 0.0f}}};
+constexpr Number kPlastic[] = {
+    {&M::spreadRate, 0.003f},  {&M::warpLarge, 0.012f},    {&M::warpSmall, 0.002f},
+    {&M::scorchWidth, 0.035f}, {&M::scorchGain, 0.9f},     {&M::charTime, 9.0f},
+    {&M::blister, 0.0025f},    {&M::sheen, 0.2f},          {&M::faceKelvin, 600.0f},
+    {&M::facePeak, 2.0f},      {&M::faceDecay, 5.0f},      {&M::glowVariation, 60.0f},
+    {&M::holeTime, 34.0f},     {&M::holeVariation, 18.0f}, {&M::rimWidth, 0.004f},
+    {&M::thickness, 0.004f},   {&M::lip, 0.003f},          {&M::wetDark, 0.0f},
+    {&M::wetGloss, 1.0f},      {&M::melt, 1.0f},           {&M::holeTiles, 5.0f},
+    {&M::holeFine, 0.0f},      {&M::drip, 2.2f},           {&M::blur, 0.006f},
+    {&M::flame, 1.1f},         {&M::smoke, 3.0f}};
+constexpr Colour kPlasticColours[] = {{&M::charColor, {0.018f, 0.018f, 0.018f, 0.30f}}};
 // Cloth that shrinks and melts: the pattern of cotton, the edges of plastic.
-MaterialAppearance polyester() {
-    MaterialAppearance m = plastic();
-    m.spreadRate = 0.005f;
-    m.charTime = 3.0f;
-    m.blister = 0.0008f;
-    m.scorchWidth = 0.02f;
-    m.holeTime = 3.5f;
-    m.holeVariation = 2.4f;
-    m.thickness = 0.0012f;
-    m.lip = 0.0012f;
-    m.holeTiles = 8.0f;
-    m.drip = 1.6f;
-    m.blur = 0.003f;
-    m.crumple = 0.001f;
-    m.wetDark = 0.5f;
-    m.wetGloss = 0.2f;
-    m.base = gpu::kBaseWeave;
-    return m;
+constexpr Number kPolyester[] = {
+    {&M::spreadRate, 0.005f}, {&M::charTime, 3.0f}, {&M::blister, 0.0008f},
+    {&M::scorchWidth, 0.02f}, {&M::holeTime, 3.5f}, {&M::holeVariation, 2.4f},
+    {&M::thickness, 0.0012f}, {&M::lip, 0.0012f},   {&M::holeTiles, 8.0f},
+    {&M::drip, 1.6f},         {&M::blur, 0.003f},   {&M::crumple, 0.001f},
+    {&M::wetDark, 0.5f},      {&M::wetGloss, 0.2f}};
+constexpr Number kDryLeaf[] = {
+    {&M::spreadRate, 0.004f}, {&M::warpLarge, 0.008f},   {&M::warpSmall, 0.0025f},
+    {&M::jitter, 0.9f},       {&M::scorchWidth, 0.014f}, {&M::scorchGain, 1.4f},
+    {&M::charTime, 1.4f},     {&M::sheen, 0.4f},         {&M::crumple, 0.0016f},
+    {&M::facePeak, 0.7f},     {&M::faceDecay, 0.8f},     {&M::wormKelvin, 1050.0f},
+    {&M::ashMax, 0.6f},       {&M::ashStart, 2.0f},      {&M::ashEnd, 6.0f},
+    {&M::holeTime, 4.2f},     {&M::holeVariation, 2.6f}, {&M::holeFine, 0.5f},
+    {&M::rimKelvin, 1180.0f}, {&M::rimWidth, 0.0026f},   {&M::thickness, 0.0009f},
+    {&M::curl, 0.9f},         {&M::wetDark, 0.25f},      {&M::wetGloss, 0.8f},
+    {&M::smoke, 0.8f}};
+constexpr Colour kDryLeafColours[] = {{&M::charColor, {0.024f, 0.023f, 0.021f, 0.6f}},
+                                      {&M::ashColor, {0.42f, 0.42f, 0.40f, 0.0f}}};
+constexpr Number kGreenLeaf[] = {
+    {&M::spreadRate, 0.0022f}, {&M::scorchWidth, 0.012f}, {&M::charTime, 2.6f},
+    {&M::facePeak, 1.2f},      {&M::faceDecay, 1.2f},     {&M::holeTime, 8.0f},
+    {&M::holeVariation, 4.5f}, {&M::flame, 0.8f},         {&M::smoke, 2.0f}};
+constexpr Colour kGreenLeafColours[] = {{&M::wiltColor, {0.17f, 0.145f, 0.05f, 0.025f}}};
+constexpr Number kThatch[] = {
+    {&M::spreadRate, 0.006f}, {&M::warpLarge, 0.030f},    {&M::warpSmall, 0.010f},
+    {&M::jitter, 4.4f},       {&M::scorchWidth, 0.022f},  {&M::scorchGain, 1.4f},
+    {&M::charTime, 2.6f},     {&M::sheen, 0.3f},          {&M::faceKelvin, 1120.0f},
+    {&M::facePeak, 1.4f},     {&M::faceDecay, 4.4f},      {&M::glowVariation, 210.0f},
+    {&M::ashMax, 0.45f},      {&M::ashStart, 16.0f},      {&M::ashEnd, 46.0f},
+    {&M::holeTime, 46.0f},    {&M::holeVariation, 30.0f}, {&M::rimKelvin, 1130.0f},
+    {&M::rimWidth, 0.006f},   {&M::thickness, 0.02f},     {&M::wetDark, 0.6f},
+    {&M::wetGloss, 0.3f},     {&M::holeTiles, 9.0f},      {&M::holeFine, 0.5f},
+    {&M::drip, 5.0f},         {&M::flame, 1.2f},          {&M::smoke, 0.9f}};
+constexpr Colour kThatchColours[] = {{&M::charColor, {0.028f, 0.026f, 0.024f, 0.7f}},
+                                     {&M::ashColor, {0.20f, 0.19f, 0.178f, 0.0f}}};
+constexpr Number kDryGrass[] = {
+    {&M::spreadRate, 0.012f},  {&M::jitter, 2.2f},      {&M::charTime, 1.3f}, {&M::facePeak, 0.7f},
+    {&M::faceDecay, 2.2f},     {&M::ashStart, 3.0f},    {&M::ashEnd, 9.0f},   {&M::holeTime, 8.0f},
+    {&M::holeVariation, 6.0f}, {&M::thickness, 0.004f}, {&M::ashMax, 0.5f}};
+constexpr Number kLeather[] = {{&M::spreadRate, 0.0015f},  {&M::warpLarge, 0.010f},
+                               {&M::warpSmall, 0.003f},    {&M::scorchWidth, 0.020f},
+                               {&M::scorchGain, 1.2f},     {&M::charTime, 8.0f},
+                               {&M::sheen, 0.5f},          {&M::cellX, 0.022f},
+                               {&M::cellY, 0.022f},        {&M::crackWidth, 0.0008f},
+                               {&M::crackDepth, 0.0014f},  {&M::crackTime, 25.0f},
+                               {&M::crumple, 0.002f},      {&M::isotropic, 1.0f},
+                               {&M::faceKelvin, 985.0f},   {&M::facePeak, 5.0f},
+                               {&M::faceDecay, 9.0f},      {&M::crackKelvin, 1065.0f},
+                               {&M::crackLife, 45.0f},     {&M::glowVariation, 150.0f},
+                               {&M::ashMax, 0.28f},        {&M::ashStart, 45.0f},
+                               {&M::ashEnd, 150.0f},       {&M::holeTime, 95.0f},
+                               {&M::holeVariation, 60.0f}, {&M::rimKelvin, 1100.0f},
+                               {&M::rimWidth, 0.0045f},    {&M::thickness, 0.003f},
+                               {&M::curl, 0.7f},           {&M::wetDark, 0.45f},
+                               {&M::wetGloss, 0.5f},       {&M::holeTiles, 4.0f},
+                               {&M::holeFine, 0.16f},      {&M::flame, 0.8f},
+                               {&M::smoke, 1.5f}};
+constexpr Colour kLeatherColours[] = {{&M::charColor, {0.016f, 0.015f, 0.0145f, 0.42f}},
+                                      {&M::ashColor, {0.34f, 0.32f, 0.31f, 0.0f}}};
+
+struct Row {
+    uint32_t like;  // the preset that it differs from; its own number: none
+    gpu::uint base;
+    std::span<const Number> numbers;
+    std::span<const Colour> colours = {};
+};
+constexpr Row kRows[kLookCount] = {
+    // by FwMaterialPreset
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStone, kStone, kStoneColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseWood, kPine, kPineColours},
+    {FW_MATERIAL_PINE, gpu::kBasePaint, kPaintedWood, kPaintedWoodColours},
+    {FW_MATERIAL_PAPER, gpu::kBasePrint, {}},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePaper, kPaper, kPaperColours},
+    {FW_MATERIAL_PAPER, gpu::kBaseWeave, kCotton, kCottonColours},
+    {FW_MATERIAL_PLASTIC, gpu::kBaseWeave, kPolyester},
+    {FW_MATERIAL_PAPER, gpu::kBaseLeaf, kDryLeaf, kDryLeafColours},
+    {FW_MATERIAL_DRY_LEAF, gpu::kBaseLeaf, kGreenLeaf, kGreenLeafColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseStraw, kThatch, kThatchColours},
+    {FW_MATERIAL_THATCH, gpu::kBaseStraw, kDryGrass},
+    {FW_MATERIAL_PINE, gpu::kBaseWood, kPlywood},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBaseLeather, kLeather, kLeatherColours},
+    {FW_MATERIAL_NONCOMBUSTIBLE, gpu::kBasePlastic, kPlastic, kPlasticColours},
+};
+
+constexpr MaterialAppearance lookOf(uint32_t preset) {
+    const Row& row = kRows[preset];
+    MaterialAppearance look = row.like == preset ? M{} : lookOf(row.like);
+    look.base = row.base;
+    for (const Number& number : row.numbers) look.*number.field = number.value;
+    for (const auto& [field, v] : row.colours) look.*field = vec4(v[0], v[1], v[2], v[3]);
+    return look;
 }
 
-MaterialAppearance dryLeaf() {
-    MaterialAppearance m = paper();
-    m.spreadRate = 0.004f;
-    m.warpLarge = 0.008f;
-    m.warpSmall = 0.0025f;
-    m.jitter = 0.9f;
-    m.scorchWidth = 0.014f;
-    m.scorchGain = 1.4f;
-    m.charTime = 1.4f;
-    m.charColor = vec4(0.024f, 0.023f, 0.021f, 0.6f);
-    m.sheen = 0.4f;
-    m.crumple = 0.0016f;
-    m.facePeak = 0.7f;
-    m.faceDecay = 0.8f;
-    m.wormKelvin = 1050.0f;
-    m.ashMax = 0.6f;
-    m.ashStart = 2.0f;
-    m.ashEnd = 6.0f;
-    m.ashColor = vec4(0.42f, 0.42f, 0.40f, 0.0f);
-    m.holeTime = 4.2f;
-    m.holeVariation = 2.6f;
-    m.holeFine = 0.5f;
-    m.rimKelvin = 1180.0f;
-    m.rimWidth = 0.0026f;
-    m.thickness = 0.0009f;
-    m.curl = 0.9f;
-    m.wetDark = 0.25f;
-    m.wetGloss = 0.8f;
-    m.base = gpu::kBaseLeaf;
-    m.smoke = 0.8f;
-    return m;
-}
-
-MaterialAppearance greenLeaf() {
-    MaterialAppearance m = dryLeaf();
-    m.spreadRate = 0.0022f;
-    m.scorchWidth = 0.012f;
-    m.charTime = 2.6f;
-    m.facePeak = 1.2f;
-    m.faceDecay = 1.2f;
-    m.holeTime = 8.0f;
-    m.holeVariation = 4.5f;
-    m.wiltColor = vec4(0.17f, 0.145f, 0.05f, 0.025f);
-    m.flame = 0.8f;
-    m.smoke = 2.0f;
-    return m;
-}
-
-MaterialAppearance thatch() {
-    MaterialAppearance m = stone();
-    m.spreadRate = 0.006f;
-    m.warpLarge = 0.030f;
-    m.warpSmall = 0.010f;
-    m.jitter = 4.4f;
-    m.scorchWidth = 0.022f;
-    m.scorchGain = 1.4f;
-    m.charTime = 2.6f;
-    m.charColor = vec4(0.028f, 0.026f, 0.024f, 0.7f);
-    m.sheen = 0.3f;
-    m.faceKelvin = 1120.0f;
-    m.facePeak = 1.4f;
-    m.faceDecay = 4.4f;
-    m.glowVariation = 210.0f;
-    m.ashMax = 0.45f;
-    m.ashStart = 16.0f;
-    m.ashEnd = 46.0f;
-    m.ashColor = vec4(0.20f, 0.19f, 0.178f, 0.0f);
-    m.holeTime = 46.0f;
-    m.holeVariation = 30.0f;
-    m.rimKelvin = 1130.0f;
-    m.rimWidth = 0.006f;
-    m.thickness = 0.02f;
-    m.wetDark = 0.6f;
-    m.wetGloss = 0.3f;
-    m.holeTiles = 9.0f;
-    m.holeFine = 0.5f;
-    m.drip = 5.0f;
-    m.base = gpu::kBaseStraw;
-    m.flame = 1.2f;
-    m.smoke = 0.9f;
-    return m;
-}
-
-MaterialAppearance dryGrass() {
-    MaterialAppearance m = thatch();
-    m.spreadRate = 0.012f;
-    m.jitter = 2.2f;
-    m.charTime = 1.3f;
-    m.facePeak = 0.7f;
-    m.faceDecay = 2.2f;
-    m.ashStart = 3.0f;
-    m.ashEnd = 9.0f;
-    m.holeTime = 8.0f;
-    m.holeVariation = 6.0f;
-    m.thickness = 0.004f;
-    m.ashMax = 0.5f;
-    return m;
-}
-
-MaterialAppearance leather() {
-    MaterialAppearance m = stone();
-    m.spreadRate = 0.0015f;
-    m.warpLarge = 0.010f;
-    m.warpSmall = 0.003f;
-    m.scorchWidth = 0.020f;
-    m.scorchGain = 1.2f;
-    m.charTime = 8.0f;
-    m.charColor = vec4(0.016f, 0.015f, 0.0145f, 0.42f);
-    m.sheen = 0.5f;
-    m.cellX = m.cellY = 0.022f;
-    m.crackWidth = 0.0008f;
-    m.crackDepth = 0.0014f;
-    m.crackTime = 25.0f;
-    m.crumple = 0.002f;
-    m.isotropic = 1.0f;
-    m.faceKelvin = 985.0f;
-    m.facePeak = 5.0f;
-    m.faceDecay = 9.0f;
-    m.crackKelvin = 1065.0f;
-    m.crackLife = 45.0f;
-    m.glowVariation = 150.0f;
-    m.ashMax = 0.28f;
-    m.ashStart = 45.0f;
-    m.ashEnd = 150.0f;
-    m.ashColor = vec4(0.34f, 0.32f, 0.31f, 0.0f);
-    m.holeTime = 95.0f;
-    m.holeVariation = 60.0f;
-    m.rimKelvin = 1100.0f;
-    m.rimWidth = 0.0045f;
-    m.thickness = 0.003f;
-    m.curl = 0.7f;
-    m.wetDark = 0.45f;
-    m.wetGloss = 0.5f;
-    m.holeTiles = 4.0f;
-    m.holeFine = 0.16f;
-    m.base = gpu::kBaseLeather;
-    m.flame = 0.8f;
-    m.smoke = 1.5f;
-    return m;
-}
+constexpr auto kLooks = [] {
+    std::array<MaterialAppearance, kLookCount> looks{};
+    for (uint32_t i = 0; i < kLookCount; ++i) looks[i] = lookOf(i);
+    return looks;
+}();
 
 }  // namespace
 
 MaterialAppearance materialLook(uint32_t preset) noexcept {
-    switch (preset) {
-        case FW_MATERIAL_PINE:
-            return pine();
-        case FW_MATERIAL_PAINTED_WOOD:
-            return paintedWood();
-        case FW_MATERIAL_NEWSPAPER:
-            return newspaper();
-        case FW_MATERIAL_PAPER:
-            return paper();
-        case FW_MATERIAL_COTTON:
-            return cotton();
-        case FW_MATERIAL_POLYESTER:
-            return polyester();
-        case FW_MATERIAL_DRY_LEAF:
-            return dryLeaf();
-        case FW_MATERIAL_GREEN_LEAF:
-            return greenLeaf();
-        case FW_MATERIAL_THATCH:
-            return thatch();
-        case FW_MATERIAL_DRY_GRASS:
-            return dryGrass();
-        case FW_MATERIAL_PLYWOOD:
-            return plywood();
-        case FW_MATERIAL_LEATHER:
-            return leather();
-        case FW_MATERIAL_PLASTIC:
-            return plastic();
-        default:
-            return stone();
-    }
+    return kLooks[preset < kLookCount ? preset : 0];
 }
 
 float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept {  // see holeDelay in look.glsl

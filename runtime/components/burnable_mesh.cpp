@@ -93,9 +93,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
     std::copy_n(def.tint, 3, object.tint);
     object.userData = def.userData;
     if (def.refineDepth > gpu::kRefineDepth)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::refineDepth is %u; the limits are [0, %u].", def.refineDepth,
-                   gpu::kRefineDepth);
+        core::refuse("FwBurnableMeshDef::refineDepth is %u; the limits are [0, %u].",
+                     def.refineDepth, gpu::kRefineDepth);
     checkValue(def.refinePixelsPerEdge, "FwBurnableMeshDef::refinePixelsPerEdge", 1, 1000);
     checkValue(def.heatPsi, "FwBurnableMeshDef::heatPsi", 0, 1e8f);
     checkValue(def.heatStep, "FwBurnableMeshDef::heatStep", 0, 1000);
@@ -104,9 +103,8 @@ BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
         static constexpr const char* kNames[2] = {"multiplierWidth", "multiplierHeight"};
         for (int i = 0; i < 2; ++i)
             if (sides[i] < 1 || sides[i] > 8192)
-                core::fail(FW_ERROR_INVALID_ARGUMENT,
-                           "FwBurnableMeshDef::%s is %u; the limits are [1, 8192].", kNames[i],
-                           sides[i]);
+                core::refuse("FwBurnableMeshDef::%s is %u; the limits are [1, 8192].", kNames[i],
+                             sides[i]);
     }
     return object;
 }
@@ -273,11 +271,11 @@ std::pmr::vector<uint16_t> makeSlowness(const FwBurnableMeshDef& def,
 void poseOnShape(BurnableMesh& object, const Pose& pose, const char* field) {
     Pose made = pose;
     if ((pose.stretch[0] < 0) != (object.shape[0] < 0))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s %s and the object's own transform %s; a mirror is settled when the object "
-                   "is created.",
-                   field, pose.stretch[0] < 0 ? "mirrors" : "does not mirror",
-                   object.shape[0] < 0 ? "does" : "does not");
+        core::refuse(
+            "%s %s and the object's own transform %s; a mirror is settled when the object "
+            "is created.",
+            field, pose.stretch[0] < 0 ? "mirrors" : "does not mirror",
+            object.shape[0] < 0 ? "does" : "does not");
     bool even = true;
     for (int i = 0; i < 3; ++i) {
         FW_ASSERT(object.shape[i] != 0, "axis %d", i);

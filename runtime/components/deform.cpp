@@ -60,31 +60,28 @@ gpu::DeformMaterial makeMaterial(const FwMaterialDef& def, const gpu::BurnMateri
 
 void checkDeform(const FwBurnableMeshDef& def) {
     if ((def.flags & FW_BURNABLE_SKINNED) && (def.flags & kOne))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_SKINNED moves what "
-                   "deformation or refinement would: one of them.",
-                   def.flags);
+        core::refuse(
+            "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_SKINNED moves what "
+            "deformation or refinement would: one of them.",
+            def.flags);
     const uint32_t tiers = def.flags & kOne;
     if (tiers & (tiers - 1))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::flags is 0x%x; of REFINE, REFINE_PUBLISHED, RECEDE, SHELL "
-                   "and SPRINGS one is "
-                   "possible.",
-                   def.flags);
+        core::refuse(
+            "FwBurnableMeshDef::flags is 0x%x; of REFINE, REFINE_PUBLISHED, RECEDE, SHELL "
+            "and SPRINGS one is "
+            "possible.",
+            def.flags);
     if ((def.flags & FW_BURNABLE_DEPTH_PEEL) &&
         !(def.flags & (FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS)))
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_DEPTH_PEEL needs SPRINGS or RECEDE.",
             def.flags);
     checkLength(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwBurnableMeshDef::pinCount is %u; the limits are [0, %u].", def.pinCount,
-                   gpu::kMaxPins);
+        core::refuse("FwBurnableMeshDef::pinCount is %u; the limits are [0, %u].", def.pinCount,
+                     gpu::kMaxPins);
     if (def.pinCount && !def.pins)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwBurnableMeshDef::pins is null but pinCount is %u.",
-                   def.pinCount);
+        core::refuse("FwBurnableMeshDef::pins is null but pinCount is %u.", def.pinCount);
     for (uint32_t i = 0; i < def.pinCount; ++i) {
         checkLengths(def.pins[i].from, 3, "FwPin::from", -1e6f, 1e6f);
         checkLengths(def.pins[i].to, 3, "FwPin::to", -1e6f, 1e6f);

@@ -29,8 +29,7 @@ void readDirection(const float given[3], const char* name, float (&out)[3]) {
     checkValues(given, 3, name, -1e6f, 1e6f);
     const float length = length3(given);
     if (!(length > 1e-6f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has length %g; it is at least 1e-6.", name,
-                   double(length));
+        core::refuse("%s has length %g; it is at least 1e-6.", name, double(length));
     for (int i = 0; i < 3; ++i) out[i] = given[i] / length;
 }
 
@@ -156,21 +155,20 @@ void makeFireEmitter(const FwFireEmitterDef& def, uint32_t ownSeed, FireEmitter&
     checkValue(def.stick, "FwFireEmitterDef::stick", 0.0f, 1.0f);
     checkValue(def.stickTime, "FwFireEmitterDef::stickTime", 0.125f, 120.0f);
     if (def.shape == FW_EMITTER_MESH && (def.flags & FW_EMITTER_JET))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwFireEmitterDef::shape is FW_EMITTER_MESH and FwFireEmitterDef::flags is "
-                   "0x%x; FW_EMITTER_JET goes with the other shapes.",
-                   def.flags);
+        core::refuse(
+            "FwFireEmitterDef::shape is FW_EMITTER_MESH and FwFireEmitterDef::flags is "
+            "0x%x; FW_EMITTER_JET goes with the other shapes.",
+            def.flags);
     if ((def.flags & FW_EMITTER_IGNITES) && !isSwept(def))
-        core::fail(
-            FW_ERROR_INVALID_ARGUMENT,
+        core::refuse(
             "FwFireEmitterDef::flags is 0x%x; FW_EMITTER_IGNITES goes with FW_EMITTER_JET and "
             "without FW_EMITTER_NO_COLLISION.",
             def.flags);
     if (def.stick > 0 && !(def.flags & FW_EMITTER_IGNITES))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwFireEmitterDef::stick is %g and FwFireEmitterDef::flags is 0x%x; fuel sticks "
-                   "with FW_EMITTER_IGNITES alone.",
-                   double(def.stick), def.flags);
+        core::refuse(
+            "FwFireEmitterDef::stick is %g and FwFireEmitterDef::flags is 0x%x; fuel sticks "
+            "with FW_EMITTER_IGNITES alone.",
+            double(def.stick), def.flags);
     emitter.def = def;
     emitter.seed = def.seed ? def.seed : ownSeed;
     std::copy_n(def.position, 3, emitter.position);

@@ -55,8 +55,7 @@ int64_t noise(const std::array<int64_t, 3>& place, int64_t size, uint32_t seed) 
 }  // namespace
 
 Gusts makeGusts(const FwGustDef& def, const Gusts& before) {
-    if (def.flags != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwGustDef::flags is 0x%x; it is zero.", def.flags);
+    if (def.flags != 0) core::refuse("FwGustDef::flags is 0x%x; it is zero.", def.flags);
     checkValue(def.strength, "FwGustDef::strength", 0.0f, 1.0f);
     checkLength(def.size, "FwGustDef::size", kMinGust, kMaxGust);
     Gusts gusts = before;

@@ -81,10 +81,10 @@ class OcclusionFill {
         FW_ASSERT(entry == kEmpty || entry < out_.size(), "entry %u of %zu", entry, out_.size());
         if (entry == kEmpty) {
             if (out_.size() >= gpu::kMaxBakedOcclusionCells)
-                core::fail(FW_ERROR_INVALID_ARGUMENT,
-                           "Objects fill more than %u cells of the shield, which is the limit: "
-                           "larger cells are fewer.",
-                           gpu::kMaxBakedOcclusionCells);
+                core::refuse(
+                    "Objects fill more than %u cells of the shield, which is the limit: "
+                    "larger cells are fewer.",
+                    gpu::kMaxBakedOcclusionCells);
             entry = uint32_t(out_.size());
             out_.push_back(cell);
             nearest_.push_back(distance);
@@ -111,15 +111,13 @@ OcclusionGridShape makeOcclusionGridShape(const FwHeatOcclusionDef& def) {
     checkFlags(def.flags, "FwHeatOcclusionDef::flags", FW_HEAT_OCCLUSION_ALL_OBJECTS);
     for (uint32_t i = 0; i < 3; ++i)
         if (def.counts[i] < 1 || def.counts[i] > gpu::kMaxOcclusionSide)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwHeatOcclusionDef::counts[%u] is %u; the limits are [1, %u].", i,
-                       def.counts[i], gpu::kMaxOcclusionSide);
+            core::refuse("FwHeatOcclusionDef::counts[%u] is %u; the limits are [1, %u].", i,
+                         def.counts[i], gpu::kMaxOcclusionSide);
     std::copy_n(def.counts, 3, shape.counts.begin());
     if (shape.cells() > gpu::kMaxOcclusionCells)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwHeatOcclusionDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
-                   def.counts[0], def.counts[1], def.counts[2], shape.cells(),
-                   gpu::kMaxOcclusionCells);
+        core::refuse("FwHeatOcclusionDef::counts makes %u x %u x %u = %u cells; the limit is %u.",
+                     def.counts[0], def.counts[1], def.counts[2], shape.cells(),
+                     gpu::kMaxOcclusionCells);
     checkLengths(def.origin, 3, "FwHeatOcclusionDef::origin", -kMaxOcclusionOrigin,
                  kMaxOcclusionOrigin);
     checkLength(def.cellSize, "FwHeatOcclusionDef::cellSize", kMinOcclusionCell, kMaxOcclusionCell);

@@ -49,8 +49,7 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     checkRotation(def.rotation, "FwParticleFieldDef::rotation");
     checkWhole(def.width, "FwParticleFieldDef::width", 32, gpu::kMaxFieldSide);
     if (def.width % 4 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwParticleFieldDef::width is %u; it is a multiple of 4.", def.width);
+        core::refuse("FwParticleFieldDef::width is %u; it is a multiple of 4.", def.width);
     checkWhole(def.height, "FwParticleFieldDef::height", 32, gpu::kMaxFieldSide);
     checkWhole(def.stepRate, "FwParticleFieldDef::stepRate", 20, 30);
     checkWhole(def.open, "FwParticleFieldDef::open", 0, kOpen);

@@ -13,42 +13,38 @@ void checkRotation(const float q[4], const char* name) {
     checkValues(q, 4, name, -1.001f, 1.001f);
     const float length = std::sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
     if (std::fabs(length - 1) > 1e-3f)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s has length %g; it is a unit quaternion within 0.001.", name, double(length));
+        core::refuse("%s has length %g; it is a unit quaternion within 0.001.", name,
+                     double(length));
 }
 
 void checkWhole(uint32_t value, const char* name, uint32_t low, uint32_t most) {
     FW_ASSERT(low <= most, "%s: [%u, %u]", name, low, most);
     if (value < low || value > most)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %u; the limits are [%u, %u].", name, value,
-                   low, most);
+        core::refuse("%s is %u; the limits are [%u, %u].", name, value, low, most);
 }
 
 void checkFlags(uint32_t flags, const char* name, uint32_t known) {
-    if (flags & ~known)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is 0x%x; the known flags are 0x%x.", name, flags,
-                   known);
+    if (flags & ~known) core::refuse("%s is 0x%x; the known flags are 0x%x.", name, flags, known);
 }
 
 void checkValue(float value, const char* field, float low, float high) {
     if (!(value >= low && value <= high))  // also catches NaN
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is %g; the limits are [%g, %g].", field,
-                   double(value), double(low), double(high));
+        core::refuse("%s is %g; the limits are [%g, %g].", field, double(value), double(low),
+                     double(high));
 }
 
 void checkValues(const float* values, unsigned count, const char* field, float low, float high) {
     FW_ASSERT(values && low <= high, "%s: [%g, %g]", field, double(low), double(high));
     for (unsigned i = 0; i < count; ++i)
         if (!(values[i] >= low && values[i] <= high))
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "%s[%u] is %g; the limits are [%g, %g].", field,
-                       i, double(values[i]), double(low), double(high));
+            core::refuse("%s[%u] is %g; the limits are [%g, %g].", field, i, double(values[i]),
+                         double(low), double(high));
 }
 
 void checkLength(float value, const char* field, float low, float high) {
     if (!(value >= low && value <= high))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s is " FW_LENGTH "; the limits are [" FW_LENGTH ", " FW_LENGTH "].", field,
-                   double(value), double(low), double(high));
+        core::refuse("%s is " FW_LENGTH "; the limits are [" FW_LENGTH ", " FW_LENGTH "].", field,
+                     double(value), double(low), double(high));
 }
 
 void checkLengths(const float* values, unsigned count, const char* field, float low, float high) {
@@ -72,9 +68,8 @@ Pose makePose(const float transform[16], const char* field) {
     const float lastRow[4] = {transform[3], transform[7], transform[11], transform[15]};
     for (unsigned i = 0; i < 4; ++i)
         if (!(std::fabs(double(lastRow[i]) - (i == 3 ? 1.0 : 0.0)) <= 1e-6))  // also catches NaN
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s[%u] is %g; the last row of the matrix is 0 0 0 1.", field, i * 4 + 3,
-                       double(lastRow[i]));
+            core::refuse("%s[%u] is %g; the last row of the matrix is 0 0 0 1.", field, i * 4 + 3,
+                         double(lastRow[i]));
     double column[3][3], length[3];
     for (int c = 0; c < 3; ++c) {
         double sum = 0;
@@ -86,23 +81,21 @@ Pose makePose(const float transform[16], const char* field) {
     }
     const double scale = (length[0] + length[1] + length[2]) / 3;
     if (!(scale >= 1e-3 && scale <= 1e3))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has scale %g; the limits are [0.001, 1000].",
-                   field, scale);
+        core::refuse("%s has scale %g; the limits are [0.001, 1000].", field, scale);
     const auto [shortest, longest] = std::minmax({length[0], length[1], length[2]});
     if (!(longest <= shortest * double(kMaxStretch)))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "%s scales its axes by %g, %g and %g; the largest is at most %g times the "
-                   "smallest.",
-                   field, length[0], length[1], length[2], double(kMaxStretch));
+        core::refuse(
+            "%s scales its axes by %g, %g and %g; the largest is at most %g times the "
+            "smallest.",
+            field, length[0], length[1], length[2], double(kMaxStretch));
     for (int c = 0; c < 3; ++c) {
         const int d = (c + 1) % 3;
         double dot = 0;
         for (int r = 0; r < 3; ++r) dot += column[c][r] * column[d][r];
         const double cosine = dot / (length[c] * length[d]);
         if (std::fabs(cosine) > kTolerance)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "%s is sheared: axes %d and %d have cosine %g; the limit is 0.001.", field,
-                       c, d, cosine);
+            core::refuse("%s is sheared: axes %d and %d have cosine %g; the limit is 0.001.", field,
+                         c, d, cosine);
     }
     const double determinant =
         column[0][0] * (column[1][1] * column[2][2] - column[1][2] * column[2][1]) -

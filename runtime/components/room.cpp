@@ -27,10 +27,10 @@ int64_t wholeOf(double value) noexcept { return std::llround(value); }
 
 Room makeRoom(const FwRoomDef& def) {
     if ((def.flags & ~kKnownRoomFlags) != 0 || def.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwRoomDef::flags is 0x%x and reserved is %u; the known flags are 0x%x, and "
-                   "reserved is zero.",
-                   def.flags, def.reserved, kKnownRoomFlags);
+        core::refuse(
+            "FwRoomDef::flags is 0x%x and reserved is %u; the known flags are 0x%x, and "
+            "reserved is zero.",
+            def.flags, def.reserved, kKnownRoomFlags);
     checkLengths(def.position, 3, "FwRoomDef::position", -kFarthestRoom, kFarthestRoom);
     checkRotation(def.rotation, "FwRoomDef::rotation");
     checkLengths(def.halfSize, 3, "FwRoomDef::halfSize", kMinHalf, kMaxHalf);
@@ -41,9 +41,8 @@ Room makeRoom(const FwRoomDef& def) {
         8.0 * double(def.halfSize[0]) * double(def.halfSize[1]) * double(def.halfSize[2]);
     const double volume = def.volume != 0 ? double(def.volume) : box;
     if (!(volume >= double(kMinVolume) && volume <= double(kMaxVolume)))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwRoomDef::volume is %g m^3 and its box has %g; the limits are [%g, %g].",
-                   double(def.volume), box, double(kMinVolume), double(kMaxVolume));
+        core::refuse("FwRoomDef::volume is %g m^3 and its box has %g; the limits are [%g, %g].",
+                     double(def.volume), box, double(kMinVolume), double(kMaxVolume));
     const double x = double(def.rotation[0]), y = double(def.rotation[1]),
                  z = double(def.rotation[2]), w = double(def.rotation[3]);
     const double axes[9] = {

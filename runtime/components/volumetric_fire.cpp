@@ -88,8 +88,8 @@ void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* mem
     checkWhole(def.flags, "FwFireProfileDef::flags", 0, 0);
     if (def.cooked) {
         if (def.cookedSize > SIZE_MAX)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireProfileDef::cookedSize is %llu.",
-                       static_cast<unsigned long long>(def.cookedSize));
+            core::refuse("FwFireProfileDef::cookedSize is %llu.",
+                         static_cast<unsigned long long>(def.cookedSize));
         volume::readProfile({static_cast<const std::byte*>(def.cooked), size_t(def.cookedSize)},
                             profile);
         return;
@@ -99,8 +99,7 @@ void readFireProfile(const FwFireProfileDef& def, std::pmr::memory_resource* mem
     checkWhole(def.height, "FwFireProfileDef::height", volume::kMinProfileSide,
                volume::kMaxProfileSide);
     if (!def.texels)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwFireProfileDef::texels is null, and so is FwFireProfileDef::cooked.");
+        core::refuse("FwFireProfileDef::texels is null, and so is FwFireProfileDef::cooked.");
     const size_t count = size_t(def.width) * def.height;
     std::pmr::vector<float> planes(2 * count, memory);
     for (size_t i = 0; i < count; ++i) {
@@ -183,9 +182,8 @@ void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name) {
 void setFirePoints(VolumetricFire& fire, const FwFirePoint* points, uint32_t count,
                    const char* name) {
     if (count == 1 || count > volume::kMaxControlPoints)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "pointCount is %u; it is 0 or in [2, %u].", count,
-                   volume::kMaxControlPoints);
-    if (count > 0 && !points) core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is null.", name);
+        core::refuse("pointCount is %u; it is 0 or in [2, %u].", count, volume::kMaxControlPoints);
+    if (count > 0 && !points) core::refuse("%s is null.", name);
     for (uint32_t i = 0; i < count; ++i) checkPoint(points[i], name, i);
     for (uint32_t i = 0; i < count; ++i)
         fire.points[i] = {volume::vecOf(points[i].position), points[i].radius};
@@ -201,8 +199,8 @@ void setFireTrack(VolumetricFire& fire, const FwFireTrackDef* def) {
         checkWhole(def->keyCount, "FwFireTrackDef::keyCount", 1, 4096);
         checkWhole(def->pointsPerKey, "FwFireTrackDef::pointsPerKey", 2, volume::kMaxControlPoints);
         checkValue(def->weight, "FwFireTrackDef::weight", 0.0f, 1.0f);
-        if (!def->times) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireTrackDef::times is null.");
-        if (!def->points) core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFireTrackDef::points is null.");
+        if (!def->times) core::refuse("FwFireTrackDef::times is null.");
+        if (!def->points) core::refuse("FwFireTrackDef::points is null.");
         const uint32_t count = def->keyCount * def->pointsPerKey;
         std::pmr::vector<volume::ControlPoint> points(track.points.get_allocator());
         points.reserve(count);

@@ -20,23 +20,20 @@ constexpr float kFarthestGrid = 1e6f;                       // m
 WindGridShape makeWindGridShape(const FwWindGridDef& def) {
     WindGridShape shape;
     if (def.flags != 0 || def.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWindGridDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
-                   def.reserved);
+        core::refuse("FwWindGridDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
+                     def.reserved);
     if (def.blend >= FW_WIND_BLEND_COUNT)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwWindGridDef::blend is %u; the limit is %u.",
-                   def.blend, FW_WIND_BLEND_COUNT - 1);
+        core::refuse("FwWindGridDef::blend is %u; the limit is %u.", def.blend,
+                     FW_WIND_BLEND_COUNT - 1);
     for (uint32_t i = 0; i < 3; ++i)
         if (def.counts[i] < 2 || def.counts[i] > kMaxGridSide)
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwWindGridDef::counts[%u] is %u; the limits are [2, %u].", i, def.counts[i],
-                       kMaxGridSide);
+            core::refuse("FwWindGridDef::counts[%u] is %u; the limits are [2, %u].", i,
+                         def.counts[i], kMaxGridSide);
     shape.blend = def.blend;
     std::copy_n(def.counts, 3, shape.counts.begin());
     if (shape.points() > kMaxGridPoints)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWindGridDef::counts makes %u x %u x %u = %u points; the limit is %u.",
-                   def.counts[0], def.counts[1], def.counts[2], shape.points(), kMaxGridPoints);
+        core::refuse("FwWindGridDef::counts makes %u x %u x %u = %u points; the limit is %u.",
+                     def.counts[0], def.counts[1], def.counts[2], shape.points(), kMaxGridPoints);
     checkLengths(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
     checkLength(def.cellSize, "FwWindGridDef::cellSize", kMinGridCell, kMaxGridCell);
     checkLength(def.fade, "FwWindGridDef::fade", 0.0f, kMaxGridFade);
@@ -49,18 +46,16 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
 WindPoint makeWindPoint(const float velocity[3], uint32_t point) {
     for (uint32_t i = 0; i < 3; ++i)
         if (!(std::abs(velocity[i]) <= fire::kMaxWind))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "FwWindGridDef::velocities[%u] is " FW_LENGTH " " FW_LENGTH_UNIT
-                       "/s; the limits are [" FW_LENGTH ", " FW_LENGTH "].",
-                       3 * point + i, double(velocity[i]), double(-fire::kMaxWind),
-                       double(fire::kMaxWind));
+            core::refuse("FwWindGridDef::velocities[%u] is " FW_LENGTH " " FW_LENGTH_UNIT
+                         "/s; the limits are [" FW_LENGTH ", " FW_LENGTH "].",
+                         3 * point + i, double(velocity[i]), double(-fire::kMaxWind),
+                         double(fire::kMaxWind));
     const fire::WindVector units = fire::windUnits(velocity);
     return {int16_t(units[0]), int16_t(units[1]), int16_t(units[2])};
 }
 
 void readWindPoints(const FwWindGridDef& def, std::pmr::vector<WindPoint>& points) {
-    if (!def.velocities)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwWindGridDef::velocities is null.");
+    if (!def.velocities) core::refuse("FwWindGridDef::velocities is null.");
     const uint32_t count = def.counts[0] * def.counts[1] * def.counts[2];
     points.clear();
     points.reserve(count);

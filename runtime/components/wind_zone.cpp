@@ -90,24 +90,21 @@ unsigned sizesOf(uint32_t shape) noexcept {
 
 void checkKind(uint32_t value, const char* name, uint32_t count) {
     if (value >= count)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwWindZoneDef::%s is %u; the limit is %u.", name,
-                   value, count - 1);
+        core::refuse("FwWindZoneDef::%s is %u; the limit is %u.", name, value, count - 1);
 }
 
 }  // namespace
 
 WindZone makeWindZone(const FwWindZoneDef& def) {
     if (def.flags != 0 || def.reserved != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWindZoneDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
-                   def.reserved);
+        core::refuse("FwWindZoneDef::flags is 0x%x and reserved is %u; both are zero.", def.flags,
+                     def.reserved);
     checkKind(def.shape, "shape", FW_WIND_SHAPE_COUNT);
     checkKind(def.flow, "flow", FW_WIND_FLOW_COUNT);
     checkKind(def.blend, "blend", FW_WIND_BLEND_COUNT);
     if (def.priority < -kMaxZonePriority || def.priority > kMaxZonePriority)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWindZoneDef::priority is %d; the limits are [%d, %d].", def.priority,
-                   -kMaxZonePriority, kMaxZonePriority);
+        core::refuse("FwWindZoneDef::priority is %d; the limits are [%d, %d].", def.priority,
+                     -kMaxZonePriority, kMaxZonePriority);
     checkLengths(def.position, 3, "FwWindZoneDef::position", -kFarthestZone, kFarthestZone);
     checkValues(def.axis, 3, "FwWindZoneDef::axis", -kFarthestZone, kFarthestZone);
     const unsigned sizes = sizesOf(def.shape);
@@ -123,8 +120,7 @@ WindZone makeWindZone(const FwWindZoneDef& def) {
     for (const float value : def.axis) square += double(value) * double(value);
     const double length = std::sqrt(square);
     if (!(length > 1e-6))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "FwWindZoneDef::axis has a length of %g; it is a direction.", length);
+        core::refuse("FwWindZoneDef::axis has a length of %g; it is a direction.", length);
     for (size_t i = 0; i < 3; ++i) {
         zone.middle[i] = millimetres(def.position[i]);
         zone.axis[i] = std::llround(double(def.axis[i]) / length * double(kOne));

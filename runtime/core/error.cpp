@@ -30,14 +30,39 @@ void writeLengths(const char* text, double unitsPerMetre, char* out, size_t size
     if (size > 0) out[at] = 0;
 }
 
-void fail(FwResult result, const char* format, ...) {
+namespace {
+
+Error errorOf(FwResult result, const char* format, va_list arguments) noexcept {
     Error error;
     error.result = result;
+    std::vsnprintf(error.marked, sizeof error.marked, format, arguments);
+    writeLengths(error.marked, 1, error.message, sizeof error.message);
+    return error;
+}
+
+}  // namespace
+
+void fail(FwResult result, const char* format, ...) {
     va_list arguments;
     va_start(arguments, format);
-    std::vsnprintf(error.marked, sizeof error.marked, format, arguments);
+    const Error error = errorOf(result, format, arguments);
     va_end(arguments);
-    writeLengths(error.marked, 1, error.message, sizeof error.message);
+    throw error;
+}
+
+void refuse(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const Error error = errorOf(FW_ERROR_INVALID_ARGUMENT, format, arguments);
+    va_end(arguments);
+    throw error;
+}
+
+void failData(const char* format, ...) {
+    va_list arguments;
+    va_start(arguments, format);
+    const Error error = errorOf(FW_ERROR_BAD_DATA, format, arguments);
+    va_end(arguments);
     throw error;
 }
 

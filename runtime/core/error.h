@@ -22,11 +22,14 @@ struct Error {
 // Writes `text` with lengths times unitsPerMetre and the unit's name; cuts it at `size` - 1 bytes.
 void writeLengths(const char* text, double unitsPerMetre, char* out, size_t size) noexcept;
 
-// Throws Error with a printf-style text, cut at 479 bytes.
-[[noreturn]] void fail(FwResult result, const char* format, ...)
 #if defined(__GNUC__)
-    __attribute__((format(printf, 2, 3)))
+#define FW_FORMAT(text, values) __attribute__((format(printf, text, values)))
+#else
+#define FW_FORMAT(text, values)
 #endif
-    ;
+// Throws Error with a printf-style text, cut at 479 bytes.
+[[noreturn]] void fail(FwResult result, const char* format, ...) FW_FORMAT(2, 3);
+[[noreturn]] void refuse(const char* format, ...) FW_FORMAT(1, 2);    // FW_ERROR_INVALID_ARGUMENT
+[[noreturn]] void failData(const char* format, ...) FW_FORMAT(1, 2);  // FW_ERROR_BAD_DATA
 
 }  // namespace fw::core

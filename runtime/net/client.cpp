@@ -53,10 +53,10 @@ void Client::readPacket(std::span<const std::byte> packet) {
     const bool welcomesAgain = head.kind == PacketKind::welcome && loads_ == 0;
     if (head.client != def_.token || head.session == 0 ||
         (session_ != 0 && head.session != session_ && !welcomesAgain))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet is for token 0x%08X of session 0x%08X; this client has 0x%08X in "
-                   "session 0x%08X.",
-                   head.client, head.session, def_.token, session_);
+        core::failData(
+            "The packet is for token 0x%08X of session 0x%08X; this client has 0x%08X in "
+            "session 0x%08X.",
+            head.client, head.session, def_.token, session_);
     const bool early = session_ == 0 && head.kind != PacketKind::welcome;  // that one comes again
     if (!early && !came_.isNew(head.sequence) && silent_ > kMaxSilent && head.sequence > 0)
         came_.restartAt(head.sequence);
@@ -69,8 +69,7 @@ void Client::readPacket(std::span<const std::byte> packet) {
         uint64_t identity = 0;
         reader.number(identity);
         if (reader.left() != 0)
-            core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a welcome in the packet.",
-                       reader.left());
+            core::failData("%zu bytes follow a welcome in the packet.", reader.left());
         session_ = head.session;
         theirs_ = identity;
         welcome_ = true;
@@ -79,8 +78,7 @@ void Client::readPacket(std::span<const std::byte> packet) {
     } else if (head.kind == PacketKind::chunk) {
         readPiece(reader, newest);
     } else {
-        core::fail(FW_ERROR_BAD_DATA, "The packet is of kind %u, which a client sends.",
-                   uint32_t(head.kind));
+        core::failData("The packet is of kind %u, which a client sends.", uint32_t(head.kind));
     }
     (void)came_.take(head.sequence);
     silent_ = 0;
@@ -98,10 +96,10 @@ void Client::checkProgress(const Reached& mark) {
         contradictions_ = 0;
         ask(Request::state);
     }
-    core::fail(FW_ERROR_BAD_DATA,
-               "The packet says that the server is at step %u with %u records; another one said "
-               "step %u and %u.",
-               mark.step, mark.records, heard_, received_);
+    core::failData(
+        "The packet says that the server is at step %u with %u records; another one said "
+        "step %u and %u.",
+        mark.step, mark.records, heard_, received_);
 }
 
 void Client::readStream(core::Reader& reader, bool newest) {
@@ -111,8 +109,8 @@ void Client::readStream(core::Reader& reader, bool newest) {
     reader.number(outdated), reader.number(mark.step), reader.number(mark.records);
     reader.number(first), reader.number(count), reader.number(flags);
     if (mark.step > world::Clock::kLastTick / gpu::kStepTicks || flags > kStreamFlags)
-        core::fail(FW_ERROR_BAD_DATA, "The packet is of step %u and has flags 0x%04X.", mark.step,
-                   uint32_t(flags));
+        core::failData("The packet is of step %u and has flags 0x%04X.", mark.step,
+                       uint32_t(flags));
     const bool counts = loads_ > 0 && (outdated == 0 || outdated == loaded_);
     const uint32_t before = received_;
     // All of it is looked at before any of it counts.
@@ -136,20 +134,19 @@ void Client::readStream(core::Reader& reader, bool newest) {
                 continue;
             }
             if (at > mark.records)
-                core::fail(FW_ERROR_BAD_DATA, "The packet has record %llu; the server has %u.",
-                           static_cast<unsigned long long>(at - 1), mark.records);
+                core::failData("The packet has record %llu; the server has %u.",
+                               static_cast<unsigned long long>(at - 1), mark.records);
             if (skipped || outdated != 0) continue;
             if (record_.step < step || record_.step > mark.step ||
                 (hashes && record_.tick / gpu::kStepTicks > mark.step))
-                core::fail(FW_ERROR_BAD_DATA,
-                           "The packet has a record of step %u behind one of step %u, and the "
-                           "server is at step %u.",
-                           record_.step, step, mark.step);
+                core::failData(
+                    "The packet has a record of step %u behind one of step %u, and the "
+                    "server is at step %u.",
+                    record_.step, step, mark.step);
             step = record_.step;
         }
         if (records.left() != 0)
-            core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the records of the packet.",
-                       records.left());
+            core::failData("%zu bytes follow the records of the packet.", records.left());
     }
     countReceived(before);
     if (!counts) return;
@@ -336,7 +333,7 @@ void Client::load(world::World& world) {
         if (tiles) {
             std::pmr::vector<std::byte> merged(memory_);
             if (head.id / 2 != ownNumber_ || head.record != ownRecord_)
-                core::fail(FW_ERROR_BAD_DATA, "The tiles are of another state.");
+                core::failData("The tiles are of another state.");
             world.persistence().mergeBlocks(own_, state_.bytes(), merged);
             world.persistence().applyLoad(merged);
         } else {
@@ -501,8 +498,8 @@ void Client::update(world::World& world, float seconds) {
 
 bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& size) {
     if (room.size() < def_.packetBytes)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %zu and a packet has up to %u bytes.",
-                   room.size(), def_.packetBytes);
+        core::refuse("*size is %zu and a packet has up to %u bytes.", room.size(),
+                     def_.packetBytes);
     if (!due_ && !tilesDue_) return false;
     const PacketKind kind = !joined_ ? PacketKind::hello
                             : due_   ? PacketKind::status

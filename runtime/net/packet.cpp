@@ -37,16 +37,16 @@ void sealPacket(std::span<std::byte> packet) noexcept {
 
 PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
     if (packet.size() < kPacketHead || packet.size() > kMaxPacket)
-        core::fail(FW_ERROR_BAD_DATA, "The packet has %zu bytes; the limits are [%zu, %zu].",
-                   packet.size(), kPacketHead, kMaxPacket);
+        core::failData("The packet has %zu bytes; the limits are [%zu, %zu].", packet.size(),
+                       kPacketHead, kMaxPacket);
     uint32_t magic = 0, sum = 0;
     uint16_t version = 0, kind = 0;
     PacketHead head;
     reader.number(magic), reader.number(version), reader.number(kind), reader.number(sum);
     reader.number(head.session), reader.number(head.client), reader.number(head.sequence);
     if (magic != kMagic)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic, kMagic);
+        core::failData("The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic,
+                       kMagic);
     if (version != kPacketVersion)
         core::fail(FW_ERROR_VERSION,
                    "The packet has version %u; this library has version %u. Both sides need the "
@@ -54,11 +54,10 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
                    uint32_t(version), kPacketVersion);
     const uint32_t found = sumOf(packet);
     if (sum != found)
-        core::fail(FW_ERROR_BAD_DATA, "The packet's checksum is 0x%08X; its head says 0x%08X.",
-                   found, sum);
+        core::failData("The packet's checksum is 0x%08X; its head says 0x%08X.", found, sum);
     if (kind >= uint16_t(PacketKind::count))
-        core::fail(FW_ERROR_BAD_DATA, "The packet is of kind %u; the limit is %u.", uint32_t(kind),
-                   uint32_t(PacketKind::count) - 1);
+        core::failData("The packet is of kind %u; the limit is %u.", uint32_t(kind),
+                       uint32_t(PacketKind::count) - 1);
     head.kind = PacketKind(kind);
     return head;
 }

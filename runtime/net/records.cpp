@@ -32,7 +32,7 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
     const uint32_t kind = head & 0xFF, command = head >> 8;
     const bool isCommand = kind == uint32_t(RecordKind::command);
     if (kind >= uint32_t(RecordKind::count) || (!isCommand && command != 0))
-        core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u, %u.", kind, command);
+        core::failData("The packet has a record of kind %u, %u.", kind, command);
     record.kind = RecordKind(kind);
     if (isCommand) {
         world::readCommand(command, reader.take(reader.left()), record.command);
@@ -42,23 +42,22 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
         reader.number(record.stride);
         const size_t count = reader.left() / sizeof(uint64_t);
         if (count > record.hashes.size() || record.stride == 0)
-            core::fail(FW_ERROR_BAD_DATA, "The packet has %zu hashes of every %u objects.", count,
-                       record.stride);
+            core::failData("The packet has %zu hashes of every %u objects.", count, record.stride);
         record.hashCount = uint32_t(count);
         for (size_t i = 0; i < count; ++i) reader.number(record.hashes[i]);
     } else if (record.kind == RecordKind::capture || record.kind == RecordKind::skipped) {
         reader.number(record.tick);
         if (record.tick == 0 || record.tick > 0xFFFFFFFFu)
-            core::fail(FW_ERROR_BAD_DATA, "The packet has a record of kind %u and number %llu.",
-                       kind, static_cast<unsigned long long>(record.tick));
+            core::failData("The packet has a record of kind %u and number %llu.", kind,
+                           static_cast<unsigned long long>(record.tick));
     } else {
         if (reader.left() > kMaxMessage)
-            core::fail(FW_ERROR_BAD_DATA, "The packet has a message of %zu bytes; the limit is %u.",
-                       reader.left(), kMaxMessage);
+            core::failData("The packet has a message of %zu bytes; the limit is %u.", reader.left(),
+                           kMaxMessage);
         record.message = reader.take(reader.left());
     }
     if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow a record of the packet.", reader.left());
+        core::failData("%zu bytes follow a record of the packet.", reader.left());
 }
 
 uint32_t RecordLog::recordBeforeLast(size_t most) const noexcept {

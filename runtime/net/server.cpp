@@ -33,8 +33,7 @@ void checkNetDef(const FwNetDef& def) {
     using components::checkValue;
     const auto check = [](uint32_t value, const char* name, uint32_t low, uint32_t high) {
         if (value < low || value > high)
-            core::fail(FW_ERROR_INVALID_ARGUMENT, "FwNetDef::%s is %u; the limits are [%u, %u].",
-                       name, value, low, high);
+            core::refuse("FwNetDef::%s is %u; the limits are [%u, %u].", name, value, low, high);
     };
     check(def.flags, "flags", 0, 0);
     check(def.reserved, "reserved", 0, 0);
@@ -60,8 +59,7 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
 
 FwPeerId Server::addPeer() {
     if (peers_.live() >= kMaxPeers)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "%u peers are there; the limit is %u.", peers_.live(),
-                   kMaxPeers);
+        core::refuse("%u peers are there; the limit is %u.", peers_.live(), kMaxPeers);
     const FwPeerId id = peers_.create(memory_);
     peers_.get(id).packets = kMaxPackets;
     peers_.get(id).captures = kCapturesAtOnce;
@@ -201,9 +199,9 @@ void Server::drain(world::World& world) {
 
 void Server::sendMessage(world::World& world, std::span<const std::byte> message) {
     if (message.size() > kMaxMessage || message.size() + 64 > def_.packetBytes)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "The message has %zu bytes; the limit is %u, and FwNetDef::packetBytes less 64.",
-                   message.size(), kMaxMessage);
+        core::refuse(
+            "The message has %zu bytes; the limit is %u, and FwNetDef::packetBytes less 64.",
+            message.size(), kMaxMessage);
     drain(world);
     record_.kind = RecordKind::message;
     record_.step = step_;
@@ -516,8 +514,8 @@ bool Server::writePiece(Peer& peer, uint32_t piece) {
 bool Server::write(FwPeerId to, std::span<std::byte> room, uint32_t& size) {
     Peer& peer = peers_.get(to);
     if (room.size() < def_.packetBytes)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "*size is %zu and a packet has up to %u bytes.",
-                   room.size(), def_.packetBytes);
+        core::refuse("*size is %zu and a packet has up to %u bytes.", room.size(),
+                     def_.packetBytes);
     if (peer.token == 0) return false;
     if (peer.welcome) {
         core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::welcome));
@@ -566,10 +564,10 @@ void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
     // Until a status has come, a greeting may have been of another token that nobody has.
     const bool greetsAgain = head.kind == PacketKind::hello && peer.phase == PeerPhase::joining;
     if (head.client == 0 || (peer.token != 0 && head.client != peer.token && !greetsAgain))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet is of a client with token 0x%08X; peer %u has 0x%08X. Remove the "
-                   "peer if another one came in its place.",
-                   head.client, name, peer.token);
+        core::failData(
+            "The packet is of a client with token 0x%08X; peer %u has 0x%08X. Remove the "
+            "peer if another one came in its place.",
+            head.client, name, peer.token);
     if (!peer.came.isNew(head.sequence) && peer.silent > kMaxSilent && head.sequence > 0)
         peer.came.restartAt(head.sequence);
     if (!peer.came.isNew(head.sequence)) {
@@ -578,17 +576,17 @@ void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
     }
     if (head.kind == PacketKind::hello) {
         if (reader.left() != 0 || head.session != 0)
-            core::fail(FW_ERROR_BAD_DATA, "The packet greets with %zu bytes in session 0x%08X.",
-                       reader.left(), head.session);
+            core::failData("The packet greets with %zu bytes in session 0x%08X.", reader.left(),
+                           head.session);
         peer.token = head.client;
         peer.welcome = true;
         move(peer, PeerEvent::greets);
     } else if ((head.kind != PacketKind::status && head.kind != PacketKind::tiles) ||
                head.session != def_.token || peer.token == 0) {
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet of kind %u is of session 0x%08X; a server takes a client's, of "
-                   "session 0x%08X.",
-                   uint32_t(head.kind), head.session, def_.token);
+        core::failData(
+            "The packet of kind %u is of session 0x%08X; a server takes a client's, of "
+            "session 0x%08X.",
+            uint32_t(head.kind), head.session, def_.token);
     } else if (head.kind == PacketKind::tiles) {
         readTiles(world, peer, reader);
     } else {
@@ -616,9 +614,8 @@ PeerEvent Server::eventOf(uint16_t request) noexcept {
 void Server::checkStatus(const Peer& peer, const Status& status, bool newest) const {
     const auto check = [](const char* name, uint32_t value, uint32_t low, uint32_t high) {
         if (value < low || value > high)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The packet's status has %s %u; by what was sent it is in [%u, %u].", name,
-                       value, low, high);
+            core::failData("The packet's status has %s %u; by what was sent it is in [%u, %u].",
+                           name, value, low, high);
     };
     check("request", status.request, 0, uint32_t(Request::count) - 1);
     check("newest packet", status.answered, 0, peer.sent);
@@ -628,17 +625,17 @@ void Server::checkStatus(const Peer& peer, const Status& status, bool newest) co
     const bool taking = peer.chunks.active() && status.state == peer.head.id;
     if (status.state == 0 ? status.base != 0 || status.came != 0
                           : taking && !peer.chunks.canHave(status.base, status.came))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet's status has the pieces before %u, and 0x%016llX behind them, of "
-                   "state %u, of which %u were sent.",
-                   status.base, static_cast<unsigned long long>(status.came), status.state,
-                   taking ? peer.chunks.sentEnd() : 0);
+        core::failData(
+            "The packet's status has the pieces before %u, and 0x%016llX behind them, of "
+            "state %u, of which %u were sent.",
+            status.base, static_cast<unsigned long long>(status.came), status.state,
+            taking ? peer.chunks.sentEnd() : 0);
     const Given* given = givenOf(peer, status.loaded);
     const bool same = status.loaded == peer.loaded;
     const bool older = !newest && status.loaded < peer.loaded;
     if (!same && !given && !older)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet's status has loaded state %u, which was not sent.", status.loaded);
+        core::failData("The packet's status has loaded state %u, which was not sent.",
+                       status.loaded);
     uint32_t low = 0, high = peer.sentEnd;
     if (newest && same) low = peer.acknowledged;
     if (!same && given) {
@@ -657,8 +654,8 @@ void Server::checkStatus(const Peer& peer, const Status& status, bool newest) co
         check("step", status.step, 0, step_);
     if (newest &&
         phaseAfter(same ? peer.phase : PeerPhase::follows, eventOf(status.request)) == kRefused)
-        core::fail(FW_ERROR_BAD_DATA, "The packet's status has request %u of a peer that is %s.",
-                   uint32_t(status.request), ruleOf(peer.phase).name);
+        core::failData("The packet's status has request %u of a peer that is %s.",
+                       uint32_t(status.request), ruleOf(peer.phase).name);
 }
 
 Server::Status Server::statusOf(core::Reader& reader) {
@@ -668,16 +665,15 @@ Server::Status Server::statusOf(core::Reader& reader) {
     reader.number(status.state), reader.number(status.base), reader.number(status.came);
     reader.number(status.runCount);
     if (status.runCount > kMaxRuns || reader.left() != status.runCount * 2 * sizeof(uint16_t))
-        core::fail(FW_ERROR_BAD_DATA, "The packet's status has %u runs of records in %zu bytes.",
-                   uint32_t(status.runCount), reader.left());
+        core::failData("The packet's status has %u runs of records in %zu bytes.",
+                       uint32_t(status.runCount), reader.left());
     uint32_t at = status.next;
     for (uint16_t i = 0; i < status.runCount; ++i) {
         uint16_t gap = 0, count = 0;
         reader.number(gap), reader.number(count);
         if (gap == 0 || count == 0 || uint64_t(at) + gap + count > 0xFFFFFFFFu)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "The packet's status has a run of %u records, %u behind record %u.",
-                       uint32_t(count), uint32_t(gap), at);
+            core::failData("The packet's status has a run of %u records, %u behind record %u.",
+                           uint32_t(count), uint32_t(gap), at);
         status.runs[i] = {at + gap, at + gap + count};
         at = status.runs[i].end;
     }
@@ -725,17 +721,15 @@ void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
     std::array<uint32_t, world::kMaxBlocks> hashes{};
     const size_t count = reader.left() / sizeof(uint32_t);
     if (count > hashes.size())
-        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of %zu blocks; the limit is %zu.",
-                   count, hashes.size());
+        core::failData("The packet has hashes of %zu blocks; the limit is %zu.", count,
+                       hashes.size());
     for (size_t i = 0; i < count; ++i) reader.number(hashes[i]);
     if (reader.left() != 0)
-        core::fail(FW_ERROR_BAD_DATA, "%zu bytes follow the hashes in the packet.", reader.left());
+        core::failData("%zu bytes follow the hashes in the packet.", reader.left());
     if (number == 0 || number > captureCount_)
-        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of state %u; there were %u.", number,
-                   captureCount_);
+        core::failData("The packet has hashes of state %u; there were %u.", number, captureCount_);
     if (!ruleOf(peer.phase).hasState)
-        core::fail(FW_ERROR_BAD_DATA, "The packet has hashes of a peer that is %s.",
-                   ruleOf(peer.phase).name);
+        core::failData("The packet has hashes of a peer that is %s.", ruleOf(peer.phase).name);
     const Capture* capture = captureOf(number);
     if (peer.phase != PeerPhase::waitsForTiles || peer.capture != number || !capture ||
         peer.compared == number)

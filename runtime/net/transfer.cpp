@@ -34,9 +34,8 @@ std::span<const std::byte> readChunk(core::Reader& reader, ChunkHead& head) {
     if (head.state.id == 0 || head.state.size == 0 || head.state.size > kMaxState ||
         head.bytes < kMinChunk || from >= head.state.size ||
         reader.left() != std::min<uint64_t>(head.bytes, head.state.size - from))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "The packet has piece %u, %zu of %u bytes, of a state of %u bytes.", head.index,
-                   reader.left(), uint32_t(head.bytes), head.state.size);
+        core::failData("The packet has piece %u, %zu of %u bytes, of a state of %u bytes.",
+                       head.index, reader.left(), uint32_t(head.bytes), head.state.size);
     return reader.take(reader.left());
 }
 

@@ -218,39 +218,33 @@ void checkCollider(const Collider& c) {
         return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
     };
     if (uint32_t(c.kind) > uint32_t(ColliderKind::Depth))
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "kind of the collider is %u; the last one is %u.",
-                   uint32_t(c.kind), uint32_t(ColliderKind::Depth));
+        core::refuse("kind of the collider is %u; the last one is %u.", uint32_t(c.kind),
+                     uint32_t(ColliderKind::Depth));
     if (!finite(c.place) || !finite(c.extent))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "place and extent of the collider are (%g, %g, %g) and (%g, %g, %g); they must "
-                   "be finite.",
-                   double(c.place.x), double(c.place.y), double(c.place.z), double(c.extent.x),
-                   double(c.extent.y), double(c.extent.z));
+        core::refuse(
+            "place and extent of the collider are (%g, %g, %g) and (%g, %g, %g); they must "
+            "be finite.",
+            double(c.place.x), double(c.place.y), double(c.place.z), double(c.extent.x),
+            double(c.extent.y), double(c.extent.z));
     const bool round = c.kind == ColliderKind::Sphere || c.kind == ColliderKind::Capsule ||
                        c.kind == ColliderKind::HeightField || c.kind == ColliderKind::Depth;
     if (round && !(c.radius > 0.0f && c.radius < 1e6f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "radius of the collider is %g m; it must lie in (0, 1e6).", double(c.radius));
+        core::refuse("radius of the collider is %g m; it must lie in (0, 1e6).", double(c.radius));
     if (c.kind == ColliderKind::Plane && !(glm::length(c.extent) > 1e-6f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "normal of the plane is (%g, %g, %g); it must not be zero.", double(c.extent.x),
-                   double(c.extent.y), double(c.extent.z));
+        core::refuse("normal of the plane is (%g, %g, %g); it must not be zero.",
+                     double(c.extent.x), double(c.extent.y), double(c.extent.z));
     const float turn = glm::dot(c.rotation, c.rotation);
     if (c.kind == ColliderKind::Box && !(std::abs(turn - 1.0f) < 1e-2f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "rotation of the box has the squared length %g; a unit quaternion has 1.",
-                   double(turn));
+        core::refuse("rotation of the box has the squared length %g; a unit quaternion has 1.",
+                     double(turn));
     if (c.kind == ColliderKind::Box && !(std::min({c.extent.x, c.extent.y, c.extent.z}) > 0.0f))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "half sides of the box are (%g, %g, %g) m; each must be above 0.",
-                   double(c.extent.x), double(c.extent.y), double(c.extent.z));
+        core::refuse("half sides of the box are (%g, %g, %g) m; each must be above 0.",
+                     double(c.extent.x), double(c.extent.y), double(c.extent.z));
     if (c.kind == ColliderKind::HeightField && (!c.heights || c.columns < 2 || c.rows < 2))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "the height field has %u x %u heights%s; it needs at least 2 x 2.", c.columns,
-                   c.rows, c.heights ? "" : " at a null pointer");
+        core::refuse("the height field has %u x %u heights%s; it needs at least 2 x 2.", c.columns,
+                     c.rows, c.heights ? "" : " at a null pointer");
     if (c.kind == ColliderKind::Callback && !c.distance)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "distance of the callback collider is null; it must be a function.");
+        core::refuse("distance of the callback collider is null; it must be a function.");
 }
 
 void flattenNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode> nodes) noexcept {

@@ -178,8 +178,7 @@ void setDepthPicture(DepthPicture& picture, std::span<const float> depths, uint3
     const glm::mat4 toClip = toScreen * glm::mat4(rotation);
     const glm::mat4 fromClip = glm::inverse(toClip);
     if (!finite(toView) || !finite(toClip) || !finite(fromClip))
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "view and projection of the picture of depth have no inverse.");
+        core::refuse("view and projection of the picture of depth have no inverse.");
     FW_ASSERT(depths.size() == size_t(columns) * rows, "%zu depths, %u x %u texels", depths.size(),
               columns, rows);
     picture.texels.resize(size_t(columns) * rows);

@@ -22,22 +22,19 @@ float burning(gpu::vec2 v) noexcept { return std::max(std::min(v.x, 1.0f), v.y);
 
 void checkTexel(float kelvin, float soot, uint32_t x, uint32_t y) {
     if (!(kelvin >= 0.0f && kelvin <= kMaxProfileKelvin))
-        core::fail(
-            FW_ERROR_BAD_DATA,
+        core::failData(
             "temperature of texel (%u, %u) of the fire profile is %g K; it must lie in [0, %g].", x,
             y, double(kelvin), double(kMaxProfileKelvin));
     if (!(soot >= 0.0f && soot <= kMaxProfileSoot))
-        core::fail(FW_ERROR_BAD_DATA,
-                   "soot of texel (%u, %u) of the fire profile is %g; it must lie in [0, %g].", x,
-                   y, double(soot), double(kMaxProfileSoot));
+        core::failData("soot of texel (%u, %u) of the fire profile is %g; it must lie in [0, %g].",
+                       x, y, double(soot), double(kMaxProfileSoot));
 }
 
 void checkSize(uint32_t width, uint32_t height) {
     if (width < kMinProfileSide || width > kMaxProfileSide || height < kMinProfileSide ||
         height > kMaxProfileSide)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the fire profile is %u x %u texels; each side must lie in [%u, %u].", width,
-                   height, kMinProfileSide, kMaxProfileSide);
+        core::failData("the fire profile is %u x %u texels; each side must lie in [%u, %u].", width,
+                       height, kMinProfileSide, kMaxProfileSide);
 }
 
 // `read(x, y)`: a texel of the source. Bilinear, texel centres on texel centres.
@@ -58,8 +55,7 @@ void resample(uint32_t width, uint32_t height, const Read& read, Profile& out) {
             out.texels[y * kW + x] = glm::packHalf2x16(texel);
         }
     if (!burns)
-        core::fail(
-            FW_ERROR_BAD_DATA,
+        core::failData(
             "the fire profile holds neither soot nor hot gas; at least one texel must be above 0.");
 }
 
@@ -84,8 +80,7 @@ void paintProfile(std::span<const float> kelvin, std::span<const float> soot, ui
     checkSize(width, height);
     const size_t count = size_t(width) * height;
     if (kelvin.size() != count || soot.size() != count)
-        core::fail(
-            FW_ERROR_BAD_DATA,
+        core::failData(
             "the fire profile has %zu temperatures and %zu soot values; %u x %u texels need %zu.",
             kelvin.size(), soot.size(), width, height, count);
     for (uint32_t y = 0; y < height; ++y)
@@ -128,12 +123,11 @@ std::pmr::vector<std::byte> cookProfile(const Profile& profile, std::pmr::memory
 
 void readProfile(std::span<const std::byte> bytes, Profile& profile) {
     if (bytes.size() < kHeaderBytes)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwprofile has %zu bytes; its header alone has %zu.",
-                   bytes.size(), kHeaderBytes);
+        core::failData("the .fwprofile has %zu bytes; its header alone has %zu.", bytes.size(),
+                       kHeaderBytes);
     if (wordAt(bytes, 0) != kMagic)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the .fwprofile begins with 0x%08x; it must begin with 0x%08x.",
-                   wordAt(bytes, 0), kMagic);
+        core::failData("the .fwprofile begins with 0x%08x; it must begin with 0x%08x.",
+                       wordAt(bytes, 0), kMagic);
     if (wordAt(bytes, 4) != kVersion)
         core::fail(FW_ERROR_VERSION,
                    "the .fwprofile has version %u; this library reads version %u.",
@@ -142,13 +136,13 @@ void readProfile(std::span<const std::byte> bytes, Profile& profile) {
     checkSize(width, height);
     const size_t expected = kHeaderBytes + size_t(4) * width * height;
     if (bytes.size() != expected)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwprofile has %zu bytes; %u x %u texels need %zu.",
-                   bytes.size(), width, height, expected);
+        core::failData("the .fwprofile has %zu bytes; %u x %u texels need %zu.", bytes.size(),
+                       width, height, expected);
     const uint64_t sum = wordAt(bytes, 16) | uint64_t(wordAt(bytes, 20)) << 32;
     if (sum != checksum(bytes))
-        core::fail(
-            FW_ERROR_BAD_DATA, "the .fwprofile's checksum is 0x%016llx; its content has 0x%016llx.",
-            static_cast<unsigned long long>(sum), static_cast<unsigned long long>(checksum(bytes)));
+        core::failData("the .fwprofile's checksum is 0x%016llx; its content has 0x%016llx.",
+                       static_cast<unsigned long long>(sum),
+                       static_cast<unsigned long long>(checksum(bytes)));
     const auto texel = [&](uint32_t x, uint32_t y) {
         return glm::unpackHalf2x16(wordAt(bytes, kHeaderBytes + 4 * (size_t(y) * width + x)));
     };

@@ -10,35 +10,31 @@ namespace fw::volume {
 
 void checkControlPoints(std::span<const ControlPoint> points) {
     if (points.empty() || points.size() > kMaxControlPoints)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "the curve has %zu control points; it needs 1 to %u.",
-                   points.size(), kMaxControlPoints);
+        core::refuse("the curve has %zu control points; it needs 1 to %u.", points.size(),
+                     kMaxControlPoints);
     for (size_t k = 0; k < points.size(); ++k) {
         const vec3 p = points[k].position;
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "position of control point %zu is (%g, %g, %g); it must be finite.", k,
-                       double(p.x), double(p.y), double(p.z));
+            core::refuse("position of control point %zu is (%g, %g, %g); it must be finite.", k,
+                         double(p.x), double(p.y), double(p.z));
         if (!(points[k].radius >= 0.0f && points[k].radius <= 1e4f))
-            core::fail(FW_ERROR_INVALID_ARGUMENT,
-                       "radius of control point %zu is %g m; it must lie in [0, 1e4].", k,
-                       double(points[k].radius));
+            core::refuse("radius of control point %zu is %g m; it must lie in [0, 1e4].", k,
+                         double(points[k].radius));
     }
 }
 
 void setTrack(Track& track, std::span<const float> times, std::span<const ControlPoint> points,
               uint32_t pointsPerKey, bool loops) {
-    if (times.empty())
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "the track has no keys; it needs at least 1.");
+    if (times.empty()) core::refuse("the track has no keys; it needs at least 1.");
     if (pointsPerKey == 0 || pointsPerKey > kMaxControlPoints)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "pointsPerKey is %u; it must lie in [1, %u].",
-                   pointsPerKey, kMaxControlPoints);
+        core::refuse("pointsPerKey is %u; it must lie in [1, %u].", pointsPerKey,
+                     kMaxControlPoints);
     if (points.size() != times.size() * pointsPerKey)
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "the track has %zu points; %zu keys of %u need %zu.",
-                   points.size(), times.size(), pointsPerKey, times.size() * pointsPerKey);
+        core::refuse("the track has %zu points; %zu keys of %u need %zu.", points.size(),
+                     times.size(), pointsPerKey, times.size() * pointsPerKey);
     for (size_t k = 0; k < times.size(); ++k) {
         if (!std::isfinite(times[k]) || (k > 0 && times[k] <= times[k - 1]))
-            core::fail(
-                FW_ERROR_INVALID_ARGUMENT,
+            core::refuse(
                 "time of key %zu is %g s; times must be finite and increase (before it: %g).", k,
                 double(times[k]), double(k > 0 ? times[k - 1] : 0.0f));
         checkControlPoints(points.subspan(k * pointsPerKey, pointsPerKey));

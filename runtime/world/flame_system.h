@@ -1,9 +1,9 @@
 // Volumetric fires, and what they need: profiles, flipbooks and the bodies that flames flow around.
 // Cosmetic, but for the meshes that a fire ignites: those depend on the host's numbers alone.
 #pragma once
-#include "book/book.h"
 #include "components/fire_emitter.h"
 #include "components/fire_flames.h"
+#include "flipbook/flipbook.h"
 #include "volume/depth_picture.h"
 #include "world/scene.h"
 
@@ -40,7 +40,7 @@ struct FireProfileEntry {
 };
 
 struct FlipbookEntry {
-    core::Owned<book::Book> book;
+    core::Owned<flipbook::Flipbook> book;
     uint32_t users = 0;
     bool emits = false;  // it hides nothing
 };
@@ -123,8 +123,8 @@ class FlameSystem {
     void predictAhead(components::VolumetricFire& fire) noexcept;
     uint32_t profileLayer(const FwVolumetricFireDef& def);
     void igniteObjects(Fire& fire, uint32_t now);
-    void sendFlipbooks(uint32_t slot, const book::Book* fresh);
-    uint32_t flipbookByte(FwFlipbookId id, const char* name, book::Kind kind);
+    void sendFlipbooks(uint32_t slot, const flipbook::Flipbook* fresh);
+    uint32_t flipbookByte(FwFlipbookId id, const char* name, flipbook::Kind kind);
 
     const WorldContext& context_;
     Scene& scene_;

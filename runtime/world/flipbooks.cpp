@@ -1,15 +1,15 @@
 // Flipbooks: ids, users, and the texture that the backend gets. Cosmetic.
 #include "world/flame_system.h"
 
-#include "book/own.h"
-#include "book/picture.h"
 #include "components/fire_emitter.h"
+#include "flipbook/own.h"
+#include "flipbook/picture.h"
 
 namespace fw::world {
 
 // Of all that there are and `fresh` in `slot`; without what is there already where `fresh` is null.
-void FlameSystem::sendFlipbooks(uint32_t slot, const book::Book* fresh) {
-    const book::Book* all[gpu::kMaxFlipbooks] = {};
+void FlameSystem::sendFlipbooks(uint32_t slot, const flipbook::Flipbook* fresh) {
+    const flipbook::Flipbook* all[gpu::kMaxFlipbooks] = {};
     uint32_t count = 0;
     for (uint32_t i = 0; i < gpu::kMaxFlipbooks; ++i) {
         const FlipbookEntry* entry = i < flipbooks_.slotCount() ? flipbooks_.at(i) : nullptr;
@@ -20,7 +20,7 @@ void FlameSystem::sendFlipbooks(uint32_t slot, const book::Book* fresh) {
         context_.backend.setFlipbooks(0, 0, {}, {});
         return;
     }
-    const book::Picture picture = book::packFlipbooks(all, context_.memory);
+    const flipbook::Picture picture = flipbook::packFlipbooks(all, context_.memory);
     context_.backend.setFlipbooks(picture.width, picture.height,
                                   std::as_bytes(std::span(picture.texels)), picture.words);
 }
@@ -32,7 +32,7 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
     components::checkWhole(def.flags, "FwFlipbookDef::flags", 0, 0);
     components::checkWhole(def.preset, "FwFlipbookDef::preset", 0, FW_FLIPBOOK_PRESET_COUNT - 1);
     components::checkWhole(def.reserved, "FwFlipbookDef::reserved", 0, 0);
-    auto book = core::Owned<book::Book>::make(context_.memory, context_.memory);
+    auto book = core::Owned<flipbook::Flipbook>::make(context_.memory, context_.memory);
     if (def.preset == FW_FLIPBOOK_CUSTOM) {
         if (!def.cooked)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -42,13 +42,13 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
             core::fail(FW_ERROR_INVALID_ARGUMENT, "FwFlipbookDef::cookedSize is %llu.",
                        static_cast<unsigned long long>(def.cookedSize));
         const auto* bytes = static_cast<const std::byte*>(def.cooked);
-        book::readFlipbook({bytes, size_t(def.cookedSize)}, *book);
+        flipbook::readFlipbook({bytes, size_t(def.cookedSize)}, *book);
     } else {
         if (def.cooked)
             core::fail(FW_ERROR_INVALID_ARGUMENT,
                        "FwFlipbookDef::cooked is not null, and FwFlipbookDef::preset is %u.",
                        def.preset);
-        book::readFlipbook(book::presetFlipbook(def.preset, context_.memory), *book);
+        flipbook::readFlipbook(flipbook::presetFlipbook(def.preset, context_.memory), *book);
     }
     const FwFlipbookId id = flipbooks_.create();
     try {
@@ -58,7 +58,7 @@ FwFlipbookId FlameSystem::createFlipbook(const FwFlipbookDef& def) {
         throw;
     }
     FlipbookEntry& entry = flipbooks_.get(id);
-    entry.emits = book::emitsAlone(*book);
+    entry.emits = flipbook::emitsAlone(*book);
     entry.book = std::move(book);
     return id;
 }
@@ -74,11 +74,11 @@ void FlameSystem::destroyFlipbook(FwFlipbookId id) {
     flipbooks_.destroy(id);
 }
 
-uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, book::Kind kind) {
+uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, flipbook::Kind kind) {
     if (id.index1 == 0) return 0;
     const FlipbookEntry& entry = flipbooks_.get(id);
     static constexpr const char* kNames[] = {"fire", "smoke", "sparks"};
-    const book::Kind has = entry.book->facts.kind;
+    const flipbook::Kind has = entry.book->facts.kind;
     if (has != kind)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is a flipbook of %s; it must be one of %s.", name,
                    kNames[uint32_t(has)], kNames[uint32_t(kind)]);
@@ -86,8 +86,8 @@ uint32_t FlameSystem::flipbookByte(FwFlipbookId id, const char* name, book::Kind
 }
 
 void FlameSystem::setFlipbooks(FwFlipbookId fire, FwFlipbookId smoke) {
-    const uint32_t bytes = flipbookByte(fire, "fire", book::Kind::Fire) |
-                           flipbookByte(smoke, "smoke", book::Kind::Smoke) << 8;
+    const uint32_t bytes = flipbookByte(fire, "fire", flipbook::Kind::Fire) |
+                           flipbookByte(smoke, "smoke", flipbook::Kind::Smoke) << 8;
     const FwFlipbookId now[2] = {fire, smoke};
     for (int i = 0; i < 2; ++i) {
         if (now[i].index1) ++flipbooks_.get(now[i]).users;
@@ -101,17 +101,17 @@ components::EmitterFlipbooks FlameSystem::flipbooksOf(const FwFireEmitterDef& de
     components::EmitterFlipbooks books;
     for (uint32_t i = 0, at = 0; i < 3; ++i)
         if (const uint32_t b = flipbookByte(def.fireFlipbooks[i], "FwFireEmitterDef::fireFlipbooks",
-                                            book::Kind::Fire)) {
+                                            flipbook::Kind::Fire)) {
             books.fireEmits =
                 (at == 0 || books.fireEmits) && flipbooks_.get(def.fireFlipbooks[i]).emits;
             books.fire |= b << (8 * at++);
         }
     for (uint32_t i = 0, at = 0; i < 2; ++i)
-        if (const uint32_t b = flipbookByte(def.smokeFlipbooks[i],
-                                            "FwFireEmitterDef::smokeFlipbooks", book::Kind::Smoke))
+        if (const uint32_t b = flipbookByte(
+                def.smokeFlipbooks[i], "FwFireEmitterDef::smokeFlipbooks", flipbook::Kind::Smoke))
             books.other |= b << (8 * at++);
     books.spark =
-        flipbookByte(def.sparkFlipbook, "FwFireEmitterDef::sparkFlipbook", book::Kind::Spark);
+        flipbookByte(def.sparkFlipbook, "FwFireEmitterDef::sparkFlipbook", flipbook::Kind::Spark);
     return books;
 }
 

@@ -12,10 +12,10 @@ runtime/fire|fire/|core/|shared/|flamewright/flamewright.h
 runtime/mesh|mesh/|core/|shared/|flamewright/flamewright.h
 runtime/volume|volume/|core/|shared/|flamewright/flamewright.h
 runtime/save|save/|core/
-runtime/book|book/|core/|shared/|flamewright/flamewright.h
+runtime/flipbook|flipbook/|core/|shared/|flamewright/flamewright.h
 runtime/field|field/|core/|shared/|flamewright/flamewright.h
-runtime/components|components/|core/|fire/|mesh/|volume/|field/|book/|shared/|flamewright/flamewright.h
-runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|book/|save/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
+runtime/components|components/|core/|fire/|mesh/|volume/|field/|flipbook/|shared/|flamewright/flamewright.h
+runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|flipbook/|save/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h
 runtime/net|net/|world/|components/|core/|shared/|flamewright/flamewright.h
 runtime/lod|lod/|core/|volume/|shared/|flamewright/flamewright.h
 runtime/gpu|gpu/|lod/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/
@@ -32,7 +32,7 @@ editor/app|flamewright/|common/|import/|shell/|document/|link/|output/|script/|v
 editor/document|flamewright/|import/|model/|document/
 editor/output|flamewright/|import/|model/|document/|output/|tools/
 editor/script|flamewright/|import/|model/|document/|link/|output/|tools/|script/
-editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|book/|core/|volume/|shared/
+editor/tools|flamewright/|import/|document/|link/|output/|script/|scene/|tools/|flipbook/|core/|volume/|shared/
 '
 
 sources() {

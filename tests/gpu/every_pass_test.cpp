@@ -1,13 +1,13 @@
 // Runs every pass and shader once on buffers of exact size. Under GPU-assisted validation
 // (tests/run --gpu-assisted) each access past an end is reported, which the second test proves.
 // Without it a software device would not notice.
-#include "book/own.h"
-#include "book/picture.h"
 #include "components/heat_occlusion.h"
 #include "components/particle_field.h"
 #include "components/remote.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
+#include "flipbook/own.h"
+#include "flipbook/picture.h"
 #include "gpu/passes/pass.h"
 #include "shared/front.h"
 #include "shared/spark.h"
@@ -420,12 +420,13 @@ class EveryPass : public GpuTest {
     // From here on flames and particles show flipbooks.
     void showFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-        book::Book books[3]{book::Book(memory), book::Book(memory), book::Book(memory)};
-        const book::Book* laid[] = {&books[0], &books[1], &books[2]};
+        flipbook::Flipbook books[3]{flipbook::Flipbook(memory), flipbook::Flipbook(memory),
+                                    flipbook::Flipbook(memory)};
+        const flipbook::Flipbook* laid[] = {&books[0], &books[1], &books[2]};
         const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SMOKE, FW_FLIPBOOK_SPARK};
         for (int i = 0; i < 3; ++i)
-            book::readFlipbook(book::presetFlipbook(presets[i], memory), books[i]);
-        const book::Picture picture = book::packFlipbooks(laid, memory);
+            flipbook::readFlipbook(flipbook::presetFlipbook(presets[i], memory), books[i]);
+        const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory);
         rig_->backend.setFlipbooks(picture.width, picture.height,
                                    std::as_bytes(std::span(picture.texels)), picture.words);
         rig_->backend.setTileFlipbooks(1u | 2u << 8);

@@ -1,8 +1,8 @@
 // Flipbooks drawn by a device: a particle shows its flipbook, also between two frames, and removing
 // a flipbook leaves the others unchanged. Smoke quads stand upright and take their alpha from the
 // flipbook alone, so pictures compare texel by texel.
-#include "book/book.h"
-#include "book/picture.h"
+#include "flipbook/flipbook.h"
+#include "flipbook/picture.h"
 #include "shared/particle.h"
 #include "support/own_world.h"
 
@@ -24,9 +24,9 @@ constexpr float kSmokeLife = 10;  // in lifetimes of the fire
 std::pmr::memory_resource* memory() { return std::pmr::get_default_resource(); }
 
 // A soft spot that moves 8 of 64 texels right and 6 up per frame.
-book::Book spots(book::Kind kind) {
-    book::Book made(memory());
-    book::Facts& f = made.facts;
+flipbook::Flipbook spots(flipbook::Kind kind) {
+    flipbook::Flipbook made(memory());
+    flipbook::Facts& f = made.facts;
     f.kind = kind;
     f.loops = 0;
     f.width = f.height = 64;
@@ -66,8 +66,8 @@ class FlipbookPicture : public OwnWorld {
         FwWorldDef def = fwDefaultWorldDef();
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
     }
-    FwFlipbookId create(const book::Book& made) {
-        const auto bytes = book::cookFlipbook(made, memory());
+    FwFlipbookId create(const flipbook::Flipbook& made) {
+        const auto bytes = flipbook::cookFlipbook(made, memory());
         FwFlipbookDef def = fwDefaultFlipbookDef();
         def.cooked = bytes.data();
         def.cookedSize = bytes.size();
@@ -125,7 +125,7 @@ class FlipbookPicture : public OwnWorld {
 };
 
 TEST_F(FlipbookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
-    const book::Book made = spots(book::Kind::Smoke);
+    const flipbook::Flipbook made = spots(flipbook::Kind::Smoke);
     (void)create(FW_FLIPBOOK_SPARK);  // one of several flipbooks
     const FwFlipbookId id = create(made);
     for (const float time : {0.25f, 0.375f}) {  // frame 1; halfway between frames 1 and 2
@@ -134,7 +134,7 @@ TEST_F(FlipbookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
         float most = 0;
         for (uint32_t y = 0; y < kSide; ++y)
             for (uint32_t x = 0; x < kSide; ++x) {
-                const float v = book::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
+                const float v = flipbook::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
                 drawn += double(shown.alpha[y * kSide + x] * v), said += double(v * v);
                 most = std::max(most, shown.alpha[y * kSide + x]);
             }
@@ -142,7 +142,7 @@ TEST_F(FlipbookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
         ASSERT_GT(opacity, 0.1f);
         for (uint32_t y = 0; y < kSide; ++y)
             for (uint32_t x = 0; x < kSide; ++x) {
-                const float v = book::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
+                const float v = flipbook::sampleFlipbook(made, time, uvOf(shown, x, y)).z;
                 worst = std::max(worst, std::abs(double(shown.alpha[y * kSide + x] / opacity - v)));
             }
         // Peaks at least a spot's width apart.
@@ -170,7 +170,7 @@ TEST_F(FlipbookPicture, ParticlesShowTheirFlipbookOnAndBetweenFrames) {
 // Stripes of two texels at four texels per pixel show their mean at any pixel offset. Sampling
 // level 0 would show every other stripe or none.
 TEST_F(FlipbookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
-    book::Book striped = spots(book::Kind::Smoke);
+    flipbook::Flipbook striped = spots(flipbook::Kind::Smoke);
     for (size_t i = 0; i < striped.texels.size() / 4; ++i)
         striped.texels[4 * i + 2] = i % 64 / 2 % 2 ? 240 : 0;
     for (uint8_t& motion : striped.motion) motion = 128;
@@ -197,7 +197,7 @@ TEST_F(FlipbookPicture, DistantParticlesShowTheMeanWithoutShimmer) {
 }
 
 TEST_F(FlipbookPicture, FlipbooksMayBeCreatedAndDestroyed) {
-    const book::Book made = spots(book::Kind::Smoke);
+    const flipbook::Flipbook made = spots(flipbook::Kind::Smoke);
     const FwFlipbookId roll = create(FW_FLIPBOOK_ROLL), id = create(made);
     const Shown before = smokeAt(id, 0.25f);
     ASSERT_EQ(FW_OK, fwWorld_DestroyFlipbook(world_, roll));  // the atlas is rebuilt
@@ -243,8 +243,8 @@ TEST_F(FlipbookPicture, LooksTheSameBesideEmittersWithoutFlipbooks) {
 }
 
 // A soft spot of fire that covers nothing; `hides`: it covers as much as it glows.
-book::Book glow(float hides) {
-    book::Book made = spots(book::Kind::Fire);
+flipbook::Flipbook glow(float hides) {
+    flipbook::Flipbook made = spots(flipbook::Kind::Fire);
     for (size_t i = 0; i < made.texels.size(); i += 4) {
         const uint8_t v = made.texels[i + 2];
         made.texels[i + 1] = v;
@@ -257,7 +257,7 @@ book::Book glow(float hides) {
 // sorted; its order in a frame is the order of creation. Fire that covers is sorted and not
 // additive.
 TEST_F(FlipbookPicture, AdditiveFireLooksTheSameInAnyOrder) {
-    const auto picture = [&](const book::Book& made, bool backwards) {
+    const auto picture = [&](const flipbook::Flipbook& made, bool backwards) {
         fwDestroyWorld(world_);  // eddies depend on its clock
         world_ = nullptr;
         const FwWorldDef fresh = fwDefaultWorldDef();
@@ -286,7 +286,7 @@ TEST_F(FlipbookPicture, AdditiveFireLooksTheSameInAnyOrder) {
         const float black[4] = {0, 0, 0, 1};
         return shoot(world_, view, kSide, kSide, black);
     };
-    const book::Book alone = glow(0);
+    const flipbook::Flipbook alone = glow(0);
     const std::vector<uint8_t> one = picture(alone, false), other = picture(alone, true);
     double shown = 0, apart = 0;
     int most = 0, lit = 0;

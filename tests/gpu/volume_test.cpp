@@ -1,10 +1,10 @@
 // Volumetric flames on a device against the same maths marched on the CPU ray by ray, and the
 // allocations of worlds with fires.
-#include "book/own.h"
-#include "book/picture.h"
 #include "components/particle_field.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
+#include "flipbook/own.h"
+#include "flipbook/picture.h"
 #include "lod/impostor_atlas.h"
 #include "reference/flame_march.h"
 #include "shared/spark.h"
@@ -592,13 +592,13 @@ class Volume : public GpuTest {
     // Flipbooks for emitters: a flame, a roll and a puff.
     void packFlipbooks() {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
-        std::vector<book::Book> books;
+        std::vector<flipbook::Flipbook> books;
         for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_ROLL, FW_FLIPBOOK_PUFF}) {
             books.emplace_back(memory);
-            book::readFlipbook(book::presetFlipbook(preset, memory), books.back());
+            flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory), books.back());
         }
-        const book::Book* const laid[] = {&books[0], &books[1], &books[2]};
-        const book::Picture pages = book::packFlipbooks(laid, memory);
+        const flipbook::Flipbook* const laid[] = {&books[0], &books[1], &books[2]};
+        const flipbook::Picture pages = flipbook::packFlipbooks(laid, memory);
         rig_->backend.setFlipbooks(pages.width, pages.height,
                                    std::as_bytes(std::span(pages.texels)), pages.words);
     }

@@ -1,6 +1,6 @@
 // Files of tests/fixtures load and hold the values with which they were written.
-#include "book/book.h"
 #include "core/hash.h"
+#include "flipbook/flipbook.h"
 #include "mesh/bake.h"
 #include "volume/profile.h"
 #include "world/played.h"
@@ -34,9 +34,9 @@ TEST(FileFixtures, FireProfileLoads) {
 }
 
 TEST(FileFixtures, FlipbookLoads) {
-    book::Book book(std::pmr::get_default_resource());
-    book::readFlipbook(contentOf("small.fwbook"), book);
-    EXPECT_EQ(book::Kind::Fire, book.facts.kind);
+    flipbook::Flipbook book(std::pmr::get_default_resource());
+    flipbook::readFlipbook(contentOf("small.fwbook"), book);
+    EXPECT_EQ(flipbook::Kind::Fire, book.facts.kind);
     EXPECT_EQ(1u, book.facts.loops);
     EXPECT_EQ(16u, book.facts.width);
     EXPECT_EQ(4u, book.facts.frames);

@@ -1,11 +1,11 @@
 // Flipbooks: interpolated frames show one moving image, loops have no seam, invalid files are
 // refused by name, an interrupted bake resumes.
-#include "book/book.h"
-#include "book/own.h"
-#include "book/picture.h"
+#include "flipbook/flipbook.h"
 #include "core/error.h"
 #include "finish.h"
 #include "flamewright/flamewright.h"
+#include "flipbook/own.h"
+#include "flipbook/picture.h"
 #include "store.h"
 
 #include <gtest/gtest.h>
@@ -39,8 +39,8 @@ Frame spotAt(uint32_t side, float x, float y) {
     return frame;
 }
 
-book::Book spots(uint32_t side, vec2 first, vec2 by) {
-    book::Facts facts;
+flipbook::Flipbook spots(uint32_t side, vec2 first, vec2 by) {
+    flipbook::Facts facts;
     facts.width = facts.height = side;
     facts.motionWidth = facts.motionHeight = side / 2;
     facts.frames = 4;
@@ -53,7 +53,7 @@ book::Book spots(uint32_t side, vec2 first, vec2 by) {
 
 TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
     for (const vec2 by : {vec2(8, 0), vec2(0, 8), vec2(-5, 6)}) {
-        const book::Book made = spots(64, vec2(by.x < 0 ? 44 : 20, 20), by);
+        const flipbook::Flipbook made = spots(64, vec2(by.x < 0 ? 44 : 20, 20), by);
         constexpr int kSide = 64;
         const float time = 1.5f / 3;  // halfway between frames 1 and 2
         double sum = 0, x = 0, y = 0;
@@ -61,7 +61,7 @@ TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
         for (int j = 0; j < kSide; ++j)
             for (int i = 0; i < kSide; ++i) {
                 const vec2 uv((float(i) + 0.5f) / kSide, (float(j) + 0.5f) / kSide);
-                seen.push_back(book::sampleFlipbook(made, time, uv).y);
+                seen.push_back(flipbook::sampleFlipbook(made, time, uv).y);
                 sum += double(seen.back());
                 x += double(seen.back()) * (i + 0.5), y += double(seen.back()) * (j + 0.5);
             }
@@ -87,7 +87,7 @@ TEST(Flipbook, MotionVectorsInterpolateOneBlob) {
     }
 }
 
-book::Book smallBook(std::string_view scene, uint32_t side, uint32_t frames) {
+flipbook::Flipbook smallBook(std::string_view scene, uint32_t side, uint32_t frames) {
     BakeDef def;
     def.scene = scene;
     EXPECT_TRUE(fwtools::sceneKind(scene, def.facts));
@@ -102,8 +102,8 @@ book::Book smallBook(std::string_view scene, uint32_t side, uint32_t frames) {
     return fwtools::finishFlipbook(def.facts, rendered, 1, memory());
 }
 
-double seamOf(const book::Book& made, double& others, double& most) {
-    const book::Facts& f = made.facts;
+double seamOf(const flipbook::Flipbook& made, double& others, double& most) {
+    const flipbook::Facts& f = made.facts;
     const size_t layer = size_t(4) * f.width * f.height;
     const auto difference = [&](uint32_t a, uint32_t b) {
         double sum = 0;
@@ -121,16 +121,16 @@ double seamOf(const book::Book& made, double& others, double& most) {
 }
 
 TEST(Flipbook, IsAdditiveIfNoTexelOccludes) {
-    book::Book book(std::pmr::get_default_resource());
+    flipbook::Flipbook book(std::pmr::get_default_resource());
     book.texels = {10, 20, 0, 30, 40, 50, 0, 60};
-    EXPECT_TRUE(book::emitsAlone(book));
+    EXPECT_TRUE(flipbook::emitsAlone(book));
     book.texels[6] = 1;
-    EXPECT_FALSE(book::emitsAlone(book));
+    EXPECT_FALSE(flipbook::emitsAlone(book));
 }
 
 TEST(Flipbook, LoopsWithoutASeam) {
     constexpr uint32_t kFrames = 20;
-    const book::Book made = smallBook("campfire", 24, kFrames);
+    const flipbook::Flipbook made = smallBook("campfire", 24, kFrames);
     double others = 0, most = 0;
     const double seam = seamOf(made, others, most);
     std::printf("[   FIGURE ] last frame to first: %.2f; others %.2f, at most %.2f of 255\n", seam,
@@ -144,13 +144,13 @@ TEST(Flipbook, LoopsWithoutASeam) {
 TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
     size_t all = 0;
     for (uint32_t preset = 1; preset < FW_FLIPBOOK_PRESET_COUNT; ++preset) {
-        const auto bytes = book::presetFlipbook(preset, memory());
+        const auto bytes = flipbook::presetFlipbook(preset, memory());
         all += bytes.size();
-        book::Book made(memory());
-        ASSERT_NO_THROW(book::readFlipbook(bytes, made)) << preset;
-        const book::Kind kind = preset <= FW_FLIPBOOK_PUFF   ? book::Kind::Fire
-                                : preset <= FW_FLIPBOOK_HAZE ? book::Kind::Smoke
-                                                             : book::Kind::Spark;
+        flipbook::Flipbook made(memory());
+        ASSERT_NO_THROW(flipbook::readFlipbook(bytes, made)) << preset;
+        const flipbook::Kind kind = preset <= FW_FLIPBOOK_PUFF   ? flipbook::Kind::Fire
+                                    : preset <= FW_FLIPBOOK_HAZE ? flipbook::Kind::Smoke
+                                                                 : flipbook::Kind::Spark;
         EXPECT_EQ(kind, made.facts.kind) << preset;
         EXPECT_EQ(preset == FW_FLIPBOOK_FLAME ? 1u : 0u, made.facts.loops) << preset;
         if (!made.facts.loops) continue;
@@ -166,8 +166,8 @@ TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
                     const float u = (float(x) + 0.5f) / float(made.facts.width);
                     const float v = (float(y) + 0.5f) / float(made.facts.height);
                     const float step = 1.0f / float(made.facts.height);
-                    ASSERT_LT(book::frameAt(made, i, vec2(u, v)).z -
-                                  book::frameAt(made, i, vec2(u, v - step)).z,
+                    ASSERT_LT(flipbook::frameAt(made, i, vec2(u, v)).z -
+                                  flipbook::frameAt(made, i, vec2(u, v - step)).z,
                               0.45f)
                         << i << " " << x << " " << y;
                 }
@@ -177,18 +177,18 @@ TEST(Flipbook, BuiltInFlipbooksMatchTheirHeader) {
 
 // Every texel is where its record says, no two overlap, and frames have an empty border.
 TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
-    std::vector<book::Book> books;
+    std::vector<flipbook::Flipbook> books;
     for (const uint32_t preset : {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SPARK, FW_FLIPBOOK_HAZE}) {
         books.emplace_back(memory());
-        book::readFlipbook(book::presetFlipbook(preset, memory()), books.back());
+        flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory()), books.back());
     }
-    const book::Book* const laid[] = {&books[0], nullptr, &books[1], &books[2]};
-    const book::Picture picture = book::packFlipbooks(laid, memory());
-    EXPECT_LE(picture.width, book::kMaxPicture);
+    const flipbook::Flipbook* const laid[] = {&books[0], nullptr, &books[1], &books[2]};
+    const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory());
+    EXPECT_LE(picture.width, flipbook::kMaxPicture);
     std::vector<uint8_t> taken(size_t(picture.width) * picture.height);
     for (uint32_t slot = 0; slot < 4; ++slot) {
         if (!laid[slot]) continue;
-        const book::Facts& f = laid[slot]->facts;
+        const flipbook::Facts& f = laid[slot]->facts;
         gpu::FlipbookRecord record;
         std::memcpy(&record, picture.words.data() + slot * gpu::kFlipbookRecordWords,
                     sizeof record);
@@ -220,10 +220,10 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
 // Each texel of a level is the mean of four of the level before. Borders are empty and no two
 // frames or levels share a texel, so no lookup bleeds.
 TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
-    book::Book one(memory());
-    book::readFlipbook(book::presetFlipbook(FW_FLIPBOOK_FLAME, memory()), one);
-    const book::Book* const laid[] = {&one};
-    const book::Picture picture = book::packFlipbooks(laid, memory());
+    flipbook::Flipbook one(memory());
+    flipbook::readFlipbook(flipbook::presetFlipbook(FW_FLIPBOOK_FLAME, memory()), one);
+    const flipbook::Flipbook* const laid[] = {&one};
+    const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory());
     gpu::FlipbookRecord record;
     std::memcpy(&record, picture.words.data(), sizeof record);
     const uint32_t ats[] = {record.at, record.at1, record.at2, record.at3};
@@ -265,13 +265,13 @@ TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
 }
 
 TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
-    book::Book huge(memory());
+    flipbook::Flipbook huge(memory());
     huge.facts.width = huge.facts.height = 512;
     huge.facts.motionWidth = huge.facts.motionHeight = 512;
     huge.facts.frames = 256;
-    const book::Book* const laid[] = {&huge};
+    const flipbook::Flipbook* const laid[] = {&huge};
     try {
-        (void)book::packFlipbooks(laid, memory());
+        (void)flipbook::packFlipbooks(laid, memory());
         FAIL();
     } catch (const core::Error& error) {
         EXPECT_EQ(FW_ERROR_OUT_OF_MEMORY, error.result);
@@ -280,20 +280,20 @@ TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
 }
 
 TEST(Flipbook, ShowsTheStatedHeightAndLight) {
-    const book::Book fire = smallBook("campfire", 24, 4);
-    EXPECT_GT(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).y, 0.5f);
-    EXPECT_GT(gpu::flipbookKelvin(book::frameAt(fire, 0, vec2(0.5f, 0.25f)).x), 1200);
+    const flipbook::Flipbook fire = smallBook("campfire", 24, 4);
+    EXPECT_GT(flipbook::frameAt(fire, 0, vec2(0.5f, 0.25f)).y, 0.5f);
+    EXPECT_GT(gpu::flipbookKelvin(flipbook::frameAt(fire, 0, vec2(0.5f, 0.25f)).x), 1200);
     for (const char* scene : {"roll", "smoke"}) {
-        const book::Book puff = smallBook(scene, 16, 3);
-        const bool smoke = puff.facts.kind == book::Kind::Smoke;
+        const flipbook::Flipbook puff = smallBook(scene, 16, 3);
+        const bool smoke = puff.facts.kind == flipbook::Kind::Smoke;
         for (uint32_t i = 0; i < 3; ++i) {
-            EXPECT_GT(book::frameAt(puff, i, vec2(0.5f)).z, 0.2f) << scene << i;
+            EXPECT_GT(flipbook::frameAt(puff, i, vec2(0.5f)).z, 0.2f) << scene << i;
             if (smoke) {
-                EXPECT_EQ(book::frameAt(puff, i, vec2(0.5f)).y, 0) << i;
+                EXPECT_EQ(flipbook::frameAt(puff, i, vec2(0.5f)).y, 0) << i;
             }
             for (const float s : {0.03f, 0.97f}) {
-                EXPECT_LT(book::frameAt(puff, i, vec2(s, 0.5f)).z, 0.02f) << scene << i;
-                EXPECT_LT(book::frameAt(puff, i, vec2(0.5f, s)).z, 0.02f) << scene << i;
+                EXPECT_LT(flipbook::frameAt(puff, i, vec2(s, 0.5f)).z, 0.02f) << scene << i;
+                EXPECT_LT(flipbook::frameAt(puff, i, vec2(0.5f, s)).z, 0.02f) << scene << i;
             }
             EXPECT_LE(puff.rects[i].right, 16);
             EXPECT_LT(puff.rects[i].left, puff.rects[i].right);
@@ -302,10 +302,10 @@ TEST(Flipbook, ShowsTheStatedHeightAndLight) {
 }
 
 std::string saidOf(std::span<const std::byte> bytes) {
-    book::Book book(memory());
+    flipbook::Flipbook book(memory());
     book.facts.frames = 77;
     try {
-        book::readFlipbook(bytes, book);
+        flipbook::readFlipbook(bytes, book);
     } catch (const core::Error& error) {
         EXPECT_EQ(book.facts.frames, 77u);
         return error.message;
@@ -314,11 +314,11 @@ std::string saidOf(std::span<const std::byte> bytes) {
 }
 
 TEST(Flipbook, RefusesBadFilesByName) {
-    const book::Book made = spots(16, vec2(5, 5), vec2(1, 1));
-    const auto whole = book::cookFlipbook(made, memory());
+    const flipbook::Flipbook made = spots(16, vec2(5, 5), vec2(1, 1));
+    const auto whole = flipbook::cookFlipbook(made, memory());
     EXPECT_EQ(saidOf(whole), "");
-    book::Book again(memory());
-    book::readFlipbook(whole, again);
+    flipbook::Flipbook again(memory());
+    flipbook::readFlipbook(whole, again);
     EXPECT_EQ(again.texels, made.texels);
     EXPECT_EQ(again.motion, made.motion);
     EXPECT_EQ(again.facts.maxMotion, made.facts.maxMotion);

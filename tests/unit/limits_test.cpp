@@ -2,12 +2,12 @@
 // is written instead of compared.
 #include "host_limits.h"
 
-#include "book/book.h"
 #include "components/lights.h"
 #include "components/pose.h"
 #include "components/wind_grid.h"
 #include "components/wind_zone.h"
 #include "flamewright/flamewright_vulkan.h"
+#include "flipbook/flipbook.h"
 
 #include <gtest/gtest.h>
 
@@ -28,8 +28,8 @@ static_assert(limits::kWindZones == components::kMaxWindZones &&
               limits::kLights == components::kMostLights &&
               limits::kFirePower == uint32_t(components::kMaxPower) &&
               limits::kStretch == uint32_t(components::kMaxStretch) &&
-              limits::kFlipbookSide == book::kMaxSide &&
-              limits::kFlipbookFrames == book::kMaxFrames &&
+              limits::kFlipbookSide == flipbook::kMaxSide &&
+              limits::kFlipbookFrames == flipbook::kMaxFrames &&
               limits::kPreparedViews == FW_MAX_VIEWS);
 
 std::string page() {

@@ -309,7 +309,7 @@ TEST(SheetImport, FramesRunRightThenDown) {
     // The motion between frames is found: 2 texels of 32 per frame.
     const auto book =
         fwtools::finishFlipbook(def.facts, frames, 1, std::pmr::get_default_resource());
-    const auto motion = fw::book::motionAt(book, 2, {(12.5f) / 32, 1 - 12.5f / 32});
+    const auto motion = fw::flipbook::motionAt(book, 2, {(12.5f) / 32, 1 - 12.5f / 32});
     EXPECT_NEAR(motion.x, 2.0f / 32, 0.3f / 32);
     EXPECT_NEAR(motion.y, 0.0f, 0.3f / 32);
 }
@@ -317,13 +317,13 @@ TEST(SheetImport, FramesRunRightThenDown) {
 TEST(SheetImport, HueSetsTemperatureAndAlphaSmoke) {
     std::vector<fwtools::Frame> frames;
     std::string error;
-    const auto middle = [&](const FloatPicture& picture, fw::book::Kind kind) {
+    const auto middle = [&](const FloatPicture& picture, fw::flipbook::Kind kind) {
         fwtools::SheetDef def = grid4x2();
         def.facts.kind = kind;
         EXPECT_TRUE(fwtools::framesOfSheet(picture, def, frames, error)) << error;
         return frames[0].texels[(31 - 12) * 32 + 8];
     };
-    using enum fw::book::Kind;
+    using enum fw::flipbook::Kind;
     EXPECT_NEAR(fw::gpu::flipbookKelvin(middle(discs({0.5f, 0, 0}, false), Fire).x), 1370.0f, 1.0f);
     EXPECT_NEAR(middle(discs({0.5f, 0, 0}, false), Fire).y, 0.5f, 1e-5f);
     // Integer formats are sRGB: 0.735 is half the light.
@@ -410,7 +410,7 @@ TEST(SheetImport, DamagedSheetsAreRefusedOrValid) {
         def.rows = below(8) ? rows : uint32_t(random());
         def.side = below(4) ? 0 : below(8) ? below(64) : uint32_t(random());
         def.facts.frames = below(4) ? 0 : below(16);
-        def.facts.kind = fw::book::Kind(below(3));
+        def.facts.kind = fw::flipbook::Kind(below(3));
         std::vector<fwtools::Frame> frames;
         std::string error;
         if (!fwtools::framesOfSheet(picture, def, frames, error)) {

@@ -146,7 +146,7 @@ void spread(std::vector<vec2>& motion, std::vector<float> known, int width, int 
     }
 }
 
-void fade(const book::Facts& facts, std::vector<Frame>& frames) {
+void fade(const flipbook::Facts& facts, std::vector<Frame>& frames) {
     const auto extra = uint32_t(frames.size()) - facts.frames;
     for (uint32_t i = 0; i < extra; ++i) {
         // Frame 0 blends from the frame that follows the last one.
@@ -178,7 +178,7 @@ void startAtSmallestChange(std::vector<Frame>& frames) {
 
 uint8_t byteOf(float value) { return uint8_t(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f); }
 
-book::Rect rectOf(const Frame& frame, uint32_t width, uint32_t height, book::Rect rect) {
+flipbook::Rect rectOf(const Frame& frame, uint32_t width, uint32_t height, flipbook::Rect rect) {
     for (uint32_t y = 0; y < height; ++y)
         for (uint32_t x = 0; x < width; ++x) {
             const vec4& t = frame.texels[size_t(y) * width + x];
@@ -257,12 +257,12 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
     return motion;
 }
 
-book::Book finishFlipbook(const book::Facts& facts, std::vector<Frame>& frames, uint32_t threads,
-                          std::pmr::memory_resource* memory) {
+flipbook::Flipbook finishFlipbook(const flipbook::Facts& facts, std::vector<Frame>& frames,
+                                  uint32_t threads, std::pmr::memory_resource* memory) {
     fade(facts, frames);
     if (facts.loops != 0) startAtSmallestChange(frames);
     for (Frame& frame : frames) extendTemperatures(frame, facts.width, facts.height);
-    book::Book made(memory);
+    flipbook::Flipbook made(memory);
     made.facts = facts;
     const uint32_t w = facts.width, h = facts.height, mw = facts.motionWidth,
                    mh = facts.motionHeight;
@@ -298,29 +298,29 @@ book::Book finishFlipbook(const book::Facts& facts, std::vector<Frame>& frames, 
             for (int c = 0; c < 2; ++c)
                 made.motion.push_back(uint8_t(128.5f + 127 * std::clamp(m[c] / most, -1.0f, 1.0f)));
         const uint32_t next = i + 1 < facts.frames ? i + 1 : facts.loops ? 0 : i;
-        const book::Rect none{uint16_t(w), uint16_t(h), 0, 0};
-        book::Rect rect = rectOf(frames[next], w, h, rectOf(frames[i], w, h, none));
+        const flipbook::Rect none{uint16_t(w), uint16_t(h), 0, 0};
+        flipbook::Rect rect = rectOf(frames[next], w, h, rectOf(frames[i], w, h, none));
         if (rect.left > rect.right) rect = {};
         made.rects.push_back(rect);
     }
     return made;
 }
 
-Picture makeSheet(const std::vector<book::Book>& flipbooks) {
+Picture makeSheet(const std::vector<flipbook::Flipbook>& flipbooks) {
     constexpr uint32_t kShown = 8, kSide = 144;
     Picture picture;
     picture.width = kShown * kSide;
     picture.height = uint32_t(flipbooks.size()) * kSide;
     picture.rgb.resize(size_t(3) * picture.width * picture.height);
     for (size_t row = 0; row < flipbooks.size(); ++row) {
-        const book::Book& book = flipbooks[row];
-        const bool smoke = book.facts.kind == book::Kind::Smoke;
+        const flipbook::Flipbook& book = flipbooks[row];
+        const bool smoke = book.facts.kind == flipbook::Kind::Smoke;
         for (uint32_t k = 0; k < kShown; ++k)
             for (uint32_t y = 0; y < kSide; ++y)
                 for (uint32_t x = 0; x < kSide; ++x) {
                     const vec2 uv((float(x) + 0.5f) / kSide, 1 - (float(y) + 0.5f) / kSide);
                     const float time = (float(k) + 0.37f) / float(kShown);
-                    const vec4 t = book::sampleFlipbook(book, time, uv);
+                    const vec4 t = flipbook::sampleFlipbook(book, time, uv);
                     // Burnt-out parts cool.
                     const float cooled = book.facts.loops ? 0.0f : 160.0f * time;
                     vec3 light =

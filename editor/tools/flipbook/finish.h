@@ -16,14 +16,14 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
                              uint32_t motionWidth, uint32_t motionHeight);
 
 // `frames`: all frames of the scene. For a loop, those past its end fade into its start.
-fw::book::Book finishFlipbook(const fw::book::Facts& facts, std::vector<Frame>& frames,
-                              uint32_t threads, std::pmr::memory_resource* memory);
+fw::flipbook::Flipbook finishFlipbook(const fw::flipbook::Facts& facts, std::vector<Frame>& frames,
+                                      uint32_t threads, std::pmr::memory_resource* memory);
 
-// Images, sRGB bytes, top row first: eight frames of a flipbook in a row, over dark grey or sky.
+// Images, sRGB bytes, top row first: eight frames of a book in a row, over dark grey or sky.
 struct Picture {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
 };
-Picture makeSheet(const std::vector<fw::book::Book>& flipbooks);
+Picture makeSheet(const std::vector<fw::flipbook::Flipbook>& flipbooks);
 
 }  // namespace fwtools

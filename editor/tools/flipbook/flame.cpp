@@ -1,7 +1,7 @@
 // Flipbooks of a volumetric flame. It burns for slightly more than one loop. Each frame stores its
 // curve, and rays from the side sample it.
 #include "finish.h"
-#include "flame_flipbook.h"
+#include "flame_book.h"
 
 #include "core/error.h"
 #include "volume/flame.h"
@@ -50,7 +50,7 @@ class FlameScene final : public Scene {
         flame.power = preset.power;
         flame.diameter = preset.diameter;
         flame.seed = def.seed;
-        const book::Facts& f = def.facts;
+        const flipbook::Facts& f = def.facts;
         faded_ = f.frames / 4;
         volume::Flame now;
         const volume::FlameAir air;
@@ -65,7 +65,7 @@ class FlameScene final : public Scene {
     [[nodiscard]] uint32_t frames() const override { return uint32_t(flames_.size()); }
 
     void render(uint32_t frame, Frame& out) const override {
-        const book::Facts& f = def_.facts;
+        const flipbook::Facts& f = def_.facts;
         const RecordedFlame& flame = flames_[frame];
         out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
         out.motion.clear();
@@ -163,7 +163,7 @@ std::unique_ptr<Scene> makeFlame(const BakeDef& def) {
 
 namespace {
 
-void readShape(const FlameFlipbookDef& def, const volume::FlamePresetDef& preset,
+void readShape(const FlameBookDef& def, const volume::FlamePresetDef& preset,
                volume::Profile& profile) {
     if (!def.cooked.empty()) {
         volume::readProfile(def.cooked, profile);
@@ -178,8 +178,8 @@ void readShape(const FlameFlipbookDef& def, const volume::FlamePresetDef& preset
 
 }  // namespace
 
-bool bakeFlameFlipbook(const FlameFlipbookDef& def, const std::function<bool(float)>& progress,
-                       std::vector<std::byte>& bytes, std::string& error) {
+bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& progress,
+                   std::vector<std::byte>& bytes, std::string& error) {
     error.clear();
     try {
         volume::FlamePresetDef preset =
@@ -191,7 +191,7 @@ bool bakeFlameFlipbook(const FlameFlipbookDef& def, const std::function<bool(flo
         BakeDef bake;
         bake.seed = def.seed;
         bake.samples = def.samples;
-        book::Facts& facts = bake.facts;
+        flipbook::Facts& facts = bake.facts;
         facts.frames = def.frames;
         facts.width = facts.height = def.side;
         facts.motionWidth = facts.motionHeight = std::max(def.side / 2, 4u);
@@ -208,9 +208,9 @@ bool bakeFlameFlipbook(const FlameFlipbookDef& def, const std::function<bool(flo
             stopped = stopped || !progress(float(++done) / float(frames.size()));
         });
         if (stopped) return false;
-        const book::Book made =
+        const flipbook::Flipbook made =
             finishFlipbook(facts, frames, def.threads, std::pmr::get_default_resource());
-        const auto cooked = book::cookFlipbook(made, std::pmr::get_default_resource());
+        const auto cooked = flipbook::cookFlipbook(made, std::pmr::get_default_resource());
         bytes.assign(cooked.begin(), cooked.end());
         return true;
     } catch (const core::Error& failure) {

@@ -25,7 +25,7 @@ using namespace fwtools;
 constexpr const char* kHelp =
     "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a flipbook\n"
     "flamewright_flipbook --import SHEET OUT.fwbook [options]   imports an artist's sheet\n"
-    "flamewright_flipbook --sheet OUT.png FLIPBOOK...      a picture with eight frames of each\n"
+    "flamewright_flipbook --sheet OUT.png BOOK...      a picture with eight frames of each\n"
     "  --frames N      [2, 256], default 64\n"
     "  --size N        texels per side, [8, 512], default 128\n"
     "  --seconds S     duration, (0, 600], default: 2 for loops, 1 for one-shots\n"
@@ -82,11 +82,11 @@ bool grid(const std::string& text, SheetDef& def) {
            number("--grid's rows", text.substr(by + 1).c_str(), 1, 256, def.rows);
 }
 
-bool kindOf(const std::string& text, book::Kind& kind) {
-    constexpr const char* kNames[book::kKinds] = {"fire", "smoke", "spark"};
-    for (uint32_t i = 0; i < book::kKinds; ++i)
+bool kindOf(const std::string& text, flipbook::Kind& kind) {
+    constexpr const char* kNames[flipbook::kKinds] = {"fire", "smoke", "spark"};
+    for (uint32_t i = 0; i < flipbook::kKinds; ++i)
         if (text == kNames[i]) {
-            kind = book::Kind(i);
+            kind = flipbook::Kind(i);
             return true;
         }
     (void)refuse("--kind is " + text + "; it must be fire, smoke or spark");
@@ -95,7 +95,7 @@ bool kindOf(const std::string& text, book::Kind& kind) {
 
 // Returns 0 to continue, otherwise the exit status.
 int parse(int count, char** words, Options& options) {
-    book::Facts& facts = options.bake.facts;
+    flipbook::Facts& facts = options.bake.facts;
     uint32_t side = 0;
     facts.frames = 0;
     std::vector<std::string> plain;
@@ -106,8 +106,8 @@ int parse(int count, char** words, Options& options) {
             const char* name;
             uint32_t low, high;
             uint32_t& value;
-        } numbers[] = {{"--frames", 2, book::kMaxFrames, facts.frames},
-                       {"--size", book::kMinSide, book::kMaxSide, side},
+        } numbers[] = {{"--frames", 2, flipbook::kMaxFrames, facts.frames},
+                       {"--size", flipbook::kMinSide, flipbook::kMaxSide, side},
                        {"--samples", 1, 16, options.bake.samples},
                        {"--seed", 1, 1000000, options.bake.seed},
                        {"--threads", 1, 256, options.threads}};
@@ -156,12 +156,12 @@ int parse(int count, char** words, Options& options) {
     if (!options.picture.empty()) {
         options.grid.side = side;
         options.grid.facts.frames = facts.frames;
-        if (plain.size() != 1) return refuse("--import needs a sheet and a flipbook; see --help");
+        if (plain.size() != 1) return refuse("--import needs a sheet and a book; see --help");
         options.out = plain[0];
         return 0;
     }
-    if (facts.frames == 0) facts.frames = book::Facts().frames;
-    if (side == 0) side = book::Facts().width;
+    if (facts.frames == 0) facts.frames = flipbook::Facts().frames;
+    if (side == 0) side = flipbook::Facts().width;
     facts.width = facts.height = side;
     facts.motionWidth = facts.motionHeight = std::max(side / 2, 4u);
     if (plain.size() != 2) return refuse("a scene and a file are needed; see --help");
@@ -171,7 +171,7 @@ int parse(int count, char** words, Options& options) {
 }
 
 uint64_t settingsOf(const Options& o) {
-    const book::Facts& f = o.bake.facts;
+    const flipbook::Facts& f = o.bake.facts;
     uint64_t hash = 1469598103934665603ull;
     const auto add = [&](const void* data, size_t bytes) {
         for (size_t i = 0; i < bytes; ++i)
@@ -211,10 +211,10 @@ class Progress {
 };
 
 // Finishes the frames and writes the file. Returns the exit status.
-int finish(const Options& options, const book::Facts& facts, std::vector<Frame>& frames) {
-    const book::Book made =
+int finish(const Options& options, const flipbook::Facts& facts, std::vector<Frame>& frames) {
+    const flipbook::Flipbook made =
         finishFlipbook(facts, frames, options.threads, std::pmr::get_default_resource());
-    const auto bytes = book::cookFlipbook(made, std::pmr::get_default_resource());
+    const auto bytes = flipbook::cookFlipbook(made, std::pmr::get_default_resource());
     const std::string error = replaceFile(options.out, bytes);
     if (!error.empty()) return refuse(error);
     std::printf("%s: %u frames of %u x %u, %s, motion up to %.3f of the frame, %.1f MiB\n",
@@ -225,7 +225,7 @@ int finish(const Options& options, const book::Facts& facts, std::vector<Frame>&
 }
 
 int bake(Options& options) {
-    book::Facts& facts = options.bake.facts;
+    flipbook::Facts& facts = options.bake.facts;
     if (!sceneKind(options.scene, facts))
         return refuse("there is no scene " + options.scene + "; see --help");
     if (options.seconds > 0) facts.seconds = options.seconds;
@@ -270,14 +270,14 @@ int import(const Options& options) {
 }
 
 int sheet(const Options& options) {
-    std::vector<book::Book> flipbooks;
+    std::vector<flipbook::Flipbook> flipbooks;
     for (const std::string& path : options.flipbooks) {
         std::vector<std::byte> bytes;
         const std::string error = readWhole(path, bytes);
         if (!error.empty()) return refuse(error);
         flipbooks.emplace_back(std::pmr::get_default_resource());
         try {
-            book::readFlipbook(bytes, flipbooks.back());
+            flipbook::readFlipbook(bytes, flipbooks.back());
         } catch (const core::Error& e) {
             return refuse(path + ": " + e.message);
         }

@@ -19,7 +19,7 @@ using gpu::mix;
 
 struct Shape {
     const char* name;
-    book::Kind kind;
+    flipbook::Kind kind;
     vec3 radii;
     float offset;                              // centre, upwards
     float ring, ringRadius, ringAt, ringCore;  // strength and position of a vortex ring
@@ -31,7 +31,7 @@ struct Shape {
 };
 constexpr Shape kPuffs[] = {
     {"tongue",
-     book::Kind::Fire,
+     flipbook::Kind::Fire,
      {.40f, .86f, .40f},
      -.02f,
      .25f,
@@ -55,7 +55,7 @@ constexpr Shape kPuffs[] = {
      .18f,
      3},
     {"roll",
-     book::Kind::Fire,
+     flipbook::Kind::Fire,
      {.50f, .62f, .50f},
      -.10f,
      2.3f,
@@ -79,7 +79,7 @@ constexpr Shape kPuffs[] = {
      .36f,
      11},
     {"curl",
-     book::Kind::Fire,
+     flipbook::Kind::Fire,
      {.50f, .62f, .50f},
      -.16f,
      1.8f,
@@ -103,7 +103,7 @@ constexpr Shape kPuffs[] = {
      .36f,
      58},
     {"puff",
-     book::Kind::Fire,
+     flipbook::Kind::Fire,
      {.62f, .60f, .62f},
      0,
      .60f,
@@ -127,7 +127,7 @@ constexpr Shape kPuffs[] = {
      .36f,
      23},
     {"smoke",
-     book::Kind::Smoke,
+     flipbook::Kind::Smoke,
      {.66f, .64f, .66f},
      0,
      .45f,
@@ -151,7 +151,7 @@ constexpr Shape kPuffs[] = {
      .20f,
      37},
     {"haze",
-     book::Kind::Smoke,
+     flipbook::Kind::Smoke,
      {.72f, .56f, .72f},
      -.04f,
      .30f,
@@ -176,7 +176,7 @@ constexpr Shape kPuffs[] = {
      91},
     // A streak: hot head, ragged tail.
     {"spark",
-     book::Kind::Spark,
+     flipbook::Kind::Spark,
      {.24f, .84f, .24f},
      .06f,
      0,
@@ -313,7 +313,7 @@ class PuffScene final : public Scene {
     [[nodiscard]] uint32_t frames() const override { return uint32_t(origins_.size()); }
 
     void render(uint32_t frame, Frame& out) const override {
-        const book::Facts& f = def_.facts;
+        const flipbook::Facts& f = def_.facts;
         const uint32_t layers = 24 * std::min(def_.samples, 4u);
         const float t = (float(frame) + 0.5f) / float(f.frames), step = 2 / float(layers);
         out.texels.assign(size_t(f.width) * f.height, vec4(0.0f));
@@ -342,7 +342,7 @@ class PuffScene final : public Scene {
                 const size_t i = size_t(y) * f.width + x;
                 out.texels[i] = vec4(soot > 0 ? red / soot : 0.0f, soot, 1 - through,
                                      1 - std::exp(-0.25f * tau));
-                if (shape_.kind == book::Kind::Smoke) out.texels[i].y = 0;
+                if (shape_.kind == flipbook::Kind::Smoke) out.texels[i].y = 0;
                 if (moving > 0) out.motion[i] = 0.5f * motion / (moving * float(f.frames));
             }
     }
@@ -367,12 +367,12 @@ std::vector<std::string_view> sceneNames() {
     return names;
 }
 
-bool sceneKind(std::string_view name, book::Facts& facts) {
+bool sceneKind(std::string_view name, flipbook::Facts& facts) {
     facts.loops = 0;
     for (const Shape& shape : kPuffs)
         if (name == shape.name) return facts.kind = shape.kind, facts.seconds = 1, true;
     facts.loops = 1;
-    facts.kind = book::Kind::Fire;
+    facts.kind = flipbook::Kind::Fire;
     facts.seconds = 2;
     for (const char* flame : {"campfire", "torch", "bonfire"})
         if (name == flame) return true;

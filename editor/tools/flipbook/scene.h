@@ -1,7 +1,7 @@
 // Source of a flipbook: a scene whose frames can be rendered on any thread. Looping flames are
 // ray-marched volumes; one-shot puffs are advected by a flow. No files, no threads.
 #pragma once
-#include "book/book.h"
+#include "flipbook/flipbook.h"
 
 #include <cstdint>
 #include <memory>
@@ -15,13 +15,13 @@ using fw::gpu::vec3;
 using fw::gpu::vec4;
 
 struct Frame {                 // rows from the bottom
-    std::vector<vec4> texels;  // as in the flipbook, before encoding
+    std::vector<vec4> texels;  // as in Flipbook, before encoding
     std::vector<vec2> motion;  // uv per frame, by texel; empty: unknown
 };
 
 struct BakeDef {
     std::string_view scene = "campfire";  // one of sceneNames
-    fw::book::Facts facts;                // maxMotion is computed
+    fw::flipbook::Facts facts;            // maxMotion is computed
     uint32_t seed = 1;
     uint32_t samples = 2;  // rays per texel, [1, 16]
 };
@@ -36,7 +36,7 @@ class Scene {
 
 std::vector<std::string_view> sceneNames();
 // Fills kind and loop flag of a named scene. Returns false for an unknown name.
-bool sceneKind(std::string_view name, fw::book::Facts& facts);
+bool sceneKind(std::string_view name, fw::flipbook::Facts& facts);
 // The name must be valid, see sceneKind.
 std::unique_ptr<Scene> makeScene(const BakeDef& def);
 

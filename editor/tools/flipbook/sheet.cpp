@@ -63,11 +63,11 @@ vec4 meanOver(const Reader& read, uint32_t left, uint32_t top, uint32_t width, u
 }
 
 // `emits`: occludes nothing.
-vec4 texelOf(const vec4& seen, book::Kind kind, bool emits) {
+vec4 texelOf(const vec4& seen, flipbook::Kind kind, bool emits) {
     const float hides = std::clamp(seen.w, 0.0f, 1.0f);
     const float depth = -std::log(1.0f - std::min(hides, 0.996f));
     const float thick = 1.0f - std::exp(-depth / 4.0f);
-    if (kind == book::Kind::Smoke) return vec4(0.0f, 0.0f, hides, thick);
+    if (kind == flipbook::Kind::Smoke) return vec4(0.0f, 0.0f, hides, thick);
     const float most = std::max({seen.x, seen.y, seen.z});
     const float hue = seen.x > 1e-5f ? seen.y / seen.x / kYellowGreen : 1.0f;
     const float kelvin = kRed + (kYellow - kRed) * std::clamp(hue, 0.0f, 1.0f);
@@ -109,19 +109,19 @@ bool framesOfSheet(const FloatPicture& picture, SheetDef& def, std::vector<Frame
                            " pixels; that does not part into ", cells, " equal ", name);
     }
     const uint32_t cells = def.columns * def.rows;
-    book::Facts facts = def.facts;
+    flipbook::Facts facts = def.facts;
     if (facts.frames == 0) facts.frames = cells;
-    if (facts.frames < 2 || facts.frames > std::min(cells, book::kMaxFrames))
+    if (facts.frames < 2 || facts.frames > std::min(cells, flipbook::kMaxFrames))
         return refused(error, "frames is ", facts.frames, "; a grid of ", def.columns, " x ",
-                       def.rows, " has [2, ", std::min(cells, book::kMaxFrames), "] of them");
+                       def.rows, " has [2, ", std::min(cells, flipbook::kMaxFrames), "] of them");
     const uint32_t width = picture.width / def.columns, height = picture.height / def.rows;
     facts.width = def.side ? def.side : width;
     facts.height = def.side ? def.side : height;
     for (const uint32_t side : {facts.width, facts.height})
-        if (side < book::kMinSide || side > book::kMaxSide)
+        if (side < flipbook::kMinSide || side > flipbook::kMaxSide)
             return refused(error, "a frame is ", facts.width, " x ", facts.height,
-                           " texels; each side must lie in [", book::kMinSide, ", ", book::kMaxSide,
-                           "] (--size resamples)");
+                           " texels; each side must lie in [", flipbook::kMinSide, ", ",
+                           flipbook::kMaxSide, "] (--size resamples)");
     facts.motionWidth = std::max(facts.width / 2, 4u);
     facts.motionHeight = std::max(facts.height / 2, 4u);
     for (size_t i = 0; i < picture.values.size(); ++i)

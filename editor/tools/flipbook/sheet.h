@@ -12,7 +12,7 @@ struct SheetDef {
     uint32_t columns = 8, rows = 8;  // [1, 256] each; frames run to the right, then down
     uint32_t side = 0;               // texels per frame; 0: the sheet's size
     // kind, loops, seconds and the number of frames (0: the whole grid); the rest is computed
-    fw::book::Facts facts;
+    fw::flipbook::Facts facts;
 };
 
 // Integer images are sRGB with straight alpha; float images are linear and premultiplied. Without

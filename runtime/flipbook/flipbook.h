@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-namespace fw::book {
+namespace fw::flipbook {
 
 using gpu::vec2;
 using gpu::vec4;
@@ -34,8 +34,8 @@ struct Rect {  // texels, the ends not included
 };
 
 // Rows from the bottom, frame after frame.
-struct Book {
-    explicit Book(std::pmr::memory_resource* memory)
+struct Flipbook {
+    explicit Flipbook(std::pmr::memory_resource* memory)
         : texels(memory), motion(memory), rects(memory) {}
     Facts facts;
     // RGBA8: temperature (flipbookKelvin), opacity of glowing soot, total opacity, thickness
@@ -51,17 +51,17 @@ void checkFacts(const Facts& facts);
 // .fwbook, little-endian: u32 magic 'FWBK', u32 version, u64 FNV-1a of the rest; u32 kind,
 // loops, width, height, frames, motionWidth, motionHeight, f32 maxMotion, seconds, u32 0; rects
 // (four u16 each), texels, motion.
-std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_resource* memory);
+std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_resource* memory);
 // Throws core::Error; `book` is then unchanged.
-void readFlipbook(std::span<const std::byte> bytes, Book& book);
+void readFlipbook(std::span<const std::byte> bytes, Flipbook& book);
 
 // Whether no texel absorbs light: particles then add to the background in any order.
-bool emitsAlone(const Book& book) noexcept;
+bool emitsAlone(const Flipbook& book) noexcept;
 
 // Bilinear like a sampler, zero beyond the borders.
-vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept;
-vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame
+vec4 frameAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept;
+vec2 motionAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept;  // uv per frame
 // A texel between two frames (shared/flipbook.h). time: see flipbookPlaceAt.
-vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept;
+vec4 sampleFlipbook(const Flipbook& book, float time, vec2 uv) noexcept;
 
-}  // namespace fw::book
+}  // namespace fw::flipbook

@@ -1,9 +1,9 @@
 // All flipbooks of a world as one picture for the device: their frames, smaller copies for distant
 // particles, and motion; and the words with the place of each (shared/flipbook.h).
 #pragma once
-#include "book/book.h"
+#include "flipbook/flipbook.h"
 
-namespace fw::book {
+namespace fw::flipbook {
 
 struct Picture {
     explicit Picture(std::pmr::memory_resource* memory) : texels(memory), words(memory) {}
@@ -16,6 +16,6 @@ constexpr uint32_t kMaxPicture = 4096;  // texels a side; every device supports 
 
 // `books` by slot, at most gpu::kMaxFlipbooks; null: an empty slot. Throws core::Error if they do
 // not fit.
-Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resource* memory);
+Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_resource* memory);
 
-}  // namespace fw::book
+}  // namespace fw::flipbook

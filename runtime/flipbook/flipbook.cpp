@@ -1,5 +1,5 @@
 // Flipbooks: the file, whose reader trusts nothing, and samples.
-#include "book/book.h"
+#include "flipbook/flipbook.h"
 
 #include "core/hash.h"
 #include "core/stream.h"
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::book {
+namespace fw::flipbook {
 namespace {
 
 constexpr uint32_t kMagic = 0x4B425746;  // "FWBK"
@@ -26,8 +26,7 @@ float floatAt(std::span<const std::byte> bytes, size_t at) {
 
 void check(const char* name, double value, double low, double high) {
     if (!(value >= low && value <= high))
-        core::fail(FW_ERROR_BAD_DATA, "the book's %s is %g; it must lie in [%g, %g].", name, value,
-                   low, high);
+        core::failData("the book's %s is %g; it must lie in [%g, %g].", name, value, low, high);
 }
 
 struct Sizes {
@@ -70,17 +69,17 @@ void checkFacts(const Facts& f) {
     check("seconds", double(f.seconds), 1e-3, 600);
 }
 
-std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_resource* memory) {
+std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_resource* memory) {
     const Facts& f = book.facts;
     checkFacts(f);
     const Sizes sizes = sizesOf(f);
     if (book.texels.size() != sizes.texels || book.motion.size() != sizes.motion ||
         book.rects.size() != f.frames)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the book has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
-                   "%zu and %zu.",
-                   book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect),
-                   sizes.texels, sizes.motion, f.frames * sizeof(Rect));
+        core::failData(
+            "the book has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
+            "%zu and %zu.",
+            book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect), sizes.texels,
+            sizes.motion, f.frames * sizeof(Rect));
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion);
     const auto put = [&](uint64_t value, uint32_t bytes) {
@@ -104,13 +103,13 @@ std::pmr::vector<std::byte> cookFlipbook(const Book& book, std::pmr::memory_reso
     return out;
 }
 
-void readFlipbook(std::span<const std::byte> bytes, Book& book) {
+void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
     if (bytes.size() < kHeaderBytes)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; its header alone has %zu.",
-                   bytes.size(), kHeaderBytes);
+        core::failData("the .fwbook has %zu bytes; its header alone has %zu.", bytes.size(),
+                       kHeaderBytes);
     if (wordAt(bytes, 0) != kMagic)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook begins with 0x%08x; it must begin with 0x%08x.",
-                   wordAt(bytes, 0), kMagic);
+        core::failData("the .fwbook begins with 0x%08x; it must begin with 0x%08x.",
+                       wordAt(bytes, 0), kMagic);
     if (wordAt(bytes, 4) != kVersion)
         core::fail(FW_ERROR_VERSION, "the .fwbook has version %u; this library reads version %u.",
                    wordAt(bytes, 4), kVersion);
@@ -123,20 +122,19 @@ void readFlipbook(std::span<const std::byte> bytes, Book& book) {
     f.maxMotion = floatAt(bytes, 44), f.seconds = floatAt(bytes, 48);
     checkFacts(f);
     if (wordAt(bytes, 52) != 0)
-        core::fail(FW_ERROR_BAD_DATA, "the book's reserved word is %u; it is zero.",
-                   wordAt(bytes, 52));
+        core::failData("the book's reserved word is %u; it is zero.", wordAt(bytes, 52));
     const Sizes sizes = sizesOf(f);
     const size_t expected = kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion;
     if (bytes.size() != expected)
-        core::fail(FW_ERROR_BAD_DATA, "the .fwbook has %zu bytes; %u frames of %u x %u need %zu.",
-                   bytes.size(), f.frames, f.width, f.height, expected);
+        core::failData("the .fwbook has %zu bytes; %u frames of %u x %u need %zu.", bytes.size(),
+                       f.frames, f.width, f.height, expected);
     const uint64_t sum = wordAt(bytes, 8) | uint64_t(wordAt(bytes, 12)) << 32;
     const uint64_t found = core::hashBytes(bytes.subspan(kSumEnd));
     if (sum != found)
-        core::fail(FW_ERROR_BAD_DATA,
-                   "the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
-                   static_cast<unsigned long long>(sum), static_cast<unsigned long long>(found));
-    Book made(book.texels.get_allocator().resource());
+        core::failData("the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
+                       static_cast<unsigned long long>(sum),
+                       static_cast<unsigned long long>(found));
+    Flipbook made(book.texels.get_allocator().resource());
     made.facts = f;
     made.rects.resize(f.frames);
     made.texels.resize(sizes.texels);
@@ -146,9 +144,8 @@ void readFlipbook(std::span<const std::byte> bytes, Book& book) {
         const uint32_t low = wordAt(bytes, at), high = wordAt(bytes, at + 4);
         const Rect r{uint16_t(low), uint16_t(low >> 16), uint16_t(high), uint16_t(high >> 16)};
         if (r.left > r.right || r.right > f.width || r.low > r.high || r.high > f.height)
-            core::fail(FW_ERROR_BAD_DATA,
-                       "the book's rect %u is [%u, %u) x [%u, %u); a frame has %u x %u texels.", i,
-                       r.left, r.right, r.low, r.high, f.width, f.height);
+            core::failData("the book's rect %u is [%u, %u) x [%u, %u); a frame has %u x %u texels.",
+                           i, r.left, r.right, r.low, r.high, f.width, f.height);
         made.rects[i] = r;
     }
     std::memcpy(made.texels.data(), bytes.data() + at, sizes.texels);
@@ -156,13 +153,13 @@ void readFlipbook(std::span<const std::byte> bytes, Book& book) {
     book = std::move(made);
 }
 
-bool emitsAlone(const Book& book) noexcept {
+bool emitsAlone(const Flipbook& book) noexcept {
     for (size_t i = 2; i < book.texels.size(); i += 4)
         if (book.texels[i] != 0) return false;
     return true;
 }
 
-vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
+vec4 frameAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
     FW_ASSERT(frame < f.frames && book.texels.size() == sizesOf(f).texels, "frame %u of %u", frame,
               f.frames);
@@ -170,7 +167,7 @@ vec4 frameAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
                      uv, false);
 }
 
-vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
+vec2 motionAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept {
     const Facts& f = book.facts;
     FW_ASSERT(frame < f.frames && book.motion.size() == sizesOf(f).motion, "frame %u of %u", frame,
               f.frames);
@@ -180,7 +177,7 @@ vec2 motionAt(const Book& book, uint32_t frame, vec2 uv) noexcept {
     return gpu::decodeFlipbookMotion(vec2(m), f.maxMotion);
 }
 
-vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept {
+vec4 sampleFlipbook(const Flipbook& book, float time, vec2 uv) noexcept {
     const gpu::FlipbookPlace p =
         gpu::flipbookPlaceAt(time, book.facts.frames, book.facts.loops != 0);
     const vec2 before = gpu::bookBefore(uv, motionAt(book, p.before, uv), p.part);
@@ -189,4 +186,4 @@ vec4 sampleFlipbook(const Book& book, float time, vec2 uv) noexcept {
                                   p.part);
 }
 
-}  // namespace fw::book
+}  // namespace fw::flipbook

@@ -1,6 +1,6 @@
 // Packs blocks of frames on shelves: tallest first, side by side, the next shelf above. A block is
 // as square as its frames allow.
-#include "book/picture.h"
+#include "flipbook/picture.h"
 
 #include "core/assert.h"
 #include "core/error.h"
@@ -9,7 +9,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace fw::book {
+namespace fw::flipbook {
 namespace {
 
 struct Block {
@@ -89,7 +89,7 @@ void copyFrames(const Facts& f, const Block& block, std::span<const uint8_t> fro
 
 }  // namespace
 
-Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resource* memory) {
+Picture packFlipbooks(std::span<const Flipbook* const> books, std::pmr::memory_resource* memory) {
     std::pmr::vector<Block> blocks(memory);
     for (uint32_t i = 0; i < books.size(); ++i) {
         if (!books[i]) continue;
@@ -121,7 +121,7 @@ Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resou
     picture.words.resize(gpu::kFlipbookWords);
     FW_ASSERT(books.size() <= gpu::kMaxFlipbooks, "%zu flipbooks", books.size());
     for (const Block& block : blocks) {
-        const Book& book = *books[block.book];
+        const Flipbook& book = *books[block.book];
         const Facts& f = book.facts;
         if (block.motion) {
             copyFrames(f, block, book.motion, picture);
@@ -160,4 +160,4 @@ Picture packFlipbooks(std::span<const Book* const> books, std::pmr::memory_resou
     return picture;
 }
 
-}  // namespace fw::book
+}  // namespace fw::flipbook

@@ -5,9 +5,9 @@
 #include <memory_resource>
 #include <vector>
 
-namespace fw::book {
+namespace fw::flipbook {
 
 // The .fwbook of an FwFlipbookPreset except FW_FLIPBOOK_CUSTOM.
 std::pmr::vector<std::byte> presetFlipbook(uint32_t preset, std::pmr::memory_resource* memory);
 
-}  // namespace fw::book
+}  // namespace fw::flipbook
