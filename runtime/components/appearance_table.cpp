@@ -198,7 +198,7 @@ MaterialAppearance materialLook(uint32_t preset) noexcept {
     return kLooks[preset < kLookCount ? preset : 0];
 }
 
-float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept {  // see holeDelay in look.glsl
+float lookHoleEnd(const gpu::MaterialAppearance& look) noexcept {  // holeDelay, appearance.glsl
     return look.holeTime + 0.45f * look.holeVariation * (0.9f + 0.8f * look.holeFine) +
            2.3f * look.jitter;
 }

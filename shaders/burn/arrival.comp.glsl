@@ -3,25 +3,12 @@
 // future arrival to the tile, and which texels are settled. Jacobi: reads states, writes none.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_MATERIAL_QUADS
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_SLOWNESS readonly
-#define FW_USE_STATE readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_RUN readonly
-#define FW_USE_SCRATCH FW_READ_WRITE
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_MASK_WORDS
-#define FW_USE_COUNTERS readonly
-#define FW_USE_PENDING writeonly
-#define FW_USE_SETTLED FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/stride.glsl"
+#include "lib/compute.glsl"
+FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(STATE) FW_READ(RUN)
+FW_READ(SCRATCH_QUADS) FW_READ(COUNTERS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(SCRATCH)
+FW_READ_WRITE(MASK_WORDS) FW_READ_WRITE(SETTLED) FW_WRITE(PENDING) FW_PUSH(StepPush)
+#include "lib/object_quads.glsl"
+#include "lib/burn_material.glsl"
 
 struct Column {  // three texels, from the row below to the row above
     uint tick[3];

@@ -2,28 +2,14 @@
 // per gathered texel; runs after `arrival` and adds to its rows' words.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_MATERIAL_QUADS
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_SLOWNESS readonly
-#define FW_USE_LINKS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_STATE readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_RUN readonly
-#define FW_USE_SCRATCH FW_READ_WRITE
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_MASK_WORDS
-#define FW_USE_COUNTERS readonly
-#define FW_USE_PENDING writeonly
-#include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(LINK_QUADS)
+FW_READ(TILES) FW_READ(STATE) FW_READ(RUN) FW_READ(SCRATCH_QUADS) FW_READ(COUNTERS)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(SCRATCH) FW_READ_WRITE(MASK_WORDS) FW_WRITE(PENDING)
+FW_PUSH(StepPush)
+#include "lib/object_quads.glsl"
+#include "lib/burn_material.glsl"
 #include "lib/rim.glsl"
-#include "lib/stride.glsl"
 
 void arrive(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];

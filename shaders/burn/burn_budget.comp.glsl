@@ -3,20 +3,11 @@
 // afterwards. With kSwitchRequests the front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_RUN readonly
-#define FW_USE_MASKS readonly
-#define FW_USE_COUNTERS coherent
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS coherent
-#define FW_USE_PREDICT_LISTS coherent
-#define FW_USE_EXCHANGE_OBJECTS
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(RUN) FW_READ(MASKS) FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(TILE_STATE)
+FW_READ_WRITE(OBJECT_COUNTERS) FW_COHERENT(COUNTERS) FW_PUSH(StepPush)
+#include "lib/burn_budget.glsl"
+#include "lib/tile.glsl"
 
 uint asked(uint i) { return push.predictParity == 0u ? predictB[i] : predictA[i]; }
 uint markOf(uint worldTile) { return push.burnParity == 0u ? burnB[worldTile] : burnA[worldTile]; }

@@ -3,27 +3,14 @@
 // independent: tiles are read, texels written.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_STATE writeonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_RUN readonly
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_PENDING readonly
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_MASKS readonly
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(RUN) FW_READ(PENDING) FW_READ(SCRATCH_QUADS) FW_READ(MASKS)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(STATE)
+FW_PUSH(StepPush)
+#include "lib/hot_list.glsl"
+#include "lib/burn_budget.glsl"
+#include "lib/touch.glsl"
+#include "lib/object_quads.glsl"
 
 // Is the tile held back by the burn limit? It stays unchanged and is due again.
 bool refused(uint slot) {

@@ -3,27 +3,14 @@
 // front kernel reacts in the same step.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_STATE FW_READ_WRITE
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_EVENTS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#define FW_USE_PUBLISHED FW_READ_WRITE
-#define FW_USE_TEXELS readonly
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_HEAT_MATERIALS
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/exchange.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(EVENTS) FW_READ(TEXELS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE)
+FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(PUBLISHED)
+FW_READ_WRITE(HEAT) FW_PUSH(StepPush)
+#include "lib/hot_list.glsl"
+#include "lib/burn_budget.glsl"
+#include "lib/heat_material.glsl"
+#include "lib/tile.glsl"
 #include "lib/change.glsl"
 
 // Does a jet pass all gates on its way?
@@ -163,12 +150,9 @@ void main() {
     if (i >= push.count || !addressesAll(i)) return;
     uint object = events[i].object;
     if (i > 0u && addressesAll(i - 1u) && events[i - 1u].object == object) return;
-    uint tilesX = objects[object].tilesX;
-    uint lane = gl_LocalInvocationID.x;
     for (uint tile = gl_WorkGroupID.x; tile < objects[object].tileCount;
          tile += gl_NumWorkGroups.x) {
-        uint row = tile / tilesX * 8u + (lane >> 3u);
-        uint texel = row * objects[object].width + tile % tilesX * 8u + (lane & 7u);
+        uint texel = texelOf(object, tile, gl_LocalInvocationID.x);
         uint flags = texels[objects[object].texelBase + texel].y >> 16u;
         if ((flags & kTexelReal) != 0u) applyRun(i, texel);
     }

@@ -4,24 +4,12 @@
 // are known too. Where texels just caught, settled texels are skipped. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_TILE_WORDS
-#define FW_USE_STATE_QUADS
-#define FW_USE_STATE readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_RUN readonly
-#define FW_USE_SCRATCH writeonly
-#define FW_USE_SCRATCH_QUADS writeonly
-#define FW_USE_MASK_WORDS
-#define FW_USE_PENDING_QUADS
-#define FW_USE_SETTLED readonly
-#define FW_USE_COUNTERS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "lib/compute.glsl"
+FW_READ(TILE_WORDS) FW_READ(STATE_QUADS) FW_READ(STATE) FW_READ(RUN) FW_READ(PENDING_QUADS)
+FW_READ(SETTLED) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(MASK_WORDS) FW_READ_WRITE(COUNTERS)
+FW_WRITE(SCRATCH) FW_WRITE(SCRATCH_QUADS) FW_PUSH(StepPush)
+#include "lib/object_quads.glsl"
 #include "lib/gather.glsl"
-#include "lib/stride.glsl"
 
 // Ten texels of a row, from the one left of a tile to the one right of it.
 struct Row {

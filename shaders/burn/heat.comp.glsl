@@ -6,30 +6,15 @@
 // together, to reduce contention on the list's counter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_STATE FW_READ_WRITE
-#define FW_USE_STATE_QUADS
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_HEAT_QUADS
-#define FW_USE_TILE_HEAT readonly
-#define FW_USE_HEAT_MATERIALS
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#define FW_USE_TILE_FIRE writeonly
-#include "lib/buffers.glsl"
-#include "shared/heat.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(STATE_QUADS) FW_READ(HEAT_PAIRS)
+FW_READ(TILE_HEAT) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
+FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(HEAT) FW_WRITE(TILE_FIRE) FW_PUSH(StepPush)
+#include "lib/hot_list.glsl"
+#include "lib/burn_budget.glsl"
+#include "lib/touch.glsl"
+#include "lib/heat_material.glsl"
+#include "lib/tile.glsl"
 
 const uint kBlock = 64u;  // finished together
 
@@ -229,11 +214,26 @@ void takeTile(uint worldTile) {
     }
 }
 
+uint hotTile(uint slot) {
+    return push.hotParity == 0u ? hotLists[slot].x : hotLists[slot].y;
+}
+
+// First of `count` slots of the list of tiles that stay hot.
+uint hotSlots(uint count) {
+    uint row = kRowHot + (push.hotParity ^ 1u);
+    uint slot = atomicAdd(counters[row].listCount, count);
+    if (count != 0u) {
+        atomicMax(counters[row].listX, min((slot + count - 1u) / kHotPerGroup + 1u, kMaxGroups));
+        if (slot == 0u) counters[row].listY = counters[row].listZ = 1u;
+    }
+    return slot;
+}
+
 // Appends all tiles that stay hot.
 void keepHot(uint thread) {
     barrier();
     uint count = staying;
-    if (thread == 0u) staysAt = hotSlots(push.hotParity ^ 1u, count);
+    if (thread == 0u) staysAt = hotSlots(count);
     barrier();
     if (thread < count) hotStore(push.hotParity ^ 1u, staysAt + thread, stays[thread]);
     if (thread == 0u) staying = 0u;
@@ -273,7 +273,7 @@ void main() {
         barrier();
         uint all = 0u;
         do {
-            if (base + thread < count) takeTile(hotTile(push.hotParity, base + thread));
+            if (base + thread < count) takeTile(hotTile(base + thread));
             base += gl_NumWorkGroups.x * 64u;
             keepHot(thread);
             all = running;

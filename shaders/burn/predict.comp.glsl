@@ -3,25 +3,12 @@
 // writes the times. Single hops, no pairs.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_MATERIAL_QUADS
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_SLOWNESS readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_SCRATCH writeonly
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_PREDICT readonly
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/predict_uses.glsl"
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(SCRATCH_QUADS) FW_READ(PREDICT)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH)
+#include "lib/burn_material.glsl"
 #include "lib/predict.glsl"
-#include "lib/stride.glsl"
+#include "lib/predict_touch.glsl"
 
 struct Column {  // three texels, from below the row to above it
     uint time[3];

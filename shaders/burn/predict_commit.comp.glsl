@@ -2,13 +2,8 @@
 // texels; then, from times that no thread writes any more, the gradients. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_COUNTERS readonly
-#define FW_USE_SCRATCH_QUADS readonly
-#define FW_USE_PREDICT FW_READ_WRITE
-#include "lib/predict_uses.glsl"
-#include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "lib/compute.glsl"
+FW_READ(COUNTERS) FW_READ(SCRATCH_QUADS) FW_READ_WRITE(PREDICT)
 #include "lib/predict.glsl"
 
 void writeTimes(uint at, uint changed, uint wet) {

@@ -4,25 +4,12 @@
 // only what the next round reads. One thread per row.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_TILE_WORDS
-#define FW_USE_STATE_QUADS
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_SCRATCH writeonly
-#define FW_USE_SCRATCH_QUADS writeonly
-#define FW_USE_PREDICT readonly
-#define FW_USE_PREDICT_QUADS
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/predict_uses.glsl"
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(TILE_WORDS) FW_READ(STATE_QUADS) FW_READ(PREDICT) FW_READ(PREDICT_QUADS)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH) FW_WRITE(SCRATCH_QUADS)
 #include "lib/predict.glsl"
+#include "lib/predict_touch.glsl"
 #include "lib/gather.glsl"
-#include "lib/stride.glsl"
 
 // Bit i: column i - 1 of the row has a time.
 uint timesOf(uint left, uvec4 a, uvec4 b, uint right) {

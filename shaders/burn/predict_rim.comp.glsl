@@ -1,26 +1,13 @@
 // `predict` for rim texels, whose ring is anywhere in the map. One thread per gathered texel.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_MATERIAL_QUADS
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_SLOWNESS readonly
-#define FW_USE_LINKS readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_SCRATCH FW_READ_WRITE
-#define FW_USE_PREDICT readonly
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/predict_uses.glsl"
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS) FW_READ(LINK_QUADS) FW_READ(PREDICT)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(SCRATCH)
+#include "lib/burn_material.glsl"
 #include "lib/predict.glsl"
+#include "lib/predict_touch.glsl"
 #include "lib/rim.glsl"
-#include "lib/stride.glsl"
 
 void predictTexel(uint rimWork) {
     uint packedTexel = scratch[rimItem(rimWork)];
@@ -65,8 +52,7 @@ void predictTexel(uint rimWork) {
         spread = concernsOthers(before, now) || (shownAgain && hasTime(now));
     }
     if (spread) {
-        uvec2 mask = lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));
-        touchAround(worldTile, mask, object, x >> 3u, y >> 3u);
+        touchAround(worldTile, laneMask(lane), object, x >> 3u, y >> 3u);
     } else if (beyond) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }

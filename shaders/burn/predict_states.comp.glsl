@@ -3,17 +3,10 @@
 // view shows again drops its predictions. A thread writes its own row only.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_STATE_QUADS
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS readonly
-#define FW_USE_PREDICT FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS readonly
-#include "lib/predict_uses.glsl"
-#include "lib/buffers.glsl"
-#include "lib/gradient.glsl"
-#include "shared/front.h"
-#include "lib/stride.glsl"
+#include "lib/compute.glsl"
+FW_READ(STATE_QUADS) FW_READ(COUNTERS) FW_READ(PREDICT_LISTS) FW_READ_WRITE(TILE_STATE)
+FW_READ_WRITE(PREDICT)
+#include "lib/predict.glsl"
 
 void passRow(uint slot, uint row) {
     uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];

@@ -1,14 +1,8 @@
 // Collects the state of the probed texels for the readback.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_STATE readonly
-#define FW_USE_PROBES readonly
-#define FW_USE_ANSWERS writeonly
-#define FW_USE_HEAT readonly
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(STATE) FW_READ(PROBES) FW_READ(HEAT) FW_WRITE(ANSWERS) FW_PUSH(StepPush)
 
 void main() {
     uint i = gl_GlobalInvocationID.x;

@@ -3,20 +3,11 @@
 // dominate on a software device.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_STATE FW_READ_WRITE
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "lib/compute.glsl"
 #include "shared/published.h"
-#include "lib/lists.glsl"
-#include "lib/stride.glsl"
+FW_READ(OBJECTS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
+FW_READ_WRITE(OBJECT_COUNTERS) FW_PUSH(StepPush)
+#include "lib/burn_budget.glsl"
 
 // Four texels of a row: buffers begin at whole tiles, rows are multiples of eight.
 layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4 quads[]; };

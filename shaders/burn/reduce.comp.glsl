@@ -3,24 +3,12 @@
 // frame shows flames while counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_STATE readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_BURN_TILES writeonly
-#define FW_USE_HEAT readonly
-#define FW_USE_TILE_FIRE readonly
-#include "lib/buffers.glsl"
-#include "shared/heat.h"
-#include "lib/lists.glsl"
-#include "lib/stride.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(HEAT)
+FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
+FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(BURN_TILES) FW_PUSH(StepPush)
+#include "lib/burn_list.glsl"
+#include "lib/tile.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
@@ -78,13 +66,7 @@ void reduceTile(uint worldTile, uint parity) {
         atomicAdd(objectCounters[object].burning, count);
         atomicAdd(objectCounters[object].burningTiles, 1u);
     }
-    if ((slot & 63u) == 0u) {
-        atomicMax(counters[row].runX, min(slot / 64u + 1u, kMaxGroups));
-        if (slot == 0u) {
-            counters[row].runY = 1u;
-            counters[row].runZ = 1u;
-        }
-    }
+    FW_COVER(row, run, slot, 64u)
     float area = objects[object].tint.w;
     vec4 rest = vec4(objects[object].originQuantum.xyz +
                          objects[object].originQuantum.w * vec3(position) / float(count), 1.0);

@@ -1,12 +1,8 @@
 // Zeroes the per-object counts and fire sources that the next passes sum up.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_SOURCES writeonly
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(SOURCES) FW_PUSH(StepPush)
 
 void main() {
     uint object = gl_GlobalInvocationID.x;

@@ -1,14 +1,10 @@
 // Counts the front list's tiles per object.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILE_STATE readonly
-#define FW_USE_LISTS readonly
-#define FW_USE_COUNTERS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(TILE_STATE) FW_READ(LISTS) FW_READ(COUNTERS)
+FW_READ_WRITE(OBJECT_COUNTERS) FW_PUSH(StepPush)
+#include "lib/tile.glsl"
 
 void main() {
     uint count = counters[push.row].listCount;

@@ -1,25 +1,13 @@
 // Initial state of a new object: receptive and inert texels, tiles asleep. One group per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_SLOWNESS readonly
-#define FW_USE_STATE writeonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_PREDICT writeonly
-#define FW_USE_GRADIENT writeonly
-#define FW_USE_PUBLISHED writeonly
-#define FW_USE_HEAT writeonly
-#define FW_USE_TILE_HEAT writeonly
-#define FW_USE_HEAT_MATERIALS
-#define FW_USE_TILE_FIRE writeonly
-#include "lib/buffers.glsl"
-#include "shared/heat.h"
+#include "lib/compute.glsl"
 #include "shared/published.h"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS)
+FW_READ_WRITE(TILE_STATE) FW_WRITE(STATE) FW_WRITE(PREDICT) FW_WRITE(GRADIENT) FW_WRITE(PUBLISHED)
+FW_WRITE(HEAT) FW_WRITE(TILE_HEAT) FW_WRITE(TILE_FIRE) FW_PUSH(StepPush)
+#include "lib/heat_material.glsl"
+#include "lib/tile.glsl"
 
 void resetTile(uint local, uint lane) {
     uint object = push.object;

@@ -2,18 +2,12 @@
 // thread per tile.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_BURN_LISTS FW_READ_WRITE
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "lib/lists.glsl"
-#include "lib/stride.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_PUSH(StepPush)
+#include "lib/front_list.glsl"
+#include "lib/burn_list.glsl"
+#include "lib/hot_list.glsl"
+#include "lib/predict_list.glsl"
 
 void restoreTile(uint local) {
     uint worldTile = objects[push.object].worldTileBase + local;

@@ -2,12 +2,10 @@
 // flashover. One group: sums per room use shared memory, in any order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;  // kMaxRooms
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_ROOMS
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+#include "shared/room.h"
+FW_READ(OBJECTS) FW_READ(ROOMS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(ROOM_AIR)
+FW_PUSH(StepPush)
 
 shared uint ofRoom[kMaxRooms];  // J drawn in each room, then its burning strength
 

@@ -2,34 +2,17 @@
 // leaves. With the dense switch all tiles of the wake groups run instead.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_RUN writeonly
-#define FW_USE_MASKS writeonly
-#define FW_USE_WAKE_GROUPS readonly
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_OBJECT_COUNTERS readonly
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
-#include "lib/stride.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(WAKE_GROUPS) FW_READ(EXCHANGE_OBJECTS) FW_READ(OBJECT_COUNTERS)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(RUN) FW_WRITE(MASKS) FW_PUSH(StepPush)
+#include "lib/front_list.glsl"
+#include "lib/tile.glsl"
 
 void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
     uint slot = atomicAdd(counters[push.row].runCount, 1u);
-    if ((slot & 7u) == 0u) atomicMax(counters[push.row].runX, min(slot / 8u + 1u, kMaxGroups));
-    if ((slot & 63u) == 0u) atomicMax(counters[push.row].workX, min(slot / 64u + 1u, kMaxGroups));
-    if (slot == 0u) {
-        counters[push.row].runY = 1u;
-        counters[push.row].runZ = 1u;
-        counters[push.row].workY = 1u;
-        counters[push.row].workZ = 1u;
-        counters[push.row].rimY = 1u;
-        counters[push.row].rimZ = 1u;
-    }
+    FW_COVER(push.row, run, slot, 8u)
+    FW_COVER(push.row, work, slot, 64u)
+    if (slot == 0u) counters[push.row].rimY = counters[push.row].rimZ = 1u;
     uint tilesX = objects[tile.object].tilesX;
     uint tileY = divide(tile.local, tilesX);
     run[slot] = uvec4(worldTile, tile.object,

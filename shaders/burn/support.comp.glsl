@@ -5,20 +5,12 @@
 // Not part of the simulation, which has no gravity.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_MATERIALS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_DEPENDENTS readonly
-#define FW_USE_TILES readonly
-#define FW_USE_STATE readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_SCRATCH FW_READ_WRITE
-#define FW_USE_PREDICT FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(DEPENDENTS) FW_READ(TILES)
+FW_READ(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(SCRATCH) FW_READ_WRITE(PREDICT)
+FW_PUSH(StepPush)
+#include "lib/object_quads.glsl"
+#include "lib/tile.glsl"
 
 const uint kFar = 1023u;      // largest distance
 const uint kLookEvery = 32u;  // frames, about, between scans of a tile's texels

@@ -2,17 +2,11 @@
 // correction window. One group per 64 tiles of an object.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_LISTS FW_READ_WRITE
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_WAKE_GROUPS readonly
-#define FW_USE_PREDICT_LISTS FW_READ_WRITE
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(WAKE_GROUPS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
+FW_PUSH(StepPush)
+#include "lib/front_list.glsl"
+#include "lib/predict_list.glsl"
 
 void main() {
     if ((push.switches & kSwitchNoWindWake) != 0u) return;

@@ -3,11 +3,9 @@
 // kDeformGroup vertices of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_EMBEDDINGS
-#define FW_USE_SHOWN
-#include "lib/deform_buffers.glsl"
-FW_BUFFER(FW_BIND_VERTICES, readonly, MeshVerticesBuffer, uvec4, meshVertices);
+#include "lib/deform.glsl"
+FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN)
+FW_READ(VERTICES)
 
 void main() {
     DeformItem item = deformItem();
@@ -21,7 +19,7 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint node = shownBase + deformCoat(sizes.z * kDeformEmbeddingQuads + number).x;
+        uint node = shownBase + deformEmbedding(sizes.z * kDeformEmbeddingQuads + number).x;
         uint self = shownBase + number, inner = self + sizes.w;
         vec4 outside = shown(self * kShownQuads);
         float receded = shown(node * kShownQuads + 1u).z;

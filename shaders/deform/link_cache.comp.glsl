@@ -3,10 +3,8 @@
 // per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_PARTICLES
-#define FW_USE_SOFT
-#include "lib/deform_buffers.glsl"
+#include "lib/deform.glsl"
+FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SOFT)
 
 void main() {
     DeformItem item = deformItem();
@@ -18,17 +16,17 @@ void main() {
     if (number >= last) return;
     do {
         uint at = sizes.x * kDeformParticleQuads + number;
-        uint flags = deformNode(at).y;
+        uint flags = deformParticle(at).y;
         uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
         uint mine = soft(seenAt).x;
         float burnt = burntOf(mine);
 
         uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
-        uint turn = 0u, turns = nodeTurns(flags), all = turns + nodeArms(flags) * kBendSets;
+        uint turn = 0u, turns = linkPasses(flags), all = turns + bendPasses(flags) * kBendSets;
         do {  // neighbours, then all bending sets
             bool arms = turn >= turns;
             uint way = turn - turns;
-            uvec4 two = deformNode(at + (arms ? kParticleBends + way : kParticleLinks + turn) * sizes.y);
+            uvec4 two = deformParticle(at + (arms ? kParticleBends + way : kParticleLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint k = (arms ? way : turn) * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];

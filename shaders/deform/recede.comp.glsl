@@ -1,12 +1,8 @@
 // Burnt share of each particle, and its recession. kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_STATE readonly
-#define FW_USE_DEFORM_PARTICLES
-#define FW_USE_SHOWN
-#define FW_USE_SOFT
-#include "lib/deform_buffers.glsl"
+#include "lib/deform.glsl"
+FW_READ(STATE) FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 
 void main() {
     DeformItem item = deformItem();
@@ -21,7 +17,7 @@ void main() {
     if (number >= last) return;
     do {
         uint at = sizes.x * kDeformParticleQuads + number;
-        uvec4 facts = deformNode(at), rest = deformNode(at + kParticleRest * sizes.y);
+        uvec4 facts = deformParticle(at), rest = deformParticle(at + kParticleRest * sizes.y);
         uvec2 material = material0, holes = holes0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -31,7 +27,7 @@ void main() {
 
         float sum = 0.0, known = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformTexels / 4u; ++q) {
-            uvec4 texels = deformNode(at + (kParticleTexels + q) * sizes.y);
+            uvec4 texels = deformParticle(at + (kParticleTexels + q) * sizes.y);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 bool there = texels[k] != kNoneTexel;
                 uint t = state[bases.y + (there ? texels[k] : 0u)];
@@ -51,7 +47,7 @@ void main() {
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
         if (!moves) {
-            vec4 out_ = uintBitsToFloat(deformNode(at + kParticleRecession * sizes.y));
+            vec4 out_ = uintBitsToFloat(deformParticle(at + kParticleRecession * sizes.y));
             kept = recession(burnt, depth, item.crosses ? 1e9 : out_.w);
             place += out_.xyz * kept;
         }
@@ -61,7 +57,7 @@ void main() {
             uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
             uint placeAt = own + item.parity * sizes.y;
             uvec4 seen = soft(seenAt);
-            float way = unpackPathLength(wayBits(soft(placeAt)));
+            float way = unpackPathLength(pathBits(soft(placeAt)));
             if (item.reset) {
                 way = kNoPath;
                 for (uint i = 0u; i < bases.w; ++i) {

@@ -2,14 +2,10 @@
 // buffer; otherwise skin-to-mesh makes normals. 64 vertices per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
+#include "lib/compute.glsl"
 #include "shared/deform.h"
-layout(std430, set = 0, binding = FW_BIND_SKIN_SOURCES) readonly buffer SourcesBuffer {
-    uint sources[];
-};
-layout(std430, set = 0, binding = FW_BIND_SKIN_GIVEN) readonly buffer GivenBuffer { uint given[]; };
-layout(std430, set = 0, binding = FW_BIND_SHOWN) buffer ShownBuffer { uint shownWords[]; };
-layout(push_constant) uniform SkinPushBlock { SkinPush push; };
+FW_BUFFER(SKIN_SOURCES, readonly, uint, sources) FW_BUFFER(SKIN_GIVEN, readonly, uint, given)
+FW_BUFFER(SHOWN, FW_BOTH, uint, shownWords) FW_PUSH(SkinPush)
 
 vec3 vectorAt(uint word) { return uintBitsToFloat(uvec3(given[word], given[word + 1u], given[word + 2u])); }
 

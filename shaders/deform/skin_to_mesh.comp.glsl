@@ -2,11 +2,8 @@
 // triangles. kDeformGroup vertices of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_EMBEDDINGS
-#define FW_USE_SHOWN
-#define FW_USE_SHOWN_WORDS
-#include "lib/deform_buffers.glsl"
+#include "lib/deform.glsl"
+FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN) FW_BUFFER(SHOWN, writeonly, uint, shownWords)
 
 void main() {
     DeformItem item = deformItem();
@@ -20,8 +17,8 @@ void main() {
     if (number >= last) return;
     do {
         uint at = sizes.z * kDeformEmbeddingQuads + number;
-        uvec2 coat = deformCoat(at).xy;
-        uvec4 face = deformCoat(at + 3u * sizes.w);
+        uvec2 coat = deformEmbedding(at).xy;
+        uvec4 face = deformEmbedding(at + 3u * sizes.w);
         uint node = shownBase + coat.x;
         vec3 place = shown(node * kShownQuads).xyz;
         vec4 facts = shown(node * kShownQuads + 1u);
@@ -29,7 +26,7 @@ void main() {
         vec3 turned = vec3(0.0), before = vec3(0.0);
         float square = 0.0;
         FW_UNROLL for (uint q = 0u; q < kDeformRing / 4u; ++q) {
-            uvec4 ring = deformCoat(at + (1u + q) * sizes.w);
+            uvec4 ring = deformEmbedding(at + (1u + q) * sizes.w);
             FW_UNROLL for (uint k = 0u; k < 4u; ++k) {
                 vec3 arm = shown((shownBase + ring[k]) * kShownQuads).xyz - place;
                 turned += cross(before, arm);

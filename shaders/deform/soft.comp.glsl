@@ -4,13 +4,23 @@
 // per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_OBJECT_QUADS
-#define FW_USE_DEFORM_PARTICLES
-#define FW_USE_SHOWN
-#define FW_USE_SOFT
-#include "lib/deform_buffers.glsl"
-#include "shared/wind.h"
+#include "lib/deform.glsl"
+FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
+#include "lib/object_quads.glsl"
+
+// World directions in object axes. facts: third quad of the DeformObject, which holds the object
+// slot.
+vec3 rowOf(uvec4 facts, uint row) { return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz); }
+vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
+    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) / uintBitsToFloat(facts.z);
+}
+vec3 upHere(uvec4 facts) { return toObject(facts, push.up.xyz); }
+vec4 heightHere(uvec4 facts) {  // m, world, along up: dot with (position, 1)
+    vec4 h = vec4(0.0);
+    FW_UNROLL for (uint row = 0u; row < 3u; ++row)
+        h += push.up[row] * uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row]);
+    return h;
+}
 
 void main() {
     DeformItem item = deformItem();
@@ -31,7 +41,7 @@ void main() {
     if (number >= last) return;
     do {
         uint at = sizes.x * kDeformParticleQuads + number;
-        uvec4 facts = deformNode(at);
+        uvec4 facts = deformParticle(at);
         uvec4 material = material0, more = more0;
         if ((facts.y & 7u) != 0u) {
             uint materialAt = item.object + 4u + (facts.y & 7u) * 2u;
@@ -56,9 +66,9 @@ void main() {
         vec3 turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0), nearSum = vec3(0.0);
         vec3 links = vec3(0.0), bending = vec3(0.0);
         vec2 nearSquares = vec2(0.0);  // of rest lengths, and how many
-        uint turn = 0u, turns = nodeTurns(facts.y);
+        uint turn = 0u, turns = linkPasses(facts.y);
         do {  // the neighbours
-            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y);
+            uvec4 two = deformParticle(at + (kParticleLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint k = turn * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
@@ -76,17 +86,17 @@ void main() {
                 vec3 p = linkCorrection(x, y, rest * (1.0 - shrunk * (mine + theirs)),
                                   (ties.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
-                reach = holds ? min(reach, unpackPathLength(wayBits(there)) + rest) : reach;
+                reach = holds ? min(reach, unpackPathLength(pathBits(there)) + rest) : reach;
             }
         } while (++turn < turns);
         // Not iterations of the loop: software devices would run the whole body for them.
         vec3 sum = vec3(0.0);
         vec2 squares = vec2(0.0);
         float rise = 0.0;
-        bool reaches = nodeArms(facts.y) != 0u;
+        bool reaches = bendPasses(facts.y) != 0u;
         if (reaches) {
-            uvec4 arms = deformNode(at + (kParticleBends + way) * sizes.y);
-            uvec4 echo = deformNode(at + (kParticleBends + echoed) * sizes.y);
+            uvec4 arms = deformParticle(at + (kParticleBends + way) * sizes.y);
+            uvec4 echo = deformParticle(at + (kParticleBends + echoed) * sizes.y);
             rise = uintBitsToFloat(arms.w);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 float rest = unpackHalf2x16(arms.z)[i];
@@ -123,9 +133,9 @@ void main() {
             else softOut[seenAt + number].z = armShare;
         }
 
-        float was = unpackPathLength(wayBits(self));
+        float was = unpackPathLength(pathBits(self));
         if (was == 0.0 && !pinned) was = kNoPath;
-        bool knew = (wayBits(self) & kPathKnown) != 0u;
+        bool knew = (pathBits(self) & kPathKnown) != 0u;
         bool known = knew || isPathKnown(reach, was);
         reach = pinned ? 0.0 : nextPath(reach, was, knew);
 

@@ -3,11 +3,8 @@
 // kDeformGroup particles of one object per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_DEFORM_PARTICLES
-#define FW_USE_SHOWN
-#define FW_USE_SOFT
-#include "lib/deform_buffers.glsl"
+#include "lib/deform.glsl"
+FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 
 void main() {
     DeformItem item = deformItem();
@@ -21,7 +18,7 @@ void main() {
     if (number >= last) return;
     do {
         uint at = sizes.x * kDeformParticleQuads + number;
-        uvec2 facts = deformNode(at).xy;
+        uvec2 facts = deformParticle(at).xy;
         uint vertex = facts.x;
         uint own = softBase * kSoftQuads + number, shownAt = (shownBase + vertex) * kShownQuads;
         uint places = own - number + item.parity * sizes.y;
@@ -29,10 +26,10 @@ void main() {
         vec3 x = uintBitsToFloat(self.xyz);
 
         vec3 pull = vec3(0.0), turned = vec3(0.0), before = vec3(0.0), first = vec3(0.0);
-        uint turn = 0u, turns = nodeTurns(facts.y);
+        uint turn = 0u, turns = linkPasses(facts.y);
         do {
-            uvec4 two = deformNode(at + (kParticleLinks + turn) * sizes.y),
-                  over = deformNode(at + (kParticleFarLinks + turn) * sizes.y);
+            uvec4 two = deformParticle(at + (kParticleLinks + turn) * sizes.y),
+                  over = deformParticle(at + (kParticleFarLinks + turn) * sizes.y);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint other = two[i] & kDeformLinkIndex;
                 float rest = unpackHalf2x16(two.z)[i];

@@ -1,7 +1,6 @@
 // Hash grid of heat-release clusters: two cell sizes per object, keyed by place. Slots depend on
-// thread order, contents do not. FW_CELLS: the access of the includer.
+// thread order, contents do not.
 #include "shared/integer.h"
-layout(std430, set = 0, binding = FW_BIND_LIGHT_CELLS) FW_CELLS buffer CellsBuffer { uint cells[]; };
 
 float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
 // Side of the clusters that form lights, m: fixed per object, so nothing pops.

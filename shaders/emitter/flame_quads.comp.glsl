@@ -3,27 +3,15 @@
 // after another, fixed by the state at its birth.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_NORMALS readonly
-#define FW_USE_STATE readonly
-#define FW_USE_COUNTERS readonly
-#define FW_USE_TILE_STATE readonly
-#define FW_USE_BURN_TILES readonly
-#include "lib/buffers.glsl"
-#include "shared/front.h"
-#include "shared/wind.h"
-#define FW_EMITTER_LOOKS
-#define FW_EMITTER_FLAMES writeonly
-#define FW_EMITTER_DRAW_ARGS
-#define FW_EMITTER_BOOKS
-#include "emitter/buffers.glsl"
-#define FW_CELLS readonly
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(COUNTERS)
+FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
+FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/cells.glsl"
+#include "emitter/flipbooks.glsl"
 #include "emitter/nearer.glsl"
+#include "lib/tile.glsl"
 #include "lib/turn.glsl"
 #include "lib/skin.glsl"
 
@@ -65,7 +53,7 @@ struct Foot {
 // so that fire stands along the front. Later ignitions do not change the choice.
 Foot footOf(BurnTile tile, uint seed, float ago) {
     BurnObject object = objects[tile.object];
-    uint corner = (tile.tile / object.tilesX) * 8u * object.width + (tile.tile % object.tilesX) * 8u;
+    uint corner = texelOf(tile.object, tile.tile, 0u);
     Foot foot;
     foot.found = false;
     foot.age = 1e30;
@@ -203,7 +191,7 @@ void main() {
             // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
             // its foot at 1/20.
             uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
-            if (showByBook(quad, book, a, a * period, r4) && !smoke) {
+            if (showByFlipbook(quad, book, a, a * period, r4) && !smoke) {
                 quad.axisWidth.w *= 2.4;
                 quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
                 quad.baseHeight.w *= 1.45;

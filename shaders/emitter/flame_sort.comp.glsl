@@ -4,11 +4,10 @@
 // placeLights interleaves them.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 128) in;
-#define FW_EMITTER_FLAMES readonly
-#define FW_EMITTER_DRAW_ARGS
-#include "emitter/buffers.glsl"
-layout(push_constant) uniform Push { SortPush push; };
+#define FW_THREADS 128
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
+FW_READ(FLAMES) FW_READ_WRITE(DRAW_ARGS) FW_PUSH(SortPush)
 
 const uint kThreads = 128u, kDigits = 16u;
 const uint kDepthBits = 16u;  // of a radix key, above the number of its quad

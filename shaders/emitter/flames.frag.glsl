@@ -4,11 +4,9 @@
 // where the noise is zero. Fireball: noise advected by two vortices, eroded with age. Output is
 // premultiplied: colour, and coverage.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
+#include "lib/view.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 
 layout(location = 0) centroid in vec2 inPlace;

@@ -3,12 +3,11 @@
 // camera (see billboard). All quads are one draw of six vertices each: some devices pay per
 // instance.
 #extension GL_GOOGLE_include_directive : require
-#define FW_EMITTER_FLAMES readonly
-#define FW_EMITTER_DRAW_ARGS readonly
+#include "lib/view.glsl"
+FW_READ(FLAMES) FW_READ(DRAW_ARGS)
 #ifdef FW_FLIPBOOKS
-#define FW_EMITTER_BOOKS
+#include "emitter/flipbooks.glsl"
 #endif
-#include "emitter/buffers.glsl"
 #include "emitter/nearer.glsl"
 #include "lib/billboard.glsl"
 
@@ -29,14 +28,14 @@ layout(location = 8) flat out vec2 outBetween;  // blend weight, largest motion
 FlipbookRecord bookOf(uint i) {
     uint at = i * kFlipbookRecordWords;
     FlipbookRecord b;
-    b.at = books[at];
-    b.size = books[at + 1u];
-    b.motionAt = books[at + 2u];
-    b.motionSize = books[at + 3u];
-    b.frames = books[at + 4u];
-    b.columns = books[at + 5u];
-    b.flags = books[at + 6u];
-    b.maxMotion = uintBitsToFloat(books[at + 7u]);
+    b.at = flipbooks[at];
+    b.size = flipbooks[at + 1u];
+    b.motionAt = flipbooks[at + 2u];
+    b.motionSize = flipbooks[at + 3u];
+    b.frames = flipbooks[at + 4u];
+    b.columns = flipbooks[at + 5u];
+    b.flags = flipbooks[at + 6u];
+    b.maxMotion = uintBitsToFloat(flipbooks[at + 7u]);
     return b;
 }
 vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u)); }
@@ -49,7 +48,7 @@ vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     FlipbookPlace p = flipbookPlaceAt(quad.phase, b.frames, (b.flags & kFlipbookLoops) != 0u);
     vec2 texels = halves(b.size);
     uint level = flipbookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
-    uint smaller = books[book * kFlipbookRecordWords + kFlipbookLevelWord + level];
+    uint smaller = flipbooks[book * kFlipbookRecordWords + kFlipbookLevelWord + level];
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
@@ -60,8 +59,8 @@ vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     uint rect = kFlipbookRects + 2u * (book * kMaxFlipbookFrames + p.before);
     // A texel of a mip covers more than the occupied texels of mip 0.
     vec2 wider = vec2(float((1u << level) - 1u)) / texels;
-    vec2 low = max(halves(books[rect]) / texels - wider, vec2(0.0));
-    vec2 high = min(halves(books[rect + 1u]) / texels + wider, vec2(1.0));
+    vec2 low = max(halves(flipbooks[rect]) / texels - wider, vec2(0.0));
+    vec2 high = min(halves(flipbooks[rect + 1u]) / texels + wider, vec2(1.0));
     bool mirrored = (quad.kind >> kQuadSeed & 1u) != 0u;
     float x = place.x > 0.0 != mirrored ? high.x : low.x;
     return vec2((2.0 * x - 1.0) * (mirrored ? -1.0 : 1.0), place.y > 0.5 ? high.y : low.y);

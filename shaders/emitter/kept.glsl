@@ -1,20 +1,16 @@
 // Stored particles. A shader that moves them defines FW_MOVES. A software device reads two texels
 // per particle faster than eight words, and writes words faster than texels.
-#ifdef FW_MOVES
-#define FW_KEPT_ACCESS coherent
-#define FW_KEPT_TEXELS coherent readonly
-#else
-#define FW_KEPT_ACCESS readonly
-#define FW_KEPT_TEXELS readonly
-#endif
-#if defined(FW_MOVES) || !defined(FW_TEXELS)
-layout(std430, set = 0, binding = FW_BIND_PARTICLES) FW_KEPT_ACCESS buffer ParticlesBuffer {
-    ParticleWords particles[];
-};
+#if defined(FW_MOVES)
+FW_COHERENT(PARTICLES)
+#elif !defined(FW_TEXELS)
+FW_READ(PARTICLES)
 #endif
 #ifdef FW_TEXELS
-layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_PARTICLES)
-    FW_KEPT_TEXELS uniform uimageBuffer particlesIn;
+#ifdef FW_MOVES
+FW_TEXEL_BUFFER(PARTICLES, coherent readonly, particlesIn)
+#else
+FW_TEXEL_BUFFER(PARTICLES, readonly, particlesIn)
+#endif
 #endif
 
 // Loads a particle; stops, grows: whether its emitter uses hits and path lengths.

@@ -2,20 +2,11 @@
 // of all cells: no watt is lost. One group; integer sums make the result independent of order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 128) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_MATERIALS readonly
-#define FW_USE_COUNTERS readonly
-#define FW_USE_BURN_TILES readonly
-#include "lib/buffers.glsl"
-#define FW_EMITTER_LOOKS
-#define FW_EMITTER_DRAW_ARGS writeonly
-#include "emitter/buffers.glsl"
-layout(std430, set = 0, binding = FW_BIND_LIGHTS) writeonly buffer LightsBuffer {
-    BurnLight lights[];
-};
-#define FW_CELLS FW_READ_WRITE
+#define FW_THREADS 128
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(APPEARANCES)
+FW_READ_WRITE(LIGHT_CELLS) FW_WRITE(DRAW_ARGS) FW_WRITE(LIGHTS) FW_PUSH(StepPush)
 #include "emitter/cells.glsl"
 
 const uint kMost = 1024u;      // competing cells

@@ -1,14 +1,13 @@
 // Particles to quads of the frame's view. A group handles a part of one emitter's ring.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_EMITTER_FLAMES writeonly
-#define FW_EMITTER_DRAW_ARGS
-#define FW_EMITTER_BOOKS
-#define FW_EMITTER_EMITTERS
-#include "emitter/buffers.glsl"
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
+#include "shared/particle.h"
+FW_READ(EMITTERS) FW_READ(EMITTER_GROUPS) FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES)
+FW_PUSH(ParticlePush)
+#include "emitter/flipbooks.glsl"
 #include "emitter/kept.glsl"
-layout(push_constant) uniform Push { ParticlePush push; };
 
 const float kNearFade = 0.3;  // m before the camera
 
@@ -82,7 +81,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
     // A flipbook, too, begins as a shapeless ball.
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    showByBook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
+    showByFlipbook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
@@ -97,7 +96,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
     smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    showByBook(smoke, particleFlipbook(e.otherBooks, 2u, seed), (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
+    showByFlipbook(smoke, particleFlipbook(e.otherBooks, 2u, seed), (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
     // Emissive quads have separate places: they are not sorted.
@@ -121,7 +120,7 @@ void main() {
     if ((e.flags & kEmitterHidden) != 0u) return;
     bool stops = (e.flags & (kEmitterGround | kEmitterJet)) != 0u, grows = e.size.y > 0.0;
     uint turns = (min(e.ring - group.y, kParticleGroup) + 63u) / 64u;
-    // Tests at its end: see lib/stride.glsl.
+    // Tests at its end: see lib/compute.glsl.
     uint turn = 0u;
     do {
         uint slot = group.y + turn * 64u + gl_LocalInvocationID.x;

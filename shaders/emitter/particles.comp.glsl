@@ -3,21 +3,12 @@
 // collisions have loops of their own over the few iterations that have any.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_COUNTERS readonly
-#define FW_USE_BURN_TILES readonly
-#include "lib/buffers.glsl"
-#include "shared/burn.h"
+#include "lib/compute.glsl"
 #include "shared/particle.h"
-layout(std430, set = 0, binding = FW_BIND_EMITTERS) readonly buffer EmittersBuffer {
-    ParticleEmitter emitters[];
-};
-layout(std430, set = 0, binding = FW_BIND_EMITTER_GROUPS) readonly buffer GroupsBuffer {
-    uvec2 groups[];  // emitter, first slot of its ring
-};
+FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(EMITTERS) FW_READ(EMITTER_GROUPS)
+FW_PUSH(ParticlePush)
 #define FW_MOVES
 #include "emitter/kept.glsl"
-layout(push_constant) uniform Push { ParticlePush push; };
 
 // Loads the emitter data that every particle needs; the rest is loaded where it is used. A software
 // device loads each word for each lane.

@@ -2,20 +2,15 @@
 // slots of burning tiles. No state is stored: see shared/spark.h.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_COUNTERS readonly
-#define FW_USE_BURN_TILES readonly
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
 #include "shared/flipbook.h"
 #include "shared/spark.h"
-layout(std430, set = 0, binding = FW_BIND_SPARKS) readonly buffer SparksBuffer { SparkSource sources[]; };
-#define FW_EMITTER_FLAMES writeonly
-#define FW_EMITTER_DRAW_ARGS
-#include "emitter/buffers.glsl"
-layout(push_constant) uniform Push { SparkPush push; };
+FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(SPARKS) FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES)
+FW_PUSH(SparkPush)
 
 #ifdef FW_TEXELS
-layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_SPARKS) readonly uniform uimageBuffer sourcesIn;
+FW_TEXEL_BUFFER(SPARKS, readonly, sourcesIn)
 vec4 sparkCell(SparkBounds b, uint i) {
     return uintBitsToFloat(imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
 }

@@ -1,14 +1,8 @@
 // Fire across gaps of a few centimetres: a texel's run of links by the thread of its first link.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#include "lib/light_uses.glsl"
-#define FW_USE_MATERIALS readonly
-#define FW_USE_CONTACTS
-#include "lib/buffers.glsl"
-#include "lib/lists.glsl"
-#include "lib/change.glsl"
 #include "lib/light.glsl"
+FW_READ(MATERIALS) FW_READ(CONTACTS)
 
 // Tick at which this link's source lights its target, or kNever.
 uint linkTick(uint i, out uint by) {

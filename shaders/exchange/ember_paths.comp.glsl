@@ -2,18 +2,11 @@
 // object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_COUNTERS readonly
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_EXCHANGE_TILES
-#define FW_USE_SOURCES FW_READ_WRITE
-#define FW_USE_HEAT_OCCLUDERS
-#include "lib/occlusion_uses.glsl"
-#include "lib/buffers.glsl"
-#include "lib/ember.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(OBJECT_COUNTERS) FW_READ(EXCHANGE_OBJECTS) FW_READ(EXCHANGE_TILES)
+FW_READ(HEAT_OCCLUDERS) FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)
 #include "lib/occlusion.glsl"
+#include "lib/ember.glsl"
 
 bool stopped(FireSource source) {
     Ember ember = emberFrom(source);

@@ -2,15 +2,10 @@
 // its sources; embers are rare.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#include "lib/light_uses.glsl"
-#define FW_USE_EXCHANGE_TILES
-#define FW_USE_SOURCES readonly
-#include "lib/buffers.glsl"
-#include "lib/lists.glsl"
-#include "lib/change.glsl"
 #include "lib/light.glsl"
+FW_READ(EXCHANGE_TILES) FW_READ(SOURCES)
 #include "lib/ember.glsl"
+#include "lib/tile.glsl"
 
 uint nearestLane(uint object, uint corner, ivec3 at, uint axis) {
     uint nearest = kNoneTexel;
@@ -37,8 +32,7 @@ void land(FireSource source) {
     uint chance = multiplyChances(emberLights(ember.energy, exchangeObjects[object].catches),
                               multiplyChances(push.chance, exchangeObjects[source.object].chance));
     if (!drawn(hash32(source.ember + 7u), chance)) return;
-    uint tilesX = objects[object].tilesX;
-    uint corner = tile / tilesX * 8u * objects[object].width + tile % tilesX * 8u;
+    uint corner = texelOf(object, tile, 0u);
     uint lane = nearestLane(object, corner, ember.landing, axis);
     if (lane == kNoneTexel) return;
     uint lit = 0u;

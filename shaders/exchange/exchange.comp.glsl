@@ -3,24 +3,11 @@
 // variant, as a software device executes loop bodies once even without active lanes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_TILE_HEAT FW_READ_WRITE
-#define FW_USE_HOT_LISTS FW_READ_WRITE
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_EXCHANGE_TILES
-#define FW_USE_SOURCES readonly
-#define FW_USE_RECEIVERS readonly
-#define FW_USE_HEAT_OCCLUDERS
-#ifdef FW_HEAT_OCCLUSION
-#include "lib/occlusion_uses.glsl"
-#endif
-#include "lib/buffers.glsl"
-#include "lib/lists.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(EXCHANGE_TILES) FW_READ(SOURCES)
+FW_READ(RECEIVERS) FW_READ(HEAT_OCCLUDERS) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(TILE_HEAT) FW_PUSH(ExchangePush)
+#include "lib/hot_list.glsl"
 #ifdef FW_HEAT_OCCLUSION
 #include "lib/occlusion.glsl"
 #endif

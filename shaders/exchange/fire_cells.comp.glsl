@@ -2,15 +2,9 @@
 // `reduce` per group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_COUNTERS readonly
-#define FW_USE_OBJECTS readonly
-#define FW_USE_BURN_TILES readonly
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_EXCHANGE_TILES
-#define FW_USE_SOURCES FW_READ_WRITE
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(COUNTERS) FW_READ(OBJECTS) FW_READ(BURN_TILES) FW_READ(EXCHANGE_OBJECTS)
+FW_READ(EXCHANGE_TILES) FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)
 
 void sumTile(uint i) {
     uint object = burnTiles[i].object;

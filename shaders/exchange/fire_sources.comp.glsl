@@ -2,14 +2,9 @@
 // them send an ember. Wakes the objects that they may heat. One thread per object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_COUNTERS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_SOURCES FW_READ_WRITE
-#define FW_USE_NEIGHBOURS
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(COUNTERS) FW_READ(EXCHANGE_OBJECTS) FW_READ(NEIGHBOURS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_READ_WRITE(SOURCES) FW_PUSH(ExchangePush)
 
 void settle(uint slot, uint hops, bool gives, uint strength) {
     ExchangeObject o = exchangeObjects[slot];

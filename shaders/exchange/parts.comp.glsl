@@ -2,21 +2,12 @@
 // per group. All ignitions have the exchange's tick, so order does not matter.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#include "lib/light_uses.glsl"
-#define FW_USE_BURN_TILES readonly
-#define FW_USE_EXCHANGE_TILES
-#define FW_USE_MATERIALS readonly
-#include "lib/buffers.glsl"
-#include "lib/lists.glsl"
-#include "lib/change.glsl"
 #include "lib/light.glsl"
+#include "lib/tile.glsl"
+FW_READ(BURN_TILES) FW_READ(EXCHANGE_TILES) FW_READ(MATERIALS)
 
 void lightFrom(uint object, uint tile, uint link, uint block) {
-    uint width = objects[object].width;
-    uint lane = partFrom(link, block);
-    uint tilesX = objects[object].tilesX;
-    uint from = (tile / tilesX * 8u + (lane >> 3u)) * width + tile % tilesX * 8u + (lane & 7u);
+    uint from = texelOf(object, tile, partFrom(link, block));
     uint to = link % kPartTexels;
     uint others = materialOfTexel(object, to);
     ivec3 gap = decodePosition(texels[objects[object].texelBase + to]) -

@@ -2,16 +2,10 @@
 // object slot.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_EXCHANGE_PUSH
-#define FW_USE_COUNTERS FW_READ_WRITE
-#define FW_USE_OBJECTS readonly
-#define FW_USE_OBJECT_COUNTERS FW_READ_WRITE
-#define FW_USE_EXCHANGE_OBJECTS
-#define FW_USE_SOURCES readonly
-#define FW_USE_NEIGHBOURS
-#define FW_USE_RECEIVERS writeonly
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(SOURCES) FW_READ(NEIGHBOURS)
+FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(RECEIVERS) FW_PUSH(ExchangePush)
+#include "lib/lists.glsl"
 
 // Does the neighbour of a table entry give fire to this object?
 bool gives(uint slot, uint entry) {
@@ -59,11 +53,7 @@ uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
 
 void gather(uint slot) {
     uint at = atomicAdd(counters[kRowExchange].runCount, 1u);
-    atomicMax(counters[kRowExchange].runX, min(at + 1u, kMaxGroups));
-    if (at == 0u) {
-        counters[kRowExchange].runY = 1u;
-        counters[kRowExchange].runZ = 1u;
-    }
+    FW_COVER(kRowExchange, run, at, 1u)
     receivers[at * kReceiverWords] = slot;
     ivec3 middle = boxMiddle(exchangeObjects[slot]);
     FW_UNROLL for (int bit = 0; bit < 32; ++bit) weightBits[bit] = 0u;

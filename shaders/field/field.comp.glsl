@@ -3,22 +3,14 @@
 // Emission comes last. Eight strips are a unit; a group holds units of whole fields.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_FIELD_RUNS
-#define FW_FIELD_MASKS
-#define FW_FIELD_COUNTERS
-#include "field/buffers.glsl"
-
-layout(std430, set = 0, binding = FW_BIND_FIELD_CELLS) buffer FieldQuadsBuffer {
-    uvec4 quads[];  // four cells of a row
-};
+#include "field/field.glsl"
+FW_READ_WRITE(FIELD_QUADS)  // four cells of a row
 #ifdef FW_TEXELS
-layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_FIELD_CELLS) readonly uniform uimageBuffer quadsIn;
+FW_TEXEL_BUFFER(FIELD_CELLS, readonly, quadsIn)
 #define FW_QUAD(at) imageLoad(quadsIn, int(at))
 #else
 #define FW_QUAD(at) quads[at]
 #endif
-layout(push_constant) uniform Push { FieldPush push; };
 
 shared uvec4 tallies[64];  // per thread: particles, emitted, died, occupied bands of eight rows
 

@@ -3,19 +3,14 @@
 // and sky; refraction has a specular surface. Output is premultiplied: colour, and coverage.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "shared/black_body.h"
-#include "shared/burn.h"
+#include "lib/view.glsl"
 #include "shared/field_draw.h"
-#include "shared/look.h"
 #include "shared/volume.h"
 #include "shared/volume_draw.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(constant_id = 2) const uint kVariant = 0u;  // 0: only emits, 1: absorbs, 2: also refracts
-layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShownBuffer {
-    uint shown[];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+FW_READ(FIELD_SHOWN)
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 

@@ -2,17 +2,9 @@
 // axis, or a spheroid around which the field is wound, displaced by density if requested.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
+#include "lib/view.glsl"
 #include "shared/field_draw.h"
-#include "shared/look.h"
-
-layout(std430, set = 0, binding = FW_BIND_FIELD_DRAWS) readonly buffer FieldDrawsBuffer {
-    FieldDraw draws[];
-};
-layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) readonly buffer FieldShownBuffer {
-    uint shown[];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+FW_READ(FIELD_DRAWS) FW_READ(FIELD_SHOWN)
 #include "lib/billboard.glsl"
 layout(location = 0) centroid out vec2 outPlace;          // over the field, [0, 1]
 layout(location = 1) centroid out vec3 outNormal;         // of the body

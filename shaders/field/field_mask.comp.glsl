@@ -2,14 +2,8 @@
 // new wall die. A fresh field becomes empty.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_FIELD_RUNS
-#define FW_FIELD_CELLS
-#define FW_FIELD_MASKS
-#define FW_FIELD_COUNTERS
-#include "field/buffers.glsl"
-
-layout(push_constant) uniform Push { FieldPush push; };
+#include "field/field.glsl"
+FW_READ_WRITE(FIELD_CELLS)
 
 shared uint sumDied;
 

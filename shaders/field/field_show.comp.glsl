@@ -3,22 +3,11 @@
 // Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#include "shared/burn.h"
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
 #include "shared/field.h"
 #include "shared/field_draw.h"
-#include "shared/look.h"
-
-layout(std430, set = 0, binding = FW_BIND_FIELD_DRAWS) readonly buffer FieldDrawsBuffer {
-    FieldDraw draws[];
-};
-layout(std430, set = 0, binding = FW_BIND_FIELD_CELLS) readonly buffer FieldCellsBuffer {
-    uint cells[];  // fieldCell
-};
-layout(std430, set = 0, binding = FW_BIND_FIELD_SHOWN) writeonly buffer FieldShownBuffer {
-    uint shown[];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+FW_READ(FIELD_DRAWS) FW_READ(FIELD_CELLS) FW_WRITE(FIELD_SHOWN)
 
 const float kShadow = 0.004;  // of sunlight, absorbed per particle on its path
 

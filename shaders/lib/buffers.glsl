@@ -1,263 +1,145 @@
-// Storage buffers of the simulation passes. A shader defines FW_USE_<NAME> as the access it needs
-// (readonly, writeonly, or FW_READ_WRITE) before it includes this; only those are declared.
-#ifndef FW_LIB_BUFFERS_GLSL
-#define FW_LIB_BUFFERS_GLSL
-#include "shared/burn.h"
-#if defined(FW_USE_EXCHANGE_OBJECTS) || defined(FW_USE_EXCHANGE_PUSH)
-#include "shared/exchange.h"
-#endif
-#ifdef FW_USE_HEAT_MATERIALS
-#include "shared/heat.h"
-#endif
-
+// Storage buffers of set 0. A shader includes the headers of the records, then declares the buffers
+// that it uses by the names of their bindings (shared/burn.h): FW_READ(STATE), FW_WRITE(MASKS).
+//
 // *_WORDS and *_QUADS are the same buffers by words or by four: a software device loads four words
 // at once for little more than one, and pays for every load, taken or not. It also runs a loop's
 // text until no lane is left, and a `for` finds that out one turn late: hot loops are `do`,
 // `while`.
-#define FW_READ_WRITE
-#define FW_BUFFER(number, access, block, type, name) \
-    layout(std430, set = 0, binding = number) access buffer block { type name[]; }
+#ifndef FW_LIB_BUFFERS_GLSL
+#define FW_LIB_BUFFERS_GLSL
 
-#ifdef FW_USE_OBJECTS
-FW_BUFFER(FW_BIND_OBJECTS, FW_USE_OBJECTS, ObjectsBuffer, BurnObject, objects);
-#endif
-#ifdef FW_USE_OBJECT_QUADS
-FW_BUFFER(FW_BIND_OBJECTS, readonly, ObjectQuadsBuffer, uvec4, objectQuads);
-uvec4 objectBases(uint object) { return objectQuads[object * 10u]; }  // texelBase .. width
-uvec4 objectPlaces(uint object) { return objectQuads[object * 10u + 1u]; }  // .. flags
-uvec4 objectSizes(uint object) { return objectQuads[object * 10u + 2u]; }  // tileBase .. tileCount
-uvec4 objectTimes(uint object) { return objectQuads[object * 10u + 3u]; }  // window .. image
-#endif
-#ifdef FW_USE_MATERIAL_QUADS
-FW_BUFFER(FW_BIND_MATERIALS, readonly, MaterialQuadsBuffer, uvec4, materialQuads);
-BurnMaterial burnMaterial(uint material) {  // what the spread law needs of it
-    uvec4 a = materialQuads[material * 7u];
-    uvec4 b = materialQuads[material * 7u + 1u];
-    uvec4 c = materialQuads[material * 7u + 2u];
-    BurnMaterial m;
-    m.sigma0 = a.x;
-    m.headGain = a.y;
-    m.backGain = a.z;
-    m.driveMax = a.w;
-    m.breadthMax = b.x;
-    m.burnTicks = b.y;
-    m.ceiling = b.z;
-    m.driveX = int(c.x);
-    m.driveY = int(c.y);
-    m.driveZ = int(c.z);
-    m.upCeiling = materialQuads[material * 7u + 5u];
-    m.windowMax = materialQuads[material * 7u + 6u].y;
-    return m;
-}
-uint burnTicksOf(uint material) { return materialQuads[material * 7u + 1u].y; }
-#endif
-#ifdef FW_USE_MATERIALS
-FW_BUFFER(FW_BIND_MATERIALS, FW_USE_MATERIALS, MaterialsBuffer, BurnMaterial, materials);
-#endif
-#ifdef FW_USE_TEXELS
-FW_BUFFER(FW_BIND_TEXELS, FW_USE_TEXELS, TexelsBuffer, uvec2, texels);
-#endif
-#ifdef FW_USE_NORMALS
-FW_BUFFER(FW_BIND_NORMALS, FW_USE_NORMALS, NormalsBuffer, uint, normals);
-#endif
-#ifdef FW_USE_SLOWNESS
-FW_BUFFER(FW_BIND_SLOWNESS, FW_USE_SLOWNESS, SlownessBuffer, uint, slowness);
-uint slownessAt(uint base, uint texel) {
-    return (slowness[base + (texel >> 1u)] >> ((texel & 1u) * 16u)) & 0xFFFFu;
-}
-#endif
-#ifdef FW_USE_LINKS
-FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinksBuffer, uint, links);
-FW_BUFFER(FW_BIND_LINKS, FW_USE_LINKS, LinkQuadsBuffer, uvec4, linkQuads);
-#endif
-#ifdef FW_USE_DEPENDENTS
-FW_BUFFER(FW_BIND_DEPENDENTS, FW_USE_DEPENDENTS, DependentsBuffer, uint, readers);
-#endif
-#ifdef FW_USE_TILES
+#define FW_BOTH
+#define FW_READ(buffer) FW_BUFFER_##buffer(readonly)
+#define FW_WRITE(buffer) FW_BUFFER_##buffer(writeonly)
+#define FW_READ_WRITE(buffer) FW_BUFFER_##buffer(FW_BOTH)
+#define FW_COHERENT(buffer) FW_BUFFER_##buffer(coherent)
+#define FW_BUFFER(number, access, type, name) \
+    layout(std430, set = 0, binding = FW_BIND_##number) access buffer name##Buffer { type name[]; };
+#define FW_UNIFORM(number, type, name) \
+    layout(std140, set = 0, binding = FW_BIND_##number) uniform number##Block { type name; };
+// The buffer's words by four, through a texel buffer.
+#define FW_TEXEL_BUFFER(number, access, name) \
+    layout(rgba32ui, set = 0, binding = FW_BIND_COUNT + FW_BIND_##number) \
+        access uniform uimageBuffer name;
+
+// Simulation.
+#define FW_BUFFER_OBJECTS(access) FW_BUFFER(OBJECTS, access, BurnObject, objects)
+#define FW_BUFFER_MATERIALS(access) FW_BUFFER(MATERIALS, access, BurnMaterial, materials)
+#define FW_BUFFER_TEXELS(access) FW_BUFFER(TEXELS, access, uvec2, texels)
+#define FW_BUFFER_NORMALS(access) FW_BUFFER(NORMALS, access, uint, normals)
+#define FW_BUFFER_SLOWNESS(access) FW_BUFFER(SLOWNESS, access, uint, slowness) \
+    uint slownessAt(uint base, uint texel) { \
+        return (slowness[base + (texel >> 1u)] >> ((texel & 1u) * 16u)) & 0xFFFFu; \
+    }
+#define FW_BUFFER_LINK_QUADS(access) FW_BUFFER(LINKS, access, uvec4, linkQuads)
+#define FW_BUFFER_DEPENDENTS(access) FW_BUFFER(DEPENDENTS, access, uint, readers)
 // Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
-FW_BUFFER(FW_BIND_TILES, FW_USE_TILES, TilesBuffer, uvec4, tiles);
-#endif
-#ifdef FW_USE_TILE_WORDS
-FW_BUFFER(FW_BIND_TILES, readonly, TileWordsBuffer, uint, tileWords);
-// Of a row of eight texels: those with a ring record.
-uint rimOfRow(uint tile, uint row) {
-    return (tileWords[tile * 8u + 4u + (row >> 2u)] >> ((row & 3u) * 8u)) & 0xFFu;
-}
-#endif
-#ifdef FW_USE_STATE
-FW_BUFFER(FW_BIND_STATE, FW_USE_STATE, StateBuffer, uint, state);
-#endif
-#ifdef FW_USE_STATE_QUADS
-FW_BUFFER(FW_BIND_STATE, readonly, StateQuadsBuffer, uvec4, stateQuads);
-#endif
-#ifdef FW_USE_PENDING
-FW_BUFFER(FW_BIND_PENDING, FW_USE_PENDING, PendingBuffer, uint, pendingTick);
-#endif
-#ifdef FW_USE_PENDING_QUADS
-FW_BUFFER(FW_BIND_PENDING, readonly, PendingQuadsBuffer, uvec4, pendingQuads);
-#endif
-#ifdef FW_USE_SETTLED
-FW_BUFFER(FW_BIND_SETTLED, FW_USE_SETTLED, SettledBuffer, uint, settledRows);
-#endif
-#ifdef FW_USE_TILE_STATE
-FW_BUFFER(FW_BIND_TILE_STATE, FW_USE_TILE_STATE, TileStateBuffer, TileState, tileState);
-#endif
-#ifdef FW_USE_LISTS
-FW_BUFFER(FW_BIND_LIST_A, FW_USE_LISTS, ListABuffer, uint, listA);
-FW_BUFFER(FW_BIND_LIST_B, FW_USE_LISTS, ListBBuffer, uint, listB);
-#endif
-#ifdef FW_USE_RUN
+#define FW_BUFFER_TILES(access) FW_BUFFER(TILES, access, uvec4, tiles)
+// rimOfRow: those texels of a row of eight that have a ring record.
+#define FW_BUFFER_TILE_WORDS(access) FW_BUFFER(TILES, access, uint, tileWords) \
+    uint rimOfRow(uint tile, uint row) { \
+        return (tileWords[tile * 8u + 4u + (row >> 2u)] >> ((row & 3u) * 8u)) & 0xFFu; \
+    }
+#define FW_BUFFER_STATE(access) FW_BUFFER(STATE, access, uint, state)
+#define FW_BUFFER_STATE_QUADS(access) FW_BUFFER(STATE, access, uvec4, stateQuads)
+#define FW_BUFFER_PENDING(access) FW_BUFFER(PENDING, access, uint, pendingTick)
+#define FW_BUFFER_PENDING_QUADS(access) FW_BUFFER(PENDING, access, uvec4, pendingQuads)
+#define FW_BUFFER_SETTLED(access) FW_BUFFER(SETTLED, access, uint, settledRows)
+#define FW_BUFFER_TILE_STATE(access) FW_BUFFER(TILE_STATE, access, TileState, tileState)
+#define FW_BUFFER_LISTS(access) \
+    FW_BUFFER(LIST_A, access, uint, listA) FW_BUFFER(LIST_B, access, uint, listB)
 // World tile; object; its first texel in the object's map, a multiple of eight, + kRun bits; its
 // row of `tiles`.
-FW_BUFFER(FW_BIND_RUN, FW_USE_RUN, RunBuffer, uvec4, run);
+#define FW_BUFFER_RUN(access) FW_BUFFER(RUN, access, uvec4, run)
 const uint kRunWoken = 1u;  // due because a known arrival is: nothing else has changed
 const uint kRunLitBeside = 2u;   // due because texels just caught: settled ones need no run
 const uint kRunBits = 3u;
-#endif
-#ifdef FW_USE_SCRATCH
-FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH, ScratchBuffer, uint, scratch);
-// Word of rim texel `i` of an iteration: its gathered row * 8 + its column.
-uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
-#endif
-#ifdef FW_USE_SCRATCH_QUADS
+// rimItem: word of rim texel `i` of an iteration: its gathered row * 8 + its column.
+#define FW_BUFFER_SCRATCH(access) FW_BUFFER(SCRATCH, access, uint, scratch) \
+    uint rimItem(uint i) { return uint(scratch.length()) - 1u - i; }
 // A gathered row: (run slot * 8 + row, chosen texels | changed ones << 8, first texel, object). Of
 // the prediction: (world tile * 8 + row, chosen texels | changed ones << 8 | wet ones << 16, first
 // texel, object). The scratch's end lists rim texels, see rimItem.
-FW_BUFFER(FW_BIND_SCRATCH, FW_USE_SCRATCH_QUADS, ScratchQuadsBuffer, uvec4, scratchQuads);
-#endif
-#ifdef FW_USE_MASKS
-FW_BUFFER(FW_BIND_MASKS, FW_USE_MASKS, MasksBuffer, uvec4, masks);
-#endif
-#ifdef FW_USE_MASK_WORDS
-FW_BUFFER(FW_BIND_MASKS, FW_READ_WRITE, MaskWordsBuffer, uint, maskWords);
-#endif
-#ifdef FW_USE_COUNTERS
-FW_BUFFER(FW_BIND_COUNTERS, FW_USE_COUNTERS, CountersBuffer, IterationCounters, counters);
-#endif
-#ifdef FW_USE_EVENTS
-FW_BUFFER(FW_BIND_EVENTS, FW_USE_EVENTS, EventsBuffer, TexelEvent, events);
-#endif
-#ifdef FW_USE_WAKE_GROUPS
-FW_BUFFER(FW_BIND_WAKE_GROUPS, FW_USE_WAKE_GROUPS, WakeGroupsBuffer, uvec2, wakeGroups);
-#endif
-#ifdef FW_USE_OBJECT_COUNTERS
-FW_BUFFER(FW_BIND_OBJECT_COUNTERS, FW_USE_OBJECT_COUNTERS, ObjectCountersBuffer, ObjectCounters, objectCounters);
-#endif
-#ifdef FW_USE_BURN_LISTS
-FW_BUFFER(FW_BIND_BURN_A, FW_USE_BURN_LISTS, BurnABuffer, uint, burnA);
-FW_BUFFER(FW_BIND_BURN_B, FW_USE_BURN_LISTS, BurnBBuffer, uint, burnB);
-#endif
-#ifdef FW_USE_BURN_TILES
-FW_BUFFER(FW_BIND_BURN_TILES, FW_USE_BURN_TILES, BurnTilesBuffer, BurnTile, burnTiles);
-#endif
-#ifdef FW_USE_PREDICT
-FW_BUFFER(FW_BIND_PREDICT, FW_USE_PREDICT, PredictBuffer, uint, predict);
-#endif
-#ifdef FW_USE_PREDICT_QUADS
-FW_BUFFER(FW_BIND_PREDICT, readonly, PredictQuadsBuffer, uvec4, predictQuads);
-#endif
-#ifdef FW_USE_GRADIENT
-FW_BUFFER(FW_BIND_GRADIENT, FW_USE_GRADIENT, GradientBuffer, uint, gradient);
-#endif
-#ifdef FW_USE_PREDICT_LISTS
-FW_BUFFER(FW_BIND_PREDICT_LIST_A, FW_USE_PREDICT_LISTS, PredictListABuffer, uint, predictA);
-FW_BUFFER(FW_BIND_PREDICT_LIST_B, FW_USE_PREDICT_LISTS, PredictListBBuffer, uint, predictB);
-#endif
-#ifdef FW_USE_PROBES
-FW_BUFFER(FW_BIND_PROBES, FW_USE_PROBES, ProbesBuffer, uvec2, probes);
-#endif
-#ifdef FW_USE_ANSWERS
-FW_BUFFER(FW_BIND_ANSWERS, FW_USE_ANSWERS, AnswersBuffer, ProbeAnswer, answers);
-#endif
-#ifdef FW_USE_PUBLISHED
-FW_BUFFER(FW_BIND_PUBLISHED, FW_USE_PUBLISHED, PublishedBuffer, float, published);
-#endif
-#ifdef FW_USE_HEAT
-FW_BUFFER(FW_BIND_HEAT, FW_USE_HEAT, HeatBuffer, uvec2, heat);
-#endif
-#ifdef FW_USE_HEAT_QUADS
-FW_BUFFER(FW_BIND_HEAT, readonly, HeatPairsBuffer, uvec4, heatPairs);  // two texels each
-#endif
-#ifdef FW_USE_TILE_HEAT
-FW_BUFFER(FW_BIND_TILE_HEAT, FW_USE_TILE_HEAT, TileHeatBuffer, TileHeat, tileHeat);
-#endif
-#ifdef FW_USE_HEAT_MATERIALS
-FW_BUFFER(FW_BIND_HEAT_MATERIALS, readonly, HeatMaterialsBuffer, uvec4, heatQuads);
-HeatMaterial heatMaterial(uint material) {
-    uvec4 a = heatQuads[material * 6u];
-    uvec4 b = heatQuads[material * 6u + 1u];
-    uvec4 c = heatQuads[material * 6u + 2u];
-    uvec4 d = heatQuads[material * 6u + 3u];
-    uvec4 e = heatQuads[material * 6u + 4u];
-    uvec4 f = heatQuads[material * 6u + 5u];
-    return HeatMaterial(a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w, c.x, c.y, c.z, c.w, d.x, d.y, d.z,
-                        d.w, e.x, e.y, e.z, e.w, f.x, f.y, f.z, uintBitsToFloat(f.w));
-}
-#endif
-#ifdef FW_USE_HOT_LISTS
-FW_BUFFER(FW_BIND_HOT_LISTS, FW_USE_HOT_LISTS, HotListsBuffer, uvec2, hotLists);
-#endif
-#ifdef FW_USE_TILE_FIRE
-FW_BUFFER(FW_BIND_TILE_FIRE, FW_USE_TILE_FIRE, TileFireBuffer, float, tileFire);
-#endif
+#define FW_BUFFER_SCRATCH_QUADS(access) FW_BUFFER(SCRATCH, access, uvec4, scratchQuads)
+#define FW_BUFFER_MASKS(access) FW_BUFFER(MASKS, access, uvec4, masks)
+#define FW_BUFFER_MASK_WORDS(access) FW_BUFFER(MASKS, access, uint, maskWords)
+#define FW_BUFFER_COUNTERS(access) FW_BUFFER(COUNTERS, access, IterationCounters, counters)
+#define FW_BUFFER_EVENTS(access) FW_BUFFER(EVENTS, access, TexelEvent, events)
+#define FW_BUFFER_WAKE_GROUPS(access) FW_BUFFER(WAKE_GROUPS, access, uvec2, wakeGroups)
+#define FW_BUFFER_OBJECT_COUNTERS(access) \
+    FW_BUFFER(OBJECT_COUNTERS, access, ObjectCounters, objectCounters)
+#define FW_BUFFER_BURN_LISTS(access) \
+    FW_BUFFER(BURN_A, access, uint, burnA) FW_BUFFER(BURN_B, access, uint, burnB)
+#define FW_BUFFER_BURN_TILES(access) FW_BUFFER(BURN_TILES, access, BurnTile, burnTiles)
+#define FW_BUFFER_PREDICT(access) FW_BUFFER(PREDICT, access, uint, predict)
+#define FW_BUFFER_PREDICT_QUADS(access) FW_BUFFER(PREDICT, access, uvec4, predictQuads)
+#define FW_BUFFER_GRADIENT(access) FW_BUFFER(GRADIENT, access, uint, gradient)
+#define FW_BUFFER_PREDICT_LISTS(access) FW_BUFFER(PREDICT_LIST_A, access, uint, predictA) \
+    FW_BUFFER(PREDICT_LIST_B, access, uint, predictB)
+#define FW_BUFFER_PROBES(access) FW_BUFFER(PROBES, access, uvec2, probes)
+#define FW_BUFFER_ANSWERS(access) FW_BUFFER(ANSWERS, access, ProbeAnswer, answers)
+#define FW_BUFFER_PUBLISHED(access) FW_BUFFER(PUBLISHED, access, float, published)
+#define FW_BUFFER_HEAT(access) FW_BUFFER(HEAT, access, uvec2, heat)
+#define FW_BUFFER_HEAT_PAIRS(access) FW_BUFFER(HEAT, access, uvec4, heatPairs)  // two texels each
+#define FW_BUFFER_TILE_HEAT(access) FW_BUFFER(TILE_HEAT, access, TileHeat, tileHeat)
+#define FW_BUFFER_HOT_LISTS(access) FW_BUFFER(HOT_LISTS, access, uvec2, hotLists)
+#define FW_BUFFER_TILE_FIRE(access) FW_BUFFER(TILE_FIRE, access, float, tileFire)
+#define FW_BUFFER_SKIN_TEXELS(access) FW_BUFFER(SKIN_TEXELS, access, uvec4, skinTexels)
 
-#ifdef FW_USE_EXCHANGE_OBJECTS
-FW_BUFFER(FW_BIND_EXCHANGE_OBJECTS, readonly, ExchangeObjectsBuffer, ExchangeObject, exchangeObjects);
-#endif
-#ifdef FW_USE_EXCHANGE_TILES
-FW_BUFFER(FW_BIND_EXCHANGE_TILES, readonly, ExchangeTilesBuffer, ExchangeTile, exchangeTiles);
-#endif
-#ifdef FW_USE_SOURCES
-FW_BUFFER(FW_BIND_SOURCES, FW_USE_SOURCES, SourcesBuffer, FireSource, sources);
-#endif
-#ifdef FW_USE_NEIGHBOURS
-FW_BUFFER(FW_BIND_NEIGHBOURS, readonly, NeighboursBuffer, uint, neighbours);
-#endif
-#ifdef FW_USE_CONTACTS
-FW_BUFFER(FW_BIND_CONTACTS, readonly, ContactsBuffer, ContactLink, contacts);
-#endif
-#ifdef FW_USE_HEAT_OCCLUDERS
-FW_BUFFER(FW_BIND_HEAT_OCCLUDERS, readonly, HeatOccludersBuffer, HeatOccluder, occluders);
-#endif
-#ifdef FW_USE_HEAT_OCCLUSION
-FW_BUFFER(FW_BIND_HEAT_OCCLUSION, readonly, OcclusionBuffer, uint, shield);
-#endif
-#ifdef FW_USE_ROOMS
-#include "shared/room.h"
-FW_BUFFER(FW_BIND_ROOMS, readonly, RoomsBuffer, Room, rooms);
-FW_BUFFER(FW_BIND_ROOM_AIR, FW_READ_WRITE, RoomAirBuffer, RoomAir, roomAir);
-#endif
-#ifdef FW_USE_RECEIVERS
-FW_BUFFER(FW_BIND_RECEIVERS, FW_USE_RECEIVERS, ReceiversBuffer, uint, receivers);
-#endif
+// Exchange.
+#define FW_BUFFER_EXCHANGE_OBJECTS(access) \
+    FW_BUFFER(EXCHANGE_OBJECTS, access, ExchangeObject, exchangeObjects)
+#define FW_BUFFER_EXCHANGE_TILES(access) \
+    FW_BUFFER(EXCHANGE_TILES, access, ExchangeTile, exchangeTiles)
+#define FW_BUFFER_SOURCES(access) FW_BUFFER(SOURCES, access, FireSource, sources)
+#define FW_BUFFER_NEIGHBOURS(access) FW_BUFFER(NEIGHBOURS, access, uint, neighbours)
+#define FW_BUFFER_CONTACTS(access) FW_BUFFER(CONTACTS, access, ContactLink, contacts)
+#define FW_BUFFER_HEAT_OCCLUDERS(access) FW_BUFFER(HEAT_OCCLUDERS, access, HeatOccluder, occluders)
+#define FW_BUFFER_HEAT_OCCLUSION(access) FW_BUFFER(HEAT_OCCLUSION, access, uint, occlusion)
+#define FW_BUFFER_RECEIVERS(access) FW_BUFFER(RECEIVERS, access, uint, receivers)
+#define FW_BUFFER_ROOMS(access) FW_BUFFER(ROOMS, access, Room, rooms)
+#define FW_BUFFER_ROOM_AIR(access) FW_BUFFER(ROOM_AIR, access, RoomAir, roomAir)
 
-#ifdef FW_USE_EXCHANGE_PUSH
-layout(push_constant) uniform ExchangePushBlock { ExchangePush push; };
-#endif
-#ifdef FW_USE_PUSH
-layout(push_constant) uniform StepPushBlock { StepPush push; };
-#endif
+// Refinement. One list entry of the work buffer is one workgroup's share.
+#define FW_BUFFER_REFINE_WORK(access) FW_BUFFER(REFINE_WORK, access, uint, work)
+#define FW_BUFFER_REFINE_OBJECTS(access) FW_BUFFER(REFINE_OBJECTS, access, RefineObject, refined)
+#define FW_BUFFER_REFINE_WORDS(access) FW_BUFFER(REFINE_WORDS, access, uint, words) \
+    uint tableToken(uint entry) { return (words[entry >> 1u] >> (16u * (entry & 1u))) & 0xFFFFu; }
+#define FW_BUFFER_REFINE_TRIANGLES(access) \
+    FW_BUFFER(REFINE_TRIANGLES, access, RefineTriangle, triangles)
+#define FW_BUFFER_REFINE_EDGES(access) FW_BUFFER(REFINE_EDGES, access, RefineEdge, edges)
+#define FW_BUFFER_REFINE_SLOTS(access) FW_BUFFER(REFINE_SLOTS, access, RefineSlot, slots)
+#define FW_BUFFER_REFINE_ITEMS(access) FW_BUFFER(REFINE_ITEMS, access, RefineLevel, items)
+#define FW_BUFFER_REFINE_HEAT(access) FW_BUFFER(REFINE_HEAT, access, uint, heat)
+#define FW_BUFFER_REFINE_LEVELS(access) FW_BUFFER(REFINE_LEVELS, access, uvec2, levels)
+#define FW_BUFFER_REFINE_VERTICES(access) FW_BUFFER(REFINE_VERTICES, access, RefineVertex, vertices)
+#define FW_BUFFER_REFINE_INDICES(access) FW_BUFFER(REFINE_INDICES, access, uint, indices)
+#define FW_BUFFER_REFINE_DRAWS(access) FW_BUFFER(REFINE_DRAWS, access, uint, draws)
+#define FW_BUFFER_REFINE_CUTS(access) FW_BUFFER(REFINE_CUTS, access, uvec4, cuts)
+#define FW_BUFFER_REFINE_CUT_DRAWS(access) FW_BUFFER(REFINE_CUT_DRAWS, access, uint, cutDraws)
+#define FW_BUFFER_VERTICES(access) FW_BUFFER(VERTICES, access, uvec4, meshVertices)
+#define FW_BUFFER_PATTERN_GROUPS(access) FW_BUFFER(PATTERN_GROUPS, access, uvec2, groups)
+#define FW_BUFFER_PATTERN_LIST(access) FW_BUFFER(PATTERN_LIST, access, uint, patternList)
 
-const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
-
-// A world tile as its object sees it. Entries of a destroyed object are met in lists until the next
-// pass drops them: `alive` is false for those.
-#if defined(FW_USE_OBJECTS) && defined(FW_USE_TILE_STATE)
-struct TileRef {
-    uint object, local;
-    bool alive;
-};
-TileRef tileRef(uint worldTile) {
-    TileRef r;
-    r.object = tileState[worldTile].object;
-    r.local = worldTile - objects[r.object].worldTileBase;
-    r.alive = (objects[r.object].flags & kObjectLive) != 0u && r.local < objects[r.object].tileCount;
-    return r;
-}
-// Texel of a lane of a tile, in the object's own map.
-uint texelOf(uint object, uint local, uint lane) {
-    uint tilesX = objects[object].tilesX;
-    return ((local / tilesX) * 8u + (lane >> 3u)) * objects[object].width + (local % tilesX) * 8u + (lane & 7u);
-}
-#endif
+// Effects.
+#define FW_BUFFER_APPEARANCES(access) FW_BUFFER(APPEARANCES, access, MaterialAppearance, looks)
+#define FW_BUFFER_LIGHTS(access) FW_BUFFER(LIGHTS, access, BurnLight, lights)
+#define FW_BUFFER_LIGHT_CELLS(access) FW_BUFFER(LIGHT_CELLS, access, uint, cells)
+#define FW_BUFFER_FLAMES(access) FW_BUFFER(FLAMES, access, FlameQuad, flameQuad)
+#define FW_BUFFER_DRAW_ARGS(access) FW_BUFFER(DRAW_ARGS, access, uint, drawArgs)
+#define FW_BUFFER_FLIPBOOKS(access) FW_BUFFER(FLIPBOOKS, access, uint, flipbooks)
+#define FW_BUFFER_EMITTERS(access) FW_BUFFER(EMITTERS, access, ParticleEmitter, emitters)
+#define FW_BUFFER_EMITTER_GROUPS(access) FW_BUFFER(EMITTER_GROUPS, access, uvec2, groups)
+#define FW_BUFFER_PARTICLES(access) FW_BUFFER(PARTICLES, access, ParticleWords, particles)
+#define FW_BUFFER_SPARKS(access) FW_BUFFER(SPARKS, access, SparkSource, sources)
+#define FW_BUFFER_FIELDS(access) FW_BUFFER(FIELDS, access, FieldRecord, fields)
+#define FW_BUFFER_FIELD_RUNS(access) FW_BUFFER(FIELD_RUNS, access, uvec2, runs)
+#define FW_BUFFER_FIELD_CELLS(access) FW_BUFFER(FIELD_CELLS, access, uint, cells)
+#define FW_BUFFER_FIELD_QUADS(access) FW_BUFFER(FIELD_CELLS, access, uvec4, quads)
+#define FW_BUFFER_FIELD_MASKS(access) FW_BUFFER(FIELD_MASKS, access, uint, masks)
+#define FW_BUFFER_FIELD_COUNTERS(access) FW_BUFFER(FIELD_COUNTERS, access, FieldCounters, counters)
+#define FW_BUFFER_FIELD_SHOWN(access) FW_BUFFER(FIELD_SHOWN, access, uint, shown)
+#define FW_BUFFER_FIELD_DRAWS(access) FW_BUFFER(FIELD_DRAWS, access, FieldDraw, draws)
+#define FW_BUFFER_VOLUME_RAYS(access) FW_BUFFER(VOLUME_RAYS, access, uint, rays)
+#define FW_BUFFER_VOLUME_WORK(access) FW_BUFFER(VOLUME_WORK, access, VolumeWork, work)
 #endif

@@ -1,7 +1,7 @@
 // Effects of a texel's change outside the front kernel: dependent tiles become due, counters and
 // lists are updated. For events, contacts and embers.
-#ifndef FW_LIB_CHANGE_GLSL
-#define FW_LIB_CHANGE_GLSL
+#include "lib/predict_list.glsl"
+#include "lib/touch.glsl"
 
 struct TexelPlace {
     uint local, lane, worldTile;
@@ -37,6 +37,5 @@ void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
         return;
     }
     tileState[p.worldTile].lastChange = push.now;
-    touchDependents(object, p.local, p.lane < 32u ? uvec2(1u << p.lane, 0u) : uvec2(0u, 1u << (p.lane - 32u)));
+    touchDependents(object, p.local, laneMask(p.lane));
 }
-#endif

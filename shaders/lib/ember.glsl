@@ -1,6 +1,4 @@
 // Landing of embers. They are rare: each tests all objects, then the tiles of one.
-#ifndef FW_LIB_EMBER_GLSL
-#define FW_LIB_EMBER_GLSL
 
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
 
@@ -53,4 +51,3 @@ bool sendsEmber(uint at) { return sources[at].ember != 0u && sources[at].watts !
     uvec2 range = sourcesOf(slot);                                     \
     for (uint at = range.x; at < range.y; ++at)                        \
         for (bool sent = sendsEmber(at); sent; sent = false) statement
-#endif

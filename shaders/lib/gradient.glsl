@@ -1,7 +1,5 @@
 // A word of FW_BIND_GRADIENT. Low byte: soot. Texel with a time: its gradient. Wet texel: distance
 // to the fire. A texel that was put out has no soot: see burn.h.
-#ifndef FW_LIB_GRADIENT_GLSL
-#define FW_LIB_GRADIENT_GLSL
 
 // Two half floats without their last four bits.
 uint packGradient(vec2 slope) {
@@ -21,4 +19,3 @@ uint packAheadNext(uint word, float texels) {
 }
 uint aheadTurned(uint word) { return (word & 0xFFFFFu) | (word << 12u & 0xFFF00000u); }
 float unpackAhead(uint word) { return isAheadFar(word) ? 1e3 : float(word >> 20u) * (1.0 / 64.0); }
-#endif

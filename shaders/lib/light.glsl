@@ -1,6 +1,11 @@
 // Ignition of a texel by another object.
-#ifndef FW_LIB_LIGHT_GLSL
-#define FW_LIB_LIGHT_GLSL
+#include "lib/compute.glsl"
+FW_READ(OBJECTS) FW_READ(TEXELS) FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(STATE)
+FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_READ_WRITE(PUBLISHED) FW_PUSH(ExchangePush)
+#include "lib/burn_budget.glsl"
+#include "lib/change.glsl"
+#include "lib/hot_list.glsl"
 
 // True: it caught at this tick, by this flame or also by another one. Each counts, so the order of
 // threads does not matter: all ignitions of a texel in one dispatch have the same tick.
@@ -23,4 +28,3 @@ bool lightTexel(uint object, uint texel, uint tick, uint by) {
     texelChanged(object, texel, p, true);
     return true;
 }
-#endif

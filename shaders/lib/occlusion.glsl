@@ -1,8 +1,6 @@
 // Heat-occlusion tests: shared/exchange.h with the buffers. The CPU backend's twin is
 // gpu/cpu/cpu_exchange.cpp.
-#ifndef FW_LIB_SHIELD_GLSL
-#define FW_LIB_SHIELD_GLSL
-#include "shared/heat.h"
+FW_READ(HEAT_OCCLUSION) FW_READ(STATE) FW_READ(HEAT) FW_READ(MATERIALS)
 
 // Does the texel that fills an occlusion cell still stand?
 bool isOccluderStanding(uint what, uint texel) {
@@ -30,13 +28,13 @@ bool isOccluded(OcclusionEnds ends, ivec3 a, ivec3 b) {
         bool stops = false;  // in a solid cell
         while (w.within && !stops) {
             uint at = w.cell >> 5u, bit = 1u << (w.cell & 31u);
-            for (bool solid = (shield[at] & bit) != 0u; solid; solid = false) {
-                uint baked = shield[words + 2u * at];
+            for (bool solid = (occlusion[at] & bit) != 0u; solid; solid = false) {
+                uint baked = occlusion[words + 2u * at];
                 what = kOcclusionPermanent | kOcclusionSlotMask;
                 if ((baked & bit) != 0u) {
-                    uint i = shield[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
-                    what = shield[3u * words + 2u * i];
-                    texel = shield[3u * words + 2u * i + 1u];
+                    uint i = occlusion[words + 2u * at + 1u] + uint(bitCount(baked & (bit - 1u)));
+                    what = occlusion[3u * words + 2u * i];
+                    texel = occlusion[3u * words + 2u * i + 1u];
                 }
                 uint slot = what & kOcclusionSlotMask;
                 stops = !isNearWalkEnd(w, ends, slot == kOcclusionSlotMask ? kNoneTexel : slot, push.occlusionCell);
@@ -47,4 +45,3 @@ bool isOccluded(OcclusionEnds ends, ivec3 a, ivec3 b) {
     }
     return cut;
 }
-#endif

@@ -1,9 +1,8 @@
-// Shared by the prediction passes: times, gradients, and dependent tiles. With FW_USE_PREDICT_LISTS
-// include after lists.glsl.
-#ifndef FW_LIB_PREDICT_GLSL
-#define FW_LIB_PREDICT_GLSL
+// Shared by the prediction passes: their buffers, times and gradients. Needs `predict`.
 
 #include "lib/gradient.glsl"
+#include "lib/object_quads.glsl"
+FW_READ(OBJECTS) FW_READ(STATE) FW_READ_WRITE(GRADIENT) FW_PUSH(StepPush)
 
 bool hasTime(uint p) { return p < kLiveEnd; }
 
@@ -53,23 +52,3 @@ bool concernsOthers(uint before, uint now) {
     int ahead = max(int(now - push.now), 0);
     return !(hasTime(now) && hasTime(before) && abs(int(now - before)) <= 64 + ahead / 8);
 }
-
-#ifdef FW_USE_PREDICT_LISTS
-// Lists the tile, and those that depend on its texels of `mask` (lane = y * 8 + x), for the next
-// frame.
-void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY) {
-    uint parity = push.predictParity ^ 1u;
-    predictTouch(parity, worldTile);
-    uvec4 places = objectPlaces(object);
-    uvec4 sizes = objectSizes(object);
-    for (uint beside = dependentNeighbours(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
-        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY), uint(findLSB(beside)));
-        if (other != kNoneTexel) predictTouch(parity, places.x + other);
-    }
-    uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];
-    if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
-    for (uint r = 0u; r < seam.w; ++r)
-        predictTouch(parity, places.x + readers[places.z + seam.z + r]);
-}
-#endif
-#endif

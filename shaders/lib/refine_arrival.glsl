@@ -1,7 +1,5 @@
 // Refined vertex of this frame, from the arrivals around its texel and around the opposite wall.
-// Needs the buffers of lib/refine_buffers.glsl with FW_USE_PREDICT.
-#ifndef FW_LIB_REFINE_ARRIVAL_GLSL
-#define FW_LIB_REFINE_ARRIVAL_GLSL
+// Needs `refined`, `predict` and `gradient`.
 
 bool isDoused(uint t) { return t == kOut || t == kOutWet; }
 
@@ -39,4 +37,3 @@ RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float r
     behind = min(behind, refined[object].now + abs(seconds));
     return RefineVertex(v.x, v.y, v.z, v.w);
 }
-#endif

@@ -1,11 +1,6 @@
 // Position of a texel on moving vertices: the host's, or a sheet's. Every thread loads; objects
 // without them read the first records.
-#ifndef FW_LIB_SKIN_GLSL
-#define FW_LIB_SKIN_GLSL
-layout(std430, set = 0, binding = FW_BIND_SKIN_TEXELS) readonly buffer SkinTexelsBuffer {
-    uvec4 skinTexels[];
-};
-layout(std430, set = 0, binding = FW_BIND_SHOWN) readonly buffer SkinShownBuffer { vec4 skinShown[]; };
+FW_READ(SKIN_TEXELS) FW_BUFFER(SHOWN, readonly, vec4, skinShown)
 
 struct SkinPlace {
     vec3 place, normal;  // m, object space; of the triangle, Q14 as decodeNormal's
@@ -22,4 +17,3 @@ SkinPlace skinPlace(bool skinned, uint skinTexel, uint shownBase) {
     found.normal = across * (16384.0 * inversesqrt(max(dot(across, across), 1e-30)));
     return found;
 }
-#endif

@@ -1,6 +1,4 @@
 // Distance of the host's scene behind a fragment. The includer declares `view`.
-#ifndef FW_LIB_SOFT_DEPTH_GLSL
-#define FW_LIB_SOFT_DEPTH_GLSL
 #include "lib/scene_depth.glsl"
 
 // m along the view from the fragment to the host's scene; below 0: the fragment is behind it. For
@@ -18,4 +16,3 @@ float gapToScene() {
     float here = (gl_FragCoord.z - a) / b;
     return 1.0 / max(d, 1e-6) - 1.0 / max(here, 1e-6);
 }
-#endif

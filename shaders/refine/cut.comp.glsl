@@ -6,20 +6,11 @@
 // whole until all of a triangle is gone, and only get walls along open edges.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_WORK FW_READ_WRITE
-#define FW_USE_WORDS readonly
-#define FW_USE_TRIANGLES readonly
-#define FW_USE_EDGES readonly
-#define FW_USE_SLOTS readonly
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_LEVELS readonly
-#define FW_USE_VERTICES readonly
-#define FW_USE_PREDICT readonly
-#define FW_USE_INDICES writeonly
-#define FW_USE_MESH_VERTICES readonly
-#define FW_USE_CUTS writeonly
-#include "lib/refine_buffers.glsl"
+#include "lib/refine.glsl"
+FW_READ(REFINE_WORDS) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS)
+FW_READ(REFINE_LEVELS) FW_READ(REFINE_VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT)
+FW_READ(VERTICES) FW_READ_WRITE(REFINE_WORK) FW_READ_WRITE(REFINE_HEAT) FW_WRITE(REFINE_INDICES)
+FW_WRITE(REFINE_CUTS) FW_WRITE(REFINE_CUT_DRAWS)
 #include "lib/refine_arrival.glsl"
 
 const uint kLost = 0x80000000u;  // of a job's triangle: all burnt through

@@ -2,13 +2,9 @@
 // looks up the pattern, writes three draw vertices.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_WORK readonly
-#define FW_USE_WORDS readonly
-#define FW_USE_TRIANGLES readonly
-#define FW_USE_LEVELS readonly
-#define FW_USE_INDICES writeonly
-#include "lib/refine_buffers.glsl"
+#include "lib/refine.glsl"
+FW_READ(REFINE_WORK) FW_READ(REFINE_WORDS) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_LEVELS)
+FW_WRITE(REFINE_INDICES)
 
 void main() {
     uint jobs = work[kRefineWorkEmit + 3u];

@@ -3,26 +3,10 @@
 // one workgroup per object, so their holes are there in the first frame.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_WORK readonly
-#define FW_USE_WORDS readonly
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_PREDICT readonly
-#include "lib/refine_buffers.glsl"
-
-layout(std430, set = 0, binding = FW_BIND_OBJECTS) readonly buffer ObjectQuadsBuffer {
-    uvec4 objectQuads[];
-};
-layout(std430, set = 0, binding = FW_BIND_TILE_STATE) readonly buffer TileStateBuffer {
-    TileState tileState[];
-};
-layout(std430, set = 0, binding = FW_BIND_COUNTERS) readonly buffer CountersBuffer {
-    IterationCounters counters[];
-};
-layout(std430, set = 0, binding = FW_BIND_LIST_A) readonly buffer ListABuffer { uint listA[]; };
-layout(std430, set = 0, binding = FW_BIND_LIST_B) readonly buffer ListBBuffer { uint listB[]; };
-layout(std430, set = 0, binding = FW_BIND_BURN_A) readonly buffer BurnABuffer { uint burnA[]; };
-layout(std430, set = 0, binding = FW_BIND_BURN_B) readonly buffer BurnBBuffer { uint burnB[]; };
+#include "lib/refine.glsl"
+FW_READ(TILE_STATE) FW_READ(COUNTERS) FW_READ(LISTS) FW_READ(BURN_LISTS) FW_READ(REFINE_WORK)
+FW_READ(REFINE_WORDS) FW_READ(PREDICT) FW_READ(GRADIENT) FW_READ_WRITE(REFINE_HEAT)
+#include "lib/object_quads.glsl"
 
 uint entry(uint i) {
     if (push.parity == 0u) return listA[i];
@@ -55,7 +39,7 @@ bool burnt(uint object, uint local) {
 void warmFresh() {
     for (uint g = gl_WorkGroupID.x; g < push.objects; g += gl_NumWorkGroups.x) {
         uint object = work[objectList() + 2u * g];
-        uint first = objectQuads[object * 10u + 1u].x;
+        uint first = objectPlaces(object).x;
         bool fresh = (refined[object].flags & kRefineIsFresh) != 0u;
         uint tiles = fresh ? refined[object].tileCount : 0u;
         for (uint local = gl_LocalInvocationID.x; local < tiles; local += 64u) {
@@ -77,7 +61,7 @@ void main() {
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
         uint tile = entry(i);
         uint object = tileState[tile].object;
-        uint local = tile - objectQuads[object * 10u + 1u].x;
+        uint local = tile - objectPlaces(object).x;
         bool known = object < push.objectEnd;
         object = known ? object : 0u;
         known = known && (refined[object].flags & kRefineIsActive) != 0u && local < refined[object].tileCount;

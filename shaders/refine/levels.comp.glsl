@@ -3,15 +3,9 @@
 // (triangles): changed objects emit, moving items are listed to be placed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_WORK FW_READ_WRITE
-#define FW_USE_TRIANGLES readonly
-#define FW_USE_EDGES readonly
-#define FW_USE_SLOTS readonly
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_ITEMS FW_READ_WRITE
-#define FW_USE_LEVELS FW_READ_WRITE
-#include "lib/refine_buffers.glsl"
+#include "lib/refine.glsl"
+FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS) FW_READ_WRITE(REFINE_WORK)
+FW_READ_WRITE(REFINE_HEAT) FW_READ_WRITE(REFINE_ITEMS) FW_READ_WRITE(REFINE_LEVELS)
 
 float edgeLod(uint object, RefineEdge edge) {
     vec4 eye = refined[object].eye;

@@ -3,17 +3,10 @@
 // half a workgroup each; 3 their morph.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_WORK readonly
-#define FW_USE_TRIANGLES readonly
-#define FW_USE_EDGES readonly
-#define FW_USE_SLOTS readonly
-#define FW_USE_ITEMS readonly
-#define FW_USE_HEAT FW_READ_WRITE
-#define FW_USE_LEVELS readonly
-#define FW_USE_VERTICES FW_READ_WRITE
-#define FW_USE_PREDICT readonly
-#include "lib/refine_buffers.glsl"
+#include "lib/refine.glsl"
+FW_READ(REFINE_WORK) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS)
+FW_READ(REFINE_ITEMS) FW_READ(REFINE_LEVELS) FW_READ(PREDICT) FW_READ(GRADIENT)
+FW_READ_WRITE(REFINE_HEAT) FW_READ_WRITE(REFINE_VERTICES)
 #include "lib/refine_arrival.glsl"
 
 // Bits that a vertex with this burn-through time adds to its edge or interior.

@@ -3,15 +3,11 @@
 // degenerate if consumed.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PATTERN
-#define FW_USE_TRIANGLES readonly
-#define FW_USE_SLOTS readonly
-#define FW_USE_VERTICES FW_READ_WRITE
-#define FW_USE_INDICES writeonly
-#define FW_USE_MESH_VERTICES readonly
-#define FW_USE_PREDICT readonly
-#include "lib/refine_buffers.glsl"
+#include "lib/compute.glsl"
+#include "shared/reference_pattern.h"
+FW_READ(REFINE_OBJECTS) FW_READ(PATTERN_GROUPS) FW_READ(PATTERN_LIST) FW_READ(REFINE_TRIANGLES)
+FW_READ(REFINE_SLOTS) FW_READ(VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT)
+FW_READ_WRITE(REFINE_VERTICES) FW_WRITE(REFINE_INDICES) FW_PUSH(PatternPush)
 #include "lib/refine_arrival.glsl"
 
 void place(uint object, uint s) {

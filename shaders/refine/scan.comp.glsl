@@ -2,12 +2,10 @@
 // Writes draw arguments and lists the output to be emitted. Readbacks report the sums.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 128) in;
-#define FW_USE_WORK coherent
-#define FW_USE_LEVELS coherent
-#define FW_USE_DRAWS writeonly
-#define FW_USE_OBJECT_COUNTERS writeonly
-#include "lib/refine_buffers.glsl"
+#define FW_THREADS 128
+#include "lib/refine.glsl"
+FW_COHERENT(REFINE_WORK) FW_COHERENT(REFINE_LEVELS) FW_WRITE(REFINE_DRAWS)
+FW_WRITE(OBJECT_COUNTERS)
 
 shared uint part[128];
 shared uint firstJob;

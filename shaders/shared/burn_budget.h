@@ -1,5 +1,5 @@
 // Burn budget: which of the tiles that request to burn may do so. Integers, equal on all devices.
-// The mechanism is in lib/lists.glsl and runtime/ARCHITECTURE.md.
+// The mechanism is in lib/burn_budget.glsl and runtime/ARCHITECTURE.md.
 // clang-format off
 #ifndef FW_SHARED_BURN_BUDGET_H
 #define FW_SHARED_BURN_BUDGET_H

@@ -37,7 +37,7 @@ FW_SHARED_CONST uint kDeformCrosses = 0x20000000u; // walls may cross and open
 FW_SHARED_CONST uint kDeformWoke = 0x10000000u;   // it did not move in the frame before
 FW_SHARED_CONST uint kDeformItem = 0x0FFFFFFFu;
 FW_SHARED_CONST uint kDeformLinkIndex = 0xFFFFFFu; // particle index of a link
-FW_SHARED_CONST uint kSoftQuads = 5u;         // quads per particle: see lib/deform_buffers.glsl
+FW_SHARED_CONST uint kSoftQuads = 5u;         // quads per particle: see lib/deform.glsl
 FW_SHARED_CONST uint kSoftTicks = 32u;        // ticks of a step: 1/128 s
 FW_SHARED_CONST uint kMaxSoftSteps = 6u;     // steps of a frame; a longer frame drops the rest
 

@@ -1,8 +1,6 @@
 // Position of a drawn point, bit-identical for all passes that compare depth. `precise` ensures it:
 // `invariant` would decorate a member of gl_PerVertex, which drivers warn about. Needs `view` and
 // `draw`.
-#ifndef FW_SURFACE_PLACE_GLSL
-#define FW_SURFACE_PLACE_GLSL
 vec3 fromEye(vec3 rest) {  // m, world, relative to the camera, from object space
     precise vec3 offset = vec3(draw.row0.w, draw.row1.w, draw.row2.w) - view.eye.xyz;
     precise vec3 turned = vec3(draw.row0.x, draw.row1.x, draw.row2.x) * rest.x +
@@ -15,4 +13,3 @@ vec4 clipPlace(vec3 position) {
     precise vec4 place = view.clip0 * position.x + view.clip1 * position.y + view.clip2 * position.z + view.clip3;
     return place;
 }
-#endif

@@ -3,23 +3,14 @@
 // row; a part of all tiles each frame, round-robin. Cosmetic.
 #version 450
 #extension GL_GOOGLE_include_directive : require
-layout(local_size_x = 64) in;
-#define FW_USE_PUSH
-#define FW_USE_OBJECTS readonly
-#define FW_USE_TEXELS readonly
-#define FW_USE_TILE_STATE FW_READ_WRITE
-#define FW_USE_PREDICT readonly
-#define FW_USE_GRADIENT FW_READ_WRITE
-#include "lib/buffers.glsl"
+#include "lib/compute.glsl"
+#include "lib/view.glsl"
+FW_READ(OBJECTS) FW_READ(TEXELS) FW_READ(PREDICT) FW_READ(LIGHTS) FW_READ_WRITE(TILE_STATE)
+FW_READ_WRITE(GRADIENT) FW_PUSH(StepPush)
+#include "lib/tile.glsl"
 #include "lib/skin.glsl"
-#include "shared/look.h"
-#include "lib/stride.glsl"
 #include "surface/plume.glsl"
 
-layout(std430, set = 0, binding = FW_BIND_LIGHTS) readonly buffer LightsBuffer {
-    BurnLight lights[];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 
 const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns

@@ -1,10 +1,9 @@
 #version 450
-// A burning surface in the host's pass: looks up the ignition time, evaluates look.glsl, and lights
+// A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and lights
 // the result. Writes linear HDR or encoded colour.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
+#include "lib/view.glsl"
 #include "shared/heat.h"
-#include "shared/look.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 // Material families of a variant, and whether it can burn (kSurface...). A software device executes
@@ -19,14 +18,9 @@ const bool kImage = (kVariant & kSurfaceImage) != 0u;
 const bool kBurns = (kVariant & kSurfaceBurns) != 0u;
 const bool kCold = (kVariant & kSurfaceCold) != 0u;
 
-layout(set = 0, binding = FW_BIND_PREDICT, std430) readonly buffer Predict { uint predict[]; };
-layout(set = 0, binding = FW_BIND_GRADIENT, std430) readonly buffer Gradient { uint gradient[]; };
-layout(set = 0, binding = FW_BIND_HEAT, std430) readonly buffer Heat { uint heat[]; };
-layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
-    BurnLight lights[kSurfaceLights];
-};
-layout(set = 0, binding = FW_BIND_APPEARANCES, std140) uniform Looks { MaterialAppearance looks[kAppearanceRows]; };
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
+FW_READ(PREDICT) FW_READ(GRADIENT) FW_BUFFER(HEAT, readonly, uint, heat)
+FW_UNIFORM(LIGHTS, BurnLight, lights[kSurfaceLights])
+FW_UNIFORM(APPEARANCES, MaterialAppearance, looks[kAppearanceRows])
 layout(set = 1, binding = 0) uniform sampler2D baseImage;
 layout(set = 2, binding = 0) uniform sampler2DArray lookTextures;
 layout(push_constant) uniform Push { SurfaceDraw draw; };
@@ -74,7 +68,7 @@ const ivec2 kSamplePlaces[30] = ivec2[30](ivec2(4, 4), ivec2(-4, -4),
 #include "lib/look_noise.glsl"
 #include "surface/plume.glsl"
 #include "surface/base.glsl"
-#include "surface/look.glsl"
+#include "surface/appearance.glsl"
 
 // W/sr of a flame's visible part to candela: soot emits little light for much heat.
 const float kCandelaPerWatt = 0.013;

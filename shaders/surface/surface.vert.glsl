@@ -2,22 +2,14 @@
 // Places an object's mesh. Positions are relative to the camera, so derivatives stay precise far
 // from the world's origin. Lights small triangles per vertex.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
+#include "lib/view.glsl"
 #include "surface/plume.glsl"
 
 layout(constant_id = 2) const uint kVariant = 127u;  // see surface.frag
 
-layout(set = 0, binding = FW_BIND_LIGHTS, std140) uniform Lights {
-    BurnLight lights[kSurfaceLights];
-};
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_REFINE_VERTICES, std430) readonly buffer Places {
-    vec4 places[];
-};
-layout(set = 0, binding = FW_BIND_TILE_STATE, std430) readonly buffer TileStates {
-    uvec4 tileStates[];
-};
+FW_UNIFORM(LIGHTS, BurnLight, lights[kSurfaceLights])
+FW_BUFFER(REFINE_VERTICES, readonly, vec4, places)
+FW_BUFFER(TILE_STATE, readonly, uvec4, tileStates)
 layout(push_constant) uniform Push { SurfaceDraw draw; };
 
 layout(location = 0) in vec3 inPosition;  // m, object space, as displayed

@@ -20,7 +20,7 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     tube.first = flameKnot(tube.pieces, from + direction * tube.chord.from);
     vec4 knot = tube.first;
     uint i = 0u;
-    // Uniform loops test at their end: see lib/stride.glsl.
+    // Uniform loops test at their end: see lib/compute.glsl.
     do {
         vec4 next = flameKnot(tube.pieces, from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
         FW_UNROLL

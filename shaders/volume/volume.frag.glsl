@@ -3,13 +3,9 @@
 // without a previous march. Emission and absorption are exact per step, so brightness depends
 // neither on the number of steps nor of slabs. Output is premultiplied: light, and coverage.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(set = 2, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { VolumeDraw draw; };
 
@@ -20,7 +16,6 @@ layout(location = 3) in float inBase;
 
 layout(location = 0) out vec4 outColor;
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
 #include "volume/ray.glsl"
 #ifdef FW_SOFT

@@ -1,10 +1,11 @@
 #version 450
 // A marched flame's visible tiles, slab by slab from far to near, each at its slab's depth.
 #extension GL_GOOGLE_include_directive : require
+#include "lib/buffers.glsl"
 #include "shared/burn.h"
 #include "shared/volume_draw.h"
 
-layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) readonly buffer Rays { uint rays[]; };
+FW_READ(VOLUME_RAYS)
 layout(push_constant) uniform Push { CompositePush draw; };
 
 layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first

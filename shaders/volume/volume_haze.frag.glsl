@@ -2,12 +2,10 @@
 // Heat haze: the host's scene refracted by a volumetric flame's hot column. A pixel shows where its
 // bent ray arrives, without objects in front of the column, so no foreground smears.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
+#include "lib/view.glsl"
 #include "shared/volume_draw.h"
 #include "shared/volume_haze.h"
 
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
 layout(set = 1, binding = 0) uniform sampler2D sceneColor;
 layout(push_constant) uniform Push { HazePush draw; };
 

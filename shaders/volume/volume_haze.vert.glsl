@@ -2,19 +2,14 @@
 // Screen bounds of a volumetric flame's hot column as a grid: eddies are wider than its cells, so
 // refraction is evaluated at corners and interpolated.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 #include "shared/volume_haze.h"
 
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(push_constant) uniform Push { HazePush draw; };
 
 layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
 layout(location = 1) centroid out vec4 outBend;  // deflection per m behind the column; m along the ray to the column
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_march.h"
 
 struct Passing {  // closest point of a ray to the column's axis

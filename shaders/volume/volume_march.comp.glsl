@@ -4,18 +4,13 @@
 // selects slabs. A workgroup is a tile listed by volume_probe. FW_SMOKE (volume_smoke): with smoke,
 // which would cost a sixth of the march on devices that do not skip branches.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 
 layout(local_size_x = 8, local_size_y = 8) in;
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
-layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) buffer Rays { uint rays[]; };
+FW_READ_WRITE(VOLUME_RAYS)
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { MarchPush march; };
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
 #include "volume/ray.glsl"
 

@@ -2,19 +2,14 @@
 // Finds the visible parts of a volumetric flame before the march: rays a few march pixels apart,
 // with a margin around what they meet. Lists the tiles to march, each with its range of samples.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 
 layout(local_size_x = 64) in;
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
-layout(set = 0, binding = FW_BIND_VOLUME_RAYS, std430) buffer Rays { uint rays[]; };
-layout(set = 0, binding = FW_BIND_VOLUME_WORK, std430) buffer Work { VolumeWork work[]; };
+FW_READ_WRITE(VOLUME_RAYS)
+FW_READ_WRITE(VOLUME_WORK)
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { MarchPush march; };
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
 #include "volume/ray.glsl"
 

@@ -2,13 +2,9 @@
 // A slice of a volumetric flame's lattice: one sample, weighted by the slice spacing along its ray,
 // so brightness does not depend on the number of slices. Premultiplied.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(set = 2, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { SlicesPush draw; };
 
@@ -21,7 +17,6 @@ layout(location = 5) centroid in vec4 inSlope;
 
 layout(location = 0) out vec4 outColor;
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "lib/colour.glsl"
 #include "volume/ray.glsl"
 #ifdef FW_SOFT

@@ -2,15 +2,10 @@
 // Sliced lattice of a volumetric flame: an instance is a plane across the view, far to near; it
 // contains the polygon that the plane cuts out of each lattice piece.
 #extension GL_GOOGLE_include_directive : require
-#include "shared/burn.h"
-#include "shared/look.h"
-#include "shared/volume_flame.h"
+#include "volume/flame.glsl"
 
-layout(set = 0, binding = FW_BIND_VIEW, std140) uniform View { ViewParams view; };
-layout(set = 0, binding = FW_BIND_VOLUMES, std140) uniform Volume { VolumeFlame flame; };
 layout(push_constant) uniform Push { SlicesPush draw; };
 
-#define FW_FLAME_NODE(i) flame.nodes[i]
 #include "shared/volume_slices.h"
 
 layout(location = 0) centroid out vec4 outPlace;        // m: off the axis, along it, the tube's radius

@@ -154,7 +154,7 @@ struct CpuBackend::State {
     void touch(uint32_t worldTile, uint32_t bits) noexcept;
     void touchDependents(const CpuObject& object, uint32_t local, uint64_t mask) noexcept;
     void burning(uint32_t worldTile) noexcept;
-    // Where a limit counts the burning tiles, as shaders/lib/lists.glsl.
+    // Where a limit counts the burning tiles, as shaders/lib/burn_budget.glsl.
     [[nodiscard]] bool mayBurn(uint32_t worldTile) const noexcept {
         FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
         return !capped || (tiles[worldTile].flag & kTileBurning) != 0;

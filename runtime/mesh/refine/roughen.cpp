@@ -1,4 +1,4 @@
-// holeDelay of shaders/surface/look.glsl, for slots.
+// holeDelay of shaders/surface/appearance.glsl, for slots.
 #include "mesh/refine/roughen.h"
 
 #include <algorithm>

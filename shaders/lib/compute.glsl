@@ -1,3 +1,14 @@
+// Start of a compute pass: threads of a group, buffers, push constants and loops.
+#include "lib/buffers.glsl"
+#include "shared/exchange.h"
+#ifndef FW_THREADS
+#define FW_THREADS 64
+#endif
+layout(local_size_x = FW_THREADS) in;
+#define FW_PUSH(type) layout(push_constant) uniform PushBlock { type push; };
+
+const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
+
 // Runs a function for every item of a list, a dispatch apart per thread. Tests at the end: a
 // software device runs a loop's body once more with no active lane otherwise.
 #define FW_STRIDE(number, function)                  \
