@@ -15,7 +15,7 @@ using fw::gpu::vec3;
 using fw::gpu::vec4;
 
 struct Frame {                 // rows from the bottom
-    std::vector<vec4> texels;  // as in Flipbook, before encoding
+    std::vector<vec4> texels;  // as in the flipbook, before encoding
     std::vector<vec2> motion;  // uv per frame, by texel; empty: unknown
 };
 
