@@ -13,7 +13,7 @@ FW_READ_WRITE(HEAT) FW_PUSH(StepPush)
 #include "lib/tile.glsl"
 #include "lib/change.glsl"
 
-// Does a jet pass all gates on its way?
+// Does a jet pass all gates on its path?
 bool gatesLet(uint kind) {
     uint gate = kind >> kEventKindBits;
     bool lets = true, more = gate != 0u;

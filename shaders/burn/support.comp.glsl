@@ -99,7 +99,7 @@ uint supported(uint worldTile, TileRef ref) {
     }
     uvec2 seam = tiles[(sizes.x + ref.local) * 2u].zw;
     for (uint r = 0u; r < seam.y && found != 0u; ++r)
-        found = min(found, offer(places.x + readers[places.z + seam.x + r]) + 1u);
+        found = min(found, offer(places.x + dependents[places.z + seam.x + r]) + 1u);
     // A grown distance counts up fast; an existing path corrects it.
     if (found > before) found = min(max(found, before + 3u), kFar);
     uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);

@@ -19,10 +19,10 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint node = shownBase + deformEmbedding(sizes.z * kDeformEmbeddingQuads + number).x;
+        uint particle = shownBase + deformEmbedding(sizes.z * kDeformEmbeddingQuads + number).x;
         uint self = shownBase + number, inner = self + sizes.w;
         vec4 outside = shown(self * kShownQuads);
-        float receded = shown(node * kShownQuads + 1u).z;
+        float receded = shown(particle * kShownQuads + 1u).z;
         float offset = shown(self * kShownQuads + 2u).w;
         vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
         // A mesh vertex and a shown vertex have the same size.

@@ -190,8 +190,8 @@ void main() {
             quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
             // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
             // its foot at 1/20.
-            uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
-            if (showByFlipbook(quad, book, a, a * period, r4) && !smoke) {
+            uint flipbook = push.count >> (smoke ? 8u : 0u) & 0xFFu;
+            if (showByFlipbook(quad, flipbook, a, a * period, r4) && !smoke) {
                 quad.axisWidth.w *= 2.4;
                 quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
                 quad.baseHeight.w *= 1.45;

@@ -9,7 +9,7 @@
 #include "lib/view.glsl"
 FW_READ(FLAMES) FW_READ_WRITE(DRAW_ARGS) FW_PUSH(SortPush)
 
-const uint kThreads = 128u, kDigits = 16u;
+const uint kThreads = FW_THREADS, kDigits = 16u;
 const uint kDepthBits = 16u;  // of a radix key, above the number of its quad
 const uint kMarks = 1024u;    // depths among which an emissive quad finds its place
 
@@ -136,12 +136,7 @@ void sortMany(uint me, uint count, uint tiles) {
         uint sums = kDigits * kThreads;
         keys[sums + me] = sum;
         barrier();
-        for (uint reach = 1u; reach < kThreads; reach <<= 1u) {
-            uint more = me >= reach ? keys[sums + me - reach] : 0u;
-            barrier();
-            keys[sums + me] += more;
-            barrier();
-        }
+        FW_SUM_UP(keys, sums, me)
         uint before = keys[sums + me] - sum;
         for (uint d = 0u; d < kDigits; ++d) keys[me * kDigits + d] += before;
         barrier();

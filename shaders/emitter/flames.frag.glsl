@@ -20,29 +20,29 @@ layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
 // for every quad.
 layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
-layout(set = 1, binding = 0) uniform sampler2D bookPicture;
+layout(set = 1, binding = 0) uniform sampler2D flipbookTexture;
 layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of the frame after
 layout(location = 6) flat in vec4 inMotions;  // the same of their motion
 layout(location = 7) flat in vec4 inSizes;    // texels of a frame, of its motion
 layout(location = 8) flat in vec2 inBetween;  // blend weight, largest motion
 
 // Reads up to half a texel beyond a border, into the empty texel between frames.
-vec4 bookTexel(vec2 at, vec2 uv) {
+vec4 flipbookTexel(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.xy, vec2(-0.5), inSizes.xy + 0.5);
-    return textureLod(bookPicture, (at + p) / vec2(textureSize(bookPicture, 0)), 0.0);
+    return textureLod(flipbookTexture, (at + p) / vec2(textureSize(flipbookTexture, 0)), 0.0);
 }
-vec2 bookMotionAt(vec2 at, vec2 uv) {
+vec2 flipbookMotionAt(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.zw, vec2(0.5), inSizes.zw - 0.5);
-    vec2 size = vec2(textureSize(bookPicture, 0));
-    return decodeFlipbookMotion(textureLod(bookPicture, (at + p) / size, 0.0).rg, inBetween.y);
+    vec2 size = vec2(textureSize(flipbookTexture, 0));
+    return decodeFlipbookMotion(textureLod(flipbookTexture, (at + p) / size, 0.0).rg, inBetween.y);
 }
 vec4 sampleFlipbook(vec2 uv) {
-    vec2 before = bookBefore(uv, bookMotionAt(inMotions.xy, uv), inBetween.x);
-    vec2 after = flipbookUvAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
-    return mixFlipbookTexels(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
+    vec2 before = bookBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
+    vec2 after = flipbookUvAfter(uv, flipbookMotionAt(inMotions.zw, uv), inBetween.x);
+    return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after), inBetween.x);
 }
-const float kBookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
-const float kBookHides = 1.05;  // coverage relative to brightness, matching volumes
+const float kFlipbookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
+const float kFlipbookHides = 1.05;  // coverage relative to brightness, matching volumes
 #else
 const uint kOnlyFlipbooks = 0u;
 #endif
@@ -84,7 +84,10 @@ vec2 rolledUp(vec2 p, Roll roll) {
     return rolled(p, roll.right.xy, roll.right.z * exp2(-6.0 * dot(fromRight, fromRight)));
 }
 
-vec2 turnedBy(vec2 p, vec2 way) { return vec2(p.x * way.x - p.y * way.y, p.x * way.y + p.y * way.x); }
+// by: cosine, sine.
+vec2 rotate(vec2 p, vec2 by) {
+    return vec2(p.x * by.x - p.y * by.y, p.x * by.y + p.y * by.x);
+}
 
 void main() {
     uint what = inKind & 3u, named = (inKind >> kQuadSeed & 0xFFFFu) << 1u | (inKind & 1u);
@@ -105,8 +108,8 @@ void main() {
     vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
     // Each puff has its own orientation.
-    vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? turnedBy(m, way) * 0.15
+    vec2 rotation = normalize(seed - 0.5 + vec2(1e-4, 0.0));
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? rotate(m, rotation) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
@@ -118,13 +121,13 @@ void main() {
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
         n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
-        vec2 sunward = turnedBy(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), way) * 0.15 + seed;
+        vec2 sunward = rotate(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), rotation) * 0.15 + seed;
         aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
     // Rotated octaves hide the noise lattice in smoke.
-    vec2 q = (smoke ? turnedBy(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
+    vec2 q = (smoke ? rotate(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
     if (kOnlyFlipbooks == 0u)
         n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
@@ -164,15 +167,15 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_FLIPBOOKS
-    bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
+    bool byFlipbook = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 frame = sampleFlipbook(uv);
-    if (booked) {
+    if (byFlipbook) {
         soot = frame.y;
-        kelvin = inState.z + kBookSpan * (frame.x - 0.5);
+        kelvin = inState.z + kFlipbookSpan * (frame.x - 0.5);
         white = kFlameWhite;
         soot *= sootLeft(kelvin);
-        hides = kBookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
+        hides = kFlipbookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
     }
 #endif
     vec3 glow = sootRadiance(spark ? inState.z : kelvin);
@@ -186,10 +189,10 @@ void main() {
         // Thinner towards the light: it faces the light.
         float billow = 0.9 * (1.1 * (length(c + ahead) - r) + 6.0 * (n1.r - aheadNoise));
 #ifdef FW_FLIPBOOKS
-        if (booked) {
+        if (byFlipbook) {
             alpha = frame.z * opacity;
             vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
-            billow = 1.6 * (frame.w - bookTexel(inFrames.xy, uv + 0.09 * sun).w);
+            billow = 1.6 * (frame.w - flipbookTexel(inFrames.xy, uv + 0.09 * sun).w);
         }
 #endif
         // Crests catch sun and sky, hollows the fire below.

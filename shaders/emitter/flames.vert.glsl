@@ -25,7 +25,7 @@ layout(location = 6) flat out vec4 outMotions;  // the same of their motion
 layout(location = 7) flat out vec4 outSizes;    // texels of a frame, of its motion
 layout(location = 8) flat out vec2 outBetween;  // blend weight, largest motion
 
-FlipbookRecord bookOf(uint i) {
+FlipbookRecord flipbookOf(uint i) {
     uint at = i * kFlipbookRecordWords;
     FlipbookRecord b;
     b.at = flipbooks[at];
@@ -43,12 +43,12 @@ vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u));
 // Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame.
 // pixels: width on the screen.
 vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
-    uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
-    FlipbookRecord b = bookOf(book);
+    uint flipbook = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
+    FlipbookRecord b = flipbookOf(flipbook);
     FlipbookPlace p = flipbookPlaceAt(quad.phase, b.frames, (b.flags & kFlipbookLoops) != 0u);
     vec2 texels = halves(b.size);
     uint level = flipbookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
-    uint smaller = flipbooks[book * kFlipbookRecordWords + kFlipbookLevelWord + level];
+    uint smaller = flipbooks[flipbook * kFlipbookRecordWords + kFlipbookLevelWord + level];
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
@@ -56,7 +56,7 @@ vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     outMotions = vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
     outSizes = vec4(halves(b.size), halves(b.motionSize));
     outBetween = vec2(p.part, b.maxMotion);
-    uint rect = kFlipbookRects + 2u * (book * kMaxFlipbookFrames + p.before);
+    uint rect = kFlipbookRects + 2u * (flipbook * kMaxFlipbookFrames + p.before);
     // A texel of a mip covers more than the occupied texels of mip 0.
     vec2 wider = vec2(float((1u << level) - 1u)) / texels;
     vec2 low = max(halves(flipbooks[rect]) / texels - wider, vec2(0.0));

@@ -20,7 +20,7 @@ shared uint lightNear[kMostLights];          // 16 W: near enough to influence t
 shared int lightOffset[kMostLights * 3u];
 shared uint lightArea[kMostLights];
 shared uint lightSlot[kMostLights];
-shared float lightPlace[kMostLights * 4u];
+shared vec4 lightPlace[kMostLights];  // m, world; w: side of its cell
 
 void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     vec3 at = place / side;
@@ -49,6 +49,8 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     atomicAdd(homelessRelease, release);
 }
 
+uint keyOf(uint slot) { return cells[cellWord(slot, 0u)]; }
+
 // Weighted mean position of a cell, m, world.
 vec3 cellPlace(uint slot) {
     float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
@@ -58,16 +60,12 @@ vec3 cellPlace(uint slot) {
     return (vec3(cell) + within) * side;
 }
 
-vec3 placeOfLight(uint light) {
-    return vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u], lightPlace[light * 4u + 2u]);
-}
-
 // Adds a cell's power, release and area, or a part of them, to a light.
 void give(uint slot, uint light, uvec3 what) {
     atomicAdd(lightPower[light], what.x);
     atomicAdd(lightRelease[light], what.y);
-    float side = lightPlace[light * 4u + 3u];
-    vec3 d = cellPlace(slot) - placeOfLight(light);
+    float side = lightPlace[light].w;
+    vec3 d = cellPlace(slot) - lightPlace[light].xyz;
     if (dot(d, d) > 36.0 * side * side) return;  // too far to influence the light's position
     uint weight = max(what.x >> 4u, 1u);
     ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
@@ -82,9 +80,7 @@ void main() {
     for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u)
         cells[i] = 0u;
     if (me == 0u) {
-        candidates = 0u;
-        homelessPower = 0u;
-        homelessRelease = 0u;
+        candidates = homelessPower = homelessRelease = 0u;
         drawArgs[0] = 6u;
         for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
     }
@@ -103,7 +99,7 @@ void main() {
     memoryBarrierBuffer();
     barrier();
     for (uint slot = me; slot < kLightCells; slot += 128u) {
-        if (cells[cellWord(slot, 0u)] == 0u || cells[cellWord(slot, 10u)] != 0u) continue;
+        if (keyOf(slot) == 0u || cells[cellWord(slot, 10u)] != 0u) continue;
         uint at = atomicAdd(candidates, 1u);
         if (at >= kMost) {
             atomicAdd(homelessPower, cells[cellWord(slot, 1u)]);
@@ -119,23 +115,17 @@ void main() {
     uint found = min(wanted, competing);
 
     for (uint light = 0u; light < found; ++light) {
-        if (me == 0u) {
-            bestScore = 0u;
-            bestKey = 0u;
-        }
+        if (me == 0u) bestScore = bestKey = 0u;
         barrier();
         for (uint i = me; i < competing; i += 128u)
             atomicMax(bestScore, floatBitsToUint(score[i]));
         barrier();
-        for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore)
-                atomicMax(bestKey, cells[cellWord(candidate[i], 0u)]);
-        }
+        for (uint i = me; i < competing; i += 128u)
+            if (floatBitsToUint(score[i]) == bestScore) atomicMax(bestKey, keyOf(candidate[i]));
         barrier();
-        for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore && cells[cellWord(candidate[i], 0u)] == bestKey)
+        for (uint i = me; i < competing; i += 128u)
+            if (floatBitsToUint(score[i]) == bestScore && keyOf(candidate[i]) == bestKey)
                 bestAt = i;
-        }
         barrier();
         vec3 here = cellPlace(candidate[bestAt]);
         float side = uintBitsToFloat(cells[cellWord(candidate[bestAt], 6u)]);
@@ -147,14 +137,8 @@ void main() {
         }
         if (me == 0u) {
             lightSlot[light] = candidate[bestAt];
-            lightPlace[light * 4u] = here.x;
-            lightPlace[light * 4u + 1u] = here.y;
-            lightPlace[light * 4u + 2u] = here.z;
-            lightPlace[light * 4u + 3u] = side;
-            lightPower[light] = 0u;
-            lightRelease[light] = 0u;
-            lightNear[light] = 0u;
-            lightArea[light] = 0u;
+            lightPlace[light] = vec4(here, side);
+            lightPower[light] = lightRelease[light] = lightNear[light] = lightArea[light] = 0u;
             for (uint k = 0u; k < 3u; ++k) lightOffset[light * 3u + k] = 0;
             score[bestAt] = 0.0;
         }
@@ -169,7 +153,7 @@ void main() {
         uint nearest = 0u, next = 0u;
         float least = 1e30, leastNext = 1e30;
         for (uint light = 0u; light < found; ++light) {
-            vec3 d = cellPlace(slot) - placeOfLight(light);
+            vec3 d = cellPlace(slot) - lightPlace[light].xyz;
             float d2 = dot(d, d);
             bool last = light + 1u == found;
             nearest = d2 < least ? light : nearest;
@@ -186,24 +170,18 @@ void main() {
     barrier();
     // Clears unused lights, too.
     for (uint light = me; light < uint(lights.length()); light += 128u) {
-        BurnLight l;
-        l.positionRadius = vec4(0.0);
-        l.colorIntensity = vec4(0.0);
-        l.power = 0.0;
-        l.id = 0u;
-        l.release = 0.0;
-        l.reserved = 0u;
+        BurnLight l = BurnLight(vec4(0.0), vec4(0.0), 0.0, 0u, 0.0, 0u);
         if (light < found) {
             float weight = float(lightNear[light]);
-            float side = lightPlace[light * 4u + 3u];
+            float side = lightPlace[light].w;
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
                              float(lightOffset[light * 3u + 2u])) * (side / (64.0 * max(weight, 1.0)));
-            uint key = cells[cellWord(lightSlot[light], 0u)];
+            uint key = keyOf(lightSlot[light]);
             float area = float(lightArea[light]) * 1e-5;
             uint homeless = light == 0u ? homelessPower : 0u;
             float power = float(lightPower[light] + homeless);
             float len = flameLength(min(weight * 16.0, power), area);
-            vec3 at = placeOfLight(light) + mean + view.up.xyz * (0.25 * len);
+            vec3 at = lightPlace[light].xyz + mean + view.up.xyz * (0.25 * len);
             // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is
             // steady.
             float t = view.ambientSky.w, p = 6.2832 * unit(key);

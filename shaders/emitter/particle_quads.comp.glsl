@@ -47,14 +47,14 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     vec3 above = cross(toEye, right);
     vec2 across = vec2(dot(v, right), dot(v, above));
     float speed = length(across);
-    vec2 way = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
+    vec2 heading = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
     float follows = particleFollows(e, a, speed, p.hit.w);
     float stretch = particleStretch(e, a, speed, p.hit.w);
     // Blend of its own rotation and that of its path.
     float spin = 2.0 * t.own - 1.0;
     float own = 1.6 * spin + 2.2 * (t.other - 0.5) * age;
     float turned = mix(own, 0.5 * spin * smoothstep(0.1, 0.4, a), follows);
-    vec2 axis = way * cos(turned) + vec2(way.y, -way.x) * sin(turned);
+    vec2 axis = heading * cos(turned) + vec2(heading.y, -heading.x) * sin(turned);
     // Fades close to the camera, and when it would fill the view.
     float near = smoothstep(kNearFade, kNearFade + 0.8, far) * (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
     near *= shows;

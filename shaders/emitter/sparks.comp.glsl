@@ -50,9 +50,9 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     return b;
 }
 
-void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried, float strength) {
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direction, vec3 carried, float strength) {
     SparkKind kind = sparkKind(slot.seed);
-    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz, slot.age);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, direction, carried), bounds, s.up.xyz, slot.age);
     vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
     vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
     float a = slot.age / kind.life;

@@ -82,10 +82,10 @@ Shown shownAt(vec2 place) {
 }
 
 vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
-    vec2 way = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
+    vec2 moved = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
     uvec3 of = uvec3(uint(number), uint(inSize.w), 3u);
     vec2 jump = vec2(hash(of), hash(of + 4u));
-    return textureLod(lookTextures, vec3((cell - way) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
+    return textureLod(lookTextures, vec3((cell - moved) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
 }
 
 void main() {

@@ -32,8 +32,8 @@
         return (slowness[base + (texel >> 1u)] >> ((texel & 1u) * 16u)) & 0xFFFFu; \
     }
 #define FW_BUFFER_LINK_QUADS(access) FW_BUFFER(LINKS, access, uvec4, linkQuads)
-#define FW_BUFFER_DEPENDENTS(access) FW_BUFFER(DEPENDENTS, access, uint, readers)
-// Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
+#define FW_BUFFER_DEPENDENTS(access) FW_BUFFER(DEPENDENTS, access, uint, dependents)
+// Two words of four per tile: seam mask, dependents' start and count; rim mask, rim base, unused.
 #define FW_BUFFER_TILES(access) FW_BUFFER(TILES, access, uvec4, tiles)
 // rimOfRow: those texels of a row of eight that have a ring record.
 #define FW_BUFFER_TILE_WORDS(access) FW_BUFFER(TILES, access, uint, tileWords) \

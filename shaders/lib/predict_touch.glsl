@@ -16,5 +16,5 @@ void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY
     uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
-        predictTouch(parity, places.x + readers[places.z + seam.z + r]);
+        predictTouch(parity, places.x + dependents[places.z + seam.z + r]);
 }

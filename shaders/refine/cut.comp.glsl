@@ -80,14 +80,6 @@ void find(uint object, uint triangle) {
     work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }
 
-// First triangle of material m.
-uint materialStart(uint object, uint m) {
-    uvec4 low = refined[object].materialEnd0;
-    uvec4 high = refined[object].materialEnd1;
-    uint before = max(m, 1u) - 1u;
-    uint start = before < 4u ? low[before & 3u] : high[before & 3u];
-    return m == 0u ? 0u : start;
-}
 uint roomBefore(uint object, uint m) {
     return refineCutShare(refined[object].cutTriangles, materialStart(object, m), refined[object].triangleCount);
 }

@@ -61,9 +61,9 @@ void sootRow(uint i, uint row) {
             soot += plumeSoot(lights[i].positionRadius.xyz - place, lights[i].power, view.up.xyz);
         }
         uint word = gradient[at + x];
-        uint lies = word & 0xFFu, wants = uint(255.0 * min(soot, 1.0));
-        marks = marks || (wants > lies && wants > kUnseen);
-        if (wants > lies) gradient[at + x] = (word & ~0xFFu) | min(wants, lies + max(most, 1u));
+        uint stored = word & 0xFFu, wanted = uint(255.0 * min(soot, 1.0));
+        marks = marks || (wanted > stored && wanted > kUnseen);
+        if (wanted > stored) gradient[at + x] = (word & ~0xFFu) | min(wanted, stored + max(most, 1u));
     }
     if (marks) atomicOr(tileState[worldTile].flag, kTileMarked);
 }

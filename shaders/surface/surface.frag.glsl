@@ -160,15 +160,15 @@ Warmth warmthAt(vec2 uv) {
     vec2 corner = floor(st);
     ivec2 limit = lastTexel();
     float total = 1e-6, kelvin = 300.0 * total, fuel = total;
-    bool plane = (draw.flags & kDrawHeat) != 0u;
-    int taps = plane ? 4 : 1, i = 0;
+    bool hasHeat = (draw.flags & kDrawHeat) != 0u;
+    int taps = hasHeat ? 4 : 1, i = 0;
     do {
         ivec2 o2 = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
         uint at = 2u * (draw.heatBase + texelAt(texel));
-        uint word = heat[plane ? at : 0u];
+        uint word = heat[hasHeat ? at : 0u];
         vec2 share = 1.0 - abs(st - corner - vec2(o2));
-        float w = plane ? share.x * share.y : 0.0;
+        float w = hasHeat ? share.x * share.y : 0.0;
         total += w;
         kelvin += w * float(word >> 16u) * (1.0 / 16.0);
         fuel += w * float(word & 0xFFFFu) * (1.0 / float(kFuelFull));
@@ -184,7 +184,7 @@ vec2 wetnessAt(vec2 uv) {
     ivec2 limit = lastTexel();
     vec2 sum = vec2(0.0);
     float total = 1e-6, least = 1.0, most = 0.0;
-    bool plane = draw.maxFilm > 0.0;
+    bool hasHeat = draw.maxFilm > 0.0;
     float perGram = 1.5 / max(draw.maxFilm, 1.0);
     int taps = (draw.flags & kDrawWet) != 0u ? 5 : 0;
     for (int i = 0; i < taps; ++i) {
@@ -193,10 +193,10 @@ vec2 wetnessAt(vec2 uv) {
         ivec2 texel = clamp(ivec2(middle) + o2, ivec2(0), limit);
         uint index = texelAt(texel);
         uint t = predict[draw.stateBase + index];
-        uint word = plane ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
+        uint word = hasHeat ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
         float film = min(float(word & 0x3FFu) * perGram, 1.0);
         float brown = t < kLiveEnd ? 0.0 : float((word >> 20u) & 0xFFu) * (1.0 / 160.0);
-        if (!plane) film = t == kWet || t == kOutWet ? 1.0 : 0.0;
+        if (!hasHeat) film = t == kWet || t == kOutWet ? 1.0 : 0.0;
         vec2 x = abs(off - vec2(o2)) * 0.6;
         vec2 tail = max(1.5 - x, 0.0);
         vec2 k = mix(0.5 * tail * tail, 0.75 - x * x, lessThan(x, vec2(0.5)));

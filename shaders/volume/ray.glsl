@@ -71,11 +71,11 @@ struct ViewRay {
     float perDepth;   // m along the ray per m along the view
     float perMetre;   // footprint growth of a pixel of width 1 along the ray; 0: orthographic
 };
-ViewRay viewRay(vec3 way) {
+ViewRay viewRay(vec3 at) {
     bool perspective = view.forward.w > 0.5;
-    vec3 along = perspective ? way : view.forward.xyz;
+    vec3 along = perspective ? at : view.forward.xyz;
     ViewRay ray;
-    ray.from = view.eye.xyz + (perspective ? vec3(0.0) : way);
+    ray.from = view.eye.xyz + (perspective ? vec3(0.0) : at);
     ray.perDepth = length(along);
     ray.direction = along / ray.perDepth;
     ray.perMetre = perspective ? 1.0 / ray.perDepth : 0.0;

@@ -19,27 +19,15 @@ layout(location = 6) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
-#include "volume/cells.glsl"
-
-#ifdef FW_SOFT
-#include "volume/scene_depth.glsl"
-#endif
-
-float cut = 0.0;  // slabs from this slab's front to the scene, or to the base
+#include "volume/march_pixels.glsl"
 
 // A march pixel is weighted by the transmittance of the slabs in front: its mean is what they let
 // through when drawn, so slabs neither lose nor create light.
-void add(uint at, float weight, inout vec4 color, inout float through) {
-    uvec4 cell = cellAt(at);
-    weight *= slabTransmittance(cell.z);
+void add(uint at, float weight, float cut, inout vec4 color, inout float through) {
+    uvec4 pixel = marchPixelAt(at);
+    weight *= slabTransmittance(pixel.z);
     through += weight;
-#ifdef FW_SOFT
-    weight *= slabShareNearer(cell.z, cut);
-#else
-    // March pixels smaller than a pixel have bases of their own.
-    weight *= inPerPixel > 1u ? 1.0 : slabShareBeside(cell.z, cut, inBase.y);
-#endif
-    color += weight * cellColor(cell);
+    color += weight * countingShare(pixel.z, cut, inPerPixel > 1u) * marchPixelColor(pixel);
 }
 
 void main() {
@@ -48,17 +36,13 @@ void main() {
     if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     uint pitch = kMarchPixelWords * kMarchTileSide * draw.tilesX;
     vec4 color = vec4(0.0);
-    float through = 0.0;
-#ifdef FW_SOFT
-    cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
-#else
-    cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
-#endif
+    float through = 0.0, cut = slabsToCut();
     if (inPerPixel > 1u) {
         uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;
         uint row = inWords + pitch * first.y + kMarchPixelWords * first.x;
         for (uint y = 0u; y < inPerPixel; ++y) {
-            for (uint x = 0u; x < inPerPixel; ++x) add(row + kMarchPixelWords * x, 1.0, color, through);
+            for (uint x = 0u; x < inPerPixel; ++x)
+                add(row + kMarchPixelWords * x, 1.0, cut, color, through);
             row += pitch;
         }
     } else {
@@ -70,7 +54,8 @@ void main() {
             FW_UNROLL
             for (int x = -1; x <= 1; ++x) {
                 uint column = kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
-                add(row + column, neighbourWeight(x, off.x) * neighbourWeight(y, off.y), color, through);
+                float weight = neighbourWeight(x, off.x) * neighbourWeight(y, off.y);
+                add(row + column, weight, cut, color, through);
             }
         }
     }

@@ -28,13 +28,13 @@ Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
         vec4 a = FW_FLAME_NODE(flameNodeOf(k)).centre, b = FW_FLAME_NODE(flameNodeOf(k + 1u)).centre;
         float s = FW_FLAME_NODE(flameNodeOf(k)).along.w;
         float long_ = FW_FLAME_NODE(flameNodeOf(k + 1u)).along.w - s;
-        vec3 way = b.xyz - a.xyz, to = a.xyz - from;
+        vec3 segment = b.xyz - a.xyz, to = a.xyz - from;
         to -= direction * dot(to, direction);
-        way -= direction * dot(way, direction);
+        segment -= direction * dot(segment, direction);
         // The last piece is extended to the end of the column.
         float most = k + 1u < kFlamePieces ? 1.0 : max((kHazeTop * f.high.w - s) / max(long_, 1e-6), 1.0);
-        float u = clamp(-dot(to, way) / max(dot(way, way), 1e-9), 0.0, most);
-        vec3 off = to + u * way;
+        float u = clamp(-dot(to, segment) / max(dot(segment, segment), 1e-9), 0.0, most);
+        vec3 off = to + u * segment;
         float wide = flamePlumeWide(f, s + u * long_);
         open = min(open, 1.0 - FW_FLAME_NODE(flameNodeOf(k + 1u)).squeeze.w / 0.9);
         float cost = dot(off, off) / (wide * wide);

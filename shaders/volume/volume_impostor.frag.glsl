@@ -17,20 +17,13 @@ layout(location = 5) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
-#include "volume/cells.glsl"
-
-#ifdef FW_SOFT
-#include "volume/scene_depth.glsl"
-#endif
+#include "volume/march_pixels.glsl"
 
 void main() {
     outColor = vec4(0.0);
     if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
-#ifdef FW_SOFT
-    float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
-#else
-    float cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
-#endif
+    float cut = slabsToCut();
+    bool small = min(draw.perX, draw.perY) >= 1.0;
     vec2 low = inCell - inHalf, high = inCell + inHalf;
     ivec2 first = ivec2(floor(low));
     vec4 color = vec4(0.0);
@@ -44,14 +37,9 @@ void main() {
             int x = first.x + i;
             float weight = tall * clamp(min(high.x, float(x + 1)) - max(low.x, float(x)), 0.0, 1.0);
             if (x < 0 || x >= inTaps.z) weight = 0.0;
-            uvec4 cell = cellAt(draw.samples + kMarchPixelWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
-#ifdef FW_SOFT
-            weight *= slabShareNearer(cell.z, cut);
-#else
-            // March pixels smaller than a pixel have bases of their own.
-            weight *= max(slabShareBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
-#endif
-            color += weight * cellColor(cell);
+            uint column = uint(clamp(x, 0, inTaps.z - 1));
+            uvec4 pixel = marchPixelAt(draw.samples + kMarchPixelWords * (row + column));
+            color += weight * countingShare(pixel.z, cut, small) * marchPixelColor(pixel);
         }
     }
     outColor = color / (4.0 * inHalf.x * inHalf.y);

@@ -73,13 +73,13 @@ void main() {
     uint cell = place.y * (march.tilesX * kMarchTileSide) + place.x;
     place += uvec2(march.originX, march.originY);
     vec2 at_ = vec2(place) + (march.perPixel > 1u ? marchRayShift(place.x, place.y) : vec2(0.0));
-    ViewRay way = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
-    vec3 from = way.from, direction = way.direction;
-    float perDepth = way.perDepth;
+    ViewRay ray = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
+    vec3 from = ray.from, direction = ray.direction;
+    float perDepth = ray.perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     float phase = marchSamplePhase(place.x, place.y);
-    float pixel = march.rayX.w * way.perMetre;
+    float pixel = march.rayX.w * ray.perMetre;
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
     float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
     stride /= float(closer);

@@ -27,9 +27,9 @@ void main() {
     uint row = quotient22(gl_WorkGroupID.x, blocksX);
     uvec2 probe = uvec2(gl_WorkGroupID.x - row * blocksX, row) * 8u + in_;
     vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
-    ViewRay way = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
-    vec3 from = way.from, direction = way.direction;
-    float perDepth = way.perDepth;
+    ViewRay ray = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
+    vec3 from = ray.from, direction = ray.direction;
+    float perDepth = ray.perDepth;
 
     vec4 spans = flameSpans(f, from, direction);
     RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
@@ -39,7 +39,7 @@ void main() {
     vec2 ends = tube.chord.from + tube.chord.gap * vec2(tube.chord.first, tube.chord.last);
     float k = clamp(floor((ends.x - first) / stride), 0.0, most);
     float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, most) : 0.0;
-    float pixel = march.rayX.w * way.perMetre;
+    float pixel = march.rayX.w * ray.perMetre;
     float nearest = 1e9, farthest = -1.0;
     while (k < last) {
         float t = first + stride * (k + 0.5);
