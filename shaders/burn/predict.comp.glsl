@@ -60,9 +60,11 @@ void predictRow(uint work) {
                     held = material;
                     m = burnMaterial(materialBase + held);
                 }
-                FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+                FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]),
+                                            slownessAt(bases.z, texel), m);
                 ivec3 mine = decodePosition(middle.place[1]);
-                now = min(hop(middle.time[0], middle.place[0], mine, p), hop(middle.time[2], middle.place[2], mine, p));
+                now = min(hop(middle.time[0], middle.place[0], mine, p),
+                          hop(middle.time[2], middle.place[2], mine, p));
                 FW_UNROLL for (int i = 0; i < 3; ++i)
                     now = min(now, min(hop(left.time[i], left.place[i], mine, p),
                                        hop(right.time[i], right.place[i], mine, p)));

@@ -91,7 +91,8 @@ void gatherRow(uint slot, uint row) {
     }
     if (nearer != 0u) {
         uint bits = nearer << ((row & 3u) * 8u);
-        touchAround(worldTile, row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits), r.object, tileX, tileY);
+        touchAround(worldTile, row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits), r.object, tileX,
+                    tileY);
     } else if (soon) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }
@@ -105,7 +106,8 @@ void gatherRow(uint slot, uint row) {
     if (fresh != 0u) {
         bool left = tileX > 0u;
         bool right = tileX + 1u < sizes.z;
-        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
+        uint times =
+            timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
         if (tileY > 0u || row > 0u) {
             uint down = at - bases.w;
             times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],

@@ -1,12 +1,12 @@
 // Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without
-// burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the first
-// frame shows flames while counts stay those of the save.
+// burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the
+// first frame shows flames while counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(HEAT)
-FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
-FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(BURN_TILES) FW_PUSH(StepPush)
+FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_WRITE(BURN_TILES) FW_PUSH(StepPush)
 #include "lib/burn_list.glsl"
 #include "lib/tile.glsl"
 #include "lib/turn.glsl"
@@ -40,7 +40,8 @@ void reduceTile(uint worldTile, uint parity) {
             uint phase = heat[heatBase + texel].y >> 30u;
             burns = t <= push.now && phase != kPhaseBurnt;
             // Thick fuel's power is its loss, once a heat step has run; thin fuel shows its mean.
-            nominal = phase != kPhaseBurning || materials[material].burnTicks == materials[material].flameTicks;
+            nominal = phase != kPhaseBurning ||
+                      materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
         ++count;
@@ -76,7 +77,8 @@ void reduceTile(uint worldTile, uint parity) {
     vec3 n = vec3(normal);
     // A tile of a skinned object moves with one of its texels.
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
+    SkinPlace moved =
+        skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
     if (skinned) {
         rest.xyz = moved.place;
         n = moved.normal;

@@ -4,8 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
-FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN)
-FW_READ(VERTICES)
+FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN) FW_READ(VERTICES)
 
 void main() {
     DeformItem item = deformItem();

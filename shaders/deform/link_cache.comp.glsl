@@ -26,7 +26,8 @@ void main() {
         do {  // neighbours, then all bending sets
             bool bends = turn >= turns;
             uint set = turn - turns;
-            uvec4 two = deformParticle(at + (bends ? kParticleBends + set : kParticleLinks + turn) * sizes.y);
+            uvec4 two = deformParticle(at + (bends ? kParticleBends + set : kParticleLinks + turn) *
+                                                sizes.y);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint k = (bends ? set : turn) * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
@@ -41,7 +42,8 @@ void main() {
                 count += holds ? 1u : 0u;
             }
         } while (++turn < all);
-        bool whole = (flags & kParticleClosed) != 0u && count == (flags >> kParticleRingShift & 15u);
+        bool whole =
+            (flags & kParticleClosed) != 0u && count == (flags >> kParticleRingShift & 15u);
         holding |= whole ? kLinkCacheWhole : 0u;
 
         vec3 x = placeOf(soft(own + item.parity * sizes.y));

@@ -10,9 +10,12 @@ FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 
 // World directions in object axes. facts: third quad of the DeformObject, which holds the object
 // slot.
-vec3 rowOf(uvec4 facts, uint row) { return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz); }
+vec3 rowOf(uvec4 facts, uint row) {
+    return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz);
+}
 vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
-    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) / uintBitsToFloat(facts.z);
+    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) /
+           uintBitsToFloat(facts.z);
 }
 vec3 upHere(uvec4 facts) { return toObject(facts, push.up.xyz); }
 vec4 heightHere(uvec4 facts) {  // m, world, along up: dot with (position, 1)
@@ -118,15 +121,19 @@ void main() {
         vec3 normal = size > 1e-18 ? turned / size : up;
         curl *= curlSide(normal, up) * scale * charred;
         float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
-        vec3 b = bendOf(nearSum * mean, normal, uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+        vec3 b = bendOf(nearSum * mean, normal,
+                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
                         stiff * kBendRelax, (facts.y & kParticleEven) != 0u);
-        uint nearShare = packBendShare((cache.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        uint nearShare =
+            packBendShare((cache.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
         bending += unpackBendShare(nearShare) * count;
         if (reaches) {
             uint ends = cache.z >> (set * kLinksPerPass * 4u);
-            float across = bendCurl(float(ends & 15u) / kCharredSteps, float(ends >> 4u & 15u) / kCharredSteps);
-            b = bendOf(sum * 0.5, normal, rise + kBendCurl * across * curlRise(curl, squares.x * 0.5), 2.0,
-                       bendStiffness(stiff, charred, across), (facts.y & kParticleBendsEven << set) != 0u);
+            float across = bendCurl(float(ends & 15u) / kCharredSteps,
+                                    float(ends >> 4u & 15u) / kCharredSteps);
+            b = bendOf(
+                sum * 0.5, normal, rise + kBendCurl * across * curlRise(curl, squares.x * 0.5), 2.0,
+                bendStiffness(stiff, charred, across), (facts.y & kParticleBendsEven << set) != 0u);
             uint farShare = packBendShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
             bending += unpackBendShare(farShare) * 2.0;
             if (item.parity == 0u) softOut[seenAt + number].w = farShare;
@@ -141,7 +148,8 @@ void main() {
 
         uint shownAt = (bases.x + facts.x) * kShownQuads;
         vec3 last_ = shown(shownAt).xyz;
-        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) + bending * (relaxAt(1.0, push.step) / kBendUnit);
+        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
+                     bending * (relaxAt(1.0, push.step) / kBendUnit);
         // Limits the distance to the nearest pin to the path length over holding links.
         if (reach < 0.5 * kNoPath) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
@@ -163,7 +171,8 @@ void main() {
         if (pinned) moved = next = x;  // fixed from the start
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packPathLength(reach, known)), nearShare);
+        softOut[own + (item.parity ^ 1u) * sizes.y] =
+            uvec4(softPlace(next, packPathLength(reach, known)), nearShare);
         number += 64u;
     } while (number < last);
 }

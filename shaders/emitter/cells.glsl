@@ -13,10 +13,12 @@ float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5
 // A tile's cluster position: above the surface, as flames are. Light clusters are smaller, and
 // lights stand further off.
 vec3 lightPlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) +
+           view.up.xyz * (0.15 * side);
 }
 vec3 flamePlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +
+           view.up.xyz * (0.1 * side);
 }
 // Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
 // ignition; share: of the duration.

@@ -5,8 +5,8 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
-FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(COUNTERS)
-FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
+FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 #include "emitter/cells.glsl"
 #include "emitter/flipbooks.glsl"
@@ -65,12 +65,16 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (!isSource(t) || t > view.now) continue;
         float age = float(view.now - t) + view.ambientGround.w;
         if (age < ago) continue;  // it caught later
-        uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
+        uint material =
+            tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
         MaterialAppearance look = looks[materials[material].look];
-        float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
+        float lasts = materials[material].flameTicks == kNoneTexel
+                          ? 1e9
+                          : float(materials[material].flameTicks);
         // Thin materials burn at hole edges while the hole grows.
         if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 / materials[material].timeScale);
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
+                                   materials[material].timeScale);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
         if (age - ago < foot.age) {
@@ -106,10 +110,12 @@ void main() {
         float likely = flameLength(near, around);
         // Merges flames below kMinPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
-        float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
+        float pixel =
+            view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
         likely *= clamp(kMinPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
-        float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
+        float quads =
+            flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames still has a row of them.
         quads *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
         // A falling tile has no flames.
@@ -140,8 +146,11 @@ void main() {
             BurnObject object = objects[tile.object];
             MaterialAppearance look = looks[materials[foot.material].look];
             uvec2 packedTexel = texels[object.texelBase + foot.texel];
-            vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
-                                                               packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);
+            vec4 rest = vec4(
+                object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
+                                                                         packedTexel.x >> 16u,
+                                                                         packedTexel.y & 0xFFFFu),
+                1.0);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;
             SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
@@ -149,7 +158,8 @@ void main() {
                 rest.xyz = moved.place;
                 n = moved.normal;
             }
-            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest), dot(object.worldRow2, rest));
+            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
+                              dot(object.worldRow2, rest));
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
@@ -164,14 +174,15 @@ void main() {
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
                 // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their
                 // share.
-                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
-                                  (0.5 + 0.5 * strength);
+                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) *
+                                  (0.8 + 0.5 * r2) * (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
                 vec3 stands = normal * 0.15 + clearance(object, place, normal);
                 quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
                                            axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
-                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) * (1.0 - smoothstep(0.62, 1.0, a));
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *
+                               (1.0 - smoothstep(0.62, 1.0, a));
                 quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
                 quad.kelvin = 1570.0 + 90.0 * r3;
             } else {

@@ -40,17 +40,15 @@ bool before(uint a, uint b) {
 const uint kMaxTies = 64u;  // quads of one depth that are compared; more keep their places
 
 // Writes the places of sorted quads from `to` on, with ties ordered by before().
-#define FW_ORDER_TIES(depthAt, placeAt, to)                                                              \
-    for (uint i = me; i < count; i += kThreads) {                                                        \
-        uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;                   \
-        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;             \
-        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;                  \
-        if (end - first > kMaxTies) {                                                                   \
-            drawArgs[(to) + i] = place;                                                                  \
-            continue;                                                                                    \
-        }                                                                                                \
-        for (uint k = first; k < end; ++k) at += k != i && before(placeAt(k), place) ? 1u : 0u;          \
-        drawArgs[(to) + first + at] = place;                                                             \
+#define FW_ORDER_TIES(depthAt, placeAt, to)                                                       \
+    for (uint i = me; i < count; i += kThreads) {                                                 \
+        uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;            \
+        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;       \
+        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;            \
+        bool few = end - first <= kMaxTies;                                                       \
+        for (uint k = first; few && k < end; ++k)                                                 \
+            at += k != i && before(placeAt(k), place) ? 1u : 0u;                                  \
+        drawArgs[(to) + (few ? first + at : i)] = place;                                          \
     }
 
 void sortFew(uint me, uint count, uint tiles) {

@@ -39,9 +39,11 @@ vec2 flipbookMotionAt(vec2 at, vec2 uv) {
 vec4 sampleFlipbook(vec2 uv) {
     vec2 before = bookBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
     vec2 after = flipbookUvAfter(uv, flipbookMotionAt(inMotions.zw, uv), inBetween.x);
-    return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after), inBetween.x);
+    return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after),
+                             inBetween.x);
 }
-const float kFlipbookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
+// K between the coldest and the hottest texel, around the quad's temperature
+const float kFlipbookSpan = 600.0;
 const float kFlipbookHides = 1.05;  // coverage relative to brightness, matching volumes
 #else
 const uint kOnlyFlipbooks = 0u;
@@ -103,13 +105,15 @@ void main() {
     float rolls = smoke ? kSmokeRolls : phase;
     Roll roll;
     roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
-    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y, -(0.25 + rolls) * (1.2 - seed.y));
+    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y,
+                      -(0.25 + rolls) * (1.2 - seed.y));
     float mirror = seed.x < 0.5 ? -1.0 : 1.0;
     vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
     // Each puff has its own orientation.
     vec2 rotation = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? rotate(m, rotation) * 0.15
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
+             : smoke ? rotate(m, rotation) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
@@ -121,13 +125,15 @@ void main() {
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
         n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
-        vec2 sunward = rotate(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), rotation) * 0.15 + seed;
+        vec2 sunward =
+            rotate(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), rotation) * 0.15 + seed;
         aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
     // Rotated octaves hide the noise lattice in smoke.
-    vec2 q = (smoke ? rotate(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
+    vec2 q =
+        (smoke ? rotate(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
     if (kOnlyFlipbooks == 0u)
         n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
@@ -136,7 +142,8 @@ void main() {
     // Tongue: two octaves; the finer one is faster, so shapes change instead of only moving.
     float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
     // Soot glows in folded sheets.
-    float sheet = (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
+    float sheet =
+        (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
     float fold = exp2(sheet * sheet * (tongue ? -120.0 : -103.0));
     float kelvin, soot, hides, white = kFlameWhite * (tongue ? 1.0 : kNoiseBall);
     if (tongue) {
@@ -146,8 +153,8 @@ void main() {
         float halfWidth = 0.78 * narrow * sqrt(narrow) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
-        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
-                (1.0 - smoothstep(0.60, 0.98, abs(x)));
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
+                (1.0 - smoothstep(0.90, 1.0, y)) * (1.0 - smoothstep(0.60, 0.98, abs(x)));
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
         kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
@@ -159,7 +166,8 @@ void main() {
         float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
-        soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
+        soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) *
+               (1.0 - smoothstep(0.62, 0.97, r)) *
                mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase) * (1.0 - 0.6 * late));
         kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
                  260.0 * (n2.g - 0.45) - 150.0 * (phase - 0.35);
@@ -182,7 +190,8 @@ void main() {
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Smoke: separate billows; thin smoke is eroded more.
-    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) - mix(0.4, 0.0, saturate(3.0 * opacity));
+    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
+                 mix(0.4, 0.0, saturate(3.0 * opacity));
     if (smoke) {
         float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
         alpha = body * opacity;
@@ -199,7 +208,8 @@ void main() {
         float crest = saturate(0.45 + 0.9 * billow + 0.25 * c.y);
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
                    view.sunColor.rgb * (0.45 * crest * crest);
-        vec3 fire = vec3(1.0, 0.38, 0.10) * (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+        vec3 fire = vec3(1.0, 0.38, 0.10) *
+                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
     if (spark) {
@@ -208,14 +218,16 @@ void main() {
         if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
         // Compressed: the true radiance falls a thousandfold during the flight.
-        color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
+        color =
+            glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
         alpha = 0.0;
     }
 #ifdef FW_SOFT
     // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad,
     // so thin objects do not cut it.
     float gap = gapToScene();
-    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap) : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
+    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
+                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif

@@ -53,7 +53,8 @@ vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
     outFrames = vec4(vec2(flipbookFrameOrigin(b, p.before)), vec2(flipbookFrameOrigin(b, p.after)));
-    outMotions = vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
+    outMotions =
+        vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
     outSizes = vec4(halves(b.size), halves(b.motionSize));
     outBetween = vec2(p.part, b.maxMotion);
     uint rect = kFlipbookRects + 2u * (flipbook * kMaxFlipbookFrames + p.before);
@@ -82,7 +83,8 @@ void main() {
     if (vertex == 5u) place = vec2(1.0, 1.0);
     // A spark thinner than a pixel is drawn one pixel wide, and dimmer.
     if ((quad.kind & 3u) == kQuadSpark) {
-        float far = mix(1.0, dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz), perspective);
+        float far =
+            mix(1.0, dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz), perspective);
         float wide = max(quad.axisWidth.w, 0.7 * view.eye.w * max(far, 0.05));
         float more = wide - quad.axisWidth.w;
         quad.baseHeight += vec4(quad.axisWidth.xyz * -more, 2.0 * more);
@@ -94,8 +96,12 @@ void main() {
     float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     // A small quad that is empty outside a circle is drawn as one triangle.
-    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue && (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
-        place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
+    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue &&
+        (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
+        place = vec2(vertex == 0u   ? 0.0
+                     : vertex == 1u ? -kRoot3
+                                    : kRoot3,
+                     vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }
 #ifdef FW_FLIPBOOKS

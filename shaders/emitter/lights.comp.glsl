@@ -56,7 +56,8 @@ vec3 cellPlace(uint slot) {
     float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
     vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
                        cells[cellWord(slot, 4u)]) / (64.0 * float(cells[cellWord(slot, 1u)]));
-    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)], cells[cellWord(slot, 9u)]);
+    ivec3 cell =
+        ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)], cells[cellWord(slot, 9u)]);
     return (vec3(cell) + within) * side;
 }
 
@@ -161,7 +162,8 @@ void main() {
             next = d2 < leastNext && !last ? light : next;
             leastNext = last ? leastNext : min(leastNext, d2);
         }
-        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)], cells[cellWord(slot, 5u)]);
+        uvec3 all =
+            uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)], cells[cellWord(slot, 5u)]);
         float share = nearest + 1u == found ? lastShare : 1.0;
         uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
         give(slot, nearest, own);
@@ -175,7 +177,8 @@ void main() {
             float weight = float(lightNear[light]);
             float side = lightPlace[light].w;
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
-                             float(lightOffset[light * 3u + 2u])) * (side / (64.0 * max(weight, 1.0)));
+                             float(lightOffset[light * 3u + 2u])) *
+                        (side / (64.0 * max(weight, 1.0)));
             uint key = keyOf(lightSlot[light]);
             float area = float(lightArea[light]) * 1e-5;
             uint homeless = light == 0u ? homelessPower : 0u;

@@ -56,7 +56,8 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     float turned = mix(own, 0.5 * spin * smoothstep(0.1, 0.4, a), follows);
     vec2 axis = heading * cos(turned) + vec2(heading.y, -heading.x) * sin(turned);
     // Fades close to the camera, and when it would fill the view.
-    float near = smoothstep(kNearFade, kNearFade + 0.8, far) * (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
+    float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
+                 (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
     near *= shows;
     bool drawn = near > 0.0;
 
@@ -96,7 +97,8 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
     smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    showByFlipbook(smoke, particleFlipbook(e.otherBooks, 2u, seed), (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
+    showByFlipbook(smoke, particleFlipbook(e.otherBooks, 2u, seed),
+                   (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
     // Emissive quads have separate places: they are not sorted.

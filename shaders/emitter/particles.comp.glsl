@@ -58,7 +58,8 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
         normal = there;
         place = burnTiles[tile].positionArea;
     }
-    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)), place.w);
+    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)),
+                       place.w);
     p.placeAge.w = met > 0u ? p.placeAge.w : 1e6;
     return p;
 }
@@ -78,7 +79,8 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
         uint k = 0u;
         for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
             k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
-        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz, emitters[i].patches[2u * k + 1u].xyz);
+        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz,
+                            emitters[i].patches[2u * k + 1u].xyz);
     }
     if (e.object != 0u) p = bornOnTile(e, p, seed);
     return p;

@@ -12,7 +12,8 @@ FW_PUSH(SparkPush)
 #ifdef FW_TEXELS
 FW_TEXEL_BUFFER(SPARKS, readonly, sourcesIn)
 vec4 sparkCell(SparkBounds b, uint i) {
-    return uintBitsToFloat(imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
+    return uintBitsToFloat(
+        imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
 }
 #else
 vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
@@ -50,9 +51,11 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     return b;
 }
 
-void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direction, vec3 carried, float strength) {
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direction, vec3 carried,
+          float strength) {
     SparkKind kind = sparkKind(slot.seed);
-    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, direction, carried), bounds, s.up.xyz, slot.age);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, direction, carried), bounds,
+                            s.up.xyz, slot.age);
     vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
     vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
     float a = slot.age / kind.life;
@@ -83,7 +86,8 @@ void showOwn(SparkSource s, SparkBounds bounds, uint source, uint slot) {
     uint i = uint(at), moved = max(i, 1u);
     vec4 key = mix(sources[source].keys[i], sources[source].keys[i + 1u], at - float(i));
     if (sparkChance(key.w, slot, now.seed) <= 0.0) return;
-    vec3 carried = (sources[source].keys[moved].xyz - sources[source].keys[min(moved + 1u, kSparkKeys - 1u)].xyz) *
+    vec3 carried = (sources[source].keys[moved].xyz -
+                    sources[source].keys[min(moved + 1u, kSparkKeys - 1u)].xyz) *
                    (s.wallNormal.w / kSparkKeyStep);
     show(s, bounds, now, key.xyz + sparkOff(s.direction.xyz, s.radius, s.half_.xyz, now.seed),
          s.direction.xyz, carried, 1.0);
@@ -102,7 +106,8 @@ void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
         vec3 at = tile.positionArea.xyz + normal * 0.01 +
                   sparkOff(normal, 0.8 * sqrt(tile.positionArea.w), vec3(0.0), now.seed);
         if (chance > 0.0)
-            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0), clamp(chance / fades, 0.0, 1.0));
+            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0),
+                 clamp(chance / fades, 0.0, 1.0));
     }
 }
 

@@ -13,10 +13,12 @@ uint linkTick(uint i, out uint by) {
     if ((exchangeObjects[from].flags & kExchangeLive) == 0u || objectCounters[from].burning == 0u ||
         !mayTransfer(exchangeObjects[from], hops, push.hopsMost))
         return kNever;
-    uint tick = contactTick(state[objects[from].stateBase + texel], materials[materialOfTexel(from, texel)].flameTicks,
-                            contacts[i].delay, contacts[i].since, push.now);
-    if (tick == kNever || !mayReach(push.seed, from, contacts[i].object, objectCounters[from].litTick,
-                 multiplyChances(push.chance, exchangeObjects[from].chance)))
+    uint tick = contactTick(state[objects[from].stateBase + texel],
+                            materials[materialOfTexel(from, texel)].flameTicks, contacts[i].delay,
+                            contacts[i].since, push.now);
+    if (tick == kNever ||
+        !mayReach(push.seed, from, contacts[i].object, objectCounters[from].litTick,
+                  multiplyChances(push.chance, exchangeObjects[from].chance)))
         return kNever;
     by = litBy(hops, from);
     return tick;

@@ -24,8 +24,9 @@ float densityAt(FieldDraw d, vec2 place) {
     int x = int(low.x), y = int(low.y), w = int(d.width), h = int(d.height);
     int x0 = x < 0 ? x + w : x, x1 = x + 1 >= w ? x + 1 - w : x + 1;
     int y0 = clamp(y, 0, h - 1), y1 = clamp(y + 1, 0, h - 1);
-    vec4 n = vec4(shown[d.shown + uint(y0 * w + x0)] & 1023u, shown[d.shown + uint(y0 * w + x1)] & 1023u,
-                  shown[d.shown + uint(y1 * w + x0)] & 1023u, shown[d.shown + uint(y1 * w + x1)] & 1023u);
+    vec4 n = vec4(
+        shown[d.shown + uint(y0 * w + x0)] & 1023u, shown[d.shown + uint(y0 * w + x1)] & 1023u,
+        shown[d.shown + uint(y1 * w + x0)] & 1023u, shown[d.shown + uint(y1 * w + x1)] & 1023u);
     vec2 rows = mix(n.xz, n.yw, part.x);
     return mix(rows.x, rows.y, part.y) * (1.0 / 511.5);
 }
@@ -55,9 +56,12 @@ void main() {
     vec3 ball = vec3(cos(lat) * cos(lon), sin(lat), -cos(lat) * sin(lon));
     vec3 normal = normalize(d.right.xyz * (ball.x / d.size.x) + d.up.xyz * (ball.y / d.size.y) +
                             d.forward.xyz * (ball.z / d.size.z));
-    vec3 onBall = middle + 0.5 * (d.right.xyz * (ball.x * d.size.x) + d.up.xyz * (ball.y * d.size.y) +
-                                  d.forward.xyz * (ball.z * d.size.z));
-    float bulge = d.shape == kFieldDisplaced ? kBulge * min(min(d.size.x, d.size.y), d.size.z) * cos(lat) : 0.0;
+    vec3 onBall =
+        middle + 0.5 * (d.right.xyz * (ball.x * d.size.x) + d.up.xyz * (ball.y * d.size.y) +
+                        d.forward.xyz * (ball.z * d.size.z));
+    float bulge = d.shape == kFieldDisplaced
+                      ? kBulge * min(min(d.size.x, d.size.y), d.size.z) * cos(lat)
+                      : 0.0;
     onBall += normal * (bulge * (densityAt(d, ballPlace) - 0.35));
 
     vec3 at = flat_ ? onBillboard : onBall;
@@ -65,7 +69,8 @@ void main() {
     outNormal = flat_ ? normalize(cross(side, axis)) : normal;
     outToEye = -mix(view.forward.xyz, at, perspective);
     outAlong = flat_ ? side * sense
-                    : normalize(-d.right.xyz * (sin(lon) * d.size.x) - d.forward.xyz * (cos(lon) * d.size.z));
+                     : normalize(-d.right.xyz * (sin(lon) * d.size.x) -
+                                 d.forward.xyz * (cos(lon) * d.size.z));
     outLook = vec4(d.right.w, d.up.w, d.forward.w, d.size.w);
     outTint = d.tint;
     outField = uvec4(d.shown, d.width, d.height, flat_ ? 0u : 1u);

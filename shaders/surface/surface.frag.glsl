@@ -1,6 +1,6 @@
 #version 450
-// A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and lights
-// the result. Writes linear HDR or encoded colour.
+// A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and
+// lights the result. Writes linear HDR or encoded colour.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/heat.h"
@@ -55,12 +55,12 @@ layout(location = 8) in vec4 inMiddleUv;
 layout(constant_id = 4) const uint kSamples = 4u;
 // Vulkan's standard sample positions for 2, 4, 8 and 16 samples, in sixteenths of a pixel from its
 // middle.
-const ivec2 kSamplePlaces[30] = ivec2[30](ivec2(4, 4), ivec2(-4, -4),
-    ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
-    ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1), ivec2(3, 7), ivec2(7, -7),
-    ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1), ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3),
-    ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7), ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4),
-    ivec2(6, 7), ivec2(-7, -8));
+const ivec2 kSamplePlaces[30] =
+    ivec2[30](ivec2(4, 4), ivec2(-4, -4), ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
+              ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1),
+              ivec2(3, 7), ivec2(7, -7), ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1),
+              ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3), ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7),
+              ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4), ivec2(6, 7), ivec2(-7, -8));
 #endif
 
 #include "lib/colour.glsl"
@@ -219,7 +219,8 @@ vec2 wetnessAt(vec2 uv) {
 float dampen(float age, float damp, float young, float wetAge) {
     if (damp <= 0.0) return age;
     float top = clamp(age, wetAge, young);
-    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0) : mix(top, wetAge, (damp - 0.25) / 0.75);
+    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0)
+                       : mix(top, wetAge, (damp - 0.25) / 0.75);
 }
 
 vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
@@ -259,9 +260,11 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
     s.albedo = sooted(s.albedo, sootable * saturate(soot));
     s.rough = mix(s.rough, 0.9, sootable * saturate(soot));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
-    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
+    c += lit(s, n, v, view.sunDirection.xyz,
+             view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
     float height = dot(n, view.up.xyz);
-    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo * (open * s.occlusion);
+    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo *
+         (open * s.occlusion);
     vec3 mirror = reflect(-v, n);
     vec3 env = mix(view.ambientGround.rgb * 0.8, view.ambientSky.rgb * 1.6,
                    smoothstep(-0.3, 0.6, dot(mirror, view.up.xyz)));
@@ -326,7 +329,8 @@ void main() {
     vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
     float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
     float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
-    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) + 0.1 * vec3(da, db, -0.5 * (da + db));
+    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
+             0.1 * vec3(da, db, -0.5 * (da + db));
     bool facesX = w.x > w.y && w.x > w.z, facesY = !facesX && w.y > w.z;
     vec2 flatPlace = vec2(facesX ? inRest.z : inRest.x, facesY ? inRest.z : inRest.y);
 
@@ -377,7 +381,8 @@ void main() {
     // anyway.
     bool sheet = (draw.flags & kObjectTwoSided) != 0u;
     vec2 grownAt = sheet ? d : flatPlace;
-    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(grownAt.x, grownAt.y / look.drip);
+    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3)
+                       : vec2(grownAt.x, grownAt.y / look.drip);
     vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
     vec3 color = draw.colorRough.rgb;
     bool cutOut = false;  // transparent image texel; decided below, where no derivatives are needed
@@ -464,7 +469,8 @@ void main() {
         site.left = saturate(-1.0 - inSootOffset.y) * look.thickness * site.slow;
     }
     bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
-    bool cold = !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
+    bool cold =
+        !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
 #if FW_MULTISAMPLED == 2
     int covered = -1;
@@ -473,7 +479,8 @@ void main() {
     // Refined faces recede while they burn, by a wall's thickness in its burn time (up to
     // kRefineRecede): they tilt towards the part that caught first.
     float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
-    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
+    bool recedes =
+        kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
     float fall = recedes ? draw.thickness / look.holeTime : 0.0;
     fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
     vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
@@ -506,7 +513,8 @@ void main() {
             // Positions for 2, 4, 8 and 16 samples start at count - 2.
             vec2 off = vec2(kSamplePlaces[kSamples - 2u + i]) * (1.0 / 16.0);
             float there = edge + dot(perPixel, off);
-            bool stands = there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
+            bool stands =
+                there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
             standing |= stands ? 1 << i : 0;
         }
         if (site.left < 0.0) covered = standing;  // a cut mesh ends at its rim
@@ -551,7 +559,8 @@ void main() {
 
     // Cavities are black with smoke.
     float soot = inside && deep < 0.0 && (kBurns || kCold) ? 0.85 : arrival.soot;
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot, (1.0 - charred) * (0.6 + 0.5 * coarse.r));
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot,
+                        (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 #if FW_MULTISAMPLED == 2
     gl_SampleMask[0] = covered;

@@ -21,8 +21,8 @@ float cutDepth() { return metresOfDepth(draw.clip, inBase.x); }
 #endif
 // Slabs from this slab's near distance to the cut.
 float slabsToCut() { return (cutDepth() - inSlab.x) * inSlab.y; }
-// Share of a march pixel's light that counts. small: march pixels smaller than a pixel have bases of
-// their own.
+// Share of a march pixel's light that counts. small: march pixels smaller than a pixel have bases
+// of their own.
 float countingShare(uint range, float cut, bool small) {
 #ifdef FW_SOFT
     return slabShareNearer(range, cut);

@@ -32,8 +32,11 @@ void add(uint at, float weight, float cut, inout vec4 color, inout float through
 
 void main() {
     outColor = vec4(0.0);
-    bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
-    if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) &&
+                     all(lessThan(inCell + 0.5, draw.window.zw));
+    if (elsewhere ||
+        !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y))
+        return;
     uint pitch = kMarchPixelWords * kMarchTileSide * draw.tilesX;
     vec4 color = vec4(0.0);
     float through = 0.0, cut = slabsToCut();
@@ -53,7 +56,8 @@ void main() {
             uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
             FW_UNROLL
             for (int x = -1; x <= 1; ++x) {
-                uint column = kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
+                uint column =
+                    kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
                 float weight = neighbourWeight(x, off.x) * neighbourWeight(y, off.y);
                 add(row + column, weight, cut, color, through);
             }

@@ -14,7 +14,8 @@ layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance
 layout(location = 3) flat out ivec4 outCells; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
-layout(location = 6) centroid out vec2 outBase;  // clip z / w of the plane through the base; VolumeDraw::base.w
+// clip z / w of the plane through the base; VolumeDraw::base.w
+layout(location = 6) centroid out vec2 outBase;
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -35,7 +36,8 @@ void main() {
         FW_UNROLL
         for (int x = -1; x <= 1; ++x) {
             ivec2 near = at + ivec2(x, y);
-            bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
+            bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) &&
+                          near.y < int(draw.tilesY);
             uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
             bool is = inside && rays[of + kMarchTileListed * tiles] != 0u;
             uint there = rays[of], edges = there >> kVolumeSlabs;
@@ -50,7 +52,8 @@ void main() {
             if (y > 0) reach.w = may ? reach.w : 0;
         }
     }
-    outCells = ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
+    outCells =
+        ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
     vec2 cell = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kMarchTileSide);
     outCell = cell - 0.5;
     uint cells = tiles * kMarchTileSide * kMarchTileSide;

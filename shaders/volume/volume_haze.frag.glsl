@@ -21,7 +21,8 @@ const float kSeen = 0.25;        // px of displacement at full opacity
 
 // Position in pixels of the view.
 vec2 pixelOf(vec3 fromEye) {
-    vec4 clip = fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
+    vec4 clip =
+        fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
     return 0.5 * clip.xy / clip.w * view.viewport.zw;
 }
 

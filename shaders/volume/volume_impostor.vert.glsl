@@ -28,10 +28,11 @@ void main() {
     outShows = vec2(draw.from, draw.to) + float(zero);
     outSlab = vec2(draw.front, 1.0 / draw.deep);
     vec2 low = -outHalf, high = vec2(cells) + outHalf;
-    vec4 over = vec4(baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(low)),
-                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
-                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
-                     baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
+    vec4 over =
+        vec4(baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(low)),
+             baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(high.x, low.y))),
+             baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(high)),
+             baseSide(draw.base, draw.clip, draw.front, draw.deep, placeOf(vec2(low.x, high.y))));
     outCell = mix(low, high, splitQuadVertex(over, vertex));
     vec2 place = placeOf(outCell);
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);

@@ -84,8 +84,10 @@ void main() {
     float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
     stride /= float(closer);
     // As many knots per metre as over the whole flame.
-    uint intervals = min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
-    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from, direction, intervals);
+    uint intervals =
+        min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
+    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
+                           direction, intervals);
 
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
 #ifdef FW_SMOKE
@@ -114,7 +116,8 @@ void main() {
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
         for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);
-        bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
+        bits =
+            shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float length_ = burns ? stride : 0.0;
     // Every loop has the same length for all lanes of a quarter: divergent loops are slow on a
