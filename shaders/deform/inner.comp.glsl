@@ -26,7 +26,7 @@ void main() {
         vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
         // A mesh vertex and a shown vertex have the same size.
         vec3 thin = outside.xyz - unpackDirection(floatBitsToUint(outside.w)) * thinnest;
-        vec3 place = mix(thin, inside, saturateF((wall - receded) / thinnest - 1.0));
+        vec3 place = mix(thin, inside, saturate((wall - receded) / thinnest - 1.0));
         shownOut[inner * kShownQuads] = floatBitsToUint(vec4(place, outside.w));
         shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, offset));
         number += 64u;

@@ -30,8 +30,6 @@ float flameFade(BurnTile tile) {
     return flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 1.0);
 }
 
-float unit(uint x) { return float(hash32(x) >> 8) * (1.0 / 16777216.0); }
-
 uint cellKey(ivec3 cell, float side) {
     uint h = hash32(uint(cell.x) * 73856093u ^ floatBitsToUint(side));
     h = hash32(h ^ uint(cell.y) * 19349663u);

@@ -19,8 +19,6 @@ const float kMinPixels = 20.0;  // of a flame's height
 const float kMaxMerged = 1.6;    // height factor of merged flames
 const float kMaxClear = 0.9;     // half widths, see clearance
 
-float saturate(float x) { return clamp(x, 0.0, 1.0); }
-
 vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
 }
@@ -99,7 +97,7 @@ void main() {
         vec3 drift = wind - up * dot(wind, up);
         uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);
         // Jittered cluster lookups hide cell borders in the heights.
-        vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;
+        vec3 jitter = vec3(hashUnit(seed), hashUnit(seed + 1u), hashUnit(seed + 2u)) - 0.5;
         float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
         vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
         vec3 above = flamePlaceOf(tile, large) + 0.8 * jitter * large;
@@ -130,11 +128,12 @@ void main() {
             float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
-            float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
-            float life = time / period + unit(s + 1u) * 16.0;
+            float period =
+                (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * hashUnit(s));
+            float life = time / period + hashUnit(s + 1u) * 16.0;
             float generation = floor(life), a = life - generation;
             uint g = hash32(s + uint(generation) * 2654435761u);
-            float chance = odds - unit(g + 4u);
+            float chance = odds - hashUnit(g + 4u);
             if (chance <= 0.0) continue;
             Foot foot = footOf(tile, hash32(g + 5u), a * period * 4096.0);
             if (!foot.found) continue;
@@ -163,7 +162,8 @@ void main() {
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
-            float r1 = unit(g), r2 = unit(g + 1u), r3 = unit(g + 2u), r4 = unit(g + 3u);
+            float r1 = hashUnit(g), r2 = hashUnit(g + 1u), r3 = hashUnit(g + 2u),
+                  r4 = hashUnit(g + 3u);
             float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);
             FlameQuad quad;
             float rise = 1.0 + 2.5 * sqrt(len);  // m/s

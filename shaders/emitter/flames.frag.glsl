@@ -37,7 +37,7 @@ vec2 flipbookMotionAt(vec2 at, vec2 uv) {
     return decodeFlipbookMotion(textureLod(flipbookTexture, (at + p) / size, 0.0).rg, inBetween.y);
 }
 vec4 sampleFlipbook(vec2 uv) {
-    vec2 before = bookBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
+    vec2 before = flipbookUvBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
     vec2 after = flipbookUvAfter(uv, flipbookMotionAt(inMotions.zw, uv), inBetween.x);
     return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after),
                              inBetween.x);

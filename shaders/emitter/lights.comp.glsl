@@ -187,7 +187,7 @@ void main() {
             vec3 at = lightPlace[light].xyz + mean + view.up.xyz * (0.25 * len);
             // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is
             // steady.
-            float t = view.ambientSky.w, p = 6.2832 * unit(key);
+            float t = view.ambientSky.w, p = 6.2832 * hashUnit(key);
             float flicker = 1.0 + min(weight * 16.0 / power, 1.0) *
                                       (0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
                                        0.05 * sin(29.1 * t + 4.1 * p));

@@ -27,8 +27,8 @@ ParticleEmitter emitterOf(uint i) {
     e.serial = emitters[i].serial;
     e.seed = emitters[i].seed;
     e.flags = emitters[i].flags;
-    e.books = emitters[i].books;
-    e.otherBooks = emitters[i].otherBooks;
+    e.fireFlipbooks = emitters[i].fireFlipbooks;
+    e.smokeFlipbooks = emitters[i].smokeFlipbooks;
     return e;
 }
 
@@ -36,7 +36,7 @@ ParticleEmitter emitterOf(uint i) {
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
-    float shows = shownShare(view.quads.x, particleHash(seed + 311u));
+    float shows = shownShare(view.quads.x, hashUnit(seed + 311u));
     float size = particleSize(e, t, age, p.speedPath.w, t.own) * view.quads.y;
     vec3 place = p.placeAge.xyz, v = p.speedPath.xyz;
     vec3 toEye = view.eye.xyz - place;
@@ -82,7 +82,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
     // A flipbook, too, begins as a shapeless ball.
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    showByFlipbook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
+    showByFlipbook(quad, particleFlipbook(e.fireFlipbooks, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
     FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
@@ -97,7 +97,7 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     smoke.phase = 0.10 * age + 5.0 * t.other;
     smoke.kelvin = lit;
     smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    showByFlipbook(smoke, particleFlipbook(e.otherBooks, 2u, seed),
+    showByFlipbook(smoke, particleFlipbook(e.smokeFlipbooks, 2u, seed),
                    (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 

@@ -48,13 +48,13 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
     float all = 0.0;
     vec4 place = vec4(0.0), normal = vec4(0.0, 1.0, 0.0, 0.0);
     for (uint i = 0u; i < kTileTries && count > 0u; ++i) {
-        uint tile = particleBits(seed + 101u * (i + 1u)) % count;
+        uint tile = hash32(seed + 101u * (i + 1u)) % count;
         if (met == kTileChoice || burnTiles[tile].object + 1u != e.object) continue;
         ++met;
         vec4 there = burnTiles[tile].normalPower;
         float power = max(there.w, 1e-3);
         all += power;
-        if (particleHash(seed + 57u + i) * all > power) continue;
+        if (hashUnit(seed + 57u + i) * all > power) continue;
         normal = there;
         place = burnTiles[tile].positionArea;
     }
@@ -75,7 +75,7 @@ Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
     e.stuck = emitters[i].stuck;
     Particle p = particleBorn(e, seed, lived);
     if (particleSticks(e, seed)) {
-        float which = particleHash(seed + 66u);
+        float which = hashUnit(seed + 66u);
         uint k = 0u;
         for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
             k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
@@ -152,8 +152,8 @@ void flies(ParticleEmitter e, uint i, inout Flight f) {
     vec3 normal = e.up.xyz;
     uint k = 0u;
     do {
-        vec4 middle = emitters[i].shields[2u * k];
-        vec3 n = emitters[i].shields[2u * k + 1u].xyz;
+        vec4 middle = emitters[i].obstacles[2u * k];
+        vec3 n = emitters[i].obstacles[2u * k + 1u].xyz;
         float share = particleMeets(from, f.p.placeAge.xyz, middle, n, reach);
         bool first = k < e.obstacleCount && share < least;
         least = first ? share : least;

@@ -37,7 +37,7 @@ SparkSource sourceOf(uint i) {
     s.seed = sources[i].seed;
     s.slots = sources[i].slots;
     s.flags = sources[i].flags;
-    s.book = sources[i].book;
+    s.flipbook = sources[i].flipbook;
     s.object = sources[i].object;
     return s;
 }
@@ -62,7 +62,7 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direc
     vec3 toEye = view.eye.xyz - place, streak = place - before;
     float far = view.forward.w > 0.5 ? dot(-toEye, view.forward.xyz) : 1e3;
     // A flipbook's streak fills a third of its frame.
-    float wide = kind.width * (s.book != 0u ? 3.0 : 1.0);
+    float wide = kind.width * (s.flipbook != 0u ? 3.0 : 1.0);
     float length_ = length(streak);
     FlameQuad quad;
     vec3 along = length_ > 1e-4 ? streak / length_ : view.up.xyz;
@@ -71,9 +71,9 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direc
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
     quad.opacity = sparkFades(a) * strength * smoothstep(kNearFade, kNearFade + 0.8, far) *
                    shownShare(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
-    quad.phase = s.book != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
+    quad.phase = s.flipbook != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
-    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadFlipbookShift | kQuadSpark;
+    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.flipbook << kQuadFlipbookShift | kQuadSpark;
     // Hides sparks that would be wide on the screen.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameEmissiveQuads], 1u);

@@ -24,7 +24,7 @@ layout(location = 8) in vec3 inRest;   // m, object space, before deformation
 
 // centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and
 // outline burnt triangles.
-// m, world, relative to the camera; w: flame light, red
+// M, world, relative to the camera; w: flame light, red
 layout(location = 0) centroid out vec4 outPosition;
 layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
 layout(location = 2) centroid out vec4 outNormal;    // w: blue

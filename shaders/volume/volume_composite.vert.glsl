@@ -14,7 +14,7 @@ layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance
 layout(location = 3) flat out ivec4 outCells; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
-// clip z / w of the plane through the base; VolumeDraw::base.w
+// Clip z / w of the plane through the base; VolumeDraw::base.w
 layout(location = 6) centroid out vec2 outBase;
 
 void main() {
