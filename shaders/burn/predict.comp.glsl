@@ -89,9 +89,7 @@ void predictRow(uint work) {
     if (changed != 0u) scratch[work * 4u + 1u] = item.y | changed << 8u;
     uint worldTile = item.x >> 3u;
     if (spread != 0u) {
-        uint bits = spread << ((item.x & 3u) * 8u);
-        uvec2 mask = (item.x & 4u) == 0u ? uvec2(bits, 0u) : uvec2(0u, bits);
-        touchAround(worldTile, mask, item.w, x0 >> 3u, y >> 3u);
+        touchAround(worldTile, rowMask(item.x & 7u, spread), item.w, x0 >> 3u, y >> 3u);
     } else if (beyond) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }

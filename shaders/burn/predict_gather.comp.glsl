@@ -90,9 +90,7 @@ void gatherRow(uint slot, uint row) {
         nearer |= 1u << i;
     }
     if (nearer != 0u) {
-        uint bits = nearer << ((row & 3u) * 8u);
-        touchAround(worldTile, row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits), r.object, tileX,
-                    tileY);
+        touchAround(worldTile, rowMask(row, nearer), r.object, tileX, tileY);
     } else if (soon) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }

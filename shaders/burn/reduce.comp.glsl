@@ -69,24 +69,22 @@ void reduceTile(uint worldTile, uint parity) {
     }
     FW_COVER(row, run, slot, 64u)
     float area = objects[object].tint.w;
-    vec4 rest = vec4(objects[object].originQuantum.xyz +
-                         objects[object].originQuantum.w * vec3(position) / float(count), 1.0);
-    vec4 row0 = objects[object].worldRow0;
-    vec4 row1 = objects[object].worldRow1;
-    vec4 row2 = objects[object].worldRow2;
+    vec3 rest = objects[object].originQuantum.xyz +
+                objects[object].originQuantum.w * vec3(position) / float(count);
     vec3 n = vec3(normal);
     // A tile of a skinned object moves with one of its texels.
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
     SkinPlace moved =
         skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
     if (skinned) {
-        rest.xyz = moved.place;
+        rest = moved.place;
         n = moved.normal;
     }
-    vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
+    vec3 world = turnNormal(objects[object].worldRow0.xyz, objects[object].worldRow1.xyz,
+                            objects[object].worldRow2.xyz, n);
     float size = length(world);
     BurnTile b;
-    b.positionArea = vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
+    b.positionArea = vec4(inWorld(object, rest), float(count) * area);
     float fire = heats ? tileFire[worldTile] : 0.0;
     power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);

@@ -144,21 +144,15 @@ void main() {
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
             MaterialAppearance look = looks[materials[foot.material].look];
-            uvec2 packedTexel = texels[object.texelBase + foot.texel];
-            vec4 rest = vec4(
-                object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
-                                                                         packedTexel.x >> 16u,
-                                                                         packedTexel.y & 0xFFFFu),
-                1.0);
+            vec3 rest = restOf(tile.object, texels[object.texelBase + foot.texel]);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;
             SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
             if (skinned) {
-                rest.xyz = moved.place;
+                rest = moved.place;
                 n = moved.normal;
             }
-            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest),
-                              dot(object.worldRow2, rest));
+            vec3 place = inWorld(tile.object, rest);
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);

@@ -12,23 +12,12 @@ FW_PUSH(ParticlePush)
 const float kNearFade = 0.3;  // m before the camera
 
 // Loads the emitter data for display only: a software device loads each word for each lane.
+#define FW_LOAD(member) e.member = emitters[i].member;
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
-    e.carried.w = emitters[i].carried.w;
-    e.half_.w = emitters[i].half_.w;
-    e.up = emitters[i].up;
-    e.size = emitters[i].size;
-    e.life = emitters[i].life;
-    e.heat = emitters[i].heat;
-    e.first = emitters[i].first;
-    e.ring = emitters[i].ring;
-    e.head = emitters[i].head;
-    e.filled = emitters[i].filled;
-    e.serial = emitters[i].serial;
-    e.seed = emitters[i].seed;
-    e.flags = emitters[i].flags;
-    e.fireFlipbooks = emitters[i].fireFlipbooks;
-    e.smokeFlipbooks = emitters[i].smokeFlipbooks;
+    FW_LOAD(carried.w) FW_LOAD(half_.w) FW_LOAD(up) FW_LOAD(size) FW_LOAD(life) FW_LOAD(heat)
+    FW_LOAD(first) FW_LOAD(ring) FW_LOAD(head) FW_LOAD(filled) FW_LOAD(serial) FW_LOAD(seed)
+    FW_LOAD(flags) FW_LOAD(fireFlipbooks) FW_LOAD(smokeFlipbooks)
     return e;
 }
 

@@ -12,31 +12,13 @@ FW_PUSH(ParticlePush)
 
 // Loads the emitter data that every particle needs; the rest is loaded where it is used. A software
 // device loads each word for each lane.
+#define FW_LOAD(member) e.member = emitters[i].member;
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
-    e.from.w = emitters[i].from.w;
-    e.direction = emitters[i].direction;
-    e.carried.w = emitters[i].carried.w;
-    e.wind = emitters[i].wind;
-    e.up = emitters[i].up;
-    e.motion = emitters[i].motion;
-    e.turbulence = emitters[i].turbulence;
-    e.size = emitters[i].size;
-    e.life = emitters[i].life;
-    e.heat = emitters[i].heat;
-    e.stuck = emitters[i].stuck;
-    e.first = emitters[i].first;
-    e.ring = emitters[i].ring;
-    e.head = emitters[i].head;
-    e.filled = emitters[i].filled;
-    e.fresh = emitters[i].fresh;
-    e.serial = emitters[i].serial;
-    e.age = emitters[i].age;
-    e.apart = emitters[i].apart;
-    e.seed = emitters[i].seed;
-    e.flags = emitters[i].flags;
-    e.steps = emitters[i].steps;
-    e.obstacleCount = emitters[i].obstacleCount;
+    FW_LOAD(from.w) FW_LOAD(direction) FW_LOAD(carried.w) FW_LOAD(wind) FW_LOAD(up) FW_LOAD(motion)
+    FW_LOAD(turbulence) FW_LOAD(size) FW_LOAD(life) FW_LOAD(heat) FW_LOAD(stuck) FW_LOAD(first)
+    FW_LOAD(ring) FW_LOAD(head) FW_LOAD(filled) FW_LOAD(fresh) FW_LOAD(serial) FW_LOAD(age)
+    FW_LOAD(apart) FW_LOAD(seed) FW_LOAD(flags) FW_LOAD(steps) FW_LOAD(obstacleCount)
     return e;
 }
 
@@ -65,14 +47,8 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
 }
 
 Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
-    e.from = emitters[i].from;
-    e.place = emitters[i].place;
-    e.half_ = emitters[i].half_;
-    e.carried = emitters[i].carried;
-    e.waves0 = emitters[i].waves0;
-    e.waves1 = emitters[i].waves1;
-    e.object = emitters[i].object;
-    e.stuck = emitters[i].stuck;
+    FW_LOAD(from) FW_LOAD(place) FW_LOAD(half_) FW_LOAD(carried)
+    FW_LOAD(waves0) FW_LOAD(waves1) FW_LOAD(object) FW_LOAD(stuck)
     Particle p = particleBorn(e, seed, lived);
     if (particleSticks(e, seed)) {
         float which = hashUnit(seed + 66u);

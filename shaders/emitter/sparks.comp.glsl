@@ -22,23 +22,12 @@ vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
 const float kNearFade = 0.3;  // m before the camera
 
 // Loads a source's data without its path and obstacles.
+#define FW_LOAD(member) s.member = sources[i].member;
 SparkSource sourceOf(uint i) {
     SparkSource s;
-    s.direction = sources[i].direction;
-    s.half_ = sources[i].half_;
-    s.up = sources[i].up;
-    s.wind = sources[i].wind;
-    s.wallNormal.w = sources[i].wallNormal.w;
-    s.radius = sources[i].radius;
-    s.part = sources[i].part;
-    s.keyAge = sources[i].keyAge;
-    s.kelvin = sources[i].kelvin;
-    s.turn = sources[i].turn;
-    s.seed = sources[i].seed;
-    s.slots = sources[i].slots;
-    s.flags = sources[i].flags;
-    s.flipbook = sources[i].flipbook;
-    s.object = sources[i].object;
+    FW_LOAD(direction) FW_LOAD(half_) FW_LOAD(up) FW_LOAD(wind) FW_LOAD(wallNormal.w)
+    FW_LOAD(radius) FW_LOAD(part) FW_LOAD(keyAge) FW_LOAD(kelvin) FW_LOAD(turn) FW_LOAD(seed)
+    FW_LOAD(slots) FW_LOAD(flags) FW_LOAD(flipbook) FW_LOAD(object)
     return s;
 }
 SparkBounds boundsOf(SparkSource s, uint i) {

@@ -5,17 +5,8 @@
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(SOURCES) FW_READ(NEIGHBOURS)
 FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(RECEIVERS) FW_PUSH(ExchangePush)
+#include "lib/gives.glsl"
 #include "lib/lists.glsl"
-
-// Does the neighbour of a table entry give fire to this object?
-bool gives(uint slot, uint entry) {
-    uint from = entry & 0xFFFFFFu;
-    return (entry >> 24u) != 0u && (exchangeObjects[from].flags & kExchangeLive) != 0u &&
-           objectCounters[from].burning != 0u &&
-           mayTransfer(exchangeObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
-           mayReach(push.seed, from, slot, objectCounters[from].litTick,
-                   multiplyChances(push.chance, exchangeObjects[from].chance));
-}
 
 // Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry`
 // and a `weight`.
@@ -23,7 +14,7 @@ bool gives(uint slot, uint entry) {
     for (uint n = 0u; n < exchangeObjects[slot].neighbourCount; ++n) {                         \
         uint entry = neighbours[exchangeObjects[slot].neighbourFirst + n];                     \
         uint from = entry & 0xFFFFFFu;                                                         \
-        if (!gives(slot, entry)) continue;                                                     \
+        if (entry >> 24u == 0u || !gives(from, slot)) continue;                                \
         uint source = exchangeObjects[from].sourceBase;                                        \
         for (uint end = source + exchangeObjects[from].sourceCount; source < end; ++source) {  \
             uint weight = sourceWeight(sources[source], middle);                               \

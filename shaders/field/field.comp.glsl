@@ -61,6 +61,10 @@ struct Sums {     // of a strip's cells: particles and their motion
     uint x[4];
     uint y[4];
 };
+#define FW_ADD(to, i, count, motionX, motionY) \
+    to.n[i] += count;                          \
+    to.x[i] += count * (motionX);              \
+    to.y[i] += count * (motionY);
 const Sums kNothing =
     Sums(uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u));
 
@@ -170,23 +174,15 @@ void main() {
                         uint a = fieldGiven(g.ahead, s0), b = fieldGiven(s0, s1),
                              c = fieldGiven(s1, s2);
                         uint along = (x0 + slant) & 0x7FFFu;
-                        under.n[j] += a;
-                        under.x[j] += a * along;
-                        under.y[j] += a * down;
-                        sums.n[j] += b;
-                        sums.x[j] += b * ((x0 + whole) & 0x7FFFu);
-                        sums.y[j] += b * flat_;
-                        next.n[j] += c;
-                        next.x[j] += c * along;
-                        next.y[j] += c * up;
+                        FW_ADD(under, j, a, along, down)
+                        FW_ADD(sums, j, b, ((x0 + whole) & 0x7FFFu), flat_)
+                        FW_ADD(next, j, c, along, up)
                     }
                     if (j >= 1) {
                         uint s3 =
                             s2 + fieldFlow(g, 2u, p.to.k[2], seenAbove.full[j], seenAbove.room[j]);
                         uint d = fieldGiven(s2, s3);
-                        next.n[j - 1] += d;
-                        next.x[j - 1] += d * (x0 & 0x7FFFu);
-                        next.y[j - 1] += d * ((y0 + whole) & 0x7FFFu);
+                        FW_ADD(next, j - 1, d, (x0 & 0x7FFFu), ((y0 + whole) & 0x7FFFu))
                         stays -= s3 >> 15u;
                     }
                 }
@@ -200,27 +196,17 @@ void main() {
                         uint a = fieldGiven(g.behind, s0), b = fieldGiven(s0, s1),
                              c = fieldGiven(s1, s2);
                         uint along = (x0 - slant) & 0x7FFFu;
-                        next.n[j - 2] += a;
-                        next.x[j - 2] += a * along;
-                        next.y[j - 2] += a * up;
-                        sums.n[j - 2] += b;
-                        sums.x[j - 2] += b * ((x0 - whole) & 0x7FFFu);
-                        sums.y[j - 2] += b * flat_;
-                        under.n[j - 2] += c;
-                        under.x[j - 2] += c * along;
-                        under.y[j - 2] += c * down;
+                        FW_ADD(next, j - 2, a, along, up)
+                        FW_ADD(sums, j - 2, b, ((x0 - whole) & 0x7FFFu), flat_)
+                        FW_ADD(under, j - 2, c, along, down)
                     }
                     if (j <= 4) {
                         uint s3 =
                             s2 + fieldFlow(g, 6u, p.to.k[6], seenBelow.full[j], seenBelow.room[j]);
                         uint d = fieldGiven(s2, s3);
-                        under.n[j - 1] += d;
-                        under.x[j - 1] += d * (x0 & 0x7FFFu);
-                        under.y[j - 1] += d * ((y0 - whole) & 0x7FFFu);
+                        FW_ADD(under, j - 1, d, (x0 & 0x7FFFu), ((y0 - whole) & 0x7FFFu))
                         stays = (stays - (s3 >> 15u)) & kMaxFieldCell;
-                        sums.n[j - 1] += stays;
-                        sums.x[j - 1] += stays * (x0 & 0x7FFFu);
-                        sums.y[j - 1] += stays * flat_;
+                        FW_ADD(sums, j - 1, stays, (x0 & 0x7FFFu), flat_)
                     }
                 }
             }

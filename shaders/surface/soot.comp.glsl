@@ -15,16 +15,6 @@ FW_READ_WRITE(GRADIENT) FW_PUSH(StepPush)
 const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 
-vec3 inWorld(uint object, vec3 rest) {
-    vec4 at = vec4(rest, 1.0);
-    return vec3(dot(objects[object].worldRow0, at), dot(objects[object].worldRow1, at),
-                dot(objects[object].worldRow2, at));
-}
-vec3 restOf(uint object, uvec2 texel) {
-    return objects[object].originQuantum.xyz + objects[object].originQuantum.w *
-               vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
-}
-
 void sootRow(uint i, uint row) {
     uint worldTile = push.object + i;
     TileRef tile = tileRef(worldTile);
