@@ -8,7 +8,7 @@
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
 FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
-#include "emitter/cells.glsl"
+#include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
 #include "emitter/nearer.glsl"
 #include "lib/tile.glsl"
@@ -88,7 +88,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
 
 void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
+    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(clusters[0], 1u)));
     float time = view.ambientSky.w;
     vec3 up = view.up.xyz;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
@@ -96,15 +96,15 @@ void main() {
         vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
         vec3 drift = wind - up * dot(wind, up);
         uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);
-        // Jittered cluster lookups hide cell borders in the heights.
+        // Jittered cluster lookups hide their borders in the heights.
         vec3 jitter = vec3(hashUnit(seed), hashUnit(seed + 1u), hashUnit(seed + 2u)) - 0.5;
-        float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        float side = lightClusterSide(tile.object), large = flameClusterSide(tile.object);
         vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
         vec3 above = flamePlaceOf(tile, large) + 0.8 * jitter * large;
         float fade = flameFade(tile);
         vec2 own = vec2(tile.normalPower.w, tile.positionArea.w) * fade;
-        vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
-        vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
+        vec2 near = max(clusterFire(clusterKey(ivec3(floor(beside / side)), side)), own);
+        vec2 around = max(clusterFire(clusterKey(ivec3(floor(above / large)), large)), near);
         float likely = flameLength(near, around);
         // Merges flames below kMinPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;

@@ -120,12 +120,12 @@ void main() {
     vec4 sum = vec4(0.0);
     uint k = 0u;
     do {  // the same number of iterations for all
-        uvec2 cell = first + uvec2(k % side, k / side);
+        uvec2 at = first + uvec2(k % side, k / side);
         vec2 off = (vec2(k % side, k / side) + 0.5 +
-                    (side > 1u ? marchRayShift(cell.x, cell.y) : vec2(0.0))) /
+                    (side > 1u ? marchRayShift(at.x, at.y) : vec2(0.0))) /
                        float(side) -
                    0.5;
-        sum += shownAlong(f, off, marchSamplePhase(cell.x, cell.y));
+        sum += shownAlong(f, off, marchSamplePhase(at.x, at.y));
         k += 1u;
     } while (k < side * side);
     outColor = sum / float(side * side);

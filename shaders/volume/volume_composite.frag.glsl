@@ -9,10 +9,10 @@
 
 layout(push_constant) uniform Push { CompositePush draw; };
 
-layout(location = 0) centroid in vec2 inCell;
+layout(location = 0) centroid in vec2 inPixel;
 layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
-layout(location = 3) flat in ivec4 inCells;
+layout(location = 3) flat in ivec4 inPixels;
 layout(location = 4) flat in uint inPerPixel;
 layout(location = 5) flat in vec2 inShows;
 layout(location = 6) centroid in vec2 inBase;
@@ -32,8 +32,8 @@ void add(uint at, float weight, float cut, inout vec4 color, inout float through
 
 void main() {
     outColor = vec4(0.0);
-    bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) &&
-                     all(lessThan(inCell + 0.5, draw.window.zw));
+    bool elsewhere = all(greaterThan(inPixel + 0.5, draw.window.xy)) &&
+                     all(lessThan(inPixel + 0.5, draw.window.zw));
     if (elsewhere ||
         !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y))
         return;
@@ -41,7 +41,7 @@ void main() {
     vec4 color = vec4(0.0);
     float through = 0.0, cut = slabsToCut();
     if (inPerPixel > 1u) {
-        uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;
+        uvec2 first = uvec2(floor((inPixel + 0.5) / float(inPerPixel))) * inPerPixel;
         uint row = inWords + pitch * first.y + kMarchPixelWords * first.x;
         for (uint y = 0u; y < inPerPixel; ++y) {
             for (uint x = 0u; x < inPerPixel; ++x)
@@ -49,15 +49,15 @@ void main() {
             row += pitch;
         }
     } else {
-        vec2 whole = floor(inCell + 0.5);
-        vec2 off = inCell - whole;
+        vec2 whole = floor(inPixel + 0.5);
+        vec2 off = inPixel - whole;
         FW_UNROLL
         for (int y = -1; y <= 1; ++y) {
-            uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
+            uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inPixels.y, inPixels.w));
             FW_UNROLL
             for (int x = -1; x <= 1; ++x) {
                 uint column =
-                    kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
+                    kMarchPixelWords * uint(clamp(int(whole.x) + x, inPixels.x, inPixels.z));
                 float weight = neighbourWeight(x, off.x) * neighbourWeight(y, off.y);
                 add(row + column, weight, cut, color, through);
             }

@@ -8,7 +8,7 @@
 
 layout(push_constant) uniform Push { VolumeImpostor draw; };
 
-layout(location = 0) centroid in vec2 inCell;
+layout(location = 0) centroid in vec2 inPixel;
 layout(location = 1) flat in vec2 inSlab;
 layout(location = 2) flat in ivec4 inTaps;
 layout(location = 3) flat in vec2 inHalf;
@@ -24,10 +24,10 @@ void main() {
     if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
     float cut = slabsToCut();
     bool small = min(draw.perX, draw.perY) >= 1.0;
-    vec2 low = inCell - inHalf, high = inCell + inHalf;
+    vec2 low = inPixel - inHalf, high = inPixel + inHalf;
     ivec2 first = ivec2(floor(low));
     vec4 color = vec4(0.0);
-    // The same number of iterations for all pixels; cells outside have weight 0.
+    // The same number of iterations for all pixels; march pixels outside have weight 0.
     for (int j = 0; j < inTaps.y; ++j) {
         int y = first.y + j;
         float tall = clamp(min(high.y, float(y + 1)) - max(low.y, float(y)), 0.0, 1.0);
