@@ -311,10 +311,10 @@ void countBirths(FireEmitter& emitter, double now, FrameOfEmitter& f) noexcept {
 // The discs that stop a jet.
 void writeShields(const FireEmitter& emitter, double now, gpu::ParticleEmitter& record) noexcept {
     const auto add = [&](const JetObstacle& shield) {
-        FW_ASSERT(2 * record.obstacleCount + 1 < std::size(record.shields), "%u discs",
+        FW_ASSERT(2 * record.obstacleCount + 1 < std::size(record.obstacles), "%u discs",
                   record.obstacleCount);
-        record.shields[2 * record.obstacleCount] = with(shield.place, shield.radius);
-        record.shields[2 * record.obstacleCount + 1] = with(shield.normal, 0);
+        record.obstacles[2 * record.obstacleCount] = with(shield.place, shield.radius);
+        record.obstacles[2 * record.obstacleCount + 1] = with(shield.normal, 0);
         ++record.obstacleCount;
     };
     for (const JetObstacle& shield : emitter.shields)
@@ -376,8 +376,8 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.apart = float(1.0 / rate);
     record.age = f.burns ? float(births.part / rate) : 0.0f;
     record.seed = emitter.seed;
-    record.books = emitter.books.fire;
-    record.otherBooks = emitter.books.other;
+    record.fireFlipbooks = emitter.books.fire;
+    record.smokeFlipbooks = emitter.books.other;
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u) |

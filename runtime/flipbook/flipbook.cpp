@@ -180,7 +180,7 @@ vec2 motionAt(const Flipbook& book, uint32_t frame, vec2 uv) noexcept {
 vec4 sampleFlipbook(const Flipbook& book, float time, vec2 uv) noexcept {
     const gpu::FlipbookPlace p =
         gpu::flipbookPlaceAt(time, book.facts.frames, book.facts.loops != 0);
-    const vec2 before = gpu::bookBefore(uv, motionAt(book, p.before, uv), p.part);
+    const vec2 before = gpu::flipbookUvBefore(uv, motionAt(book, p.before, uv), p.part);
     const vec2 after = gpu::flipbookUvAfter(uv, motionAt(book, p.after, uv), p.part);
     return gpu::mixFlipbookTexels(frameAt(book, p.before, before), frameAt(book, p.after, after),
                                   p.part);

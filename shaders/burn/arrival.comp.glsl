@@ -71,7 +71,8 @@ void arriveRow(uint work) {
                                 left.tick[1], left.tick[0], middle.tick[0], right.tick[0]);
             ring.burn = uint[8](right.burn[1], right.burn[2], middle.burn[2], left.burn[2],
                                 left.burn[1], left.burn[0], middle.burn[0], right.burn[0]);
-            ring.link = ivec3[8](mine - decodePosition(right.place[1]), mine - decodePosition(right.place[2]),
+            ring.link = ivec3[8](
+                mine - decodePosition(right.place[1]), mine - decodePosition(right.place[2]),
                 mine - decodePosition(middle.place[2]), mine - decodePosition(left.place[2]),
                 mine - decodePosition(left.place[1]), mine - decodePosition(left.place[0]),
                 mine - decodePosition(middle.place[0]), mine - decodePosition(right.place[0]));
@@ -79,15 +80,16 @@ void arriveRow(uint work) {
             uint late = 0u;
             uint counts = countingSources(ring, 0xFFu, end, pending);
             uint future = pending;  // a source of the ring begins then and may correct the result
-            FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+            FrontDrive p =
+                prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
             uint settledFrom = kNever;
             uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, true,
                                           pending, settledFrom);
             // Sources that just catch do so within one step before this texel's tick, at the
             // earliest.
             uint own = min(t, candidate);
-            if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u && candidate >= floorTick &&
-                (isReceptive(t) || t <= end))
+            if (settledFrom <= own && own - settledFrom >= kStepTicks - 1u &&
+                candidate >= floorTick && (isReceptive(t) || t <= end))
                 settled |= 1u << x;
             uint decided = decideTick(t, candidate, end, floorTick, pending, late);
             uint known = isReceptive(t) ? candidate : kNever;

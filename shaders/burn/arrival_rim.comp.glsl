@@ -57,9 +57,11 @@ void arrive(uint rimWork) {
     }
     uint decided = t;
     if (counts != 0u) {
-        FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+        FrontDrive p =
+            prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
         uint settledFrom = kNever;
-        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false, pending, settledFrom);
+        uint candidate = frontArrival(ring, counts, p, m.windowMax, end, floorTick, texel, false,
+                                      pending, settledFrom);
         decided = decideTick(t, candidate, end, floorTick, pending, late);
     }
     if (decided != t) {

@@ -1,6 +1,6 @@
 // Burn budget: which of the requesting tiles may burn, by the remaining capacity of each object and
-// of the world, in hashed order (requestOrder). They join the burn list, and only listed tiles are lit
-// afterwards. With kSwitchRequests the front's due tiles request here. One group.
+// of the world, in hashed order (requestOrder). They join the burn list, and only listed tiles are
+// lit afterwards. With kSwitchRequests the front's due tiles request here. One group.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
@@ -18,7 +18,8 @@ void setMark(uint worldTile, uint mark) {
 
 uvec4 orderOf(uint worldTile) {
     TileRef tile = tileRef(worldTile);
-    return uvec4(requestOrder(tile.object, tile.local, push.now), tile.object, tile.local, worldTile);
+    return uvec4(requestOrder(tile.object, tile.local, push.now), tile.object, tile.local,
+                 worldTile);
 }
 
 // Number of requests with at least this mark that precede `own`; alike: of the same object.
@@ -65,7 +66,8 @@ void main() {
         uvec4 own = orderOf(asked(i));
         if (markOf(own.w) != kRequested + kRequestFitsObject) continue;
         uint may = 1u;
-        if (count > room) may = before(own, count, kRequested + kRequestFitsObject, false) < room ? 1u : 0u;
+        if (count > room)
+            may = before(own, count, kRequested + kRequestFitsObject, false) < room ? 1u : 0u;
         if (may != 0u) setMark(own.w, kRequested + kRequestAllocated);
     }
     memoryBarrierBuffer();

@@ -36,7 +36,8 @@ void commitTile(uint slot) {
     uint end = iterationEnd(push.now, push.iteration, push.stepShift, objects[object].substepShift);
     tileState[worldTile].lastChange = end;
     uint lit = uint(bitCount(mask.z) + bitCount(mask.w));
-    uint touched = (tileState[worldTile].flag & kTileCorrected) != 0u ? kTileTouched : kTileLitBeside;
+    uint touched =
+        (tileState[worldTile].flag & kTileCorrected) != 0u ? kTileTouched : kTileLitBeside;
     uint bits = touched | (kTilePredict << push.predictParity);
     if (lit != 0u) {
         atomicAdd(objectCounters[object].ignited, lit);

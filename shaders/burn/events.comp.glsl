@@ -5,15 +5,15 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EVENTS) FW_READ(TEXELS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE)
-FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(PUBLISHED)
-FW_READ_WRITE(HEAT) FW_PUSH(StepPush)
+FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_READ_WRITE(PUBLISHED) FW_READ_WRITE(HEAT)
+FW_PUSH(StepPush)
 #include "lib/hot_list.glsl"
 #include "lib/burn_budget.glsl"
 #include "lib/heat_material.glsl"
 #include "lib/tile.glsl"
 #include "lib/change.glsl"
 
-// Does a jet pass all gates on its way?
+// Does a jet pass all gates on its path?
 bool gatesLet(uint kind) {
     uint gate = kind >> kEventKindBits;
     bool lets = true, more = gate != 0u;
@@ -66,7 +66,8 @@ void applyRun(uint first, uint texel) {
             bool lets = !eventHasGates(kind_) || gatesLet(kind_);
             uint was = now;
             if (lets)
-                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick, push.now);
+                now = heatEvent(x, m, now, playedKind(kind_, plays, push.now), events[last].tick,
+                                push.now);
             byFlame = isSource(was) ? byFlame : isSource(now) && eventKind(kind_) == kEventHeat;
             ++last;
         } while (continuesRun(last, object, addressed));
@@ -74,7 +75,8 @@ void applyRun(uint first, uint texel) {
         warms = has != had || now != before;
     } else {
         do {
-            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick, push.now);
+            now = applyEvent(now, playedKind(events[last].kind, plays, push.now), events[last].tick,
+                             push.now);
             ++last;
         } while (continuesRun(last, object, addressed));
     }
@@ -91,7 +93,8 @@ void applyRun(uint first, uint texel) {
     if (heats) heat[objects[object].heatBase + texel] = has;
     if (warms) hotTouch(push.hotParity, p.worldTile);
     if (now == before) return;
-    if (writeState(object, at, p.worldTile, before, now) && !isSource(before)) litFrom(object, kLitByHand);
+    if (writeState(object, at, p.worldTile, before, now) && !isSource(before))
+        litFrom(object, kLitByHand);
     texelChanged(object, texel, p, isSource(now));
 }
 

@@ -72,8 +72,9 @@ void gatherRow(uint slot, uint row) {
         uint openDown = ~(d.walls >> 1u);
         uint openLeft = ~m.walls;
         uint openRight = ~(m.walls >> 2u);
-        uint diagonal = (u.sources & (openUp | openLeft)) | ((u.sources >> 2u) & (openUp | openRight)) |
-                        (d.sources & (openDown | openLeft)) | ((d.sources >> 2u) & (openDown | openRight));
+        uint diagonal =
+            (u.sources & (openUp | openLeft)) | ((u.sources >> 2u) & (openUp | openRight)) |
+            (d.sources & (openDown | openLeft)) | ((d.sources >> 2u) & (openDown | openRight));
         chosen = inner & (straight | diagonal);
         // A source from before this iteration was evaluated after an older source beside it caught,
         // so its settled bit is valid.
@@ -90,7 +91,8 @@ void gatherRow(uint slot, uint row) {
             column[i] = min(m.future[i], min(d.future[i], u.future[i]));
         FW_UNROLL for (int i = 0; i < 8; ++i)
             if ((quiet & (1u << uint(i))) != 0u)
-                pending = min(pending, min(min(column[i], column[i + 2]), min(d.future[i + 1], u.future[i + 1])));
+                pending = min(pending, min(min(column[i], column[i + 2]),
+                                           min(d.future[i + 1], u.future[i + 1])));
         if (pending != kNever) atomicOr(tileState[tile.x].flag, kTilePendingUnknown);
         if (woken) {
             uvec4 pa = pendingQuads[at >> 2u];

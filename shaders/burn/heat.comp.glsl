@@ -128,8 +128,8 @@ Changes heatItems(TileRef tile, uint slot, uint thread, uvec2 comes, bool held) 
             if ((item & kItemDozes) != 0u)
                 now = dryColdWater(x, own, before, chance);
             else
-                now = heatTexelStep(x, heatMaterialOver(own, (item & kItemRests) != 0u, comes.x), before,
-                                    push.now, comes.x, comes.y != 0u, air, chance, units);
+                now = heatTexelStep(x, heatMaterialOver(own, (item & kItemRests) != 0u, comes.x),
+                                    before, push.now, comes.x, comes.y != 0u, air, chance, units);
             bool real = (item & kItemReal) != 0u && item >> kItemKindShift == kind;
             bool lights = real && isSource(now) && !isSource(before);
             bool writes = !isRequestPass() && !(held && lights);
@@ -177,7 +177,8 @@ void finishTile(uint worldTile, TileRef tile, uint slot) {
     }
     if (work != 0u) {
         // Only texels that are always due can show anything.
-        if ((work & kWorkAlways) != 0u) atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
+        if ((work & kWorkAlways) != 0u)
+            atomicOr(tileState[worldTile].flag, kTileWarm | kTileMarked);
         else atomicAnd(tileState[worldTile].flag, ~kTileWarm);
         stays[atomicAdd(staying, 1u)] = worldTile;
     } else {

@@ -60,9 +60,11 @@ void predictRow(uint work) {
                     held = material;
                     m = burnMaterial(materialBase + held);
                 }
-                FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel), m);
+                FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]),
+                                            slownessAt(bases.z, texel), m);
                 ivec3 mine = decodePosition(middle.place[1]);
-                now = min(hop(middle.time[0], middle.place[0], mine, p), hop(middle.time[2], middle.place[2], mine, p));
+                now = min(hop(middle.time[0], middle.place[0], mine, p),
+                          hop(middle.time[2], middle.place[2], mine, p));
                 FW_UNROLL for (int i = 0; i < 3; ++i)
                     now = min(now, min(hop(left.time[i], left.place[i], mine, p),
                                        hop(right.time[i], right.place[i], mine, p)));
@@ -87,9 +89,7 @@ void predictRow(uint work) {
     if (changed != 0u) scratch[work * 4u + 1u] = item.y | changed << 8u;
     uint worldTile = item.x >> 3u;
     if (spread != 0u) {
-        uint bits = spread << ((item.x & 3u) * 8u);
-        uvec2 mask = (item.x & 4u) == 0u ? uvec2(bits, 0u) : uvec2(0u, bits);
-        touchAround(worldTile, mask, item.w, x0 >> 3u, y >> 3u);
+        touchAround(worldTile, rowMask(item.x & 7u, spread), item.w, x0 >> 3u, y >> 3u);
     } else if (beyond) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }

@@ -9,6 +9,7 @@ FW_READ(TILE_WORDS) FW_READ(STATE_QUADS) FW_READ(PREDICT) FW_READ(PREDICT_QUADS)
 FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_WRITE(SCRATCH) FW_WRITE(SCRATCH_QUADS)
 #include "lib/predict.glsl"
 #include "lib/predict_touch.glsl"
+#include "lib/predict_row.glsl"
 #include "lib/gather.glsl"
 
 // Bit i: column i - 1 of the row has a time.
@@ -44,21 +45,12 @@ vec2 wetAhead(uint at, ivec2 place, uvec4 sizes, uint stride) {
 }
 
 void gatherRow(uint slot, uint row) {
-    uint counterRow = kRowPredict + push.predictParity;
-    uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
-    uint flag = tileState[worldTile].flag;
+    PredictRow r = predictRowOf(slot, row);
+    uint worldTile = r.worldTile, tileX = r.tileX, tileY = r.tileY;
+    uvec4 bases = r.bases, sizes = r.sizes;
     if (row == 0u) atomicAnd(tileState[worldTile].flag, ~(kTilePredict << push.predictParity));
-    if ((flag & kTileFalling) != 0u) return;  // `support` writes what it shows
-    uint object = tileState[worldTile].object;
-    uvec4 bases = objectBases(object);
-    uvec4 places = objectPlaces(object);
-    uvec4 sizes = objectSizes(object);
-    uint local = worldTile - places.x;
-    if ((places.w & kObjectLive) == 0u || local >= sizes.w) return;
-    uint tileY = divide(local, sizes.z);
-    uint tileX = local - tileY * sizes.z;
-    uint texel = (tileY * bases.w + tileX) * 8u + row * bases.w;
-    uint at = bases.y + texel;
+    if (!r.shows) return;
+    uint at = bases.y + r.texel;
     uvec4 ta = stateQuads[at >> 2u];
     uvec4 tb = stateQuads[(at >> 2u) + 1u];
     uvec4 pa = predictQuads[at >> 2u];
@@ -79,10 +71,9 @@ void gatherRow(uint slot, uint row) {
         known |= t[i] == kNever && hasTime(p[i]) ? bit : 0u;
         wet |= t[i] == kWet ? bit : 0u;
     }
-    bool unseen = (places.w & kObjectUnseen) != 0u;
-    bool shownAgain = (places.w & kObjectShownAgain) != 0u;
+    if ((r.places.w & kObjectUnseen) != 0u) return;
+    bool shownAgain = (r.places.w & kObjectShownAgain) != 0u;
     bool marks = (lit | known) != 0u;
-    if (unseen) return;
     // About every fourth frame: distances to water change slowly.
     bool soon = wet != 0u;
     if (((hash32((push.now >> 7u) * 3u + worldTile) & 3u) != 0u)) wet = 0u;
@@ -99,8 +90,7 @@ void gatherRow(uint slot, uint row) {
         nearer |= 1u << i;
     }
     if (nearer != 0u) {
-        uint bits = nearer << ((row & 3u) * 8u);
-        touchAround(worldTile, row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits), object, tileX, tileY);
+        touchAround(worldTile, rowMask(row, nearer), r.object, tileX, tileY);
     } else if (soon) {
         predictTouch(push.predictParity ^ 1u, worldTile);
     }
@@ -110,11 +100,12 @@ void gatherRow(uint slot, uint row) {
     else if (known != 0u) predictTouch(push.predictParity ^ 1u, worldTile);
     uint rim = 0u;
     uint fresh = open & ~known;
-    if ((fresh | chosen) != 0u) rim = rimOfRow(sizes.x + local, row);
+    if ((fresh | chosen) != 0u) rim = rimOfRow(sizes.x + r.local, row);
     if (fresh != 0u) {
         bool left = tileX > 0u;
         bool right = tileX + 1u < sizes.z;
-        uint times = timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
+        uint times =
+            timesOf(left ? predict[at - 1u] : kNever, pa, pb, right ? predict[at + 8u] : kNever);
         if (tileY > 0u || row > 0u) {
             uint down = at - bases.w;
             times |= timesOf(left ? predict[down - 1u] : kNever, predictQuads[down >> 2u],
@@ -127,10 +118,12 @@ void gatherRow(uint slot, uint row) {
         }
         chosen |= fresh & (rim | times | (times >> 1u) | (times >> 2u)) & 0xFFu;
     }
-    if ((marks || (chosen & ~rim) != 0u) && (flag & kTileMarked) == 0u)
+    if ((marks || (chosen & ~rim) != 0u) && (r.flag & kTileMarked) == 0u)
         atomicOr(tileState[worldTile].flag, kTileMarked);
     if ((chosen | nearer) == 0u) return;
-    gatherItem(counterRow, uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, texel, object), rim & chosen);
+    gatherItem(kRowPredict + push.predictParity,
+               uvec4(worldTile * 8u + row, (chosen & ~rim) | nearer << 16u, r.texel, r.object),
+               rim & chosen);
 }
 
 void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, gatherRow) }

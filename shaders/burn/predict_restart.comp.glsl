@@ -8,6 +8,7 @@ FW_READ(OBJECTS) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_PUSH(StepP
 
 void addTile(uint local) {
     uint worldTile = objects[push.object].worldTileBase + local;
-    if ((tileState[worldTile].flag & kTileMarked) != 0u) predictTouch(push.predictParity, worldTile);
+    if ((tileState[worldTile].flag & kTileMarked) != 0u)
+        predictTouch(push.predictParity, worldTile);
 }
 void main() { FW_STRIDE(objects[push.object].tileCount, addTile) }

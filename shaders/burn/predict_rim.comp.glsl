@@ -26,8 +26,9 @@ void predictTexel(uint rimWork) {
     if (now == kNever) {
         uvec2 me = texels[bases.x + texel];
         uint other[8] = rimRing(object, sizes.x + worldTile - objects[object].worldTileBase, lane);
-        FrontDrive p = prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
-            burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
+        FrontDrive p =
+            prepareFront(decodeNormal(normals[bases.x + texel]), slownessAt(bases.z, texel),
+                         burnMaterial(object * kMaterialsPerObject + ((me.y >> 16u) & 7u)));
         FW_UNROLL for (int k = 0; k < 8; ++k) {
             if (other[k] != kNoneTexel) {
                 uint q = predict[bases.y + other[k]];

@@ -7,22 +7,16 @@
 FW_READ(STATE_QUADS) FW_READ(COUNTERS) FW_READ(PREDICT_LISTS) FW_READ_WRITE(TILE_STATE)
 FW_READ_WRITE(PREDICT)
 #include "lib/predict.glsl"
+#include "lib/predict_row.glsl"
 
 void passRow(uint slot, uint row) {
-    uint worldTile = push.predictParity == 0u ? predictA[slot] : predictB[slot];
-    uint flag = tileState[worldTile].flag;
-    if ((flag & kTileFalling) != 0u) return;  // `support` writes what it shows
-    uint object = tileState[worldTile].object;
-    uvec4 places = objectPlaces(object);
-    uvec4 sizes = objectSizes(object);
-    uint local = worldTile - places.x;
-    if ((places.w & kObjectLive) == 0u || local >= sizes.w) return;
-    uvec4 bases = objectBases(object);
-    uint tileY = divide(local, sizes.z);
-    uint at = bases.y + (tileY * bases.w + local - tileY * sizes.z) * 8u + row * bases.w;
+    PredictRow r = predictRowOf(slot, row);
+    if (!r.shows) return;
+    uint at = r.bases.y + r.texel;
     uvec4 a = stateQuads[at >> 2u], b = stateQuads[(at >> 2u) + 1u];
     uint codes[8] = uint[8](a.x, a.y, a.z, a.w, b.x, b.y, b.z, b.w);
-    bool unseen = (places.w & kObjectUnseen) != 0u, shownAgain = (places.w & kObjectShownAgain) != 0u;
+    bool unseen = (r.places.w & kObjectUnseen) != 0u;
+    bool shownAgain = (r.places.w & kObjectShownAgain) != 0u;
     bool marks = false;
     for (uint x = 0u; x < 8u; ++x) {
         uint i = at + x, code = codes[x], time = predict[i];
@@ -43,7 +37,8 @@ void passRow(uint slot, uint row) {
         predict[i] = code;
         marks = true;
     }
-    if (marks && (flag & kTileMarked) == 0u) atomicOr(tileState[worldTile].flag, kTileMarked);
+    if (marks && (r.flag & kTileMarked) == 0u)
+        atomicOr(tileState[r.worldTile].flag, kTileMarked);
 }
 
 void main() { FW_STRIDE_ROWS(counters[kRowPredict + push.predictParity].listCount, passRow) }

@@ -15,7 +15,8 @@ layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4
 // False: the tile may not burn.
 bool light(uint object, int x, int y, uint at) {
     uint end = push.now + kStepTicks;
-    uint worldTile = objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX + uint(x >> 3);
+    uint worldTile =
+        objects[object].worldTileBase + uint(y >> 3) * objects[object].tilesX + uint(x >> 3);
     if (isRequestPass() && !mayBurn(worldTile)) requestToBurn(worldTile);
     if (isRequestPass() || !mayBurn(worldTile)) return false;
     state[at] = end;
@@ -93,12 +94,14 @@ void runBlock(uint object, int x, int y) {
         int at = (y * width + x) / 4;
         vec4 dLeft = quads[spread + at];
         vec4 dRight = quads[spread + at + 1];
-        vec4 left = publishedNext(centre.left, dLeft, (below1.left + above1.left) + centre.oneLeft,
-                                  below1.oneLeft + above1.oneLeft, (below1.twoLeft + above1.twoLeft) +
-                                      (below2.oneLeft + above2.oneLeft));
-        vec4 right = publishedNext(centre.right, dRight, (below1.right + above1.right) + centre.oneRight,
-                                   below1.oneRight + above1.oneRight, (below1.twoRight + above1.twoRight) +
-                                       (below2.oneRight + above2.oneRight));
+        vec4 left =
+            publishedNext(centre.left, dLeft, (below1.left + above1.left) + centre.oneLeft,
+                          below1.oneLeft + above1.oneLeft,
+                          (below1.twoLeft + above1.twoLeft) + (below2.oneLeft + above2.oneLeft));
+        vec4 right = publishedNext(
+            centre.right, dRight, (below1.right + above1.right) + centre.oneRight,
+            below1.oneRight + above1.oneRight,
+            (below1.twoRight + above1.twoRight) + (below2.oneRight + above2.oneRight));
         quads[to + at] = left;
         quads[to + at + 1] = right;
         uvec4 pass = crossings(centre.left, left, dLeft) | crossings(centre.right, right, dRight);
@@ -120,7 +123,8 @@ void runBlock(uint object, int x, int y) {
 void runColumn(uint i) {
     uint columns = objects[push.object].width / kPublishedBlockX;
     uint blockY = divide(i, columns);
-    runBlock(push.object, int((i - blockY * columns) * kPublishedBlockX), int(blockY * kPublishedBlockY));
+    runBlock(push.object, int((i - blockY * columns) * kPublishedBlockX),
+             int(blockY * kPublishedBlockY));
 }
 
 void main() {

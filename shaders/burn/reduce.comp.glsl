@@ -1,12 +1,12 @@
 // Burning tiles: counts per object, a BurnTile for lights and flames, and the burn list without
-// burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the first
-// frame shows flames while counts stay those of the save.
+// burnt-out tiles. 64 list entries per group. kSwitchDisplayOnly: BurnTiles only; after a load the
+// first frame shows flames while counts stay those of the save.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(HEAT)
-FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
-FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(BURN_TILES) FW_PUSH(StepPush)
+FW_READ(TILE_FIRE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_WRITE(BURN_TILES) FW_PUSH(StepPush)
 #include "lib/burn_list.glsl"
 #include "lib/tile.glsl"
 #include "lib/turn.glsl"
@@ -40,7 +40,8 @@ void reduceTile(uint worldTile, uint parity) {
             uint phase = heat[heatBase + texel].y >> 30u;
             burns = t <= push.now && phase != kPhaseBurnt;
             // Thick fuel's power is its loss, once a heat step has run; thin fuel shows its mean.
-            nominal = phase != kPhaseBurning || materials[material].burnTicks == materials[material].flameTicks;
+            nominal = phase != kPhaseBurning ||
+                      materials[material].burnTicks == materials[material].flameTicks;
         }
         if (!burns) continue;
         ++count;
@@ -68,32 +69,27 @@ void reduceTile(uint worldTile, uint parity) {
     }
     FW_COVER(row, run, slot, 64u)
     float area = objects[object].tint.w;
-    vec4 rest = vec4(objects[object].originQuantum.xyz +
-                         objects[object].originQuantum.w * vec3(position) / float(count), 1.0);
-    vec4 row0 = objects[object].worldRow0;
-    vec4 row1 = objects[object].worldRow1;
-    vec4 row2 = objects[object].worldRow2;
+    vec3 rest = objects[object].originQuantum.xyz +
+                objects[object].originQuantum.w * vec3(position) / float(count);
     vec3 n = vec3(normal);
     // A tile of a skinned object moves with one of its texels.
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
+    SkinPlace moved =
+        skinPlace(skinned, objects[object].skinBase + anchor, objects[object].shownBase);
     if (skinned) {
-        rest.xyz = moved.place;
+        rest = moved.place;
         n = moved.normal;
     }
-    vec3 world = turnNormal(row0.xyz, row1.xyz, row2.xyz, n);
+    vec3 world = turnNormal(objects[object].worldRow0.xyz, objects[object].worldRow1.xyz,
+                            objects[object].worldRow2.xyz, n);
     float size = length(world);
-    BurnTile b;
-    b.positionArea = vec4(dot(row0, rest), dot(row1, rest), dot(row2, rest), float(count) * area);
     float fire = heats ? tileFire[worldTile] : 0.0;
     power = shows && fire == 0.0 ? whole : power;  // before its first heat step
     power *= float(airStrength(objectCounters[object].air)) / float(kAirFull);
-    b.normalPower = vec4(size > 0.0 ? world / size : vec3(0.0), power * area + fire);
-    b.object = object;
-    b.tile = tile.local;
-    b.texels = count;
-    b.age = (age / count) << 2u;
-    burnTiles[slot] = b;
+    vec3 unit = size > 0.0 ? world / size : vec3(0.0);
+    burnTiles[slot] =
+        BurnTile(vec4(inWorld(object, rest), float(count) * area), vec4(unit, power * area + fire),
+                 object, tile.local, count, (age / count) << 2u);
 }
 
 void reduceItem(uint i) {

@@ -7,7 +7,8 @@ FW_READ(EXCHANGE_OBJECTS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(SOURCES) FW_PU
 void main() {
     uint object = gl_GlobalInvocationID.x;
     if (object >= push.count) return;
-    uint count = objectCounters[object].burningTiles != 0u ? exchangeObjects[object].sourceCount : 0u;
+    uint count =
+        objectCounters[object].burningTiles != 0u ? exchangeObjects[object].sourceCount : 0u;
     for (uint i = 0u; i < count; ++i) {
         uint source = exchangeObjects[object].sourceBase + i;
         sources[source].power = 0u;

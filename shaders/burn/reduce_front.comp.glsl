@@ -2,8 +2,8 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
-FW_READ(OBJECTS) FW_READ(TILE_STATE) FW_READ(LISTS) FW_READ(COUNTERS)
-FW_READ_WRITE(OBJECT_COUNTERS) FW_PUSH(StepPush)
+FW_READ(OBJECTS) FW_READ(TILE_STATE) FW_READ(LISTS) FW_READ(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS)
+FW_PUSH(StepPush)
 #include "lib/tile.glsl"
 
 void main() {

@@ -29,10 +29,7 @@ void resetTile(uint local, uint lane) {
     gradient[at] = 0u;
     if (lane == 0u) {
         uint worldTile = objects[object].worldTileBase + local;
-        tileState[worldTile].wake = kNever;
-        tileState[worldTile].flag = 0u;
-        tileState[worldTile].lastChange = kNeverChanged;
-        tileState[worldTile].object = object;
+        tileState[worldTile] = TileState(kNever, 0u, kNeverChanged, object);
         tileHeat[worldTile] = TileHeat(0u, 0u);
         tileFire[worldTile] = 0.0;
     }

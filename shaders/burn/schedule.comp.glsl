@@ -20,7 +20,8 @@ void runTile(uint worldTile, TileRef tile, uint flag, uint why) {
                       objects[tile.object].tileBase + tile.local);
     masks[slot] = uvec4(0u);
     tileState[worldTile].wake = kNever;
-    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside | kTilePendingUnknown | kTileCorrected);
+    tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside |
+                                         kTilePendingUnknown | kTileCorrected);
 }
 
 void schedule(uint worldTile, bool dense) {
@@ -39,7 +40,8 @@ void schedule(uint worldTile, bool dense) {
     }
     // Loops: devices without branches would also load under an `if`.
     for (bool plays = (push.switches & kSwitchPlayback) != 0u; plays; plays = false) {
-        if (isPlayingBack(objectCounters[tile.object].playsUntil, push.now)) {  // due once it goes live
+        // Due once it goes live
+        if (isPlayingBack(objectCounters[tile.object].playsUntil, push.now)) {
             if ((flag & kTileListed) != 0u) frontAppend(push.parity ^ 1u, push.row + 1u, worldTile);
             return;
         }

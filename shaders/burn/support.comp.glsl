@@ -57,7 +57,8 @@ uint lookAt(uint object, uvec4 bases, uvec4 sizes, uvec2 tile) {
 // Distance that a neighbour offers.
 uint offer(uint worldTile) {
     uint flag = tileState[worldTile].flag;
-    if (tileState[worldTile].lastChange == kNeverChanged) return kFar;  // it burns soon, or is known
+    // It burns soon, or is known
+    if (tileState[worldTile].lastChange == kNeverChanged) return kFar;
     return (flag & kTileSolid) != 0u ? distanceOf(flag) : kFar;
 }
 
@@ -99,19 +100,21 @@ uint supported(uint worldTile, TileRef ref) {
     }
     uvec2 seam = tiles[(sizes.x + ref.local) * 2u].zw;
     for (uint r = 0u; r < seam.y && found != 0u; ++r)
-        found = min(found, offer(places.x + readers[places.z + seam.x + r]) + 1u);
+        found = min(found, offer(places.x + dependents[places.z + seam.x + r]) + 1u);
     // A grown distance counts up fast; an existing path corrects it.
     if (found > before) found = min(max(found, before + 3u), kFar);
     uint limit = min(uint(4.0 * sqrt(float(sizes.w))) + 48u, kFar - 8u);
     if (spent && holeTicks != 0u && found >= limit) falls = true;
     flag &= ~(kTileSolid | kTileFalling | (kFar << kTileDistanceShift));
-    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) | (min(found, kFar) << kTileDistanceShift);
+    return flag | (solid ? kTileSolid : 0u) | (falls ? kTileFalling : 0u) |
+           (min(found, kFar) << kTileDistanceShift);
 }
 
 // Advances the displayed age of a falling piece.
 void fall(uint worldTile, TileRef ref, uint flag) {
     float fallTicks = materials[materialOf(ref.object, flag)].baseColor.w;
-    if ((flag & kTileFalling) == 0u || float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
+    if ((flag & kTileFalling) == 0u ||
+        float(push.now - tileState[worldTile].lastChange) > 1.2 * fallTicks)
         return;
     uvec4 bases = objectBases(ref.object);
     uvec4 sizes = objectSizes(ref.object);

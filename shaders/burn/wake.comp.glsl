@@ -17,7 +17,8 @@ void main() {
         uint worldTile = objects[object].worldTileBase + local;
         uint flag = tileState[worldTile].flag;
         bool listed = (flag & kTileListed) != 0u;
-        if (!latchReaches(listed, tileState[worldTile].lastChange, push.now, objects[object].window))
+        if (!latchReaches(listed, tileState[worldTile].lastChange, push.now,
+                          objects[object].window))
             continue;
         touchTile(push.parity, push.row, worldTile, kTileTouched);
         predictTouch(push.predictParity, worldTile);

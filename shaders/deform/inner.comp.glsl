@@ -4,8 +4,7 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
-FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN)
-FW_READ(VERTICES)
+FW_READ(DEFORM_EMBEDDINGS) FW_READ_WRITE(SHOWN) FW_READ(VERTICES)
 
 void main() {
     DeformItem item = deformItem();
@@ -19,15 +18,15 @@ void main() {
     uint number = item.number;
     if (number >= last) return;
     do {
-        uint node = shownBase + deformEmbedding(sizes.z * kDeformEmbeddingQuads + number).x;
+        uint particle = shownBase + deformEmbedding(sizes.z * kDeformEmbeddingQuads + number).x;
         uint self = shownBase + number, inner = self + sizes.w;
         vec4 outside = shown(self * kShownQuads);
-        float receded = shown(node * kShownQuads + 1u).z;
+        float receded = shown(particle * kShownQuads + 1u).z;
         float offset = shown(self * kShownQuads + 2u).w;
         vec3 inside = uintBitsToFloat(meshVertices[(innerFirst + number) * kShownQuads].xyz);
         // A mesh vertex and a shown vertex have the same size.
         vec3 thin = outside.xyz - unpackDirection(floatBitsToUint(outside.w)) * thinnest;
-        vec3 place = mix(thin, inside, saturateF((wall - receded) / thinnest - 1.0));
+        vec3 place = mix(thin, inside, saturate((wall - receded) / thinnest - 1.0));
         shownOut[inner * kShownQuads] = floatBitsToUint(vec4(place, outside.w));
         shownOut[inner * kShownQuads + 2u] = floatBitsToUint(vec4(0.0, 0.0, 0.0, offset));
         number += 64u;

@@ -24,24 +24,26 @@ void main() {
         uint holding = 0u, charreds = 0u, ends = 0u, count = 0u;
         uint turn = 0u, turns = linkPasses(flags), all = turns + bendPasses(flags) * kBendSets;
         do {  // neighbours, then all bending sets
-            bool arms = turn >= turns;
-            uint way = turn - turns;
-            uvec4 two = deformParticle(at + (arms ? kParticleBends + way : kParticleLinks + turn) * sizes.y);
+            bool bends = turn >= turns;
+            uint set = turn - turns;
+            uvec4 two = deformParticle(at + (bends ? kParticleBends + set : kParticleLinks + turn) *
+                                                sizes.y);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
-                uint k = (arms ? way : turn) * kLinksPerPass + i;
+                uint k = (bends ? set : turn) * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
                 uint there = soft(seenAt - number + (two[i] & kDeformLinkIndex)).x;
                 bool holds = rest > 0.0 && linkHolds(burnt, burntOf(there), two[i] >> 24u);
                 uint charred = charredOf(there) << (4u * k);
-                holding |= holds ? 1u << ((arms ? kLinkCacheBends : 0u) + k) : 0u;
-                ends |= arms ? charred : 0u;
-                if (arms) continue;
+                holding |= holds ? 1u << ((bends ? kLinkCacheBends : 0u) + k) : 0u;
+                ends |= bends ? charred : 0u;
+                if (bends) continue;
                 charreds |= charred;
                 holding |= pinnedOf(there) << (kLinkCachePinned + k);
                 count += holds ? 1u : 0u;
             }
         } while (++turn < all);
-        bool whole = (flags & kParticleClosed) != 0u && count == (flags >> kParticleRingShift & 15u);
+        bool whole =
+            (flags & kParticleClosed) != 0u && count == (flags >> kParticleRingShift & 15u);
         holding |= whole ? kLinkCacheWhole : 0u;
 
         vec3 x = placeOf(soft(own + item.parity * sizes.y));

@@ -9,7 +9,8 @@ void main() {
     uvec2 sizes = deformObjects[item.object].xy;
     uvec4 bases = deformObjects[item.object + 1u];
     uint softBase = deformObjects[item.object + 3u].x;
-    uvec2 material0 = deformObjects[item.object + 4u].xy, holes0 = deformObjects[item.object + 5u].xy;
+    uvec2 material0 = deformObjects[item.object + 4u].xy,
+          holes0 = deformObjects[item.object + 5u].xy;
     bool moves = (bases.z & (kDeformShell | kDeformSprings)) != 0u;
 
     uint last = min(item.end, sizes.y);
@@ -42,7 +43,8 @@ void main() {
 
         float behind = 0.0;
         if (facts.w != kNoneTexel && !item.crosses)
-            behind = uintBitsToFloat(holes.y) * burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
+            behind = uintBitsToFloat(holes.y) *
+                     burntShare(state[bases.y + facts.w], push.now, push.up.w, holes.x);
 
         vec3 place = uintBitsToFloat(rest.xyz);
         float depth = uintBitsToFloat(material.y), lost = 0.0, kept = 0.0;
@@ -57,22 +59,24 @@ void main() {
             uint own = softBase * kSoftQuads + number, seenAt = own + kSoftFacts * sizes.y;
             uint placeAt = own + item.parity * sizes.y;
             uvec4 seen = soft(seenAt);
-            float way = unpackPathLength(pathBits(soft(placeAt)));
+            float path = unpackPathLength(pathBits(soft(placeAt)));
             if (item.reset) {
-                way = kNoPath;
+                path = kNoPath;
                 for (uint i = 0u; i < bases.w; ++i) {
                     vec4 from = uintBitsToFloat(deformObjects[item.object + 20u + i * 2u]);
                     vec4 to = uintBitsToFloat(deformObjects[item.object + 21u + i * 2u]);
                     // Known from the start: otherwise a sheet would fall until its pins' distances
                     // have spread.
                     float away = length(place - pinPoint(place, from.xyz, to.xyz)) - from.w;
-                    way = min(way, max(away, 0.0));
+                    path = min(path, max(away, 0.0));
                 }
                 bool sheet = (bases.z & kDeformShell) != 0u;
-                softOut[placeAt] = uvec4(sheet ? softPlace(place, packPathLength(way, false)) : rest.xyz, 0u);
+                softOut[placeAt] =
+                    uvec4(sheet ? softPlace(place, packPathLength(path, false)) : rest.xyz, 0u);
             }
         // Bend shares from before it slept belong to another bending set.
-            softOut[seenAt] = uvec4(packParticleFacts(burnt, way == 0.0), 0u, item.reset || item.woke ? uvec2(0u) : seen.zw);
+            softOut[seenAt] = uvec4(packParticleFacts(burnt, path == 0.0), 0u,
+                                    item.reset || item.woke ? uvec2(0u) : seen.zw);
             if (!item.reset) place = shown(vertex).xyz;
             // Recession since the last frame, in equal parts for the steps.
             float steps = float(push.parity >> 1u);

@@ -7,7 +7,9 @@
 FW_BUFFER(SKIN_SOURCES, readonly, uint, sources) FW_BUFFER(SKIN_GIVEN, readonly, uint, given)
 FW_BUFFER(SHOWN, FW_BOTH, uint, shownWords) FW_PUSH(SkinPush)
 
-vec3 vectorAt(uint word) { return uintBitsToFloat(uvec3(given[word], given[word + 1u], given[word + 2u])); }
+vec3 vectorAt(uint word) {
+    return uintBitsToFloat(uvec3(given[word], given[word + 1u], given[word + 2u]));
+}
 
 void main() {
     for (uint i = gl_GlobalInvocationID.x; i < push.count; i += gl_NumWorkGroups.x * 64u) {

@@ -10,9 +10,12 @@ FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 
 // World directions in object axes. facts: third quad of the DeformObject, which holds the object
 // slot.
-vec3 rowOf(uvec4 facts, uint row) { return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz); }
+vec3 rowOf(uvec4 facts, uint row) {
+    return uintBitsToFloat(objectQuads[facts.y * 10u + 5u + row].xyz);
+}
 vec3 toObject(uvec4 facts, vec3 v) {  // a direction, its length kept
-    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) / uintBitsToFloat(facts.z);
+    return (rowOf(facts, 0u) * v.x + rowOf(facts, 1u) * v.y + rowOf(facts, 2u) * v.z) /
+           uintBitsToFloat(facts.z);
 }
 vec3 upHere(uvec4 facts) { return toObject(facts, push.up.xyz); }
 vec4 heightHere(uvec4 facts) {  // m, world, along up: dot with (position, 1)
@@ -31,10 +34,10 @@ void main() {
     uvec4 material0 = deformObjects[item.object + 4u], more0 = deformObjects[item.object + 5u];
     float ground = uintBitsToFloat(facts2.x), scale = uintBitsToFloat(facts2.z);
     vec3 up = upHere(facts2);
-    vec3 blows = push.wind.xyz + 0.001 * vec3(unpackWind(objectQuads[facts2.y * 10u + 9u].w));
-    vec3 wind = toObject(facts2, blows) / scale;
+    vec3 windHere = push.wind.xyz + 0.001 * vec3(unpackWind(objectQuads[facts2.y * 10u + 9u].w));
+    vec3 wind = toObject(facts2, windHere) / scale;
     vec4 height = heightHere(facts2);
-    uint way = push.parity >> 1u, echoed = (way + kBendSets - 1u) % kBendSets;
+    uint set = push.parity >> 1u, echoed = (set + kBendSets - 1u) % kBendSets;
 
     uint last = min(item.end, sizes.y);
     uint number = item.number;
@@ -55,9 +58,9 @@ void main() {
         uint seenAt = own - number + kSoftFacts * sizes.y;
         uvec4 self = soft(places + number);
         vec3 x = placeOf(self);
-        uvec4 ties = soft(own + kSoftLinkCache * sizes.y);
-        float burnt = burntOf(ties.w), charred = charredShare(burnt), reach = kNoPath;
-        bool pinned = pinnedOf(ties.w) != 0u;
+        uvec4 cache = soft(own + kSoftLinkCache * sizes.y);
+        float burnt = burntOf(cache.w), charred = charredShare(burnt), reach = kNoPath;
+        bool pinned = pinnedOf(cache.w) != 0u;
         // Both ends of a link use the same length.
         float shrunk = shrink * 0.5 / kCharredSteps, mine = floor(charred * kCharredSteps + 0.5);
         // Charring stiffens loose material.
@@ -73,18 +76,18 @@ void main() {
                 uint k = turn * kLinksPerPass + i;
                 float rest = unpackHalf2x16(two.z)[i];
                 uvec4 there = soft(places + (two[i] & kDeformLinkIndex));
-                vec3 y = placeOf(there), arm = y - x;
-                bool holds = (ties.x >> k & 1u) != 0u;
+                vec3 y = placeOf(there), link = y - x;
+                bool holds = (cache.x >> k & 1u) != 0u;
                 // A particle with a parted link is not whole and gives no share.
                 bending -= holds ? unpackBendShare(there.w) : vec3(0.0);
-                nearSum += holds ? arm : vec3(0.0);
+                nearSum += holds ? link : vec3(0.0);
                 nearSquares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
-                turned += cross(before, arm);
-                if (k == 0u) first = arm;
-                before = arm;
-                float theirs = float(ties.y >> (4u * k) & 15u);
+                turned += cross(before, link);
+                if (k == 0u) first = link;
+                before = link;
+                float theirs = float(cache.y >> (4u * k) & 15u);
                 vec3 p = linkCorrection(x, y, rest * (1.0 - shrunk * (mine + theirs)),
-                                  (ties.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
+                                  (cache.x >> (kLinkCachePinned + k) & 1u) != 0u ? 1.0 : 0.5);
                 links += holds ? p : vec3(0.0);
                 reach = holds ? min(reach, unpackPathLength(pathBits(there)) + rest) : reach;
             }
@@ -95,15 +98,15 @@ void main() {
         float rise = 0.0;
         bool reaches = bendPasses(facts.y) != 0u;
         if (reaches) {
-            uvec4 arms = deformParticle(at + (kParticleBends + way) * sizes.y);
+            uvec4 bends = deformParticle(at + (kParticleBends + set) * sizes.y);
             uvec4 echo = deformParticle(at + (kParticleBends + echoed) * sizes.y);
-            rise = uintBitsToFloat(arms.w);
+            rise = uintBitsToFloat(bends.w);
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
-                float rest = unpackHalf2x16(arms.z)[i];
-                vec3 arm = placeOf(soft(places + (arms[i] & kDeformLinkIndex))) - x;
-                bool holds = (ties.x >> (kLinkCacheBends + way * kLinksPerPass + i) & 1u) != 0u &&
-                             dot(arm, arm) <= kBendTears * kBendTears * rest * rest;
-                sum += holds ? arm : vec3(0.0);
+                float rest = unpackHalf2x16(bends.z)[i];
+                vec3 link = placeOf(soft(places + (bends[i] & kDeformLinkIndex))) - x;
+                bool holds = (cache.x >> (kLinkCacheBends + set * kLinksPerPass + i) & 1u) != 0u &&
+                             dot(link, link) <= kBendTears * kBendTears * rest * rest;
+                sum += holds ? link : vec3(0.0);
                 squares += holds ? vec2(rest * rest, 1.0) : vec2(0.0);
                 // Corrections requested by the last step's set; particles without constraints
                 // request none.
@@ -118,19 +121,23 @@ void main() {
         vec3 normal = size > 1e-18 ? turned / size : up;
         curl *= curlSide(normal, up) * scale * charred;
         float count = nearSquares.y, mean = 1.0 / max(count, 1.0);
-        vec3 b = bendOf(nearSum * mean, normal, uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
+        vec3 b = bendOf(nearSum * mean, normal,
+                        uintBitsToFloat(facts.z) + curlRise(curl, nearSquares.x * mean), count,
                         stiff * kBendRelax, (facts.y & kParticleEven) != 0u);
-        uint nearShare = packBendShare((ties.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
+        uint nearShare =
+            packBendShare((cache.x & kLinkCacheWhole) != 0u ? b * (mean * kBendUnit) : vec3(0.0));
         bending += unpackBendShare(nearShare) * count;
         if (reaches) {
-            uint ends = ties.z >> (way * kLinksPerPass * 4u);
-            float across = bendCurl(float(ends & 15u) / kCharredSteps, float(ends >> 4u & 15u) / kCharredSteps);
-            b = bendOf(sum * 0.5, normal, rise + kBendCurl * across * curlRise(curl, squares.x * 0.5), 2.0,
-                       bendStiffness(stiff, charred, across), (facts.y & kParticleBendsEven << way) != 0u);
-            uint armShare = packBendShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
-            bending += unpackBendShare(armShare) * 2.0;
-            if (item.parity == 0u) softOut[seenAt + number].w = armShare;
-            else softOut[seenAt + number].z = armShare;
+            uint ends = cache.z >> (set * kLinksPerPass * 4u);
+            float across = bendCurl(float(ends & 15u) / kCharredSteps,
+                                    float(ends >> 4u & 15u) / kCharredSteps);
+            b = bendOf(
+                sum * 0.5, normal, rise + kBendCurl * across * curlRise(curl, squares.x * 0.5), 2.0,
+                bendStiffness(stiff, charred, across), (facts.y & kParticleBendsEven << set) != 0u);
+            uint farShare = packBendShare(squares.y == 2.0 ? b * (0.5 * kBendUnit) : vec3(0.0));
+            bending += unpackBendShare(farShare) * 2.0;
+            if (item.parity == 0u) softOut[seenAt + number].w = farShare;
+            else softOut[seenAt + number].z = farShare;
         }
 
         float was = unpackPathLength(pathBits(self));
@@ -141,7 +148,8 @@ void main() {
 
         uint shownAt = (bases.x + facts.x) * kShownQuads;
         vec3 last_ = shown(shownAt).xyz;
-        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) + bending * (relaxAt(1.0, push.step) / kBendUnit);
+        vec3 moved = x + links * relaxAt(kLinkRelax, push.step) +
+                     bending * (relaxAt(1.0, push.step) / kBendUnit);
         // Limits the distance to the nearest pin to the path length over holding links.
         if (reach < 0.5 * kNoPath) {
             vec4 anchor = uintBitsToFloat(soft(own + kSoftAnchor * sizes.y));
@@ -163,7 +171,8 @@ void main() {
         if (pinned) moved = next = x;  // fixed from the start
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(moved, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(softPlace(next, packPathLength(reach, known)), nearShare);
+        softOut[own + (item.parity ^ 1u) * sizes.y] =
+            uvec4(softPlace(next, packPathLength(reach, known)), nearShare);
         number += 64u;
     } while (number < last);
 }

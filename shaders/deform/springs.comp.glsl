@@ -54,7 +54,8 @@ void main() {
         vec3 velocity = (x - from) * ((1.0 - kSpringDamping) / push.step) + force * push.step;
         readBeforeWritten();
         shownOut[shownAt] = floatBitsToUint(vec4(x, 0.0));
-        softOut[own + (item.parity ^ 1u) * sizes.y] = uvec4(floatBitsToUint(x + velocity * push.step), self.w);
+        softOut[own + (item.parity ^ 1u) * sizes.y] =
+            uvec4(floatBitsToUint(x + velocity * push.step), self.w);
         number += 64u;
     } while (number < last);
 }

@@ -5,10 +5,10 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
 #include "lib/view.glsl"
-FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE) FW_READ(COUNTERS)
-FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(STATE)
+FW_READ(COUNTERS) FW_READ(TILE_STATE) FW_READ(BURN_TILES) FW_READ(APPEARANCES) FW_READ(LIGHT_CELLS)
 FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
-#include "emitter/cells.glsl"
+#include "emitter/clusters.glsl"
 #include "emitter/flipbooks.glsl"
 #include "emitter/nearer.glsl"
 #include "lib/tile.glsl"
@@ -18,8 +18,6 @@ FW_READ_WRITE(DRAW_ARGS) FW_WRITE(FLAMES) FW_PUSH(StepPush)
 const float kMinPixels = 20.0;  // of a flame's height
 const float kMaxMerged = 1.6;    // height factor of merged flames
 const float kMaxClear = 0.9;     // half widths, see clearance
-
-float saturate(float x) { return clamp(x, 0.0, 1.0); }
 
 vec3 perpendicular(vec3 n) {
     return normalize(cross(n, abs(n.y) < 0.9 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0)));
@@ -65,12 +63,16 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
         if (!isSource(t) || t > view.now) continue;
         float age = float(view.now - t) + view.ambientGround.w;
         if (age < ago) continue;  // it caught later
-        uint material = tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
+        uint material =
+            tile.object * kMaterialsPerObject + (texels[object.texelBase + texel].y >> 16u & 7u);
         MaterialAppearance look = looks[materials[material].look];
-        float lasts = materials[material].flameTicks == kNoneTexel ? 1e9 : float(materials[material].flameTicks);
+        float lasts = materials[material].flameTicks == kNoneTexel
+                          ? 1e9
+                          : float(materials[material].flameTicks);
         // Thin materials burn at hole edges while the hole grows.
         if (look.holeTime > 0.0 && (object.flags & kObjectNoHoles) == 0u)
-            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 / materials[material].timeScale);
+            lasts = min(lasts, (look.holeTime - 0.5 * look.holeVariation) * 4096.0 /
+                                   materials[material].timeScale);
         if (age >= lasts || age - ago >= 0.8 * lasts) continue;
         ++met;
         if (age - ago < foot.age) {
@@ -86,7 +88,7 @@ Foot footOf(BurnTile tile, uint seed, float ago) {
 
 void main() {
     uint count = counters[kRowBurn + push.burnParity].runCount;
-    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(cells[0], 1u)));
+    float share = min(1.0, float(view.flameCapacity) * 12.0 / float(max(clusters[0], 1u)));
     float time = view.ambientSky.w;
     vec3 up = view.up.xyz;
     for (uint i = gl_GlobalInvocationID.x; i < count; i += gl_NumWorkGroups.x * 64u) {
@@ -94,22 +96,24 @@ void main() {
         vec3 wind = view.wind.xyz + 0.001 * vec3(unpackWind(objects[tile.object].zoneWind));
         vec3 drift = wind - up * dot(wind, up);
         uint seed = hash32(hash32(tile.object * 7919u + view.seed) ^ tile.tile);
-        // Jittered cluster lookups hide cell borders in the heights.
-        vec3 jitter = vec3(unit(seed), unit(seed + 1u), unit(seed + 2u)) - 0.5;
-        float side = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        // Jittered cluster lookups hide their borders in the heights.
+        vec3 jitter = vec3(hashUnit(seed), hashUnit(seed + 1u), hashUnit(seed + 2u)) - 0.5;
+        float side = lightClusterSide(tile.object), large = flameClusterSide(tile.object);
         vec3 beside = lightPlaceOf(tile, side) + 0.8 * jitter * side;
         vec3 above = flamePlaceOf(tile, large) + 0.8 * jitter * large;
         float fade = flameFade(tile);
         vec2 own = vec2(tile.normalPower.w, tile.positionArea.w) * fade;
-        vec2 near = max(cellFire(cellKey(ivec3(floor(beside / side)), side)), own);
-        vec2 around = max(cellFire(cellKey(ivec3(floor(above / large)), large)), near);
+        vec2 near = max(clusterFire(clusterKey(ivec3(floor(beside / side)), side)), own);
+        vec2 around = max(clusterFire(clusterKey(ivec3(floor(above / large)), large)), near);
         float likely = flameLength(near, around);
         // Merges flames below kMinPixels: fewer and larger.
         vec3 toTile = tile.positionArea.xyz - view.eye.xyz;
-        float pixel = view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
+        float pixel =
+            view.eye.w * (view.forward.w > 0.5 ? max(dot(toTile, view.forward.xyz), 0.0) : 1.0);
         likely *= clamp(kMinPixels * pixel / max(likely, 1e-3), 1.0, kMaxMerged);
         float young = flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 0.2);
-        float quads = flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
+        float quads =
+            flameQuads(tile.positionArea.w * young, flameHalfWidth(likely, own.y)) * share;
         // A front thinner than its flames still has a row of them.
         quads *= clamp(0.7 * likely * side / near.y, 1.0, 4.0);
         // A falling tile has no flames.
@@ -124,11 +128,12 @@ void main() {
             float odds = smoke ? min(0.10 * quads * mainLook.smoke, 0.5) : min(quads / 3.0, 1.0);
             odds *= view.quads.x;  // a tile may request more quads than it has slots
             uint s = hash32(seed + (k + 1u) * 0x9e3779b9u);
-            float period = (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * unit(s));
-            float life = time / period + unit(s + 1u) * 16.0;
+            float period =
+                (smoke ? 0.7 + 1.4 * scale : 0.32 + 0.5 * scale) * (0.8 + 0.4 * hashUnit(s));
+            float life = time / period + hashUnit(s + 1u) * 16.0;
             float generation = floor(life), a = life - generation;
             uint g = hash32(s + uint(generation) * 2654435761u);
-            float chance = odds - unit(g + 4u);
+            float chance = odds - hashUnit(g + 4u);
             if (chance <= 0.0) continue;
             Foot foot = footOf(tile, hash32(g + 5u), a * period * 4096.0);
             if (!foot.found) continue;
@@ -139,21 +144,20 @@ void main() {
             if (strength < 0.02) continue;
             BurnObject object = objects[tile.object];
             MaterialAppearance look = looks[materials[foot.material].look];
-            uvec2 packedTexel = texels[object.texelBase + foot.texel];
-            vec4 rest = vec4(object.originQuantum.xyz + object.originQuantum.w * vec3(packedTexel.x & 0xFFFFu,
-                                                               packedTexel.x >> 16u, packedTexel.y & 0xFFFFu), 1.0);
+            vec3 rest = restOf(tile.object, texels[object.texelBase + foot.texel]);
             vec3 n = vec3(decodeNormal(normals[object.texelBase + foot.texel]));
             bool skinned = (object.flags & kObjectSkinned) != 0u;
             SkinPlace moved = skinPlace(skinned, object.skinBase + foot.texel, object.shownBase);
             if (skinned) {
-                rest.xyz = moved.place;
+                rest = moved.place;
                 n = moved.normal;
             }
-            vec3 place = vec3(dot(object.worldRow0, rest), dot(object.worldRow1, rest), dot(object.worldRow2, rest));
+            vec3 place = inWorld(tile.object, rest);
             vec3 normal = normalize(turnNormal(object.worldRow0.xyz, object.worldRow1.xyz,
                                                object.worldRow2.xyz, n) + up * 1e-4);
             vec3 right = perpendicular(normal + up * 1e-4), ahead = cross(normal, right);
-            float r1 = unit(g), r2 = unit(g + 1u), r3 = unit(g + 2u), r4 = unit(g + 3u);
+            float r1 = hashUnit(g), r2 = hashUnit(g + 1u), r3 = hashUnit(g + 2u),
+                  r4 = hashUnit(g + 3u);
             float len = 0.85 * likely * (look.flame > 0.0 ? look.flame : 1.0);
             FlameQuad quad;
             float rise = 1.0 + 2.5 * sqrt(len);  // m/s
@@ -164,14 +168,15 @@ void main() {
                                       (right * (r4 - 0.5) + ahead * (r1 - 0.5)) * (0.35 * rise));
                 // Tongues overlap kFlameCover times: fewer of them leave gaps smaller than their
                 // share.
-                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) * (0.8 + 0.5 * r2) *
-                                  (0.5 + 0.5 * strength);
+                float halfWidth = flameHalfWidth(len, own.y) * sqrt(view.quads.y) *
+                                  (0.8 + 0.5 * r2) * (0.5 + 0.5 * strength);
                 float loose = smoothstep(0.55, 1.0, a);
                 vec3 stands = normal * 0.15 + clearance(object, place, normal);
                 quad.baseHeight = vec4(place + stands * halfWidth - axis * (0.06 * tall) +
                                            axis * (0.10 * tall * loose * loose), tall);
                 quad.axisWidth = vec4(axis, halfWidth * (1.0 - 0.35 * loose));
-                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) * (1.0 - smoothstep(0.62, 1.0, a));
+                quad.opacity = saturate(1.6 * strength) * smoothstep(0.0, 0.22, a) *
+                               (1.0 - smoothstep(0.62, 1.0, a));
                 quad.phase = a * period * rise * 0.5 / max(len, 0.05) + 7.0 * r4;
                 quad.kelvin = 1570.0 + 90.0 * r3;
             } else {
@@ -190,8 +195,8 @@ void main() {
             quad.kind = (g & 0xFFFFu) << kQuadSeed | (smoke ? kQuadSmoke : kQuadTongue);
             // The world's flipbooks of fire and smoke. A looping flame fills a part of its frame,
             // its foot at 1/20.
-            uint book = push.count >> (smoke ? 8u : 0u) & 0xFFu;
-            if (showByFlipbook(quad, book, a, a * period, r4) && !smoke) {
+            uint flipbook = push.count >> (smoke ? 8u : 0u) & 0xFFu;
+            if (showByFlipbook(quad, flipbook, a, a * period, r4) && !smoke) {
                 quad.axisWidth.w *= 2.4;
                 quad.baseHeight.xyz -= quad.axisWidth.xyz * (0.07 * quad.baseHeight.w);
                 quad.baseHeight.w *= 1.45;

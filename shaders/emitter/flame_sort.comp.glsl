@@ -9,7 +9,7 @@
 #include "lib/view.glsl"
 FW_READ(FLAMES) FW_READ_WRITE(DRAW_ARGS) FW_PUSH(SortPush)
 
-const uint kThreads = 128u, kDigits = 16u;
+const uint kThreads = FW_THREADS, kDigits = 16u;
 const uint kDepthBits = 16u;  // of a radix key, above the number of its quad
 const uint kMarks = 1024u;    // depths among which an emissive quad finds its place
 
@@ -40,17 +40,15 @@ bool before(uint a, uint b) {
 const uint kMaxTies = 64u;  // quads of one depth that are compared; more keep their places
 
 // Writes the places of sorted quads from `to` on, with ties ordered by before().
-#define FW_ORDER_TIES(depthAt, placeAt, to)                                                              \
-    for (uint i = me; i < count; i += kThreads) {                                                        \
-        uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;                   \
-        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;             \
-        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;                  \
-        if (end - first > kMaxTies) {                                                                   \
-            drawArgs[(to) + i] = place;                                                                  \
-            continue;                                                                                    \
-        }                                                                                                \
-        for (uint k = first; k < end; ++k) at += k != i && before(placeAt(k), place) ? 1u : 0u;          \
-        drawArgs[(to) + first + at] = place;                                                             \
+#define FW_ORDER_TIES(depthAt, placeAt, to)                                                       \
+    for (uint i = me; i < count; i += kThreads) {                                                 \
+        uint depth = depthAt(i), place = placeAt(i), first = i, end = i + 1u, at = 0u;            \
+        while (first > 0u && depthAt(first - 1u) == depth && i - first < kMaxTies) --first;       \
+        while (end < count && depthAt(end) == depth && end - first <= kMaxTies) ++end;            \
+        bool few = end - first <= kMaxTies;                                                       \
+        for (uint k = first; few && k < end; ++k)                                                 \
+            at += k != i && before(placeAt(k), place) ? 1u : 0u;                                  \
+        drawArgs[(to) + (few ? first + at : i)] = place;                                          \
     }
 
 void sortFew(uint me, uint count, uint tiles) {
@@ -136,12 +134,7 @@ void sortMany(uint me, uint count, uint tiles) {
         uint sums = kDigits * kThreads;
         keys[sums + me] = sum;
         barrier();
-        for (uint reach = 1u; reach < kThreads; reach <<= 1u) {
-            uint more = me >= reach ? keys[sums + me - reach] : 0u;
-            barrier();
-            keys[sums + me] += more;
-            barrier();
-        }
+        FW_SUM_UP(keys, sums, me)
         uint before = keys[sums + me] - sum;
         for (uint d = 0u; d < kDigits; ++d) keys[me * kDigits + d] += before;
         barrier();

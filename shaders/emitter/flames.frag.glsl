@@ -20,29 +20,31 @@ layout(location = 4) flat in vec2 inSun;  // light direction in the quad's plane
 // If flipbooks show all but sparks, the noise is compiled out: a software device would sample it
 // for every quad.
 layout(constant_id = 2) const uint kOnlyFlipbooks = 0u;
-layout(set = 1, binding = 0) uniform sampler2D bookPicture;
+layout(set = 1, binding = 0) uniform sampler2D flipbookTexture;
 layout(location = 5) flat in vec4 inFrames;   // texel of the frame before and of the frame after
 layout(location = 6) flat in vec4 inMotions;  // the same of their motion
 layout(location = 7) flat in vec4 inSizes;    // texels of a frame, of its motion
 layout(location = 8) flat in vec2 inBetween;  // blend weight, largest motion
 
 // Reads up to half a texel beyond a border, into the empty texel between frames.
-vec4 bookTexel(vec2 at, vec2 uv) {
+vec4 flipbookTexel(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.xy, vec2(-0.5), inSizes.xy + 0.5);
-    return textureLod(bookPicture, (at + p) / vec2(textureSize(bookPicture, 0)), 0.0);
+    return textureLod(flipbookTexture, (at + p) / vec2(textureSize(flipbookTexture, 0)), 0.0);
 }
-vec2 bookMotionAt(vec2 at, vec2 uv) {
+vec2 flipbookMotionAt(vec2 at, vec2 uv) {
     vec2 p = clamp(uv * inSizes.zw, vec2(0.5), inSizes.zw - 0.5);
-    vec2 size = vec2(textureSize(bookPicture, 0));
-    return decodeFlipbookMotion(textureLod(bookPicture, (at + p) / size, 0.0).rg, inBetween.y);
+    vec2 size = vec2(textureSize(flipbookTexture, 0));
+    return decodeFlipbookMotion(textureLod(flipbookTexture, (at + p) / size, 0.0).rg, inBetween.y);
 }
 vec4 sampleFlipbook(vec2 uv) {
-    vec2 before = bookBefore(uv, bookMotionAt(inMotions.xy, uv), inBetween.x);
-    vec2 after = flipbookUvAfter(uv, bookMotionAt(inMotions.zw, uv), inBetween.x);
-    return mixFlipbookTexels(bookTexel(inFrames.xy, before), bookTexel(inFrames.zw, after), inBetween.x);
+    vec2 before = flipbookUvBefore(uv, flipbookMotionAt(inMotions.xy, uv), inBetween.x);
+    vec2 after = flipbookUvAfter(uv, flipbookMotionAt(inMotions.zw, uv), inBetween.x);
+    return mixFlipbookTexels(flipbookTexel(inFrames.xy, before), flipbookTexel(inFrames.zw, after),
+                             inBetween.x);
 }
-const float kBookSpan = 600.0;  // K between the coldest and the hottest texel, around the quad's temperature
-const float kBookHides = 1.05;  // coverage relative to brightness, matching volumes
+// K between the coldest and the hottest texel, around the quad's temperature
+const float kFlipbookSpan = 600.0;
+const float kFlipbookHides = 1.05;  // coverage relative to brightness, matching volumes
 #else
 const uint kOnlyFlipbooks = 0u;
 #endif
@@ -84,7 +86,10 @@ vec2 rolledUp(vec2 p, Roll roll) {
     return rolled(p, roll.right.xy, roll.right.z * exp2(-6.0 * dot(fromRight, fromRight)));
 }
 
-vec2 turnedBy(vec2 p, vec2 way) { return vec2(p.x * way.x - p.y * way.y, p.x * way.y + p.y * way.x); }
+// by: cosine, sine.
+vec2 rotate(vec2 p, vec2 by) {
+    return vec2(p.x * by.x - p.y * by.y, p.x * by.y + p.y * by.x);
+}
 
 void main() {
     uint what = inKind & 3u, named = (inKind >> kQuadSeed & 0xFFFFu) << 1u | (inKind & 1u);
@@ -100,13 +105,15 @@ void main() {
     float rolls = smoke ? kSmokeRolls : phase;
     Roll roll;
     roll.left = vec3(-0.30 - 0.20 * seed.y, 0.05 + 0.4 * rolls - 0.5 * seed.y, 0.25 + rolls);
-    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y, -(0.25 + rolls) * (1.2 - seed.y));
+    roll.right = vec3(0.45 - 0.20 * seed.y, -0.25 + 0.4 * rolls + 0.4 * seed.y,
+                      -(0.25 + rolls) * (1.2 - seed.y));
     float mirror = seed.x < 0.5 ? -1.0 : 1.0;
     vec2 m = rolledUp(vec2(mirror * c.x, c.y), roll);
     float squeeze = 1.0 - 0.5 * y;
     // Each puff has its own orientation.
-    vec2 way = normalize(seed - 0.5 + vec2(1e-4, 0.0));
-    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45) : smoke ? turnedBy(m, way) * 0.15
+    vec2 rotation = normalize(seed - 0.5 + vec2(1e-4, 0.0));
+    vec2 p = tongue  ? vec2(x / squeeze * 0.15, y * aspect * 0.15 * 0.45)
+             : smoke ? rotate(m, rotation) * 0.15
                      : m * vec2(0.115, 0.085);
     p += seed;
     float slow = tongue ? 0.16 : smoke ? 0.2 : 0.03, fast = tongue || smoke ? 0.30 : 0.08;
@@ -118,13 +125,15 @@ void main() {
     float aheadNoise = 0.5;
     if (kOnlyFlipbooks == 0u) {
         n1 = textureLod(lookTextures, vec3(p - scroll, kLayerNoise), lod);
-        vec2 sunward = turnedBy(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), way) * 0.15 + seed;
+        vec2 sunward =
+            rotate(rolledUp(vec2(mirror, 1.0) * (c + ahead), roll), rotation) * 0.15 + seed;
         aheadNoise = textureLod(lookTextures, vec3(sunward - scroll, kLayerNoise), lod).r;
     }
     float bend = tongue ? 0.06 * y : smoke ? 0.15 : 0.10;
     vec2 scale = tongue ? vec2(1.7, 1.5) : smoke ? vec2(2.1) : vec2(2.3, 1.9);
     // Rotated octaves hide the noise lattice in smoke.
-    vec2 q = (smoke ? turnedBy(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
+    vec2 q =
+        (smoke ? rotate(p, kAcross) : p) * scale + (n1.rb - 0.5) * bend - vec2(0.0, fast * phase);
     if (kOnlyFlipbooks == 0u)
         n2 = textureLod(lookTextures, vec3(q, kLayerNoise), lod - (tongue || smoke ? 0.0 : 1.0));
 
@@ -133,7 +142,8 @@ void main() {
     // Tongue: two octaves; the finer one is faster, so shapes change instead of only moving.
     float turbulence = (n1.r - 0.5) * 1.9 + (n2.r - 0.5) * 1.0 + (n2.g - 0.45) * 0.55;
     // Soot glows in folded sheets.
-    float sheet = (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
+    float sheet =
+        (n2.r - 0.5) + (tongue ? 0.6 : 0.7) * (n2.b - 0.5) + (tongue ? 0.0 : 0.25) * (n1.b - 0.5);
     float fold = exp2(sheet * sheet * (tongue ? -120.0 : -103.0));
     float kelvin, soot, hides, white = kFlameWhite * (tongue ? 1.0 : kNoiseBall);
     if (tongue) {
@@ -143,8 +153,8 @@ void main() {
         float halfWidth = 0.78 * narrow * sqrt(narrow) * (0.55 + 0.45 * smoothstep(0.0, 0.25, yy));
         float inside = halfWidth - xx;
         soot = smoothstep(0.0, 0.10 + 0.22 * y, inside);
-        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) * (1.0 - smoothstep(0.90, 1.0, y)) *
-                (1.0 - smoothstep(0.60, 0.98, abs(x)));
+        soot *= smoothstep(0.0, 0.34, y - 0.10 * x * x + 0.10 * (n2.r - 0.5)) *
+                (1.0 - smoothstep(0.90, 1.0, y)) * (1.0 - smoothstep(0.60, 0.98, abs(x)));
         soot *= mix(1.0, 0.30 + 1.05 * fold, smoothstep(0.10, 0.5, y));
         float core = saturate(inside / 0.6);
         kelvin = inState.z - 330.0 * smoothstep(0.05, 1.0, yy) + 90.0 * (core - 0.4) -
@@ -156,7 +166,8 @@ void main() {
         float late = smoothstep(0.45, 0.95, phase);
         float torn = 2.1 * (n1.r - 0.5) + 1.1 * (n2.r - 0.5) + 0.5 * (n2.g - 0.45);
         float deep = 0.92 - r * 1.05 + torn, least = mix(0.0, 0.72, phase);
-        soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) * (1.0 - smoothstep(0.62, 0.97, r)) *
+        soot = smoothstep(0.0, 0.24 + 0.26 * late, deep - least) *
+               (1.0 - smoothstep(0.62, 0.97, r)) *
                mix(1.0, 0.28 + 1.0 * fold, smoothstep(0.05, 0.40, phase) * (1.0 - 0.6 * late));
         kelvin = inState.z + 260.0 * (saturate((deep - least) * 0.9) - 0.35) + 90.0 * fold -
                  260.0 * (n2.g - 0.45) - 150.0 * (phase - 0.35);
@@ -164,39 +175,41 @@ void main() {
         hides = sootHides(kelvin);
     }
 #ifdef FW_FLIPBOOKS
-    bool booked = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
+    bool byFlipbook = kOnlyFlipbooks != 0u || (inKind >> kQuadFlipbookShift & 0xFFu) != 0u;
     vec2 uv = vec2(0.5 * ((inKind >> kQuadSeed & 1u) != 0u ? -x : x) + 0.5, y);
     vec4 frame = sampleFlipbook(uv);
-    if (booked) {
+    if (byFlipbook) {
         soot = frame.y;
-        kelvin = inState.z + kBookSpan * (frame.x - 0.5);
+        kelvin = inState.z + kFlipbookSpan * (frame.x - 0.5);
         white = kFlameWhite;
         soot *= sootLeft(kelvin);
-        hides = kBookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
+        hides = kFlipbookHides * sootHides(kelvin) * frame.z / max(frame.y, 1e-4);
     }
 #endif
     vec3 glow = sootRadiance(spark ? inState.z : kelvin);
     color = glow * (tongue ? vec3(1.0) : kFireWhite) * (white * view.sunColor.w * soot * opacity);
     alpha = saturate(soot * hides) * opacity;
     // Smoke: separate billows; thin smoke is eroded more.
-    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) - mix(0.4, 0.0, saturate(3.0 * opacity));
+    float deep = 1.0 - 1.1 * r + 2.0 * (n1.r - 0.5) + 0.9 * (n2.r - 0.5) -
+                 mix(0.4, 0.0, saturate(3.0 * opacity));
     if (smoke) {
         float body = smoothstep(0.0, 0.85, deep) * (1.0 - smoothstep(0.65, 1.0, r));
         alpha = body * opacity;
         // Thinner towards the light: it faces the light.
         float billow = 0.9 * (1.1 * (length(c + ahead) - r) + 6.0 * (n1.r - aheadNoise));
 #ifdef FW_FLIPBOOKS
-        if (booked) {
+        if (byFlipbook) {
             alpha = frame.z * opacity;
             vec2 sun = vec2((inKind >> kQuadSeed & 1u) != 0u ? -inSun.x : inSun.x, inSun.y);
-            billow = 1.6 * (frame.w - bookTexel(inFrames.xy, uv + 0.09 * sun).w);
+            billow = 1.6 * (frame.w - flipbookTexel(inFrames.xy, uv + 0.09 * sun).w);
         }
 #endif
         // Crests catch sun and sky, hollows the fire below.
         float crest = saturate(0.45 + 0.9 * billow + 0.25 * c.y);
         vec3 lit = mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.3 + 0.6 * crest) * 0.9 +
                    view.sunColor.rgb * (0.45 * crest * crest);
-        vec3 fire = vec3(1.0, 0.38, 0.10) * (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
+        vec3 fire = vec3(1.0, 0.38, 0.10) *
+                    (0.35 * view.sunColor.w * inState.z * inState.z * (1.0 - crest));
         color = (lit * 0.17 + fire) * alpha;
     }
     if (spark) {
@@ -205,14 +218,16 @@ void main() {
         if ((inKind >> kQuadFlipbookShift & 0xFFu) != 0u) body = frame.y * opacity;
 #endif
         // Compressed: the true radiance falls a thousandfold during the flight.
-        color = glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
+        color =
+            glow * (inversesqrt(max(glow.g * 2.5, 1e-4)) * kFlameWhite * view.sunColor.w * body);
         alpha = 0.0;
     }
 #ifdef FW_SOFT
     // A tongue is as deep as wide, a puff twice so. Half of a tongue extends in front of its quad,
     // so thin objects do not cut it.
     float gap = gapToScene();
-    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap) : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
+    float soft = smoke ? smoothstep(0.0, 0.9 * inWidth, gap)
+                       : smoothstep(-0.35 * inWidth, 0.35 * inWidth, gap);
     color *= soft;
     alpha *= soft;
 #endif

@@ -25,7 +25,7 @@ layout(location = 6) flat out vec4 outMotions;  // the same of their motion
 layout(location = 7) flat out vec4 outSizes;    // texels of a frame, of its motion
 layout(location = 8) flat out vec2 outBetween;  // blend weight, largest motion
 
-FlipbookRecord bookOf(uint i) {
+FlipbookRecord flipbookOf(uint i) {
     uint at = i * kFlipbookRecordWords;
     FlipbookRecord b;
     b.at = flipbooks[at];
@@ -43,20 +43,21 @@ vec2 halves(uint word) { return vec2(float(word & 0xFFFFu), float(word >> 16u));
 // Outputs a quad's flipbook frames. Returns its corner in the occupied rectangle of the frame.
 // pixels: width on the screen.
 vec2 openFlipbook(FlameQuad quad, vec2 place, float pixels) {
-    uint book = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
-    FlipbookRecord b = bookOf(book);
+    uint flipbook = (quad.kind >> kQuadFlipbookShift & 0xFFu) - 1u;
+    FlipbookRecord b = flipbookOf(flipbook);
     FlipbookPlace p = flipbookPlaceAt(quad.phase, b.frames, (b.flags & kFlipbookLoops) != 0u);
     vec2 texels = halves(b.size);
     uint level = flipbookLevel(texels.x, pixels, float(quad.kind >> kQuadSeed & 0xFFu) / 256.0);
-    uint smaller = flipbooks[book * kFlipbookRecordWords + kFlipbookLevelWord + level];
+    uint smaller = flipbooks[flipbook * kFlipbookRecordWords + kFlipbookLevelWord + level];
     level = level > 0u && smaller != 0u ? level : 0u;
     b.at = level > 0u ? smaller : b.at;
     b.size = (b.size & 0xFFFFu) >> level | b.size >> (16u + level) << 16u;
     outFrames = vec4(vec2(flipbookFrameOrigin(b, p.before)), vec2(flipbookFrameOrigin(b, p.after)));
-    outMotions = vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
+    outMotions =
+        vec4(vec2(flipbookMotionOrigin(b, p.before)), vec2(flipbookMotionOrigin(b, p.after)));
     outSizes = vec4(halves(b.size), halves(b.motionSize));
     outBetween = vec2(p.part, b.maxMotion);
-    uint rect = kFlipbookRects + 2u * (book * kMaxFlipbookFrames + p.before);
+    uint rect = kFlipbookRects + 2u * (flipbook * kMaxFlipbookFrames + p.before);
     // A texel of a mip covers more than the occupied texels of mip 0.
     vec2 wider = vec2(float((1u << level) - 1u)) / texels;
     vec2 low = max(halves(flipbooks[rect]) / texels - wider, vec2(0.0));
@@ -82,7 +83,8 @@ void main() {
     if (vertex == 5u) place = vec2(1.0, 1.0);
     // A spark thinner than a pixel is drawn one pixel wide, and dimmer.
     if ((quad.kind & 3u) == kQuadSpark) {
-        float far = mix(1.0, dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz), perspective);
+        float far =
+            mix(1.0, dot(quad.baseHeight.xyz - view.eye.xyz, view.forward.xyz), perspective);
         float wide = max(quad.axisWidth.w, 0.7 * view.eye.w * max(far, 0.05));
         float more = wide - quad.axisWidth.w;
         quad.baseHeight += vec4(quad.axisWidth.xyz * -more, 2.0 * more);
@@ -94,8 +96,12 @@ void main() {
     float away = mix(1.0, max(dot(middle, view.forward.xyz), 0.01), perspective);
     float pixels = 2.0 * quad.axisWidth.w / (view.eye.w * away);
     // A small quad that is empty outside a circle is drawn as one triangle.
-    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue && (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
-        place = vec2(vertex == 0u ? 0.0 : vertex == 1u ? -kRoot3 : kRoot3, vertex == 0u ? 1.5 : 0.0);
+    if (pixels < kSmall && (quad.kind & 3u) != kQuadTongue &&
+        (quad.kind >> kQuadFlipbookShift & 0xFFu) == 0u) {
+        place = vec2(vertex == 0u   ? 0.0
+                     : vertex == 1u ? -kRoot3
+                                    : kRoot3,
+                     vertex == 0u ? 1.5 : 0.0);
         if (vertex > 2u) place = vec2(0.0);
     }
 #ifdef FW_FLIPBOOKS

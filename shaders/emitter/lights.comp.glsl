@@ -1,5 +1,6 @@
-// Clusters burning tiles into cells, and cells into the strongest lights, which take over the power
-// of all cells: no watt is lost. One group; integer sums make the result independent of order.
+// Clusters burning tiles into clusters, and clusters into the strongest lights, which take over the
+// power of all clusters: no watt is lost. One group; integer sums make the result independent of
+// order.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #define FW_THREADS 128
@@ -7,41 +8,42 @@
 #include "lib/view.glsl"
 FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(COUNTERS) FW_READ(BURN_TILES) FW_READ(APPEARANCES)
 FW_READ_WRITE(LIGHT_CELLS) FW_WRITE(DRAW_ARGS) FW_WRITE(LIGHTS) FW_PUSH(StepPush)
-#include "emitter/cells.glsl"
+#include "emitter/clusters.glsl"
 
-const uint kMost = 1024u;      // competing cells
+const uint kMost = 1024u;      // competing clusters
 const uint kMostLights = 64u;
-shared uint candidate[kMost];  // slots of cells
+shared uint candidate[kMost];  // slots of clusters
 shared float score[kMost];
 shared uint candidates, bestScore, bestKey, bestAt;
 shared uint lightPower[kMostLights], lightRelease[kMostLights];  // W: shining, and total
-shared uint homelessPower, homelessRelease;  // W of tiles and cells without a light
+shared uint homelessPower, homelessRelease;  // W of tiles and clusters without a light
 shared uint lightNear[kMostLights];          // 16 W: near enough to influence the light's position
 shared int lightOffset[kMostLights * 3u];
 shared uint lightArea[kMostLights];
 shared uint lightSlot[kMostLights];
-shared float lightPlace[kMostLights * 4u];
+shared vec4 lightPlace[kMostLights];  // m, world; w: side of its cluster
 
 void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     vec3 at = place / side;
     ivec3 cell = ivec3(floor(at));
-    uint key = cellKey(cell, side);
+    uint key = clusterKey(cell, side);
     uint weight = max(uint(tile.normalPower.w + 0.5), 1u);  // W
-    for (uint i = 0u; i < kCellProbes; ++i) {
+    for (uint i = 0u; i < kClusterProbes; ++i) {
         uint slot = (key + i) % kLightCells;
-        uint there = atomicCompSwap(cells[cellWord(slot, 0u)], 0u, key);
+        uint there = atomicCompSwap(clusters[clusterWord(slot, 0u)], 0u, key);
         if (there != 0u && there != key) continue;
-        atomicAdd(cells[cellWord(slot, 1u)], weight);
+        atomicAdd(clusters[clusterWord(slot, 1u)], weight);
         if (level == 0u) {
             uvec3 offset = uvec3((at - vec3(cell)) * 64.0) * weight;
-            for (uint k = 0u; k < 3u; ++k) atomicAdd(cells[cellWord(slot, 2u + k)], offset[k]);
+            for (uint k = 0u; k < 3u; ++k)
+                atomicAdd(clusters[clusterWord(slot, 2u + k)], offset[k]);
         }
-        atomicAdd(cells[cellWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
-        atomicMax(cells[cellWord(slot, 6u)], floatBitsToUint(side));
-        // All tiles of a cell write the same values.
-        for (uint k = 0u; k < 3u; ++k) cells[cellWord(slot, 7u + k)] = uint(cell[k]);
-        cells[cellWord(slot, 10u)] = level;
-        atomicAdd(cells[cellWord(slot, 11u)], release);
+        atomicAdd(clusters[clusterWord(slot, 5u)], uint(tile.positionArea.w * 1e5) + 1u);
+        atomicMax(clusters[clusterWord(slot, 6u)], floatBitsToUint(side));
+        // All tiles of a cluster write the same values.
+        for (uint k = 0u; k < 3u; ++k) clusters[clusterWord(slot, 7u + k)] = uint(cell[k]);
+        clusters[clusterWord(slot, 10u)] = level;
+        atomicAdd(clusters[clusterWord(slot, 11u)], release);
         return;
     }
     if (level != 0u) return;
@@ -49,25 +51,25 @@ void addTo(BurnTile tile, vec3 place, float side, uint level, uint release) {
     atomicAdd(homelessRelease, release);
 }
 
-// Weighted mean position of a cell, m, world.
-vec3 cellPlace(uint slot) {
-    float side = uintBitsToFloat(cells[cellWord(slot, 6u)]);
-    vec3 within = vec3(cells[cellWord(slot, 2u)], cells[cellWord(slot, 3u)],
-                       cells[cellWord(slot, 4u)]) / (64.0 * float(cells[cellWord(slot, 1u)]));
-    ivec3 cell = ivec3(cells[cellWord(slot, 7u)], cells[cellWord(slot, 8u)], cells[cellWord(slot, 9u)]);
+uint keyOf(uint slot) { return clusters[clusterWord(slot, 0u)]; }
+
+// Weighted mean position of a cluster, m, world.
+vec3 clusterPlace(uint slot) {
+    float side = uintBitsToFloat(clusters[clusterWord(slot, 6u)]);
+    vec3 within = vec3(clusters[clusterWord(slot, 2u)], clusters[clusterWord(slot, 3u)],
+                       clusters[clusterWord(slot, 4u)]) /
+                  (64.0 * float(clusters[clusterWord(slot, 1u)]));
+    ivec3 cell = ivec3(clusters[clusterWord(slot, 7u)], clusters[clusterWord(slot, 8u)],
+                       clusters[clusterWord(slot, 9u)]);
     return (vec3(cell) + within) * side;
 }
 
-vec3 placeOfLight(uint light) {
-    return vec3(lightPlace[light * 4u], lightPlace[light * 4u + 1u], lightPlace[light * 4u + 2u]);
-}
-
-// Adds a cell's power, release and area, or a part of them, to a light.
+// Adds a cluster's power, release and area, or a part of them, to a light.
 void give(uint slot, uint light, uvec3 what) {
     atomicAdd(lightPower[light], what.x);
     atomicAdd(lightRelease[light], what.y);
-    float side = lightPlace[light * 4u + 3u];
-    vec3 d = cellPlace(slot) - placeOfLight(light);
+    float side = lightPlace[light].w;
+    vec3 d = clusterPlace(slot) - lightPlace[light].xyz;
     if (dot(d, d) > 36.0 * side * side) return;  // too far to influence the light's position
     uint weight = max(what.x >> 4u, 1u);
     ivec3 offset = ivec3(d / side * 64.0) * int(min(weight, 100000u));
@@ -80,11 +82,9 @@ void main() {
     uint me = gl_LocalInvocationID.x;
     uint count = counters[kRowBurn + push.burnParity].runCount;
     for (uint i = me; i < kLightCellHeader + kLightCells * kLightCellWords; i += 128u)
-        cells[i] = 0u;
+        clusters[i] = 0u;
     if (me == 0u) {
-        candidates = 0u;
-        homelessPower = 0u;
-        homelessRelease = 0u;
+        candidates = homelessPower = homelessRelease = 0u;
         drawArgs[0] = 6u;
         for (uint i = 1u; i < kFlameOrder; ++i) drawArgs[i] = 0u;
     }
@@ -96,22 +96,22 @@ void main() {
         uint release = max(uint(tile.normalPower.w + 0.5), 1u);
         tile.normalPower.w *= fade;
         tile.positionArea.w *= fade;
-        float small = lightCellSide(tile.object), large = flameCellSide(tile.object);
+        float small = lightClusterSide(tile.object), large = flameClusterSide(tile.object);
         addTo(tile, lightPlaceOf(tile, small), small, 0u, release);
         addTo(tile, flamePlaceOf(tile, large), large, 1u, release);
     }
     memoryBarrierBuffer();
     barrier();
     for (uint slot = me; slot < kLightCells; slot += 128u) {
-        if (cells[cellWord(slot, 0u)] == 0u || cells[cellWord(slot, 10u)] != 0u) continue;
+        if (keyOf(slot) == 0u || clusters[clusterWord(slot, 10u)] != 0u) continue;
         uint at = atomicAdd(candidates, 1u);
         if (at >= kMost) {
-            atomicAdd(homelessPower, cells[cellWord(slot, 1u)]);
-            atomicAdd(homelessRelease, cells[cellWord(slot, 11u)]);
+            atomicAdd(homelessPower, clusters[clusterWord(slot, 1u)]);
+            atomicAdd(homelessRelease, clusters[clusterWord(slot, 11u)]);
             continue;
         }
         candidate[at] = slot;
-        score[at] = float(cells[cellWord(slot, 1u)]);
+        score[at] = float(clusters[clusterWord(slot, 1u)]);
     }
     barrier();
     uint competing = min(candidates, kMost);
@@ -119,49 +119,37 @@ void main() {
     uint found = min(wanted, competing);
 
     for (uint light = 0u; light < found; ++light) {
-        if (me == 0u) {
-            bestScore = 0u;
-            bestKey = 0u;
-        }
+        if (me == 0u) bestScore = bestKey = 0u;
         barrier();
         for (uint i = me; i < competing; i += 128u)
             atomicMax(bestScore, floatBitsToUint(score[i]));
         barrier();
-        for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore)
-                atomicMax(bestKey, cells[cellWord(candidate[i], 0u)]);
-        }
+        for (uint i = me; i < competing; i += 128u)
+            if (floatBitsToUint(score[i]) == bestScore) atomicMax(bestKey, keyOf(candidate[i]));
         barrier();
-        for (uint i = me; i < competing; i += 128u) {
-            if (floatBitsToUint(score[i]) == bestScore && cells[cellWord(candidate[i], 0u)] == bestKey)
+        for (uint i = me; i < competing; i += 128u)
+            if (floatBitsToUint(score[i]) == bestScore && keyOf(candidate[i]) == bestKey)
                 bestAt = i;
-        }
         barrier();
-        vec3 here = cellPlace(candidate[bestAt]);
-        float side = uintBitsToFloat(cells[cellWord(candidate[bestAt], 6u)]);
+        vec3 here = clusterPlace(candidate[bestAt]);
+        float side = uintBitsToFloat(clusters[clusterWord(candidate[bestAt], 6u)]);
         for (uint i = me; i < competing; i += 128u) {
             if (i == bestAt) continue;
             // Reduces the score of neighbours, or one corner would get all lights.
-            float d = length(cellPlace(candidate[i]) - here) / (1.5 * side);
+            float d = length(clusterPlace(candidate[i]) - here) / (1.5 * side);
             score[i] *= clamp(d, 0.05, 1.0);
         }
         if (me == 0u) {
             lightSlot[light] = candidate[bestAt];
-            lightPlace[light * 4u] = here.x;
-            lightPlace[light * 4u + 1u] = here.y;
-            lightPlace[light * 4u + 2u] = here.z;
-            lightPlace[light * 4u + 3u] = side;
-            lightPower[light] = 0u;
-            lightRelease[light] = 0u;
-            lightNear[light] = 0u;
-            lightArea[light] = 0u;
+            lightPlace[light] = vec4(here, side);
+            lightPower[light] = lightRelease[light] = lightNear[light] = lightArea[light] = 0u;
             for (uint k = 0u; k < 3u; ++k) lightOffset[light * 3u + k] = 0;
             score[bestAt] = 0.0;
         }
         barrier();
     }
 
-    // Each cell gives its power to the nearest light. The last light, which comes or goes, only
+    // Each cluster gives its power to the nearest light. The last light, which comes or goes, only
     // gets a share; the rest goes to the next nearest.
     float lastShare = found == wanted && found > 1u ? view.quads.z : 1.0;
     for (uint i = me; i < competing; i += 128u) {
@@ -169,7 +157,7 @@ void main() {
         uint nearest = 0u, next = 0u;
         float least = 1e30, leastNext = 1e30;
         for (uint light = 0u; light < found; ++light) {
-            vec3 d = cellPlace(slot) - placeOfLight(light);
+            vec3 d = clusterPlace(slot) - lightPlace[light].xyz;
             float d2 = dot(d, d);
             bool last = light + 1u == found;
             nearest = d2 < least ? light : nearest;
@@ -177,7 +165,8 @@ void main() {
             next = d2 < leastNext && !last ? light : next;
             leastNext = last ? leastNext : min(leastNext, d2);
         }
-        uvec3 all = uvec3(cells[cellWord(slot, 1u)], cells[cellWord(slot, 11u)], cells[cellWord(slot, 5u)]);
+        uvec3 all = uvec3(clusters[clusterWord(slot, 1u)], clusters[clusterWord(slot, 11u)],
+                          clusters[clusterWord(slot, 5u)]);
         float share = nearest + 1u == found ? lastShare : 1.0;
         uvec3 own = share < 1.0 ? min(uvec3(vec3(all) * share), all) : all;
         give(slot, nearest, own);
@@ -186,27 +175,22 @@ void main() {
     barrier();
     // Clears unused lights, too.
     for (uint light = me; light < uint(lights.length()); light += 128u) {
-        BurnLight l;
-        l.positionRadius = vec4(0.0);
-        l.colorIntensity = vec4(0.0);
-        l.power = 0.0;
-        l.id = 0u;
-        l.release = 0.0;
-        l.reserved = 0u;
+        BurnLight l = BurnLight(vec4(0.0), vec4(0.0), 0.0, 0u, 0.0, 0u);
         if (light < found) {
             float weight = float(lightNear[light]);
-            float side = lightPlace[light * 4u + 3u];
+            float side = lightPlace[light].w;
             vec3 mean = vec3(float(lightOffset[light * 3u]), float(lightOffset[light * 3u + 1u]),
-                             float(lightOffset[light * 3u + 2u])) * (side / (64.0 * max(weight, 1.0)));
-            uint key = cells[cellWord(lightSlot[light], 0u)];
+                             float(lightOffset[light * 3u + 2u])) *
+                        (side / (64.0 * max(weight, 1.0)));
+            uint key = keyOf(lightSlot[light]);
             float area = float(lightArea[light]) * 1e-5;
             uint homeless = light == 0u ? homelessPower : 0u;
             float power = float(lightPower[light] + homeless);
             float len = flameLength(min(weight * 16.0, power), area);
-            vec3 at = placeOfLight(light) + mean + view.up.xyz * (0.25 * len);
+            vec3 at = lightPlace[light].xyz + mean + view.up.xyz * (0.25 * len);
             // Sines of incommensurate periods: no lookup, no pop. Light from distant fires is
             // steady.
-            float t = view.ambientSky.w, p = 6.2832 * unit(key);
+            float t = view.ambientSky.w, p = 6.2832 * hashUnit(key);
             float flicker = 1.0 + min(weight * 16.0 / power, 1.0) *
                                       (0.10 * sin(11.3 * t + p) + 0.07 * sin(17.9 * t + 2.3 * p) +
                                        0.05 * sin(29.1 * t + 4.1 * p));
@@ -222,10 +206,11 @@ void main() {
     // Requested quads, for the share of the available ones.
     for (uint i = me; i < competing; i += 128u) {
         uint slot = candidate[i];
-        vec2 near = vec2(float(cells[cellWord(slot, 1u)]), float(cells[cellWord(slot, 5u)]) * 1e-5);
-        float large = clamp(4.0 * uintBitsToFloat(cells[cellWord(slot, 6u)]), 0.5, 4.0);
-        vec2 around = cellFire(cellKey(ivec3(floor(cellPlace(slot) / large)), large));
+        vec2 near = vec2(float(clusters[clusterWord(slot, 1u)]),
+                         float(clusters[clusterWord(slot, 5u)]) * 1e-5);
+        float large = clamp(4.0 * uintBitsToFloat(clusters[clusterWord(slot, 6u)]), 0.5, 4.0);
+        vec2 around = clusterFire(clusterKey(ivec3(floor(clusterPlace(slot) / large)), large));
         float quads = flameQuads(near.y, flameHalfWidth(flameLength(near, around), 0.0));
-        atomicAdd(cells[0], uint(min(quads, 4096.0) * 16.0));
+        atomicAdd(clusters[0], uint(min(quads, 4096.0) * 16.0));
     }
 }

@@ -12,23 +12,12 @@ FW_PUSH(ParticlePush)
 const float kNearFade = 0.3;  // m before the camera
 
 // Loads the emitter data for display only: a software device loads each word for each lane.
+#define FW_LOAD(member) e.member = emitters[i].member;
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
-    e.carried.w = emitters[i].carried.w;
-    e.half_.w = emitters[i].half_.w;
-    e.up = emitters[i].up;
-    e.size = emitters[i].size;
-    e.life = emitters[i].life;
-    e.heat = emitters[i].heat;
-    e.first = emitters[i].first;
-    e.ring = emitters[i].ring;
-    e.head = emitters[i].head;
-    e.filled = emitters[i].filled;
-    e.serial = emitters[i].serial;
-    e.seed = emitters[i].seed;
-    e.flags = emitters[i].flags;
-    e.books = emitters[i].books;
-    e.otherBooks = emitters[i].otherBooks;
+    FW_LOAD(carried.w) FW_LOAD(half_.w) FW_LOAD(up) FW_LOAD(size) FW_LOAD(life) FW_LOAD(heat)
+    FW_LOAD(first) FW_LOAD(ring) FW_LOAD(head) FW_LOAD(filled) FW_LOAD(serial) FW_LOAD(seed)
+    FW_LOAD(flags) FW_LOAD(fireFlipbooks) FW_LOAD(smokeFlipbooks)
     return e;
 }
 
@@ -36,7 +25,7 @@ ParticleEmitter emitterOf(uint i) {
 void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     bool perspective = view.forward.w > 0.5;
     float age = p.placeAge.w, a = age / t.life;
-    float shows = shownShare(view.quads.x, particleHash(seed + 311u));
+    float shows = shownShare(view.quads.x, hashUnit(seed + 311u));
     float size = particleSize(e, t, age, p.speedPath.w, t.own) * view.quads.y;
     vec3 place = p.placeAge.xyz, v = p.speedPath.xyz;
     vec3 toEye = view.eye.xyz - place;
@@ -47,16 +36,17 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     vec3 above = cross(toEye, right);
     vec2 across = vec2(dot(v, right), dot(v, above));
     float speed = length(across);
-    vec2 way = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
+    vec2 heading = speed > 1e-3 ? across / speed : vec2(0.0, 1.0);
     float follows = particleFollows(e, a, speed, p.hit.w);
     float stretch = particleStretch(e, a, speed, p.hit.w);
     // Blend of its own rotation and that of its path.
     float spin = 2.0 * t.own - 1.0;
     float own = 1.6 * spin + 2.2 * (t.other - 0.5) * age;
     float turned = mix(own, 0.5 * spin * smoothstep(0.1, 0.4, a), follows);
-    vec2 axis = way * cos(turned) + vec2(way.y, -way.x) * sin(turned);
+    vec2 axis = heading * cos(turned) + vec2(heading.y, -heading.x) * sin(turned);
     // Fades close to the camera, and when it would fill the view.
-    float near = smoothstep(kNearFade, kNearFade + 0.8, far) * (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
+    float near = smoothstep(kNearFade, kNearFade + 0.8, far) *
+                 (1.0 - smoothstep(0.5, 1.0, size / max(far, 1e-3)));
     near *= shows;
     bool drawn = near > 0.0;
 
@@ -81,22 +71,20 @@ void makeQuads(ParticleEmitter e, ParticleTraits t, Particle p, uint seed) {
     quad.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadFire;
     // A flipbook, too, begins as a shapeless ball.
     float shown = 0.12 + max(a, 0.0) * (0.75 + 0.25 * t.other);
-    showByFlipbook(quad, particleFlipbook(e.books, 3u, seed), shown, age, t.own);
+    showByFlipbook(quad, particleFlipbook(e.fireFlipbooks, 3u, seed), shown, age, t.own);
     bool fire = drawn && opacity > 0.004 && a < 1.0;
-    FlameQuad smoke;
     float lit = clamp(1.25 - a, 0.0, 1.0);
-    smoke.axisWidth = vec4(view.up.xyz, 0.62 * size);
     // Leaves walls and stays above the ground as it grows: inside them it would end in a straight
     // line.
     place += p.hit.xyz * particleOffWall(p, e.up.xyz, size, a);
     float sunk = kPuffReach * size - (dot(place, e.up.xyz) - e.carried.w);
     place += e.up.xyz * ((e.flags & kEmitterGround) != 0u ? max(0.0, sunk) : 0.0);
-    smoke.baseHeight = vec4(place - view.up.xyz * (0.62 * size), 1.24 * size);
-    smoke.opacity = particleSmoke(e, a) * t.smoke * near;
-    smoke.phase = 0.10 * age + 5.0 * t.other;
-    smoke.kelvin = lit;
-    smoke.kind = (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke;
-    showByFlipbook(smoke, particleFlipbook(e.otherBooks, 2u, seed), (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
+    FlameQuad smoke =
+        FlameQuad(vec4(place - view.up.xyz * (0.62 * size), 1.24 * size),
+                  vec4(view.up.xyz, 0.62 * size), particleSmoke(e, a) * t.smoke * near,
+                  0.10 * age + 5.0 * t.other, lit, (seed & 0xFFFFu) << kQuadSeed | kQuadSmoke);
+    showByFlipbook(smoke, particleFlipbook(e.smokeFlipbooks, 2u, seed),
+                   (a - 0.65) / max(0.35 + e.life.z, 0.1), age, t.other);
     bool smokes = drawn && smoke.opacity > 0.004 && t.smoke > 0.0;
 
     // Emissive quads have separate places: they are not sorted.

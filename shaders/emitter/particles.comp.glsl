@@ -12,31 +12,13 @@ FW_PUSH(ParticlePush)
 
 // Loads the emitter data that every particle needs; the rest is loaded where it is used. A software
 // device loads each word for each lane.
+#define FW_LOAD(member) e.member = emitters[i].member;
 ParticleEmitter emitterOf(uint i) {
     ParticleEmitter e;
-    e.from.w = emitters[i].from.w;
-    e.direction = emitters[i].direction;
-    e.carried.w = emitters[i].carried.w;
-    e.wind = emitters[i].wind;
-    e.up = emitters[i].up;
-    e.motion = emitters[i].motion;
-    e.turbulence = emitters[i].turbulence;
-    e.size = emitters[i].size;
-    e.life = emitters[i].life;
-    e.heat = emitters[i].heat;
-    e.stuck = emitters[i].stuck;
-    e.first = emitters[i].first;
-    e.ring = emitters[i].ring;
-    e.head = emitters[i].head;
-    e.filled = emitters[i].filled;
-    e.fresh = emitters[i].fresh;
-    e.serial = emitters[i].serial;
-    e.age = emitters[i].age;
-    e.apart = emitters[i].apart;
-    e.seed = emitters[i].seed;
-    e.flags = emitters[i].flags;
-    e.steps = emitters[i].steps;
-    e.obstacleCount = emitters[i].obstacleCount;
+    FW_LOAD(from.w) FW_LOAD(direction) FW_LOAD(carried.w) FW_LOAD(wind) FW_LOAD(up) FW_LOAD(motion)
+    FW_LOAD(turbulence) FW_LOAD(size) FW_LOAD(life) FW_LOAD(heat) FW_LOAD(stuck) FW_LOAD(first)
+    FW_LOAD(ring) FW_LOAD(head) FW_LOAD(filled) FW_LOAD(fresh) FW_LOAD(serial) FW_LOAD(age)
+    FW_LOAD(apart) FW_LOAD(seed) FW_LOAD(flags) FW_LOAD(steps) FW_LOAD(obstacleCount)
     return e;
 }
 
@@ -48,37 +30,33 @@ Particle bornOnTile(ParticleEmitter e, Particle p, uint seed) {
     float all = 0.0;
     vec4 place = vec4(0.0), normal = vec4(0.0, 1.0, 0.0, 0.0);
     for (uint i = 0u; i < kTileTries && count > 0u; ++i) {
-        uint tile = particleBits(seed + 101u * (i + 1u)) % count;
+        uint tile = hash32(seed + 101u * (i + 1u)) % count;
         if (met == kTileChoice || burnTiles[tile].object + 1u != e.object) continue;
         ++met;
         vec4 there = burnTiles[tile].normalPower;
         float power = max(there.w, 1e-3);
         all += power;
-        if (particleHash(seed + 57u + i) * all > power) continue;
+        if (hashUnit(seed + 57u + i) * all > power) continue;
         normal = there;
         place = burnTiles[tile].positionArea;
     }
-    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)), place.w);
+    p = particleOnTile(e, p, seed, place.xyz, normalize(normal.xyz + vec3(0.0, 1e-4, 0.0)),
+                       place.w);
     p.placeAge.w = met > 0u ? p.placeAge.w : 1e6;
     return p;
 }
 
 Particle bornNow(ParticleEmitter e, uint i, uint seed, float lived) {
-    e.from = emitters[i].from;
-    e.place = emitters[i].place;
-    e.half_ = emitters[i].half_;
-    e.carried = emitters[i].carried;
-    e.waves0 = emitters[i].waves0;
-    e.waves1 = emitters[i].waves1;
-    e.object = emitters[i].object;
-    e.stuck = emitters[i].stuck;
+    FW_LOAD(from) FW_LOAD(place) FW_LOAD(half_) FW_LOAD(carried)
+    FW_LOAD(waves0) FW_LOAD(waves1) FW_LOAD(object) FW_LOAD(stuck)
     Particle p = particleBorn(e, seed, lived);
     if (particleSticks(e, seed)) {
-        float which = particleHash(seed + 66u);
+        float which = hashUnit(seed + 66u);
         uint k = 0u;
         for (uint one = 0u; one + 1u < uint(e.stuck.y); ++one)
             k += emitters[i].patches[2u * one].w < which ? 1u : 0u;
-        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz, emitters[i].patches[2u * k + 1u].xyz);
+        p = particleOnPatch(e, p, seed, emitters[i].patches[2u * k].xyz,
+                            emitters[i].patches[2u * k + 1u].xyz);
     }
     if (e.object != 0u) p = bornOnTile(e, p, seed);
     return p;
@@ -150,8 +128,8 @@ void flies(ParticleEmitter e, uint i, inout Flight f) {
     vec3 normal = e.up.xyz;
     uint k = 0u;
     do {
-        vec4 middle = emitters[i].shields[2u * k];
-        vec3 n = emitters[i].shields[2u * k + 1u].xyz;
+        vec4 middle = emitters[i].obstacles[2u * k];
+        vec3 n = emitters[i].obstacles[2u * k + 1u].xyz;
         float share = particleMeets(from, f.p.placeAge.xyz, middle, n, reach);
         bool first = k < e.obstacleCount && share < least;
         least = first ? share : least;

@@ -12,7 +12,8 @@ FW_PUSH(SparkPush)
 #ifdef FW_TEXELS
 FW_TEXEL_BUFFER(SPARKS, readonly, sourcesIn)
 vec4 sparkCell(SparkBounds b, uint i) {
-    return uintBitsToFloat(imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
+    return uintBitsToFloat(
+        imageLoad(sourcesIn, int(b.source * kSparkSourceQuads + kSparkCellQuad + i)));
 }
 #else
 vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
@@ -21,23 +22,12 @@ vec4 sparkCell(SparkBounds b, uint i) { return sources[b.source].cells[i]; }
 const float kNearFade = 0.3;  // m before the camera
 
 // Loads a source's data without its path and obstacles.
+#define FW_LOAD(member) s.member = sources[i].member;
 SparkSource sourceOf(uint i) {
     SparkSource s;
-    s.direction = sources[i].direction;
-    s.half_ = sources[i].half_;
-    s.up = sources[i].up;
-    s.wind = sources[i].wind;
-    s.wallNormal.w = sources[i].wallNormal.w;
-    s.radius = sources[i].radius;
-    s.part = sources[i].part;
-    s.keyAge = sources[i].keyAge;
-    s.kelvin = sources[i].kelvin;
-    s.turn = sources[i].turn;
-    s.seed = sources[i].seed;
-    s.slots = sources[i].slots;
-    s.flags = sources[i].flags;
-    s.book = sources[i].book;
-    s.object = sources[i].object;
+    FW_LOAD(direction) FW_LOAD(half_) FW_LOAD(up) FW_LOAD(wind) FW_LOAD(wallNormal.w)
+    FW_LOAD(radius) FW_LOAD(part) FW_LOAD(keyAge) FW_LOAD(kelvin) FW_LOAD(turn) FW_LOAD(seed)
+    FW_LOAD(slots) FW_LOAD(flags) FW_LOAD(flipbook) FW_LOAD(object)
     return s;
 }
 SparkBounds boundsOf(SparkSource s, uint i) {
@@ -50,16 +40,18 @@ SparkBounds boundsOf(SparkSource s, uint i) {
     return b;
 }
 
-void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, vec3 carried, float strength) {
+void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 direction, vec3 carried,
+          float strength) {
     SparkKind kind = sparkKind(slot.seed);
-    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, way, carried), bounds, s.up.xyz, slot.age);
+    SparkLeg leg = sparkLeg(kind, sparkBorn(s, kind, slot.seed, at, direction, carried), bounds,
+                            s.up.xyz, slot.age);
     vec3 place = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age);
     vec3 before = sparkPlace(leg, kind, bounds, s.up.xyz, slot.seed, slot.age - kSparkShutter);
     float a = slot.age / kind.life;
     vec3 toEye = view.eye.xyz - place, streak = place - before;
     float far = view.forward.w > 0.5 ? dot(-toEye, view.forward.xyz) : 1e3;
     // A flipbook's streak fills a third of its frame.
-    float wide = kind.width * (s.book != 0u ? 3.0 : 1.0);
+    float wide = kind.width * (s.flipbook != 0u ? 3.0 : 1.0);
     float length_ = length(streak);
     FlameQuad quad;
     vec3 along = length_ > 1e-4 ? streak / length_ : view.up.xyz;
@@ -68,9 +60,9 @@ void show(SparkSource s, SparkBounds bounds, SparkSlot slot, vec3 at, vec3 way, 
     quad.baseHeight = vec4(place + along * (wide - tall), tall);
     quad.opacity = sparkFades(a) * strength * smoothstep(kNearFade, kNearFade + 0.8, far) *
                    shownShare(view.quads.x, float(slot.seed >> 8u) / 16777216.0);
-    quad.phase = s.book != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
+    quad.phase = s.flipbook != 0u ? flipbookTime(false, 1.0, a, slot.age, 0.0) : min(a, 0.98);
     quad.kelvin = sparkKelvin(s.kelvin, kind, slot.seed, a);
-    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.book << kQuadFlipbookShift | kQuadSpark;
+    quad.kind = (slot.seed & 0xFFFFu) << kQuadSeed | s.flipbook << kQuadFlipbookShift | kQuadSpark;
     // Hides sparks that would be wide on the screen.
     if (a >= 1.0 || quad.opacity <= 0.004 || wide > 0.03 * far) return;
     uint first = atomicAdd(drawArgs[kFlameEmissiveQuads], 1u);
@@ -83,7 +75,8 @@ void showOwn(SparkSource s, SparkBounds bounds, uint source, uint slot) {
     uint i = uint(at), moved = max(i, 1u);
     vec4 key = mix(sources[source].keys[i], sources[source].keys[i + 1u], at - float(i));
     if (sparkChance(key.w, slot, now.seed) <= 0.0) return;
-    vec3 carried = (sources[source].keys[moved].xyz - sources[source].keys[min(moved + 1u, kSparkKeys - 1u)].xyz) *
+    vec3 carried = (sources[source].keys[moved].xyz -
+                    sources[source].keys[min(moved + 1u, kSparkKeys - 1u)].xyz) *
                    (s.wallNormal.w / kSparkKeyStep);
     show(s, bounds, now, key.xyz + sparkOff(s.direction.xyz, s.radius, s.half_.xyz, now.seed),
          s.direction.xyz, carried, 1.0);
@@ -102,7 +95,8 @@ void showOfTile(SparkSource s, SparkBounds bounds, float rate, BurnTile tile) {
         vec3 at = tile.positionArea.xyz + normal * 0.01 +
                   sparkOff(normal, 0.8 * sqrt(tile.positionArea.w), vec3(0.0), now.seed);
         if (chance > 0.0)
-            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0), clamp(chance / fades, 0.0, 1.0));
+            show(s, bounds, now, at, normalize(normal * 0.6 + s.up.xyz), vec3(0.0),
+                 clamp(chance / fades, 0.0, 1.0));
     }
 }
 

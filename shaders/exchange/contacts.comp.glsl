@@ -3,22 +3,18 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/light.glsl"
 FW_READ(MATERIALS) FW_READ(CONTACTS)
+#include "lib/gives.glsl"
 
 // Tick at which this link's source lights its target, or kNever.
 uint linkTick(uint i, out uint by) {
     uint from = contacts[i].fromObject;
-    uint texel = contacts[i].fromTexel;
     by = 0u;
-    uint hops = hopsOf(objectCounters[from].litBy);
-    if ((exchangeObjects[from].flags & kExchangeLive) == 0u || objectCounters[from].burning == 0u ||
-        !mayTransfer(exchangeObjects[from], hops, push.hopsMost))
-        return kNever;
-    uint tick = contactTick(state[objects[from].stateBase + texel], materials[materialOfTexel(from, texel)].flameTicks,
-                            contacts[i].delay, contacts[i].since, push.now);
-    if (tick == kNever || !mayReach(push.seed, from, contacts[i].object, objectCounters[from].litTick,
-                 multiplyChances(push.chance, exchangeObjects[from].chance)))
-        return kNever;
-    by = litBy(hops, from);
+    if (!gives(from, contacts[i].object)) return kNever;
+    uint texel = contacts[i].fromTexel;
+    uint tick = contactTick(state[objects[from].stateBase + texel],
+                            materials[materialOfTexel(from, texel)].flameTicks, contacts[i].delay,
+                            contacts[i].since, push.now);
+    if (tick != kNever) by = litBy(hopsOf(objectCounters[from].litBy), from);
     return tick;
 }
 

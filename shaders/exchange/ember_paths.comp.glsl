@@ -14,9 +14,11 @@ bool stopped(FireSource source) {
     uint object = landsOn(ember.landing, upAxis(worldUp()), tile);
     if (tile == kNoneTexel) return true;
     ivec3 flame = alongFlame(source, worldUp(), 8);
-    ivec3 place = toWorldMm(exchangeObjects[object], tileMiddle(exchangeTiles[objects[object].tileBase + tile]));
+    ivec3 place = toWorldMm(exchangeObjects[object],
+                            tileMiddle(exchangeTiles[objects[object].tileBase + tile]));
     for (uint b = 0u; b < push.occluders; ++b)
-        if (occluderBlocks(occluders[b], flame, ember.landing) || occluderBlocks(occluders[b], ember.landing, place))
+        if (occluderBlocks(occluders[b], flame, ember.landing) ||
+            occluderBlocks(occluders[b], ember.landing, place))
             return true;
     if (push.occlusionCell == 0u) return false;
     OcclusionEnds ends = emberOcclusionEnds(source, object, push.occlusionCell);

@@ -1,6 +1,6 @@
 // Heat from sources to the tiles of the objects that they may heat, an eighth of the tiles per
-// exchange. One group per receiver, one thread per tile. FW_HEAT_OCCLUSION: with a heat-occlusion grid; a
-// variant, as a software device executes loop bodies once even without active lanes.
+// exchange. One group per receiver, one thread per tile. FW_HEAT_OCCLUSION: with a heat-occlusion
+// grid; a variant, as a software device executes loop bodies once even without active lanes.
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
@@ -17,7 +17,8 @@ bool blocked(FireSource s, ivec3 up, uint slot, ivec3 at, ivec3 normal) {
     for (uint b = 0u; b < push.occluders; ++b)
         if (occluderBlocks(occluders[b], flame, at)) return true;
 #ifdef FW_HEAT_OCCLUSION
-    return isOccluded(flameOcclusionEnds(s, flame, slot, at, normal, push.occlusionCell), flame, at);
+    return isOccluded(flameOcclusionEnds(s, flame, slot, at, normal, push.occlusionCell), flame,
+                      at);
 #else
     return false;
 #endif

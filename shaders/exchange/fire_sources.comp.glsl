@@ -35,7 +35,8 @@ void main() {
     objectCounters[slot].litTick = c.litTick;
     objectCounters[slot].stopTick = c.stopTick;
     objectCounters[slot].spotTexel = c.spotTexel;
-    objectCounters[slot].held = heldBits(counters[kRowBurn + push.burnParity].runCount, push.maxTiles, c.burningTiles,
+    objectCounters[slot].held =
+        heldBits(counters[kRowBurn + push.burnParity].runCount, push.maxTiles, c.burningTiles,
                  exchangeObjects[slot].maxTiles, c.stopTick, push.now);
     for (bool once = c.burning != 0u; once; once = false) {
         uint hops = hopsOf(c.litBy);
@@ -44,7 +45,9 @@ void main() {
         uint warms = gives && (push.flags & (kExchangeRadiation | kExchangePlume)) != 0u
                          ? exchangeObjects[slot].neighbourCount : 0u;
         for (uint n = 0u; n < warms; ++n)
-            atomicMax(objectCounters[neighbours[exchangeObjects[slot].neighbourFirst + n] & 0xFFFFFFu].until,
-                      push.now + kExchangeRounds * kExchangeTicks);
+            atomicMax(
+                objectCounters[neighbours[exchangeObjects[slot].neighbourFirst + n] & 0xFFFFFFu]
+                    .until,
+                push.now + kExchangeRounds * kExchangeTicks);
     }
 }

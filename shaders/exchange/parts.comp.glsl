@@ -14,8 +14,8 @@ void lightFrom(uint object, uint tile, uint link, uint block) {
                 decodePosition(texels[objects[object].texelBase + from]);
     uint delay = partDelay(materials[others], gap);
     if ((materials[others].flags & 1u) != 0u &&
-        partCrossed(state[objects[object].stateBase + from], materials[materialOfTexel(object, from)].flameTicks,
-                    delay, push.now))
+        partCrossed(state[objects[object].stateBase + from],
+                    materials[materialOfTexel(object, from)].flameTicks, delay, push.now))
         lightTexel(object, to, push.now, 0u);
 }
 

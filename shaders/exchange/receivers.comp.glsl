@@ -5,30 +5,22 @@
 #include "lib/compute.glsl"
 FW_READ(OBJECTS) FW_READ(EXCHANGE_OBJECTS) FW_READ(SOURCES) FW_READ(NEIGHBOURS)
 FW_READ_WRITE(COUNTERS) FW_READ_WRITE(OBJECT_COUNTERS) FW_WRITE(RECEIVERS) FW_PUSH(ExchangePush)
+#include "lib/gives.glsl"
 #include "lib/lists.glsl"
-
-// Does the neighbour of a table entry give fire to this object?
-bool gives(uint slot, uint entry) {
-    uint from = entry & 0xFFFFFFu;
-    return (entry >> 24u) != 0u && (exchangeObjects[from].flags & kExchangeLive) != 0u &&
-           objectCounters[from].burning != 0u &&
-           mayTransfer(exchangeObjects[from], hopsOf(objectCounters[from].litBy), push.hopsMost) &&
-           mayReach(push.seed, from, slot, objectCounters[from].litTick,
-                   multiplyChances(push.chance, exchangeObjects[from].chance));
-}
 
 // Runs a statement for each source that may act on `slot`: at `source`, with a neighbour's `entry`
 // and a `weight`.
-#define FW_EACH_SOURCE(statement)                                                                     \
-    for (uint n = 0u; n < exchangeObjects[slot].neighbourCount; ++n) {                                  \
-        uint entry = neighbours[exchangeObjects[slot].neighbourFirst + n], from = entry & 0xFFFFFFu;    \
-        if (!gives(slot, entry)) continue;                                                            \
-        uint base = exchangeObjects[from].sourceBase, end = base + exchangeObjects[from].sourceCount;     \
-        for (uint source = base; source < end; ++source) {                                            \
-            uint weight = sourceWeight(sources[source], middle);                                      \
-            if (weight == 0u) continue;                                                               \
-            statement                                                                                 \
-        }                                                                                             \
+#define FW_EACH_SOURCE(statement)                                                              \
+    for (uint n = 0u; n < exchangeObjects[slot].neighbourCount; ++n) {                         \
+        uint entry = neighbours[exchangeObjects[slot].neighbourFirst + n];                     \
+        uint from = entry & 0xFFFFFFu;                                                         \
+        if (entry >> 24u == 0u || !gives(from, slot)) continue;                                \
+        uint source = exchangeObjects[from].sourceBase;                                        \
+        for (uint end = source + exchangeObjects[from].sourceCount; source < end; ++source) {  \
+            uint weight = sourceWeight(sources[source], middle);                               \
+            if (weight == 0u) continue;                                                        \
+            statement                                                                          \
+        }                                                                                      \
     }
 
 // Counts the object's sources by the highest bit of their weight.
@@ -47,7 +39,8 @@ void listSource(uint slot, uint place, uint source, uint entry) {
 // up to the capacity. Returns the number of listed sources.
 uint listSources(uint slot, ivec3 middle, uint low, uint strong) {
     uint listed = 0u, weak = strong;
-    FW_EACH_SOURCE(if (weight >= low / 2u) listSource(slot, weight >= low ? listed++ : weak++, source, entry);)
+    FW_EACH_SOURCE(if (weight >= low / 2u)
+                       listSource(slot, weight >= low ? listed++ : weak++, source, entry);)
     return min(weak, kSourcesPerReceiver);
 }
 
@@ -71,7 +64,8 @@ void main() {
     uint slot = gl_GlobalInvocationID.x;
     if (slot >= push.count) return;
     for (bool warm = objectCounters[slot].until >= push.now; warm; warm = false)
-        if ((exchangeObjects[slot].flags & kExchangeLive) != 0u && (objects[slot].flags & kObjectHeat) != 0u) {
+        if ((exchangeObjects[slot].flags & kExchangeLive) != 0u &&
+            (objects[slot].flags & kObjectHeat) != 0u) {
             objectCounters[slot].held |= kHeldWarm;
             gather(slot);
         }

@@ -41,7 +41,8 @@ struct Seen {       // of a row, for its neighbours
 };
 Seen seenAt(Row row, uint y) {
     bool within = y < height;
-    uint border = !within && (open & (y == height ? kFieldOpenTop : kFieldOpenBottom)) != 0u ? kNoLimit : 0u;
+    uint border =
+        !within && (open & (y == height ? kFieldOpenTop : kFieldOpenBottom)) != 0u ? kNoLimit : 0u;
     uint all = within ? kNoLimit : border;
     Seen s;
     FW_UNROLL for (uint j = 0u; j < 6u; ++j) {
@@ -60,7 +61,12 @@ struct Sums {     // of a strip's cells: particles and their motion
     uint x[4];
     uint y[4];
 };
-const Sums kNothing = Sums(uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u));
+#define FW_ADD(to, i, count, motionX, motionY) \
+    to.n[i] += count;                          \
+    to.x[i] += count * (motionX);              \
+    to.y[i] += count * (motionY);
+const Sums kNothing =
+    Sums(uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u), uint[4](0u, 0u, 0u, 0u));
 
 FieldPushes pushesAt(FieldWeights w, uint key, uint quad, uint rows) {
     return fieldPushes(w, fieldChaos(fieldRandom(key, quad, rows)));
@@ -73,7 +79,8 @@ uvec2 activeRows(uint now, uint before, uvec2 sources) {
     if (now != 0u) rows = uvec2(8u * uint(findLSB(now)), 8u * uint(findMSB(now)) + 9u);
     rows.x -= min(rows.x, 1u);
     if (before != 0u)
-        rows = uvec2(min(rows.x, 8u * uint(findLSB(before))), max(rows.y, 8u * uint(findMSB(before)) + 8u));
+        rows = uvec2(min(rows.x, 8u * uint(findLSB(before))),
+                     max(rows.y, 8u * uint(findMSB(before)) + 8u));
     if (sources.y != 0u) rows = uvec2(min(rows.x, sources.x), max(rows.y, sources.y));
     rows.y = min(rows.y, height);
     rows.x &= ~(kRows - 1u);
@@ -140,73 +147,66 @@ void main() {
         uint row = 0u;
         do {
             Row above = rowAt(y + 1u);
-            Seen seenBelow = seenAt(below, y - 1u), seen = seenAt(here, y), seenAbove = seenAt(above, y + 1u);
+            Seen seenBelow = seenAt(below, y - 1u), seen = seenAt(here, y),
+                 seenAbove = seenAt(above, y + 1u);
             uint random[3] = uint[3](fieldRandom(giving, left, y), fieldRandom(giving, strip, y),
                                      fieldRandom(giving, right, y));
             Sums next = kNothing;  // row above
             FW_UNROLL for (int j = 0; j < 6; ++j) {
                 const int q = j == 0 ? 0 : (j == 5 ? 2 : 1), l = max(j - 1, 0), r = min(j + 1, 5);
                 FieldPushes p = pushes[q];
-                FieldGiver g = fieldGiver(here.cell[j], p.sum, spread, f.weights.inertia, f.weights.inertiaDiagonal,
-                                          fieldDither(random[q], uint(j + 3)));
+                FieldGiver g =
+                    fieldGiver(here.cell[j], p.sum, spread, f.weights.inertia,
+                               f.weights.inertiaDiagonal, fieldDither(random[q], uint(j + 3)));
                 // Motion carried, below 2^15.
                 uint x0 = ((here.cell[j] >> 16u) & 255u) * (memory & 255u) + still;
                 uint y0 = (here.cell[j] >> 24u) * (memory & 255u) + still;
-                uint flat_ = y0 & 0x7FFFu, up = (y0 + slant) & 0x7FFFu, down = (y0 - slant) & 0x7FFFu;
+                uint flat_ = y0 & 0x7FFFu, up = (y0 + slant) & 0x7FFFu,
+                     down = (y0 - slant) & 0x7FFFu;
                 uint stays = g.n;
                 if (j <= 4) {
-                    uint s0 = g.ahead + fieldFlow(g, 7u, p.to.k[7], seenBelow.full[r], seenBelow.room[r]);
+                    uint s0 =
+                        g.ahead + fieldFlow(g, 7u, p.to.k[7], seenBelow.full[r], seenBelow.room[r]);
                     uint s1 = s0 + fieldFlow(g, 0u, p.to.k[0], seen.full[r], seen.room[r]);
-                    uint s2 = s1 + fieldFlow(g, 1u, p.to.k[1], seenAbove.full[r], seenAbove.room[r]);
+                    uint s2 =
+                        s1 + fieldFlow(g, 1u, p.to.k[1], seenAbove.full[r], seenAbove.room[r]);
                     if (j <= 3) {
-                        uint a = fieldGiven(g.ahead, s0), b = fieldGiven(s0, s1), c = fieldGiven(s1, s2);
+                        uint a = fieldGiven(g.ahead, s0), b = fieldGiven(s0, s1),
+                             c = fieldGiven(s1, s2);
                         uint along = (x0 + slant) & 0x7FFFu;
-                        under.n[j] += a;
-                        under.x[j] += a * along;
-                        under.y[j] += a * down;
-                        sums.n[j] += b;
-                        sums.x[j] += b * ((x0 + whole) & 0x7FFFu);
-                        sums.y[j] += b * flat_;
-                        next.n[j] += c;
-                        next.x[j] += c * along;
-                        next.y[j] += c * up;
+                        FW_ADD(under, j, a, along, down)
+                        FW_ADD(sums, j, b, ((x0 + whole) & 0x7FFFu), flat_)
+                        FW_ADD(next, j, c, along, up)
                     }
                     if (j >= 1) {
-                        uint s3 = s2 + fieldFlow(g, 2u, p.to.k[2], seenAbove.full[j], seenAbove.room[j]);
+                        uint s3 =
+                            s2 + fieldFlow(g, 2u, p.to.k[2], seenAbove.full[j], seenAbove.room[j]);
                         uint d = fieldGiven(s2, s3);
-                        next.n[j - 1] += d;
-                        next.x[j - 1] += d * (x0 & 0x7FFFu);
-                        next.y[j - 1] += d * ((y0 + whole) & 0x7FFFu);
+                        FW_ADD(next, j - 1, d, (x0 & 0x7FFFu), ((y0 + whole) & 0x7FFFu))
                         stays -= s3 >> 15u;
                     }
                 }
                 if (j >= 1) {
-                    uint s0 = g.behind + fieldFlow(g, 3u, p.to.k[3], seenAbove.full[l], seenAbove.room[l]);
+                    uint s0 = g.behind +
+                              fieldFlow(g, 3u, p.to.k[3], seenAbove.full[l], seenAbove.room[l]);
                     uint s1 = s0 + fieldFlow(g, 4u, p.to.k[4], seen.full[l], seen.room[l]);
-                    uint s2 = s1 + fieldFlow(g, 5u, p.to.k[5], seenBelow.full[l], seenBelow.room[l]);
+                    uint s2 =
+                        s1 + fieldFlow(g, 5u, p.to.k[5], seenBelow.full[l], seenBelow.room[l]);
                     if (j >= 2) {
-                        uint a = fieldGiven(g.behind, s0), b = fieldGiven(s0, s1), c = fieldGiven(s1, s2);
+                        uint a = fieldGiven(g.behind, s0), b = fieldGiven(s0, s1),
+                             c = fieldGiven(s1, s2);
                         uint along = (x0 - slant) & 0x7FFFu;
-                        next.n[j - 2] += a;
-                        next.x[j - 2] += a * along;
-                        next.y[j - 2] += a * up;
-                        sums.n[j - 2] += b;
-                        sums.x[j - 2] += b * ((x0 - whole) & 0x7FFFu);
-                        sums.y[j - 2] += b * flat_;
-                        under.n[j - 2] += c;
-                        under.x[j - 2] += c * along;
-                        under.y[j - 2] += c * down;
+                        FW_ADD(next, j - 2, a, along, up)
+                        FW_ADD(sums, j - 2, b, ((x0 - whole) & 0x7FFFu), flat_)
+                        FW_ADD(under, j - 2, c, along, down)
                     }
                     if (j <= 4) {
-                        uint s3 = s2 + fieldFlow(g, 6u, p.to.k[6], seenBelow.full[j], seenBelow.room[j]);
+                        uint s3 =
+                            s2 + fieldFlow(g, 6u, p.to.k[6], seenBelow.full[j], seenBelow.room[j]);
                         uint d = fieldGiven(s2, s3);
-                        under.n[j - 1] += d;
-                        under.x[j - 1] += d * (x0 & 0x7FFFu);
-                        under.y[j - 1] += d * ((y0 - whole) & 0x7FFFu);
+                        FW_ADD(under, j - 1, d, (x0 & 0x7FFFu), ((y0 - whole) & 0x7FFFu))
                         stays = (stays - (s3 >> 15u)) & kMaxFieldCell;
-                        sums.n[j - 1] += stays;
-                        sums.x[j - 1] += stays * (x0 & 0x7FFFu);
-                        sums.y[j - 1] += stays * flat_;
+                        FW_ADD(sums, j - 1, stays, (x0 & 0x7FFFu), flat_)
                     }
                 }
             }

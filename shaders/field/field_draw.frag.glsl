@@ -35,7 +35,8 @@ const float kPeriod = 0.8;      // s, of the noise's two phases
 const float kTile = 44.0;       // cells per tile of noise
 const float kFieldWhite = 1.25;  // host units of thin soot at 1600 K
 const float kFieldTip = 1370.0;  // K
-const vec2 kStretch = kVariant == 0u ? vec2(1.15, 0.62) : (kVariant == 1u ? vec2(0.8) : vec2(2.4, 0.42));
+const vec2 kStretch =
+    kVariant == 0u ? vec2(1.15, 0.62) : (kVariant == 1u ? vec2(0.8) : vec2(2.4, 0.42));
 
 struct Shown {
     float density;
@@ -82,10 +83,11 @@ Shown shownAt(vec2 place) {
 }
 
 vec4 carried(vec2 cell, vec2 motion, float phase, float number, float lod) {
-    vec2 way = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
+    vec2 moved = clamp(motion * ((phase - 0.5) * kPeriod), vec2(-0.25 * kTile), vec2(0.25 * kTile));
     uvec3 of = uvec3(uint(number), uint(inSize.w), 3u);
     vec2 jump = vec2(hash(of), hash(of + 4u));
-    return textureLod(lookTextures, vec3((cell - way) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
+    return textureLod(lookTextures,
+                      vec3((cell - moved) * kStretch * (1.0 / kTile) + jump, kLayerNoise), lod);
 }
 
 void main() {
@@ -131,12 +133,14 @@ void main() {
         float rho = clamp(1.10 - 1.25 * d, 0.02, 1.2);
         vec2 uv = vec2(rho * (1.0 / kProfileReach), y * 0.8 + 0.12);
         vec2 profile = textureLod(profiles, vec3(clamp(uv, 0.01, 0.99), 0.0), 0.0).xy;
-        float kelvin = 1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * rough;
+        float kelvin =
+            1000.0 * profile.x + 260.0 * (min(d, 1.0) - 0.72) - 170.0 * y + 90.0 * detail * rough;
         kelvin = max(kelvin, kFieldTip);
         float soot = smoothstep(0.03, 0.62, d) * (0.25 + profile.y);
         float thick = 1.0 - exp(-1.5 * soot * (0.25 + d));
         float share1 = clamp(1.0 - body, 0.0, 1.0) * strength * edge;
-        color += sootRadiance(kelvin) * kFireWhite * inTint.rgb * (kFieldWhite * view.sunColor.w * thick * share1);
+        color += sootRadiance(kelvin) * kFireWhite * inTint.rgb *
+                 (kFieldWhite * view.sunColor.w * thick * share1);
         alpha += 0.55 * thick * min(share1, 1.0);
     }
     if (kVariant >= 1u) {  // absorbs
@@ -165,15 +169,18 @@ void main() {
         vec2 wave = -f.slope * (round_ ? 2.4 : 0.25) - detail * vec2(rough, 0.6 * ridge) * 1.8;
         vec3 n = normalize(normal + inAlong * wave.x + up * wave.y);
         float film = smoothstep(0.10, 0.42, d) * edge;
-        if (round_) film = smoothstep(0.10, 0.42, d) * step(0.0, facing) * smoothstep(0.0, 0.25, facing);
+        if (round_)
+            film = smoothstep(0.10, 0.42, d) * step(0.0, facing) * smoothstep(0.0, 0.25, facing);
         float facingN = clamp(dot(n, toEye), 0.0, 1.0);
         float fresnel = 0.03 + 0.97 * pow(1.0 - facingN, 5.0);
         vec3 back = reflect(-toEye, n);
-        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb, smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
+        vec3 sky = mix(view.ambientGround.rgb, view.ambientSky.rgb,
+                       smoothstep(-0.4, 0.6, dot(back, view.up.xyz)));
         vec3 half_ = normalize(view.sunDirection.xyz + toEye);
         float gleam = pow(max(dot(n, half_), 0.0), 60.0);
         // Foam where it breaks.
-        float foam = smoothstep(0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * ridge + 0.25 * length(f.motion));
+        float foam = smoothstep(
+            0.55, 1.25, 0.55 * min(d, 1.0) + 1.6 * detail * ridge + 0.25 * length(f.motion));
         vec3 light = view.ambientSky.rgb * 0.8 + view.sunColor.rgb * 0.35;
         vec3 deep = inTint.rgb * vec3(0.10, 0.26, 0.31) * light;
         float share1 = clamp(body - 1.0, 0.0, 1.0) * strength * film;

@@ -22,8 +22,10 @@ uint cellIndex(int x, int y) {
 float particlesAt(uint first, vec2 at) {
     vec2 low = floor(at), part = at - low;
     int x = int(low.x), y = int(low.y);
-    vec4 n = vec4(fieldNumber(cells[first + cellIndex(x, y)]), fieldNumber(cells[first + cellIndex(x + 1, y)]),
-                  fieldNumber(cells[first + cellIndex(x, y + 1)]), fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
+    vec4 n = vec4(fieldNumber(cells[first + cellIndex(x, y)]),
+                  fieldNumber(cells[first + cellIndex(x + 1, y)]),
+                  fieldNumber(cells[first + cellIndex(x, y + 1)]),
+                  fieldNumber(cells[first + cellIndex(x + 1, y + 1)]));
     vec2 rows = mix(n.xz, n.yw, part.x);
     return mix(rows.x, rows.y, part.y);
 }
@@ -53,7 +55,9 @@ void main() {
         FW_UNROLL for (int k = 0; k < 4; ++k) {
             vec2 there = at + sun * reach + 0.5;
             uint c = cellIndex(int(floor(there.x)), int(floor(there.y)));
-            column += 0.9 * reach * mix(float(fieldNumber(cells[d.before + c])), float(fieldNumber(cells[d.cells + c])), between);
+            column += 0.9 * reach *
+                      mix(float(fieldNumber(cells[d.before + c])),
+                          float(fieldNumber(cells[d.cells + c])), between);
             reach *= 1.9;
         }
         bool wall = cell == kFieldWallCell;

@@ -32,8 +32,8 @@
         return (slowness[base + (texel >> 1u)] >> ((texel & 1u) * 16u)) & 0xFFFFu; \
     }
 #define FW_BUFFER_LINK_QUADS(access) FW_BUFFER(LINKS, access, uvec4, linkQuads)
-#define FW_BUFFER_DEPENDENTS(access) FW_BUFFER(DEPENDENTS, access, uint, readers)
-// Two words of four per tile: seam mask, reader start and count; rim mask, rim base, unused.
+#define FW_BUFFER_DEPENDENTS(access) FW_BUFFER(DEPENDENTS, access, uint, dependents)
+// Two words of four per tile: seam mask, dependents' start and count; rim mask, rim base, unused.
 #define FW_BUFFER_TILES(access) FW_BUFFER(TILES, access, uvec4, tiles)
 // rimOfRow: those texels of a row of eight that have a ring record.
 #define FW_BUFFER_TILE_WORDS(access) FW_BUFFER(TILES, access, uint, tileWords) \
@@ -124,7 +124,7 @@ const uint kRunBits = 3u;
 // Effects.
 #define FW_BUFFER_APPEARANCES(access) FW_BUFFER(APPEARANCES, access, MaterialAppearance, looks)
 #define FW_BUFFER_LIGHTS(access) FW_BUFFER(LIGHTS, access, BurnLight, lights)
-#define FW_BUFFER_LIGHT_CELLS(access) FW_BUFFER(LIGHT_CELLS, access, uint, cells)
+#define FW_BUFFER_LIGHT_CELLS(access) FW_BUFFER(LIGHT_CELLS, access, uint, clusters)
 #define FW_BUFFER_FLAMES(access) FW_BUFFER(FLAMES, access, FlameQuad, flameQuad)
 #define FW_BUFFER_DRAW_ARGS(access) FW_BUFFER(DRAW_ARGS, access, uint, drawArgs)
 #define FW_BUFFER_FLIPBOOKS(access) FW_BUFFER(FLIPBOOKS, access, uint, flipbooks)

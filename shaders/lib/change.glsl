@@ -19,7 +19,8 @@ TexelPlace placeOfTexel(uint object, uint texel) {
 
 // Row of the object's materials that a texel uses.
 uint materialOfTexel(uint object, uint texel) {
-    return object * kMaterialsPerObject + ((texels[objects[object].texelBase + texel].y >> 16u) & 7u);
+    return object * kMaterialsPerObject +
+           ((texels[objects[object].texelBase + texel].y >> 16u) & 7u);
 }
 void litFrom(uint object, uint by) {
     if (objectCounters[object].litTick == 0u) atomicMax(objectCounters[object].litBy, by);

@@ -22,15 +22,18 @@ vec3 emberRadiance(float kelvin) {
 
 // Channel-mixing film curve (the well-known fit of the ACES reference rendering).
 vec3 filmCurve(vec3 c) {
-    const mat3 toFilm = mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
-    const mat3 fromFilm = mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
+    const mat3 toFilm =
+        mat3(0.59719, 0.07600, 0.02840, 0.35458, 0.90834, 0.13383, 0.04823, 0.01566, 0.83777);
+    const mat3 fromFilm =
+        mat3(1.60475, -0.10208, -0.00327, -0.53108, 1.10813, -0.07276, -0.07367, -0.00605, 1.07602);
     c = toFilm * c;
     c = (c * (c + 0.0245786) - 0.000090537) / (c * (0.983729 * c + 0.4329510) + 0.238081);
     return clamp(fromFilm * c, 0.0, 1.0);
 }
 
 vec3 encodeSrgb(vec3 c) {
-    return mix(1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055, c * 12.92, lessThanEqual(c, vec3(0.0031308)));
+    return mix(1.055 * pow(max(c, 0.0031308), vec3(1.0 / 2.4)) - 0.055, c * 12.92,
+               lessThanEqual(c, vec3(0.0031308)));
 }
 
 // FwOutputEncoding: 0 linear, 1 tone mapped into an sRGB view, 2 tone mapped and encoded.

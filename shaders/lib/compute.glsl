@@ -7,6 +7,15 @@
 layout(local_size_x = FW_THREADS) in;
 #define FW_PUSH(type) layout(push_constant) uniform PushBlock { type push; };
 
+// Inclusive sums of FW_THREADS words in shared memory, from sums[first] on, one per thread.
+#define FW_SUM_UP(sums, first, thread)                                           \
+    for (uint reach = 1u; reach < FW_THREADS; reach <<= 1u) {                    \
+        uint below = thread >= reach ? sums[(first) + thread - reach] : 0u;      \
+        barrier();                                                               \
+        sums[(first) + thread] += below;                                         \
+        barrier();                                                               \
+    }
+
 const uint kMaxGroups = 65535u;  // of an indirect dispatch; passes stride over the rest
 
 // Runs a function for every item of a list, a dispatch apart per thread. Tests at the end: a

@@ -5,6 +5,11 @@ FW_READ(TILES) FW_READ(DEPENDENTS)
 uvec2 laneMask(uint lane) {
     return lane < 32u ? uvec2(1u << lane, 0u) : uvec2(0u, 1u << (lane - 32u));
 }
+// The same for texels of a row, by bits.
+uvec2 rowMask(uint row, uint bits) {
+    bits <<= (row & 3u) * 8u;
+    return row < 4u ? uvec2(bits, 0u) : uvec2(0u, bits);
+}
 // Local tile `k` of the eight beside tile (tileX, tileY), or kNoneTexel.
 uint besideTile(int tilesX, int tilesY, int tileX, int tileY, uint k) {
     // kFrontRingX and Y packed in words: `k` is not constant, and devices index arrays slowly.

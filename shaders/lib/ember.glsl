@@ -3,7 +3,8 @@
 ivec3 worldUp() { return ivec3(push.upX, push.upY, push.upZ); }
 
 Ember emberFrom(FireSource source) {
-    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) + unpackWind(uint(exchangeObjects[source.object].high.w));
+    ivec3 wind = ivec3(push.windX, push.windY, push.windZ) +
+                 unpackWind(uint(exchangeObjects[source.object].high.w));
     return flyingEmber(source, source.ember, worldUp(), wind);
 }
 
@@ -38,7 +39,8 @@ uint landsOn(ivec3 at, uint axis, out uint tile) {
 
 // Range of sources of a burning slot.
 uvec2 sourcesOf(uint slot) {
-    bool burns = (exchangeObjects[slot].flags & kExchangeLive) != 0u && objectCounters[slot].burning != 0u;
+    bool burns =
+        (exchangeObjects[slot].flags & kExchangeLive) != 0u && objectCounters[slot].burning != 0u;
     uint first = exchangeObjects[slot].sourceBase;
     return uvec2(first, burns ? first + exchangeObjects[slot].sourceCount : first);
 }

@@ -1,8 +1,6 @@
 // Samples of the appearance textures at a place in metres. The includer declares `lookTextures`.
 #include "shared/integer.h"
 
-float saturate(float x) { return clamp(x, 0.0, 1.0); }
-
 // Mip of a pattern of `tiles` per metre at `pixel` metres per pixel, rounded: a software device
 // would fetch two mips otherwise, for twice the time.
 float noiseLod(float pixel, float tiles) {
@@ -18,8 +16,7 @@ vec4 lookLayer(vec2 uv, float layer, float lod) {
 }
 
 float hash(uvec3 v) {
-    uint x = hash32(v.x * 73856093u ^ v.y * 19349663u ^ v.z * 83492791u);
-    return float(x >> 8) * (1.0 / 16777216.0);
+    return hashUnit(v.x * 73856093u ^ v.y * 19349663u ^ v.z * 83492791u);
 }
 
 float hash(int x, int y, int seed) { return hash(uvec3(uint(x), uint(y), uint(seed))); }

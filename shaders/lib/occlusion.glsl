@@ -11,7 +11,8 @@ bool isOccluderStanding(uint what, uint texel) {
         uint t = state[objects[slot].stateBase + texel];
         bool gone = isSource(t) && t <= push.now && push.now - t >= holes;
         if (gone && (objects[slot].flags & kObjectHeat) != 0u)
-            gone = gateOpens(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t, push.now);
+            gone = gateOpens(kEventGate, holes, unpackHeat(heat[objects[slot].heatBase + texel]), t,
+                             push.now);
         stands = !gone;
     }
     return stands;
@@ -37,7 +38,8 @@ bool isOccluded(OcclusionEnds ends, ivec3 a, ivec3 b) {
                     texel = occlusion[3u * words + 2u * i + 1u];
                 }
                 uint slot = what & kOcclusionSlotMask;
-                stops = !isNearWalkEnd(w, ends, slot == kOcclusionSlotMask ? kNoneTexel : slot, push.occlusionCell);
+                stops = !isNearWalkEnd(w, ends, slot == kOcclusionSlotMask ? kNoneTexel : slot,
+                                       push.occlusionCell);
             }
             stepOcclusionWalk(w, push.occlusionCell);
         }

@@ -30,7 +30,8 @@ float slope(uint centreAt, uint at, uint size, uint stride, uint centre) {
 
 // As packGradient; keeps the soot.
 uint gradientOf(uint at, uint x, uint y, uint width, uint height, uint now) {
-    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) | (gradient[at] & 0xFFu);
+    return packGradient(vec2(slope(at, x, width, 1u, now), slope(at, y, height, width, now))) |
+           (gradient[at] & 0xFFu);
 }
 
 // A round reads the times of the round before and nothing that it writes, so the result does not

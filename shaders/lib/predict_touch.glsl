@@ -10,11 +10,12 @@ void touchAround(uint worldTile, uvec2 mask, uint object, uint tileX, uint tileY
     uvec4 places = objectPlaces(object);
     uvec4 sizes = objectSizes(object);
     for (uint beside = dependentNeighbours(mask.x, mask.y); beside != 0u; beside &= beside - 1u) {
-        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY), uint(findLSB(beside)));
+        uint other = besideTile(int(sizes.z), int(sizes.y >> 3u), int(tileX), int(tileY),
+                                uint(findLSB(beside)));
         if (other != kNoneTexel) predictTouch(parity, places.x + other);
     }
     uvec4 seam = tiles[(sizes.x + worldTile - places.x) * 2u];
     if (((seam.x & mask.x) | (seam.y & mask.y)) == 0u) return;
     for (uint r = 0u; r < seam.w; ++r)
-        predictTouch(parity, places.x + readers[places.z + seam.z + r]);
+        predictTouch(parity, places.x + dependents[places.z + seam.z + r]);
 }

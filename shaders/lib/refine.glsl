@@ -11,3 +11,13 @@ uint edgeJobs() { return push.cutJobs + ((push.cutJobs - push.placeJobs) >> 1u);
 uint objectList() { return cornerList() + 2u * push.cornerGroups; }
 // Per object of the list: cut triangles of each material, then the first that exceeds the capacity.
 uint cutCounts(uint ordinal) { return objectList() + 2u * push.objects + 16u * ordinal; }
+// Triangles up to the end of material m, and before it.
+uint materialEnd(uint object, uint m) {
+    uvec4 low = refined[object].materialEnd0;
+    uvec4 high = refined[object].materialEnd1;
+    return m < 4u ? low[m & 3u] : high[m & 3u];
+}
+uint materialStart(uint object, uint m) {
+    uint start = materialEnd(object, max(m, 1u) - 1u);
+    return m == 0u ? 0u : start;
+}

@@ -21,12 +21,14 @@ float arrivalAt(uint object, uint base, uint weights, uint nowTick) {
 
 // behind: s since the object's epoch when the opposite wall was lit; unlit: assumed one
 // burn-through time ahead, so that corners around a lit area know the distance to it.
-RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float recede, out float behind) {
+RefineVertex evaluateSlotNow(uint object, RefineSlot slot, uint nowTick, float recede,
+                             out float behind) {
     float own = arrivalAt(object, slot.texel & 0xFFFFFFu, slot.weights, nowTick);
     behind = kRefineNever;
     bool walled = slot.opposite != kRefineOpposed;
     while (walled) {
-        behind = arrivalAt(object, slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite), nowTick);
+        behind = arrivalAt(object, slot.opposite & 0xFFFFFFu, refineOppositeWeights(slot.opposite),
+                           nowTick);
         walled = false;
     }
     uint material = slot.texel >> 24u;

@@ -17,3 +17,14 @@ SkinPlace skinPlace(bool skinned, uint skinTexel, uint shownBase) {
     found.normal = across * (16384.0 * inversesqrt(max(dot(across, across), 1e-30)));
     return found;
 }
+
+// Position of a texel at rest, m, object space.
+vec3 restOf(uint object, uvec2 texel) {
+    return objects[object].originQuantum.xyz + objects[object].originQuantum.w *
+               vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
+}
+vec3 inWorld(uint object, vec3 rest) {
+    vec4 at = vec4(rest, 1.0);
+    return vec3(dot(objects[object].worldRow0, at), dot(objects[object].worldRow1, at),
+                dot(objects[object].worldRow2, at));
+}

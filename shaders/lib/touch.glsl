@@ -4,8 +4,8 @@
 
 // r-th dependent tile over seams. The switches serve the tests.
 uint dependentTile(uint object, uint dependentStart, uint r) {
-    uint reader = readers[objects[object].dependentBase + dependentStart + r];
-    return (push.switches & kSwitchWrongDependents) != 0u ? 0u : reader;
+    uint tile = dependents[objects[object].dependentBase + dependentStart + r];
+    return (push.switches & kSwitchWrongDependents) != 0u ? 0u : tile;
 }
 // Touches the tiles beside a tile, and over seams, that depend on its texels of `mask`.
 void touchBeside(uint parity, uint row, uint object, uint local, uvec2 mask, uint bits) {

@@ -8,9 +8,9 @@
 #extension GL_GOOGLE_include_directive : require
 #include "lib/refine.glsl"
 FW_READ(REFINE_WORDS) FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_EDGES) FW_READ(REFINE_SLOTS)
-FW_READ(REFINE_LEVELS) FW_READ(REFINE_VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT)
-FW_READ(VERTICES) FW_READ_WRITE(REFINE_WORK) FW_READ_WRITE(REFINE_HEAT) FW_WRITE(REFINE_INDICES)
-FW_WRITE(REFINE_CUTS) FW_WRITE(REFINE_CUT_DRAWS)
+FW_READ(REFINE_LEVELS) FW_READ(REFINE_VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT) FW_READ(VERTICES)
+FW_READ_WRITE(REFINE_WORK) FW_READ_WRITE(REFINE_HEAT) FW_WRITE(REFINE_INDICES) FW_WRITE(REFINE_CUTS)
+FW_WRITE(REFINE_CUT_DRAWS)
 #include "lib/refine_arrival.glsl"
 
 const uint kLost = 0x80000000u;  // of a job's triangle: all burnt through
@@ -27,7 +27,9 @@ uint openSides(uint object, RefineTriangle t) {
     return refined[object].inner != 0u ? open : 0u;
 }
 
-bool hasPerPixelHoles(uint object) { return (refined[object].flags & kRefineHasPerPixelHoles) != 0u; }
+bool hasPerPixelHoles(uint object) {
+    return (refined[object].flags & kRefineHasPerPixelHoles) != 0u;
+}
 
 bool isGone(uint object, float hole) { return hole <= refined[object].now; }
 
@@ -48,7 +50,9 @@ bool isLost(uint object, RefineTriangle t) {
             s = refineInnerSlot(t, side == 1u ? 2u : 1u, side == 2u ? 2u : 1u, 2u);
         RefineSlot slot = slots[refined[object].meshSlots + s];
         float behind;
-        lost = lost && isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
+        lost =
+            lost &&
+            isGone(object, evaluateSlotNow(object, slot, push.nowTick, push.recede, behind).hole);
     }
     return lost;
 }
@@ -56,7 +60,8 @@ bool isLost(uint object, RefineTriangle t) {
 void find(uint object, uint triangle) {
     RefineTriangle t = triangles[refined[object].meshTriangles + triangle];
     uint base = refined[object].items, own = base + refined[object].edgeCount + triangle;
-    uint seen = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
+    uint seen =
+        heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
     uint open = openSides(object, t);
     if ((seen & kRefineGone) == 0u && open == 0u) return;
     bool lost = (heat[own] & kRefineLost) != 0u;
@@ -80,16 +85,9 @@ void find(uint object, uint triangle) {
     work[push.cutJobs + 2u * job + 1u] = triangle | (lost ? kLost : 0u);
 }
 
-// First triangle of material m.
-uint materialStart(uint object, uint m) {
-    uvec4 low = refined[object].materialEnd0;
-    uvec4 high = refined[object].materialEnd1;
-    uint before = max(m, 1u) - 1u;
-    uint start = before < 4u ? low[before & 3u] : high[before & 3u];
-    return m == 0u ? 0u : start;
-}
 uint roomBefore(uint object, uint m) {
-    return refineCutShare(refined[object].cutTriangles, materialStart(object, m), refined[object].triangleCount);
+    return refineCutShare(refined[object].cutTriangles, materialStart(object, m),
+                          refined[object].triangleCount);
 }
 
 struct Point {   // of a kept polygon
@@ -141,7 +139,8 @@ void writeVertex(uint at, Point p, bool inner, float left) {
     cuts[at * 3u + 2u] = uvec4(p.detail.xyz, floatBitsToUint(left));
 }
 
-void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole, uint first) {
+void cutTriangle(uint object, uvec3 drawn, uvec3 slots_, vec3 fields, RefineCut cut, bool whole,
+                 uint first) {
     Point points[4];
     for (uint i = 0u; i < 4u; ++i)
         points[i] = pointOf(object, drawn, slots_, fields, cut.corner[min(i, cut.points - 1u)]);
@@ -188,7 +187,8 @@ void cutGroup(uint object, uint triangle, bool lost) {
         }
         uint border = 0u;
         for (uint v = 0u; v < 3u; ++v) {
-            uint sides = refineSidesOf(packed.x, codes[v]) & refineSidesOf(packed.x, codes[refineNext(v)]);
+            uint sides =
+                refineSidesOf(packed.x, codes[v]) & refineSidesOf(packed.x, codes[refineNext(v)]);
             border |= (sides & open) != 0u ? 1u << v : 0u;
         }
         if (hasPerPixelHoles(object)) solid = 7u;
@@ -203,7 +203,8 @@ void cutGroup(uint object, uint triangle, bool lost) {
                 atomicMin(work[counts + 8u], at);
                 whole = true;
             } else {
-                cutTriangle(object, drawn, slots_, fields, cut, whole, refined[object].cuts + 3u * (before + at));
+                cutTriangle(object, drawn, slots_, fields, cut, whole,
+                            refined[object].cuts + 3u * (before + at));
             }
             crossed = 0u;
         }

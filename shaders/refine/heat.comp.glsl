@@ -64,7 +64,8 @@ void main() {
         uint local = tile - objectPlaces(object).x;
         bool known = object < push.objectEnd;
         object = known ? object : 0u;
-        known = known && (refined[object].flags & kRefineIsActive) != 0u && local < refined[object].tileCount;
+        known = known && (refined[object].flags & kRefineIsActive) != 0u &&
+                local < refined[object].tileCount;
         bool burns = push.parity >= 2u || (tileState[tile].flag & kTileBurning) != 0u;
         uint bits = kRefineHot | (burns ? kRefineBurning : 0u);
         while (known) {

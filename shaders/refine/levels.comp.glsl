@@ -52,7 +52,9 @@ void count(uint object, uint triangle) {
         float bias = float(k) * kRefineBiasStep;
         uvec4 top;
         for (int i = 0; i < 4; ++i) top[i] = topLevel(biasedLevel(target[i], bias, spread[i]));
-        uint sum = refineCount(refinePack(top.x, top.y, top.z, fitInterior(top.x, top.y, top.z, top.w))) - 1u;
+        uint sum =
+            refineCount(refinePack(top.x, top.y, top.z, fitInterior(top.x, top.y, top.z, top.w))) -
+            1u;
         if ((k & 1u) == 0u)
             atomicAdd(levels[sums + (k >> 1u)].x, sum);
         else
@@ -125,7 +127,8 @@ void move(uint object, uint item) {
     RefineLevel s = items[at];
     float before = s.level;
     float now = refined[object].now;
-    moveRefineLevel(s, wanted(object, item, minBias()), now, refined[object].dt, kRefineRate, kRefineGrace);
+    moveRefineLevel(s, wanted(object, item, minBias()), now, refined[object].dt, kRefineRate,
+                    kRefineGrace);
     items[at] = s;
     if (s.level == before && now - s.lastHot >= kRefineCool) return;
     heat[at] |= kRefineMoving;
@@ -146,10 +149,12 @@ void pack(uint object, uint triangle) {
     uint m = fitInterior(a, b, c, topLevel(items[own].level));
     uint packed = refinePack(a, b, c, m);
     uint at = refined[object].triangles + triangle;
-    bool changed = (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u || levels[at].x != packed;
+    bool changed =
+        (refined[object].flags & (kRefineIsFresh | kRefineIsWhole)) != 0u || levels[at].x != packed;
     levels[at].x = packed;
     if (changed) atomicOr(work[objectList() + 2u * refined[object].ordinal + 1u], 1u);
-    uint moving = heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
+    uint moving =
+        heat[own] | heat[base + t.edge[0]] | heat[base + t.edge[1]] | heat[base + t.edge[2]];
     if (m >= 2u && (changed || (moving & kRefineMoving) != 0u)) {
         uint job = atomicAdd(work[kRefineWorkPlace + 3u], 1u);
         atomicMax(work[kRefineWorkPlace], min(job / 2u + 1u, kMaxGroups));

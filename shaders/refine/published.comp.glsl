@@ -13,7 +13,8 @@ FW_READ_WRITE(REFINE_VERTICES) FW_WRITE(REFINE_INDICES) FW_PUSH(PatternPush)
 void place(uint object, uint s) {
     RefineSlot slot = slots[refined[object].meshSlots + s];
     float behind;
-    vertices[refined[object].vertices + s] = evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
+    vertices[refined[object].vertices + s] =
+        evaluateSlotNow(object, slot, push.nowTick, push.recede, behind);
 }
 
 void name(uint object, uint entry) {

@@ -4,8 +4,7 @@
 #extension GL_GOOGLE_include_directive : require
 #define FW_THREADS 128
 #include "lib/refine.glsl"
-FW_COHERENT(REFINE_WORK) FW_COHERENT(REFINE_LEVELS) FW_WRITE(REFINE_DRAWS)
-FW_WRITE(OBJECT_COUNTERS)
+FW_COHERENT(REFINE_WORK) FW_COHERENT(REFINE_LEVELS) FW_WRITE(REFINE_DRAWS) FW_WRITE(OBJECT_COUNTERS)
 
 shared uint part[128];
 shared uint firstJob;
@@ -21,12 +20,7 @@ void scan(uint object, uint ordinal) {
     for (uint i = first; i < end; ++i) sum += refineCount(levels[base + i].x);
     part[lane] = sum;
     barrier();
-    for (uint step = 1u; step < 128u; step <<= 1u) {
-        uint below = lane >= step ? part[lane - step] : 0u;
-        barrier();
-        part[lane] += below;
-        barrier();
-    }
+    FW_SUM_UP(part, 0u, lane)
     uint start = part[lane] - sum;
     for (uint i = first; i < end; ++i) {
         levels[base + i].y = start;
@@ -43,12 +37,7 @@ void scan(uint object, uint ordinal) {
         atomicMax(work[kRefineWorkEmit], min(firstJob + jobs, kMaxGroups));
     }
     if (lane < kMaterialsPerObject) {
-        uvec4 low = refined[object].materialEnd0;
-        uvec4 high = refined[object].materialEnd1;
-        uint to = lane < 4u ? low[lane & 3u] : high[lane & 3u];
-        uint before = max(lane, 1u) - 1u;
-        uint from = before < 4u ? low[before & 3u] : high[before & 3u];
-        from = lane == 0u ? 0u : from;
+        uint to = materialEnd(object, lane), from = materialStart(object, lane);
         uint a = from < count ? levels[base + min(from, count - 1u)].y : total;
         uint b = to < count ? levels[base + min(to, count - 1u)].y : total;
         uint at = (object * kMaterialsPerObject + lane) * 5u;

@@ -9,7 +9,8 @@ FW_SHARED_BEGIN
 
 // Set beside kSwitchGoverned: the number of burning tiles is limited.
 FW_SHARED_CONST uint kSwitchCapped = 0x20000u;
-// The pass only requests and lights nothing. In `grant`: the front's due tiles request through it.
+// The pass only requests and lights nothing. In `burn_budget`: the front's due tiles request
+// through it.
 FW_SHARED_CONST uint kSwitchRequests = 0x40000u;
 
 // Tiles that may still start to burn.

@@ -5,6 +5,7 @@
 #ifndef FW_SHARED_DEFORM_H
 #define FW_SHARED_DEFORM_H
 #include "shared/burn.h"
+#include "shared/integer.h"
 
 #ifdef __cplusplus
 #include <glm/gtc/packing.hpp>
@@ -16,17 +17,21 @@ FW_SHARED_CONST uint kDeformTexels = 16u;     // texels sampled in a particle's 
 FW_SHARED_CONST uint kDeformRing = 8u;        // neighbours of a particle
 FW_SHARED_CONST uint kLinksPerPass = 2u;       // links read at a time
 FW_SHARED_CONST uint kDeformLinkPasses = 4u;       // passes over the links: kDeformRing in all
-FW_SHARED_CONST uint kBendSets = 4u;           // bending sets: two directions, long and short; each step uses one
+// Bending sets: two directions, long and short; each step uses one
+FW_SHARED_CONST uint kBendSets = 4u;
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
-FW_SHARED_CONST uint kDeformParticleQuads = 20u;  // quads of a DeviceParticle; offsets of its parts:
+// Quads of a DeviceParticle; offsets of its parts:
+FW_SHARED_CONST uint kDeformParticleQuads = 20u;
 FW_SHARED_CONST uint kParticleLinks = 1u;          // neighbours, one quad per pass
 FW_SHARED_CONST uint kParticleBends = 5u;          // bending constraints, one quad per set
 FW_SHARED_CONST uint kParticleRest = 9u;
-FW_SHARED_CONST uint kParticleFarLinks = 10u;          // neighbours two steps away, one quad per pass; spring model
+// Neighbours two steps away, one quad per pass; spring model
+FW_SHARED_CONST uint kParticleFarLinks = 10u;
 FW_SHARED_CONST uint kParticleTexels = 14u;
 FW_SHARED_CONST uint kParticleRecession = 18u;
 FW_SHARED_CONST uint kDeformEmbeddingQuads = 4u;
-FW_SHARED_CONST uint kDeformObjectQuads = 36u; // quads of a DeformObject: materials from 4, pins from 20
+// Quads of a DeformObject: materials from 4, pins from 20
+FW_SHARED_CONST uint kDeformObjectQuads = 36u;
 FW_SHARED_CONST uint kShownQuads = 3u;        // of a ShownVertex
 FW_SHARED_CONST uint kMaxPins = 8u;
 FW_SHARED_CONST uint kDeformGroup = 512u;     // particles or vertices of a workgroup: 8 per thread
@@ -48,15 +53,18 @@ FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: mass-spring model of th
 
 // DeformParticle::flags, above the material (bits 0..7)
 FW_SHARED_CONST uint kParticleClosed = 0x100u;    // its ring of neighbours closes
-FW_SHARED_CONST uint kParticleEven = 0x200u;      // at rest it lies in the middle of its neighbours, seen along the normal
-FW_SHARED_CONST uint kParticleBendsEven = 0x400u;  // and of its first bending set; << 1: of its second ...
-FW_SHARED_CONST uint kParticleHasBends = 0x4000u;    // it, or another particle of its run, has bending constraints
+// At rest it lies in the middle of its neighbours, seen along the normal
+FW_SHARED_CONST uint kParticleEven = 0x200u;
+// And of its first bending set; << 1: of its second ...
+FW_SHARED_CONST uint kParticleBendsEven = 0x400u;
+// It, or another particle of its run, has bending constraints
+FW_SHARED_CONST uint kParticleHasBends = 0x4000u;
 FW_SHARED_CONST uint kParticleRingShift = 16u;    // number of neighbours: bits 16..19
 FW_SHARED_CONST uint kParticlePassesShift = 20u;   // link passes of its run: bits 20..22
 
 struct DeformParticle {       // constant, per mesh
     uint vertex;                 // vertex that stores its state, from the mesh's first
-    uint flags;                  // material, kNode...
+    uint flags;                  // material, kParticle...
     float rise;                  // m from it to the mean of its neighbours, along the rest normal
     uint opposite;               // texel on the opposite wall, or kNoneTexel
     uint ring[8];                // vertices around it, in order
@@ -66,7 +74,8 @@ struct DeformParticle {       // constant, per mesh
     uint cross_[8];              // as ring, two steps away; no length or kNoneTexel: none
     uint crossLength[4];         // m, half floats
     uint texels[16];             // in its ring, in the burn map; padded with kNoneTexel
-    float outX; float outY; float outZ; // direction of recession: -1 along every face's normal where possible
+    // Direction of recession: -1 along every face's normal where possible
+    float outX; float outY; float outZ;
     float limit;                 // m, largest recession
     uint arms[8];                // bending partners behind and ahead, per set; or kNoneTexel
     float bendLength[8];          // m
@@ -79,7 +88,8 @@ struct DeviceLinks {      // one link pass
     uint lengths;                // m, half floats; 0: no link
     float rise;                  // m, of bending constraints
 };
-struct DeviceParticle {       // a DeformParticle on the device: quad by quad, each for all particles of the mesh
+// A DeformParticle on the device: quad by quad, each for all particles of the mesh
+struct DeviceParticle {
     uint vertex; uint flags; float rise; uint opposite;
     DeviceLinks near_[4];
     DeviceLinks arms[4];
@@ -91,11 +101,13 @@ struct DeviceParticle {       // a DeformParticle on the device: quad by quad, e
 };
 FW_SHARED_SIZE(DeviceParticle, 320)
 
-struct DeformEmbedding {       // constant, per drawn vertex: how its normal follows; device: quad by quad
+// Constant, per drawn vertex: how its normal follows; device: quad by quad
+struct DeformEmbedding {
     uint node;            // vertex that stores its particle's state
     uint normal;          // at rest, signed 11:11:10
     uint reserved0; uint reserved1;
-    uint ring[8];         // chain of vertices around it, padded with the last: triangles that share the normal
+    // Chain of vertices around it, padded with the last: triangles that share the normal
+    uint ring[8];
     float faceX; float faceY; float faceZ;  // unit, their area-weighted normal at rest
     float longest;        // m^2 at rest, longest distance to a ring vertex
 };
@@ -105,10 +117,12 @@ struct ShownVertex {      // drawn instead of mesh::RenderVertex's position and 
     float x; float y; float z;   // m, object space
     uint normal;                 // signed 11:11:10
     float burnt;                 // [0, 1], mean over the particle's texels; never falls
-    float lost; float kept;      // m, spring model: lost per step, and for later steps; kept of a solid: recession
+    // m, spring model: lost per step, and for later steps; kept of a solid: recession
+    float lost; float kept;
     float behind;                // s of appearance time for which the opposite wall has burnt
     float reserved[3];
-    float lead;                  // s of appearance time: burn-through offset, holes come earlier by it
+    // s of appearance time: burn-through offset, holes come earlier by it
+    float lead;
 };
 FW_SHARED_SIZE(ShownVertex, 48)
 
@@ -149,7 +163,8 @@ FW_SHARED_SIZE(DeformObject, 576)
 struct DeformPush {       // push constants of the deformation passes
     uint now;             // tick of the displayed state
     uint first;           // group in the list
-    uint parity;          // of the substep; above bit 0: bending set of the step; recede: number of steps
+    // Of the substep; above bit 0: bending set of the step; recede: number of steps
+    uint parity;
     float step;           // s
     vec4 wind;            // m/s, world; w: s, cosmetic time
     vec4 up;              // world; w: ticks since the step's start
@@ -172,14 +187,7 @@ FW_SHARED_SIZE(SkinPush, 48)
 using glm::packHalf2x16;
 using glm::unpackHalf2x16;
 inline float inversesqrt(float x) { return 1.0f / std::sqrt(x); }
-inline float deformFloor(float x) { return std::floor(x); }
-#else
-float deformFloor(float x) { return floor(x); }
 #endif
-FW_SHARED_FN float minF(float a, float b) { return a < b ? a : b; }
-FW_SHARED_FN float maxF(float a, float b) { return a > b ? a : b; }
-FW_SHARED_FN float mixF(float a, float b, float t) { return a + (b - a) * t; }
-FW_SHARED_FN float saturateF(float x) { return x < 0.0f ? 0.0f : (x > 1.0f ? 1.0f : x); }
 
 // Eq. (9) with areas: mip of a burn map in which about k texels cover a ring of `texels`.
 FW_SHARED_FN uint mipOfRing(uint texels, uint k) {
@@ -195,12 +203,12 @@ FW_SHARED_FN uint mipOfRing(uint texels, uint k) {
 FW_SHARED_FN float burntShare(uint t, uint now, float more, uint charTicks) {
     if (!isSource(t) || now < t) return 0.0f;
     if (charTicks == kNoneTexel || charTicks == 0u) return 0.0f;
-    return minF((float(now - t) + more) / float(charTicks), 1.0f);
+    return min((float(now - t) + more) / float(charTicks), 1.0f);
 }
 
 // Recession in m, limited so that neither walls nor neighbouring triangles cross.
 FW_SHARED_FN float recession(float burnt, float depth, float limit) {
-    return minF(burnt * depth, limit);
+    return min(burnt * depth, limit);
 }
 
 // Least wall thickness, as a share, that a fully receded wall keeps above the inner skin.
@@ -213,19 +221,20 @@ FW_SHARED_FN vec3 rotateNormal(vec3 n, vec3 a, vec3 b) {
     if (c < -0.99f) return b;  // inverted: the shortest rotation is not defined
     vec3 sum = a + b;
     vec3 turned = n - sum * (dot(sum, n) / (1.0f + c)) + b * (2.0f * dot(a, n));
-    return turned * inversesqrt(maxF(dot(turned, turned), 1e-20f));
+    return turned * inversesqrt(max(dot(turned, turned), 1e-20f));
 }
 
-// ---- sheets: position-based dynamics, Jacobi: each particle corrects itself by its neighbours' last state
+// ---- sheets: position-based dynamics, Jacobi: each particle corrects itself by its neighbours'
+// last state
 
 FW_SHARED_CONST float kNoPath = 60000.0f;  // m along unburnt links to a pin: no path known
-// A known path to a pin that grew has either been replaced by another one, which the next steps find, or is gone and
-// neighbours report it to each other in circles. It grows faster than such circles, so a falling piece is not held back
-// and a held piece yields little.
+// A known path to a pin that grew has either been replaced by another one, which the next steps
+// find, or is gone and neighbours report it to each other in circles. It grows faster than such
+// circles, so a falling piece is not held back and a held piece yields little.
 FW_SHARED_CONST float kPathGrowth = 1.03f;
 FW_SHARED_FN bool isPathKnown(float way, float before) { return way <= before * 1.004f; }
 FW_SHARED_FN float nextPath(float way, float before, bool known) {
-    return minF(known && !isPathKnown(way, before) ? way * kPathGrowth : way, kNoPath);
+    return min(known && !isPathKnown(way, before) ? way * kPathGrowth : way, kNoPath);
 }
 FW_SHARED_CONST float kPathSlack = 1.001f;   // tolerance of half-float storage
 FW_SHARED_CONST float kBendUnit = 4096.0f;    // packed bends, per m
@@ -233,8 +242,8 @@ FW_SHARED_CONST float kCharredSteps = 15.0f;  // resolution of the charred share
 // The link cache is updated every kLinkCacheSteps steps: fire takes seconds.
 FW_SHARED_CONST uint kLinkCacheSteps = 4u;
 FW_SHARED_FN bool updatesLinkCache(uint way) { return way % kLinkCacheSteps == 0u; }
-// Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4 times the second
-// factor. With velocities this is stable below 4/3.
+// Jacobi corrections: an alternating pattern is corrected by up to 4 times the first and twice 3.4
+// times the second factor. With velocities this is stable below 4/3.
 FW_SHARED_CONST float kLinkRelax = 0.2f;
 FW_SHARED_CONST float kBendRelax = 0.08f;
 FW_SHARED_CONST float kSheetDamping = 0.01f;  // of the velocity, per 1/128 s
@@ -247,12 +256,12 @@ FW_SHARED_FN uint linkOdds(uint a, uint b) {
     return ((h ^ (h >> 15u)) * 0x2C1B3C6Du) >> 24u;
 }
 FW_SHARED_FN bool linkHolds(float burntA, float burntB, uint odds) {
-    return minF(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
+    return min(burntA, burntB) < 0.80f + 0.15f / 256.0f * float(odds);
 }
 
 // Shrink and curl progress. It reaches 1 before links part.
 FW_SHARED_FN float charredShare(float burnt) {
-    float x = saturateF(burnt * 1.8f);
+    float x = saturate(burnt * 1.8f);
     return x * x * (3.0f - 2.0f * x);
 }
 
@@ -277,11 +286,12 @@ FW_SHARED_FN uint packPathBits(uint word, uint bits, uint mask) {
     return ((word + (mask + 1u) / 2u) & ~mask) | (bits & mask);
 }
 
-// Share of a bend correction for each neighbour, stored once per particle. Half floats, shortened to 11, 11 and 10
-// bits, so that all neighbours see the same value.
+// Share of a bend correction for each neighbour, stored once per particle. Half floats, shortened
+// to 11, 11 and 10 bits, so that all neighbours see the same value.
 FW_SHARED_FN uint packBendShare(vec3 share) {
     uint xy = packHalf2x16(vec2(share.x, share.y)), z = packHalf2x16(vec2(share.z, 0.0f));
-    return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u | (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
+    return (((xy & 0xFFFFu) + 16u) >> 5u) | (((xy >> 16u) + 16u) >> 5u) << 11u |
+           (((z & 0xFFFFu) + 32u) >> 6u) << 22u;
 }
 FW_SHARED_FN vec3 unpackBendShare(uint bits) {
     vec2 xy = unpackHalf2x16((bits & 0x7FFu) << 5u | (bits & 0x3FF800u) << 10u);
@@ -313,7 +323,7 @@ FW_SHARED_FN float gustAt(vec3 x, float scale, float time) {
     return 0.7f + 0.3f * sin(2.3f * time + phase) + 0.25f * sin(5.9f * time - 1.7f * phase);
 }
 FW_SHARED_FN float updraftAt(float burnt) {
-    float a = saturateF((burnt - 0.02f) / 0.18f), b = saturateF((burnt - 0.7f) / 0.3f);
+    float a = saturate((burnt - 0.02f) / 0.18f), b = saturate((burnt - 0.7f) / 0.3f);
     return kUpdraft * a * a * (3.0f - 2.0f * a) * (1.0f - b * b * (3.0f - 2.0f * b));
 }
 
@@ -321,47 +331,47 @@ FW_SHARED_FN float updraftAt(float burnt) {
 FW_SHARED_FN vec3 linkCorrection(vec3 x, vec3 y, float rest, float share) {
     vec3 d = y - x;
     float l = length(d);
-    return d * (share * (l - rest) / maxF(l, 1e-9f));
+    return d * (share * (l - rest) / max(l, 1e-9f));
 }
 
 // Curl direction along the normal: towards the side that flames lick, from below.
 FW_SHARED_FN float curlSide(vec3 normal, vec3 up) {
-    float s = 0.7f - 2.0f * dot(normal, up);
-    return s < -1.0f ? -1.0f : (s > 1.0f ? 1.0f : s);
+    return clamp(0.7f - 2.0f * dot(normal, up), -1.0f, 1.0f);
 }
 
-// ---- bending constraints
-// Constraints between neighbours barely resist wide bends, so a fine mesh would hang like a rag. Each particle
-// therefore has a partner at a fixed distance behind and one ahead, in two directions, whose middle is its target.
-// Partners are mutual. Short sets damp the waves that long sets cannot see. A step uses one set. A particle whose
-// constraints have parted has none.
+// ---- bending constraints Constraints between neighbours barely resist wide bends, so a fine mesh
+// would hang like a rag. Each particle therefore has a partner at a fixed distance behind and one
+// ahead, in two directions, whose middle is its target. Partners are mutual. Short sets damp the
+// waves that long sets cannot see. A step uses one set. A particle whose constraints have parted
+// has none.
 FW_SHARED_CONST float kBendSetRelax = 0.17f;
 FW_SHARED_CONST float kBendTears = 1.1f;  // stretch at which a constraint parts
 FW_SHARED_CONST float kBendCurl = 1.4f;  // relative to a ring of the same reach
-// Curl acts across a burning edge, not along it, since a sheet cannot do both. Its strength follows from the charred
-// shares behind and ahead. Material charred on both sides has no shape to keep.
+// Curl acts across a burning edge, not along it, since a sheet cannot do both. Its strength follows
+// from the charred shares behind and ahead. Material charred on both sides has no shape to keep.
 FW_SHARED_FN float bendCurl(float behind, float ahead) {
     float d = ahead - behind;
-    return minF(4.0f * d * d, 1.0f);
+    return min(4.0f * d * d, 1.0f);
 }
 FW_SHARED_FN float bendStiffness(float stiff, float charred, float across) {
     return kBendSetRelax * stiff * (1.0f - charred * (1.0f - across));
 }
 
-// Correction for the neighbours' mean to lie `rise` above the particle. An even particle takes all of it (the gradient
-// of an energy); others take the part along the normal.
-FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float relax, bool even) {
+// Correction for the neighbours' mean to lie `rise` above the particle. An even particle takes all
+// of it (the gradient of an energy); others take the part along the normal.
+FW_SHARED_FN vec3 bendOf(vec3 toMean, vec3 normal, float rise, float neighbours, float relax,
+                         bool even) {
     vec3 off = even ? toMean - normal * rise : normal * (dot(toMean, normal) - rise);
     off *= relax * neighbours / (neighbours + 1.0f);
     float square = dot(off, off);
     return square > 1e-4f ? off * (1e-2f * inversesqrt(square)) : off;
 }
 
-// Rise of the neighbours' mean caused by a curl, in m; `square`: mean of the squared distances. Limited so that
-// neighbours do not fold onto each other.
+// Rise of the neighbours' mean caused by a curl, in m; `square`: mean of the squared distances.
+// Limited so that neighbours do not fold onto each other.
 FW_SHARED_FN float curlRise(float curl, float square) {
-    float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(maxF(square, 1e-20f));
-    return rise > most ? most : (rise < -most ? -most : rise);
+    float rise = 0.25f * curl * square, most = 0.3f * square * inversesqrt(max(square, 1e-20f));
+    return clamp(rise, -most, most);
 }
 
 FW_SHARED_FN vec3 limitSpeed(vec3 v, float most) {
@@ -372,7 +382,7 @@ FW_SHARED_FN vec3 limitSpeed(vec3 v, float most) {
 // Nearest point on a pin's segment.
 FW_SHARED_FN vec3 pinPoint(vec3 x, vec3 from, vec3 to) {
     vec3 d = to - from;
-    return from + d * saturateF(dot(x - from, d) / maxF(dot(d, d), 1e-12f));
+    return from + d * saturate(dot(x - from, d) / max(dot(d, d), 1e-12f));
 }
 
 // ---- spring model of the reference, eqs. (3) to (8)
@@ -389,22 +399,22 @@ FW_SHARED_FN vec3 springPull(vec3 x, vec3 y, float rest, float stiffness) {
 FW_SHARED_FN vec3 decayPull(vec3 normal, float depth, float dt) {
     return normal * (-2.0f * depth / (dt * dt));
 }
-// Stiffness at `share` of the stability bound of semi-implicit Euler: dt < 2 / w, w^2 <= 2 * springs * stiffness
-// (Gershgorin).
+// Stiffness at `share` of the stability bound of semi-implicit Euler: dt < 2 / w, w^2 <= 2 *
+// springs * stiffness (Gershgorin).
 FW_SHARED_FN float springsAt(float share, float dt, float springs) {
     float w = 2.0f * share / dt;
     return w * w / (2.0f * springs);
 }
 
 FW_SHARED_FN uint packDirection(vec3 n) {  // signed 11:11:10
-    int x = int(deformFloor(n.x * 1023.0f + 0.5f)), y = int(deformFloor(n.y * 1023.0f + 0.5f));
-    int z = int(deformFloor(n.z * 511.0f + 0.5f));
+    int x = int(floor(n.x * 1023.0f + 0.5f)), y = int(floor(n.y * 1023.0f + 0.5f));
+    int z = int(floor(n.z * 511.0f + 0.5f));
     return (uint(x) & 0x7FFu) | ((uint(y) & 0x7FFu) << 11u) | ((uint(z) & 0x3FFu) << 22u);
 }
 FW_SHARED_FN vec3 unpackDirection(uint packed) {
     int n = int(packed);
     vec3 v = vec3(float((n << 21) >> 21), float((n << 10) >> 21), float(n >> 22) * 2.0f);
-    return v * inversesqrt(maxF(dot(v, v), 1e-20f));
+    return v * inversesqrt(max(dot(v, v), 1e-20f));
 }
 
 FW_SHARED_END

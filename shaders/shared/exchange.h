@@ -12,15 +12,19 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST int kExchangeFar = 32767;       // mm, along each axis
 FW_SHARED_CONST uint kExchangeSteps = 4u;       // steps from one exchange to the next
 FW_SHARED_CONST uint kExchangeTicks = kExchangeSteps * kStepTicks;
-FW_SHARED_CONST uint kExchangeRounds = kSleepSteps;   // exchanges until all tiles of a receiver have been updated
+// Exchanges until all tiles of a receiver have been updated
+FW_SHARED_CONST uint kExchangeRounds = kSleepSteps;
 FW_SHARED_CONST uint kSourcesPerReceiver = 64u;
-FW_SHARED_CONST uint kSourceGrid = 4u;          // cells along the longest side of an object, for its sources
+// Cells along the longest side of an object, for its sources
+FW_SHARED_CONST uint kSourceGrid = 4u;
 FW_SHARED_CONST uint kSourcesPerObject = 64u;   // at most
 FW_SHARED_CONST uint kMaxHeatOccluders = 64u;
-FW_SHARED_CONST uint kMaxOcclusionSide = 256u;        // cells along an axis of the occlusion grid, at most
+// Cells along an axis of the occlusion grid, at most
+FW_SHARED_CONST uint kMaxOcclusionSide = 256u;
 FW_SHARED_CONST uint kMaxOcclusionCells = 2097152u;   // cells of the grid, at most
 FW_SHARED_CONST uint kMaxBakedOcclusionCells = 262144u;    // cells filled by objects, at most
-FW_SHARED_CONST uint kReceiverWords = 66u;  // slot; number of sources; then source | visible share, of 255, << 24
+// Slot; number of sources; then source | visible share, of 255, << 24
+FW_SHARED_CONST uint kReceiverWords = 66u;
 FW_SHARED_CONST uint kRadiantShare = 1721u;     // 0.33 / (4 pi), Q16
 FW_SHARED_CONST uint kPlumeTransfer = 25u;      // W/m^2/K
 FW_SHARED_CONST uint kNearest = 300u;           // mm: distances below half of this count as that
@@ -68,8 +72,8 @@ struct ExchangeTile {    // one tile of a mesh, as source and receiver
     uint z;            // z | source cell << 16 | material << 24
     uint normal;       // mean normal, signed 11:11:10
     uint texels;       // real ones; 0: the tile is empty
-    uvec4 parts;       // per 4 x 4 block: source lane and target texel of a link to another part of the mesh,
-                       // see partFrom; kNoneTexel: none
+    uvec4 parts;  // per 4 x 4 block: source lane and target texel of a link to another part of the
+                  // mesh, see partFrom; kNoneTexel: none
 };
 FW_SHARED_SIZE(ExchangeTile, 32)
 FW_SHARED_CONST uint kPartTexels = 1u << 28u;  // limit of a link's target texel
@@ -113,7 +117,7 @@ FW_SHARED_SIZE(ContactLink, 32)
 
 struct ExchangePush {  // push constants of the passes that exchange
     uint now;          // tick after the step
-    uint flags;        // kRemote... of the world
+    uint flags;        // kExchange... of the world
     uint burnParity;
     uint row;          // counters row of the front list, appended to
     uint parity;
@@ -154,10 +158,13 @@ FW_SHARED_FN ivec3 dotRows(ivec4 row0, ivec4 row1, ivec4 row2, ivec3 p) {
     return ivec3(dotRow(row0, p), dotRow(row1, p), dotRow(row2, p));
 }
 FW_SHARED_FN ivec3 toWorldMm(FW_IN(ExchangeObject) o, ivec3 p) {
-    return ivec3(o.row0.w, o.row1.w, o.row2.w) + (dotRows(o.row0, o.row1, o.row2, p) >> int(o.shift));
+    return ivec3(o.row0.w, o.row1.w, o.row2.w) +
+           (dotRows(o.row0, o.row1, o.row2, p) >> int(o.shift));
 }
 // Q12. n: normal in Q14.
-FW_SHARED_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) { return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14; }
+FW_SHARED_FN ivec3 turnToWorld(FW_IN(ExchangeObject) o, ivec3 n) {
+    return dotRows(o.turn0, o.turn1, o.turn2, n) >> 14;
+}
 FW_SHARED_FN ivec3 tileMiddle(FW_IN(ExchangeTile) t) {
     return ivec3(int(t.xy & 0xFFFFu), int(t.xy >> 16u), int(t.z & 0xFFFFu));
 }
@@ -191,20 +198,26 @@ FW_SHARED_FN bool occluderBlocks(FW_IN(HeatOccluder) k, ivec3 a, ivec3 b) {
     uint hx = absolute(h.x), hy = absolute(h.y), hz = absolute(h.z);
     if (absolute(o.x) > ex + hx || absolute(o.y) > ey + hy || absolute(o.z) > ez + hz) return false;
     return absolute(o.y * h.z - o.z * h.y) <= ey * hz + ez * hy &&
-           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz && absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
+           absolute(o.z * h.x - o.x * h.z) <= ez * hx + ex * hz &&
+           absolute(o.x * h.y - o.y * h.x) <= ex * hy + ey * hx;
 }
 
 // ---- heat-occlusion grid: cells that stop radiation, plumes and embers
 //
-// Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those that objects fill
-// and the number of such cells before these. Then two words for each of them: object key and texel. A cell of an object
-// is solid while that texel stands.
-FW_SHARED_CONST uint kOcclusionPermanent = 0x80000000u;  // | slot | material << 24: it never gives way
+// Layout: one bit per solid cell (x fastest, then y, then z). Then, per 32 cells, the bits of those
+// that objects fill and the number of such cells before these. Then two words for each of them:
+// object key and texel. A cell of an object is solid while that texel stands.
+// | slot | material << 24: it never gives way
+FW_SHARED_CONST uint kOcclusionPermanent = 0x80000000u;
 FW_SHARED_CONST uint kOcclusionSlotMask = 0xFFFFFFu;
 
-FW_SHARED_FN uint occlusionSide(uint counts, uint axis) { return (counts >> (10u * axis)) & 0x3FFu; }
+FW_SHARED_FN uint occlusionSide(uint counts, uint axis) {
+    return (counts >> (10u * axis)) & 0x3FFu;
+}
 FW_SHARED_FN uint occlusionWords(uint counts) {  // of one bit per cell
-    return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) + 31u) >> 5u;
+    return (occlusionSide(counts, 0u) * occlusionSide(counts, 1u) * occlusionSide(counts, 2u) +
+            31u) >>
+           5u;
 }
 
 struct OcclusionWalk {  // visits the cells that a segment crosses, face by face, to 3 mm
@@ -264,10 +277,12 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
     if (far > 1500000u) return w;
     ivec3 s = a - low;
     int side = int(g.occlusionCell);
-    ivec3 n = ivec3(int(occlusionSide(g.occlusionCounts, 0u)), int(occlusionSide(g.occlusionCounts, 1u)),
-                    int(occlusionSide(g.occlusionCounts, 2u)));
-    uint enters = maxU(maxU(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
-                         occlusionEntry(s.z, d.z, n.z * side));
+    ivec3 n =
+        ivec3(int(occlusionSide(g.occlusionCounts, 0u)), int(occlusionSide(g.occlusionCounts, 1u)),
+              int(occlusionSide(g.occlusionCounts, 2u)));
+    uint enters =
+        maxU(maxU(occlusionEntry(s.x, d.x, n.x * side), occlusionEntry(s.y, d.y, n.y * side)),
+             occlusionEntry(s.z, d.z, n.z * side));
     if (enters > 16384u) return w;
     int t = int(enters);
     ivec3 at = s + d * t / 16384;
@@ -282,7 +297,8 @@ FW_SHARED_FN OcclusionWalk beginOcclusionWalk(FW_IN(ExchangePush) g, ivec3 a, iv
     w.ahead = uvec3(x.ahead, y.ahead, z.ahead);
     w.way = uvec3(absolute(d.x), absolute(d.y), absolute(d.z));
     // Rounding may place the entry beside the grid: then it never is within.
-    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side && at.z <= n.z * side;
+    w.within = at.x >= -1 && at.y >= -1 && at.z >= -1 && at.x <= n.x * side && at.y <= n.y * side &&
+               at.z <= n.z * side;
     return w;
 }
 
@@ -311,15 +327,18 @@ FW_SHARED_FN void stepOcclusionWalk(FW_INOUT(OcclusionWalk) w, uint side) {
     }
 }
 
-struct OcclusionEnds {  // objects at both ends, and the distance within which their own cells do not count
+// Objects at both ends, and the distance within which their own cells do not count
+struct OcclusionEnds {
     uint from;       // slot
     uint to;
     uint fromSpare;  // mm
     uint toSpare;
 };
-// Is the current cell too near to an end? Everything within one cell of an end is, so what supports a fire does not
-// block it. slot: owner of the cell; kNoneTexel: the host, which counts as either end.
-FW_SHARED_FN bool isNearWalkEnd(FW_IN(OcclusionWalk) w, FW_IN(OcclusionEnds) e, uint slot, uint side) {
+// Is the current cell too near to an end? Everything within one cell of an end is, so what supports
+// a fire does not block it. slot: owner of the cell; kNoneTexel: the host, which counts as either
+// end.
+FW_SHARED_FN bool isNearWalkEnd(FW_IN(OcclusionWalk) w, FW_IN(OcclusionEnds) e, uint slot,
+                                uint side) {
     uint at = (w.whole * divide(w.passed << 12u, w.of)) >> 12u;
     uint from = slot == e.from || slot == kNoneTexel ? e.fromSpare : side;
     uint to = slot == e.to || slot == kNoneTexel ? e.toSpare : side;
@@ -333,14 +352,16 @@ FW_SHARED_FN OcclusionEnds emberOcclusionEnds(FW_IN(FireSource) s, uint to, uint
     e.toSpare = side * 2u;
     return e;
 }
-// From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a grazing angle
-// crosses many cells of its own surface.
-FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at, ivec3 normal, uint side) {
+// From a flame to a surface. Own walls: a source stands for many texels, and flux that arrives at a
+// grazing angle crosses many cells of its own surface.
+FW_SHARED_FN OcclusionEnds flameOcclusionEnds(FW_IN(FireSource) s, ivec3 flame, uint to, ivec3 at,
+                                              ivec3 normal, uint side) {
     OcclusionEnds e = emberOcclusionEnds(s, to, side);
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return e;
     uint over = absolute((normal.x / 4) * d.x + (normal.y / 4) * d.y + (normal.z / 4) * d.z) >> 10u;
-    uint leaves = divide(side * isqrtNear(squaredLength(d)), maxU(over, 1u));  // mm until one cell above it
+    // mm until one cell above it
+    uint leaves = divide(side * isqrtNear(squaredLength(d)), maxU(over, 1u));
     e.toSpare = maxU(e.toSpare, minU(leaves + leaves / 2u, side * 6u));
     return e;
 }
@@ -369,8 +390,13 @@ FW_SHARED_FN uint power04(uint x) {
     uint f = ((x << 15u) >> k) & 0x7FFFu;  // Q15
     uint rest = k % 5u;
     // 2^(0.4 rest), Q12
-    uint base = rest == 0u ? 4096u : rest == 1u ? 5405u : rest == 2u ? 7132u : rest == 3u ? 9410u : 12417u;
-    uint m = 32768u + ((10470u * f) >> 15u) + ((2140u * ((f * (32768u - f)) >> 15u)) >> 15u);  // Q15
+    uint base = rest == 0u   ? 4096u
+                : rest == 1u ? 5405u
+                : rest == 2u ? 7132u
+                : rest == 3u ? 9410u
+                             : 12417u;
+    // Q15
+    uint m = 32768u + ((10470u * f) >> 15u) + ((2140u * ((f * (32768u - f)) >> 15u)) >> 15u);
     return ((base * m) >> 19u) << (k / 5u * 2u + fours);
 }
 
@@ -378,7 +404,8 @@ FW_SHARED_FN uint power04(uint x) {
 FW_SHARED_FN uint fireDiameter(uint area) {
     return isqrtNear(minU(mulShift(area, 83443u, 16u), 0xFFFC0000u));
 }
-// Flame height in mm (Heskestad); a wide weak fire counts as many small ones. scale: power04(watts).
+// Flame height in mm (Heskestad); a wide weak fire counts as many small ones. scale:
+// power04(watts).
 FW_SHARED_FN uint flameHeight(uint scale, uint diameter) {
     uint tall = mulShift(scale, 3796u, 16u);
     uint less = diameter + diameter / 50u;
@@ -403,7 +430,8 @@ FW_SHARED_FN ivec3 alongFlame(FW_IN(FireSource) s, ivec3 up, int eighths) {
 }
 
 // Radiation from one point of a flame. normal: Q12; nearest: mm.
-FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal, bool both) {
+FW_SHARED_FN uint fluxFrom(ivec3 flame, uint watts, uint nearest, ivec3 at, ivec3 normal,
+                           bool both) {
     ivec3 d = flame - at;
     if (!isWithinExchangeRange(d)) return 0u;
     uint length = maxU(isqrtNear(squaredLength(d)), 1u);
@@ -421,7 +449,8 @@ FW_SHARED_FN uint radiantFlux(FW_IN(FireSource) s, ivec3 up, ivec3 at, ivec3 nor
     ivec3 d = middle - at;
     if (!isWithinExchangeRange(d)) return 0u;
     uint size = maxU(s.diameter, uint(s.place.w)) * 2u;
-    bool row = size >= 65535u || squaredLength(d) <= size * size;  // near: four points along the flame
+    bool row =
+        size >= 65535u || squaredLength(d) <= size * size;  // near: four points along the flame
     // A loop, not a branch: a software device would execute both sides of a branch.
     uint part = row ? s.watts / 4u : s.watts, sum = 0u;
     int end = row ? 8 : 5, apart = row ? 2 : 4, eighths = row ? 1 : 4;
@@ -444,8 +473,10 @@ FW_SHARED_FN uint plumeRise(uint z, uint scale) {
         rise = (rise * 20643u) >> 16u;
     }
     uint x = q - 200u;  // [0, 200): piecewise linear, Q12
-    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u) : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
-                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u) : 1612u - (((x - 150u) * 322u) / 50u);
+    uint part = x < 50u    ? 4096u - ((x * 1272u) / 50u)
+                : x < 100u ? 2824u - (((x - 50u) * 740u) / 50u)
+                : x < 150u ? 2084u - (((x - 100u) * 472u) / 50u)
+                           : 1612u - (((x - 150u) * 322u) / 50u);
     return (rise * part) >> 20u;
 }
 
@@ -499,8 +530,8 @@ struct Received {
     uint pilot;  // 1: a flame is near
 };
 // Heat from one source at a position, under the world's switches. seen: visible share, of 255.
-FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up, ivec3 at,
-                                   ivec3 normal, bool both, uint seen) {
+FW_SHARED_FN Received receivedFrom(FW_IN(FireSource) s, uint flags, uint ambient, ivec3 up,
+                                   ivec3 at, ivec3 normal, bool both, uint seen) {
     Received r;
     FlameFrame f = flameFrame(s, up, at);
     uint flux = 0u;
@@ -534,7 +565,8 @@ FW_SHARED_FN bool mayTransfer(FW_IN(ExchangeObject) o, uint hops, uint maxWorldH
 }
 
 // Updates an object's lit and stop ticks at an exchange.
-FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o, FW_IN(ExchangePush) rules) {
+FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o,
+                             FW_IN(ExchangePush) rules) {
     c.spotTexel &= ~kSpotFresh;
     if (c.ignited == 0u) {
         // An object that heats it may light it by the next exchange.
@@ -548,7 +580,8 @@ FW_SHARED_FN void recordFire(FW_INOUT(ObjectCounters) c, FW_IN(ExchangeObject) o
     }
 }
 
-// Key of the object that lit another: fewest jumps win, then the lowest slot, in any order. 0: none yet.
+// Key of the object that lit another: fewest jumps win, then the lowest slot, in any order. 0: none
+// yet.
 FW_SHARED_CONST uint kLitByHand = 0xFFFFFFFFu;
 FW_SHARED_FN uint litBy(uint hops, uint from) {
     return ~((minU(hops + 1u, 254u) << 24u) | (from & 0xFFFFFFu)) & 0xFFFFFFFFu;
@@ -563,20 +596,23 @@ FW_SHARED_FN bool stoppedAt(uint stopTick, uint now) { return stopTick != 0u && 
 FW_SHARED_FN bool holdsTile(uint tileFlag, uint burning, uint maxWorld, uint objectBurning,
                             uint objectFlags, uint maxObject) {
     if ((tileFlag & kTileBurning) != 0u) return false;
-    return burning >= maxWorld || ((objectFlags & kExchangeLive) != 0u && objectBurning >= maxObject);
+    return burning >= maxWorld ||
+           ((objectFlags & kExchangeLive) != 0u && objectBurning >= maxObject);
 }
 // kHeld bits of an object at an exchange.
-FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject, uint stopTick, uint now) {
+FW_SHARED_FN uint heldBits(uint burning, uint maxWorld, uint objectBurning, uint maxObject,
+                           uint stopTick, uint now) {
     uint held = (burning >= maxWorld || objectBurning >= maxObject) ? kHeldByLimit : 0u;
     return held | (stoppedAt(stopTick, now) ? kHeldStopped : 0u);
 }
 // May another object light a tile with this flag?
 FW_SHARED_FN bool mayCatch(uint held, uint tileFlag) {
-    return (held & kHeldStopped) == 0u && ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
+    return (held & kHeldStopped) == 0u &&
+           ((held & kHeldByLimit) == 0u || (tileFlag & kTileBurning) != 0u);
 }
 
-// Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt at the exchange
-// before, so texels lit in the current one do not count, in any order.
+// Tick at which fire crossed a contact, or kNever. t: state of the source texel. It must have burnt
+// at the exchange before, so texels lit in the current one do not count, in any order.
 FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, uint now) {
     if (!isSource(t) || t + kExchangeTicks >= now) return kNever;
     uint begins = maxU(t, since);
@@ -585,19 +621,22 @@ FW_SHARED_FN uint contactTick(uint t, uint flameTicks, uint delay, uint since, u
     return arrives + kExchangeTicks < now ? now : arrives;
 }
 
-// Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target is `link` %
-// kPartTexels.
+// Lane of a tile's block from which fire leaves over a link between two parts of a mesh. The target
+// is `link` % kPartTexels.
 FW_SHARED_FN uint partFrom(uint link, uint block) {
     uint lane = link >> 28u;
     return ((block >> 1u) * 4u + (lane >> 2u)) * 8u + (block & 1u) * 4u + (lane & 3u);
 }
-// Ticks over such a link: those of an ordinary link of that length, in position units, in still air.
+// Ticks over such a link: those of an ordinary link of that length, in position units, in still
+// air.
 FW_SHARED_FN uint partDelay(FW_IN(BurnMaterial) to, ivec3 gap) {
     return mulShift(to.sigma0, isqrtNear(squaredLength(gap)) * 8u, 22u);
 }
-// Has fire crossed it? t: state of the source texel, lit before the last exchange, as for a contact.
+// Has fire crossed it? t: state of the source texel, lit before the last exchange, as for a
+// contact.
 FW_SHARED_FN bool partCrossed(uint t, uint flameTicks, uint delay, uint now) {
-    return isSource(t) && t + kExchangeTicks < now && delay <= now - t && flames(t, now, flameTicks);
+    return isSource(t) && t + kExchangeTicks < now && delay <= now - t &&
+           flames(t, now, flameTicks);
 }
 // Tick of the exchange that finds fire at the target.
 FW_SHARED_FN uint partArrives(uint t, uint delay) {
@@ -635,7 +674,8 @@ FW_SHARED_FN int topBelow(FW_IN(ExchangeObject) o, ivec3 at, uint axis) {
 }
 // How badly a tile matches a landing position, [0, kMisses]: least wins.
 FW_SHARED_CONST uint kMisses = 16383u;
-FW_SHARED_FN uint landingMiss(FW_IN(ExchangeObject) o, FW_IN(ExchangeTile) tile, ivec3 at, int top, uint axis) {
+FW_SHARED_FN uint landingMiss(FW_IN(ExchangeObject) o, FW_IN(ExchangeTile) tile, ivec3 at, int top,
+                              uint axis) {
     if (tile.texels == 0u) return kMisses;
     int facing = heightOf(turnToWorld(o, decodeNormal(tile.normal)), axis);
     if ((o.flags & kExchangeTwoSided) != 0u) facing = facing < 0 ? -facing : facing;
@@ -670,7 +710,8 @@ FW_SHARED_FN Ember flyingEmber(FW_IN(FireSource) s, uint hash, ivec3 up, ivec3 w
     uint a = hash32(hash), b = hash32(hash + 1u), c = hash32(hash + 2u);
     uint thick = (a & 3u);
     uint falls = thick == 0u ? 1410u : thick == 1u ? 2000u : thick == 2u ? 2450u : 2830u;  // mm/s
-    uint loft = minU((maxU(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
+    uint loft =
+        minU((maxU(uint(s.place.w), 50u) * (256u + ((b & 0xFFFFu) * 768u >> 16u))) >> 8u, 30000u);
     uint seconds = minU(divide(loft << 12u, falls), 20u << 12u);  // Q12: ticks, too
     e.flight = seconds;
     // Lateral spread: a quarter of the loft. Wind carries it 28 m at most.

@@ -22,9 +22,12 @@ FW_SHARED_CONST uint kMaxFieldSpread = 4096u;   // Q15: an eighth; twice as much
 
 FW_SHARED_CONST uint kMaxFields = 256u;          // of a world
 FW_SHARED_CONST uint kMaxFieldRounds = 64u;      // of a frame: steps of a field, at most
-FW_SHARED_CONST uint kFieldUnits = 8u;          // units per group; a unit is eight strips of four columns
-FW_SHARED_CONST uint kFieldWall = 255u;          // of a cell's mask; below: strength of the paint there
-FW_SHARED_CONST uint kFieldOpenLeft = 1u;        // bits of FieldRules::open: particles may leave the field there
+// Units per group; a unit is eight strips of four columns
+FW_SHARED_CONST uint kFieldUnits = 8u;
+// Of a cell's mask; below: strength of the paint there
+FW_SHARED_CONST uint kFieldWall = 255u;
+// Bits of FieldRules::open: particles may leave the field there
+FW_SHARED_CONST uint kFieldOpenLeft = 1u;
 FW_SHARED_CONST uint kFieldOpenRight = 2u;
 FW_SHARED_CONST uint kFieldOpenBottom = 4u;
 FW_SHARED_CONST uint kFieldOpenTop = 8u;
@@ -40,12 +43,14 @@ struct FieldSource {     // rectangle of cells that emits
 FW_SHARED_SIZE(FieldSource, 32)
 
 struct FieldRules {      // of one field
-    int forceX;          // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step
+    // Q7, external force (wind, buoyancy, weight): 128 moves all particles one cell per step
+    int forceX;
     int forceY;
     uint inertia;        // Q8, weight of the cell's mean motion
     uint chaos;          // Q8, weight of a random direction, shared by 4 x 4 cells and 4 steps
 
-    uint spread;         // Q15, [0, kMaxFieldSpread]: share of a difference that diffuses to each neighbour
+    // Q15, [0, kMaxFieldSpread]: share of a difference that diffuses to each neighbour
+    uint spread;
     uint memory;         // Q7, share of its motion that a particle keeps per step
     uint death;          // Q16, share that dies per step
     uint seed;
@@ -69,9 +74,12 @@ struct FieldPush {       // push constants of the field passes
 FW_SHARED_SIZE(FieldPush, 16)
 
 // A cell: particles (15 bits; a wall has 0 and the 16th bit), mean motion, one byte per axis.
-FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) { return n | (motion.x << 16u) | (motion.y << 24u); }
+FW_SHARED_FN uint fieldCell(uint n, uvec2 motion) {
+    return n | (motion.x << 16u) | (motion.y << 24u);
+}
 FW_SHARED_FN uvec2 fieldMotionOf(uint cell) { return uvec2((cell >> 16u) & 255u, cell >> 24u); }
-FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }  // all ones for a wall
+// All ones for a wall
+FW_SHARED_FN uint fieldWalled(uint cell) { return uint(int(cell << 16u) >> 31u) & 0xFFFFu; }
 FW_SHARED_FN uint fieldNumber(uint cell) { return cell & ~fieldWalled(cell) & kMaxFieldCell; }
 
 // Unit vector of direction k, Q7.
@@ -92,8 +100,8 @@ FW_SHARED_FN uint fieldKey(uint step, uint seed, uint salt) {
 }
 FW_SHARED_FN uint fieldRandom(uint key, uint x, uint y) { return hash32((x | (y << 16u)) ^ key); }
 
-// Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of an axis by the first
-// terms of sine and cosine.
+// Random unit vector, Q7 (within 1 of it), uniform in angle: an eighth of a turn to both sides of
+// an axis by the first terms of sine and cosine.
 FW_SHARED_FN ivec2 fieldChaos(uint h) {
     int a = int(h & 255u) - 128;
     a += a >= 0 ? 1 : 0;  // -128..-1, 1..128: no bias to one side
@@ -104,10 +112,14 @@ FW_SHARED_FN ivec2 fieldChaos(uint h) {
     return (h & 512u) != 0u ? d : ivec2(-d.x, -d.y);
 }
 
-// Four cells of a row, x = 4 i ..., share a random number: dither of shares, Q15, and of deaths, Q16.
-FW_SHARED_FN uint fieldDither(uint random, uint x) { return (((random >> (8u * (x & 3u))) & 255u) << 7u) + 64u; }
+// Four cells of a row, x = 4 i ..., share a random number: dither of shares, Q15, and of deaths,
+// Q16.
+FW_SHARED_FN uint fieldDither(uint random, uint x) {
+    return (((random >> (8u * (x & 3u))) & 255u) << 7u) + 64u;
+}
 FW_SHARED_FN uint fieldWindow(uint random, uint x) {
-    return ((x & 3u) == 3u ? (random >> 24u) | (random << 8u) : random >> (8u * (x & 3u))) & 0xFFFFu;
+    return ((x & 3u) == 3u ? (random >> 24u) | (random << 8u) : random >> (8u * (x & 3u))) &
+           0xFFFFu;
 }
 
 struct FieldEight { uint k[8]; };  // of each direction
@@ -157,7 +169,8 @@ struct FieldCounters {   // totals
     uint emittedLow; uint emittedHigh;  // low + 2^32 high
     uint diedLow; uint diedHigh;
     uint leftLow; uint leftHigh;
-    uint bands0; uint bands1;           // of the first and second cells: bit k is set if rows 8k.. hold particles
+    // Of the first and second cells: bit k is set if rows 8k.. hold particles
+    uint bands0; uint bands1;
     uint steps;
     uint pad1;
 };
@@ -170,7 +183,8 @@ struct FieldPushes {
 };
 FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
     FieldPushes p;
-    int x = random.x * 128, y = random.y * 128, a = (random.x + random.y) * 91, b = (random.x - random.y) * 91;
+    int x = random.x * 128, y = random.y * 128, a = (random.x + random.y) * 91,
+        b = (random.x - random.y) * 91;
     p.to.k[0] = w.force.k[0] + ((uint(fieldLobe(x)) * w.chance) >> 14u);
     p.to.k[1] = w.force.k[1] + ((uint(fieldLobe(a)) * w.chance) >> 14u);
     p.to.k[2] = w.force.k[2] + ((uint(fieldLobe(y)) * w.chance) >> 14u);
@@ -179,22 +193,25 @@ FW_SHARED_FN FieldPushes fieldPushes(FieldWeights w, ivec2 random) {
     p.to.k[5] = w.force.k[5] + ((uint(fieldLobe(-a)) * w.chance) >> 14u);
     p.to.k[6] = w.force.k[6] + ((uint(fieldLobe(-y)) * w.chance) >> 14u);
     p.to.k[7] = w.force.k[7] + ((uint(fieldLobe(b)) * w.chance) >> 14u);
-    p.sum = p.to.k[0] + p.to.k[1] + p.to.k[2] + p.to.k[3] + p.to.k[4] + p.to.k[5] + p.to.k[6] + p.to.k[7];
+    p.sum = p.to.k[0] + p.to.k[1] + p.to.k[2] + p.to.k[3] + p.to.k[4] + p.to.k[5] + p.to.k[6] +
+            p.to.k[7];
     return p;
 }
 
-// A giving cell: terms common to all directions. The masks tell the compiler value ranges: some devices multiply 16
-// bits faster than 32.
+// A giving cell: terms common to all directions. The masks tell the compiler value ranges: some
+// devices multiply 16 bits faster than 32.
 struct FieldGiver {
     uint n;
     uint own;        // particles times spread
-    uint most;       // Q15, limit of diffusion to each neighbour: an eighth of the particles that no force moves
-    int v0; int v1; int v2; int v3;  // shares by its motion, directions 0 to 3; negative: the opposite direction
+    // Q15, limit of diffusion to each neighbour: an eighth of the particles that no force moves
+    uint most;
+    // Shares by its motion, directions 0 to 3; negative: the opposite direction
+    int v0; int v1; int v2; int v3;
     uint ahead;      // first dithers, Q15: directions 7 0 1 2 and 3 4 5 6
     uint behind;
 };
-FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia, uint inertiaDiagonal,
-                                   uint dither) {
+FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint inertia,
+                                   uint inertiaDiagonal, uint dither) {
     FieldGiver g;
     uint mx = (cell >> 16u) & 255u, my = cell >> 24u;
     uint straight = inertia & 0x3FFFu, slant = inertiaDiagonal & 0x3FFFu;
@@ -210,8 +227,8 @@ FW_SHARED_FN FieldGiver fieldGiver(uint cell, uint pushed, uint spread, uint ine
     g.behind = 32767u - dither;
     return g;
 }
-// Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times spread (walls and
-// cells beyond a border count as full); room: what the neighbour can take.
+// Flow in direction k, Q15. push: share of the direction; around: the neighbour's particles times
+// spread (walls and cells beyond a border count as full); room: what the neighbour can take.
 FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint room) {
     int v = (k & 3u) == 0u ? g.v0 : ((k & 3u) == 1u ? g.v1 : ((k & 3u) == 2u ? g.v2 : g.v3));
     uint share = push + uint(k < 4u ? fieldLobe(v) : fieldLobe(v) - v);
@@ -220,16 +237,18 @@ FW_SHARED_FN uint fieldFlow(FieldGiver g, uint k, uint push, uint around, uint r
     uint flow = g.n * (share & 0x7FFFu) + spreads;
     return flow < room ? flow : room;
 }
-// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to the next direction,
-// and both first dithers sum up to one. So no more is given than exists, and each direction gets its flow on average.
-// sum: of the arc so far, starting with its dither.
-FW_SHARED_FN uint fieldGiven(uint before, uint sum) { return ((sum >> 15u) - (before >> 15u)) & 4095u; }
+// Flows are rounded along two arcs of the ring, 7 0 1 2 and 3 4 5 6. Each remainder carries over to
+// the next direction, and both first dithers sum up to one. So no more is given than exists, and
+// each direction gets its flow on average. sum: of the arc so far, starting with its dither.
+FW_SHARED_FN uint fieldGiven(uint before, uint sum) {
+    return ((sum >> 15u) - (before >> 15u)) & 4095u;
+}
 
 // Flow that a cell of n particles takes per direction, Q15: an eighth of its free capacity.
 FW_SHARED_FN uint fieldRoom(uint n) { return ((kMaxFieldCell - n) << 12u) & ~32767u; }
 
-// Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a cell of this motion:
-// memory and displacement. Q7.
+// Motion of a particle that moves along u (component in cells: 0, 1, or 0.7 of diagonals) out of a
+// cell of this motion: memory and displacement. Q7.
 FW_SHARED_FN uint fieldCarried(uint motion, int u, uint memory) {
     return motion * memory + uint(kFieldStill + u) * (128u - memory);
 }
@@ -253,14 +272,17 @@ FW_SHARED_FN uint fieldMean(uint sum, uint n) {
 }
 
 // Deaths among n particles. random: 16 bits.
-FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) { return (n * death + random) >> 16u; }
+FW_SHARED_FN uint fieldDeaths(uint n, uint death, uint random) {
+    return (n * death + random) >> 16u;
+}
 
 // Particles emitted into a cell of n particles with this mask. random: 32 bits.
 FW_SHARED_FN uint fieldEmission(uint x, uint y, uint n, uint mask, FieldRules rules, uint random) {
     uint rate = (rules.paint * mask * 258u) >> 16u;
     FW_UNROLL for (uint k = 0u; k < kFieldSources; ++k) {
         ivec4 c = rules.sources[k].cells;
-        bool within = k < rules.sourceCount && int(x) >= c.x && int(y) >= c.y && int(x) < c.z && int(y) < c.w;
+        bool within =
+            k < rules.sourceCount && int(x) >= c.x && int(y) >= c.y && int(x) < c.z && int(y) < c.w;
         int a = 2 * int(x) + 1 - c.x - c.z, b = 2 * int(y) + 1 - c.y - c.w, wide = c.z - c.x;
         within = within && (rules.sources[k].disc == 0u || a * a + b * b <= wide * wide);
         rate += within ? rules.sources[k].rate : 0u;

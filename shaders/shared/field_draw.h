@@ -14,7 +14,8 @@ FW_SHARED_CONST uint kFieldUp = 16u;
 FW_SHARED_CONST float kFieldFull = 96.0f;    // particles of a cell displayed as full
 
 struct FieldDraw {
-    vec4 place;          // m, world: middle of the lower edge; w: time since the last step, [0, 1] of a step
+    // m, world: middle of the lower edge; w: time since the last step, [0, 1] of a step
+    vec4 place;
     vec4 size;           // m: width, height, depth; w: opacity
     vec4 right;          // axes in the world; w: detail
     vec4 up;             // w: body
@@ -31,8 +32,8 @@ struct FieldDraw {
 };
 FW_SHARED_SIZE(FieldDraw, 128)
 
-// A displayed cell: density (0 to 2: root of its particles over kFieldFull), motion (cells per step, within 1.3), and
-// the share of sunlight that reaches it.
+// A displayed cell: density (0 to 2: root of its particles over kFieldFull), motion (cells per
+// step, within 1.3), and the share of sunlight that reaches it.
 FW_SHARED_FN uint fieldShownPacked(float density, vec2 motion, float sun) {
     uint d = uint(clamp(density, 0.0f, 2.0f) * 511.5f + 0.5f);
     uint x = uint(clamp(motion.x * 48.0f + 64.5f, 0.0f, 127.0f));
@@ -40,8 +41,10 @@ FW_SHARED_FN uint fieldShownPacked(float density, vec2 motion, float sun) {
     return d | (x << 10u) | (y << 17u) | (uint(clamp(sun, 0.0f, 1.0f) * 255.0f + 0.5f) << 24u);
 }
 FW_SHARED_FN vec4 fieldShown(uint word) {
-    return vec4(float(word & 1023u) * (1.0f / 511.5f), (float((word >> 10u) & 127u) - 64.0f) * (1.0f / 48.0f),
-                (float((word >> 17u) & 127u) - 64.0f) * (1.0f / 48.0f), float(word >> 24u) * (1.0f / 255.0f));
+    return vec4(float(word & 1023u) * (1.0f / 511.5f),
+                (float((word >> 10u) & 127u) - 64.0f) * (1.0f / 48.0f),
+                (float((word >> 17u) & 127u) - 64.0f) * (1.0f / 48.0f),
+                float(word >> 24u) * (1.0f / 255.0f));
 }
 
 FW_SHARED_END

@@ -10,12 +10,14 @@ FW_SHARED_BEGIN
 FW_SHARED_CONST float kFlipbookMinKelvin = 800.0f;   // K where a texel's red is 0
 FW_SHARED_CONST float kFlipbookMaxKelvin = 2000.0f;   // K where it is 1
 
-// Device layout: all frames and motion vectors share one texture. The flipbook buffer holds kMaxFlipbooks records
-// (FlipbookRecord), then two words per frame: left | low << 16, right | high << 16.
+// Device layout: all frames and motion vectors share one texture. The flipbook buffer holds
+// kMaxFlipbooks records (FlipbookRecord), then two words per frame: left | low << 16, right | high
+// << 16.
 FW_SHARED_CONST uint kMaxFlipbooks = 32u;         // of a world
 FW_SHARED_CONST uint kMaxFlipbookFrames = 256u;
 FW_SHARED_CONST uint kFlipbookRecordWords = 16u;
-FW_SHARED_CONST uint kFlipbookRects = kMaxFlipbooks * kFlipbookRecordWords;  // first word of the rectangles
+// First word of the rectangles
+FW_SHARED_CONST uint kFlipbookRects = kMaxFlipbooks * kFlipbookRecordWords;
 FW_SHARED_CONST uint kFlipbookWords = kFlipbookRects + kMaxFlipbooks * kMaxFlipbookFrames * 2u;
 FW_SHARED_CONST uint kFlipbookLoops = 1u;   // FlipbookRecord::flags: plays in a loop
 
@@ -35,13 +37,14 @@ struct FlipbookRecord {
 FW_SHARED_SIZE(FlipbookRecord, 64)
 FW_SHARED_CONST uint kFlipbookLevels = 4u;
 FW_SHARED_CONST uint kFlipbookLevelWord = 8u;  // word of the record where at1 follows
-// Mip for a quad of `pixels` that shows frames of `texels`. `own`, [0, 1), dithers the switch per quad, so that the
-// quads of a fire do not change mips at the same distance.
+// Mip for a quad of `pixels` that shows frames of `texels`. `own`, [0, 1), dithers the switch per
+// quad, so that the quads of a fire do not change mips at the same distance.
 FW_SHARED_FN uint flipbookLevel(float texels, float pixels, float own) {
     float off = log2(max(texels / max(pixels, 1e-3f), 1.0f)) + 0.25f + 0.5f * own;
     return uint(min(off, float(kFlipbookLevels - 1u)));
 }
-// First texel of a frame. One empty texel separates frames, so reads beyond a border return nothing.
+// First texel of a frame. One empty texel separates frames, so reads beyond a border return
+// nothing.
 FW_SHARED_FN uvec2 flipbookFrameOrigin(FlipbookRecord b, uint frame) {
     return uvec2((b.at & 0xFFFFu) + frame % b.columns * ((b.size & 0xFFFFu) + 2u),
                  (b.at >> 16) + frame / b.columns * ((b.size >> 16) + 2u));
@@ -51,7 +54,8 @@ FW_SHARED_FN uvec2 flipbookMotionOrigin(FlipbookRecord b, uint frame) {
                  (b.motionAt >> 16) + frame / b.columns * (b.motionSize >> 16));
 }
 
-// Playback time of a particle. Once: `life`, [0, 1]. Loop: `age` in s, with the phase `own`, [0, 1).
+// Playback time of a particle. Once: `life`, [0, 1]. Loop: `age` in s, with the phase `own`, [0,
+// 1).
 FW_SHARED_FN float flipbookTime(bool loops, float seconds, float life, float age, float own) {
     return loops ? age / seconds + 7.0f * own : clamp(life, 0.0f, 1.0f);
 }
@@ -73,12 +77,18 @@ FW_SHARED_FN FlipbookPlace flipbookPlaceAt(float time, uint frames, bool loops) 
 }
 
 // Decodes a motion texel ([0, 1] each) to uv per frame. most: uv per frame at full scale.
-FW_SHARED_FN vec2 decodeFlipbookMotion(vec2 texel, float most) { return (texel * 255.0f - 128.0f) * (most / 127.0f); }
+FW_SHARED_FN vec2 decodeFlipbookMotion(vec2 texel, float most) {
+    return (texel * 255.0f - 128.0f) * (most / 127.0f);
+}
 // uv to read in the frame before and in the frame after. motion: sampled at uv in the same frame.
-FW_SHARED_FN vec2 bookBefore(vec2 uv, vec2 motion, float part) { return uv - part * motion; }
-FW_SHARED_FN vec2 flipbookUvAfter(vec2 uv, vec2 motion, float part) { return uv + (1.0f - part) * motion; }
+FW_SHARED_FN vec2 flipbookUvBefore(vec2 uv, vec2 motion, float part) { return uv - part * motion; }
+FW_SHARED_FN vec2 flipbookUvAfter(vec2 uv, vec2 motion, float part) {
+    return uv + (1.0f - part) * motion;
+}
 
-FW_SHARED_FN float flipbookKelvin(float red) { return mix(kFlipbookMinKelvin, kFlipbookMaxKelvin, red); }
+FW_SHARED_FN float flipbookKelvin(float red) {
+    return mix(kFlipbookMinKelvin, kFlipbookMaxKelvin, red);
+}
 
 // Blends two texels. The temperature is weighted by the soot of each.
 FW_SHARED_FN vec4 mixFlipbookTexels(vec4 before, vec4 after, float part) {

@@ -25,7 +25,8 @@ FW_SHARED_CONST int kFrontTimeMax = 0x1FFFFFFF;   // of one link, 1/16 ticks: 2.
 FW_SHARED_CONST uint kFrontDelayMax = 0x1FFFFFFu; // between sources of a ring, ticks: 2.3 h
 FW_SHARED_CONST uint kFrontEpsMax = 16200u;       // Q14: head/back slowness ratio 178
 FW_SHARED_CONST uint kDriveLimit = 65000u;        // |drive|, Q10
-FW_SHARED_CONST uint kNeverChanged = 0x80000000u;      // TileState::lastChange of a tile that never changed
+// TileState::lastChange of a tile that never changed
+FW_SHARED_CONST uint kNeverChanged = 0x80000000u;
 
 struct FrontDrive {  // slowness of one texel: A * (1 - e.v)
     uint A;         // Q22 ticks per 1/8 position unit
@@ -56,7 +57,8 @@ FW_SHARED_FN int dotInt(ivec3 a, ivec3 b) {
     return int(uint(a.x) * uint(b.x) + uint(a.y) * uint(b.y) + uint(a.z) * uint(b.z));
 }
 
-// Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one; integers correct it.
+// Nearest integer to the root of n, n < 2^32 - 2^17. The float seed may be off by one; integers
+// correct it.
 FW_SHARED_FN uint isqrtNear(uint n) {
 #ifdef __cplusplus
     uint r = uint(int(std::sqrt(float(n))));
@@ -108,7 +110,9 @@ FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMateria
     ivec3 n12 = ivec3(normal.x >> 2, normal.y >> 2, normal.z >> 2);
     uint s0 = mulShift(m.sigma0, noise, 7u);
     if (m.ceiling != 0u) {
-        int down = -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)), n12) >> 12);  // Q10
+        // Q10
+        int down =
+            -(dotInt(ivec3(int(m.upCeiling.x), int(m.upCeiling.y), int(m.upCeiling.z)), n12) >> 12);
         if (down > 0) {
             uint faster = 1024u + ((m.ceiling * uint(down < 1024 ? down : 1024)) >> 8u);
             s0 = mulShift(s0, divide(1u << 30u, faster), 20u);
@@ -118,7 +122,8 @@ FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMateria
     p.e = ivec3(0, 0, 0);
     if ((m.driveX | m.driveY | m.driveZ) == 0) return p;
     int along = dotInt(drive, n12) >> 12;
-    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14), drive.y - ((along * normal.y + 8192) >> 14),
+    ivec3 u = ivec3(drive.x - ((along * normal.x + 8192) >> 14),
+                    drive.y - ((along * normal.y + 8192) >> 14),
                     drive.z - ((along * normal.z + 8192) >> 14));
     uint s = isqrtNear(squaredLength(u));
     uint capped = s < m.driveMax ? s : m.driveMax;
@@ -145,7 +150,8 @@ FW_SHARED_FN FrontDrive prepareFront(ivec3 normal, uint noise, FW_IN(BurnMateria
     return p;
 }
 
-// Travel time, 1/16 ticks, over a link in 1/8 units. square, along: the link's square and its product with p.e.
+// Travel time, 1/16 ticks, over a link in 1/8 units. square, along: the link's square and its
+// product with p.e.
 FW_SHARED_FN int travelTime(uint square, uint along, FW_IN(FrontDrive) p) {
     int y = int((isqrtNear(square) << 14u) - along);
     uint t = mulHighRound(p.A, uint(y > 0 ? y : 0));
@@ -162,8 +168,9 @@ FW_SHARED_FN int pairStart(int ra, int rb, int w) {
     return rb + (dr >> 6) * w + (((dr & 63) * w + 32) >> 6);
 }
 
-// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way. Arrival is convex along
-// it: if the slope does not outweigh the delay of b, a alone is best. l: length of a, 1/8 units.
+// Slope of the travel time on the way from source a to source b, 1/16 ticks over the whole way.
+// Arrival is convex along it: if the slope does not outweigh the delay of b, a alone is best. l:
+// length of a, 1/8 units.
 FW_SHARED_CONST int kPairFalls = -0x7FFFFFFF;  // for any delay
 FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
     ivec3 side = ivec3(b.x - a.x, b.y - a.y, b.z - a.z);
@@ -178,8 +185,8 @@ FW_SHARED_FN int pairChange(ivec3 a, ivec3 b, uint l, FW_IN(FrontDrive) p) {
     return y < 0 ? -change : change;
 }
 
-// Best arrival over the segment between two sources: three weights, one parabola step, one more. The ends cost ga and
-// gb.
+// Best arrival over the segment between two sources: three weights, one parabola step, one more.
+// The ends cost ga and gb.
 FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW_IN(FrontDrive) p) {
     // The link from weight w is b + (a - b) w/64: squares and products follow from three each.
     ivec3 d = ivec3(a.x - b.x, a.y - b.y, a.z - b.z);
@@ -211,8 +218,9 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW
         off = num < 0 ? -off : off;
         if (off != 0) {
             int weight = w + off;
-            ivec3 link8 = ivec3(b.x * 8 + ((weight * d.x + 4) >> 3), b.y * 8 + ((weight * d.y + 4) >> 3),
-                                b.z * 8 + ((weight * d.z + 4) >> 3));
+            ivec3 link8 =
+                ivec3(b.x * 8 + ((weight * d.x + 4) >> 3), b.y * 8 + ((weight * d.y + 4) >> 3),
+                      b.z * 8 + ((weight * d.z + 4) >> 3));
             int g = pairStart(ra, rb, weight) + linkCost(link8, p);
             best = g < best ? g : best;
         }
@@ -220,10 +228,11 @@ FW_SHARED_FN int bestOfPair(int ra, int rb, int ga, int gb, ivec3 a, ivec3 b, FW
     return best;
 }
 
-// Sources of the ring that count: burning by the window's end, and not diagonals cut off by two barriers. Bit k of
-// `present`: the ring has a k-th texel. `wake` is lowered to the tick of a coming source; it matters for receptive
-// texels only, here and in frontArrival.
-FW_SHARED_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint windowEnd, FW_INOUT(uint) wake) {
+// Sources of the ring that count: burning by the window's end, and not diagonals cut off by two
+// barriers. Bit k of `present`: the ring has a k-th texel. `wake` is lowered to the tick of a
+// coming source; it matters for receptive texels only, here and in frontArrival.
+FW_SHARED_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint windowEnd,
+                                  FW_INOUT(uint) wake) {
     uint counts = 0u, walls = 0u;
     FW_UNROLL for (int k = 0; k < 8; ++k) {
         uint t = ring.tick[k];
@@ -245,9 +254,10 @@ FW_SHARED_FN uint countingSources(FW_IN(FrontRing) ring, uint present, uint wind
 inline int pick(const int (&of)[8], int k) { return of[k]; }
 inline ivec3 pickLink(const FrontRing& ring, int k) { return ring.link[k]; }
 #else
-#define FW_PICK(of, k)                                                                            \
-    ((k & 4) == 0 ? ((k & 2) == 0 ? ((k & 1) == 0 ? of(0) : of(1)) : ((k & 1) == 0 ? of(2) : of(3))) \
-                  : ((k & 2) == 0 ? ((k & 1) == 0 ? of(4) : of(5)) : ((k & 1) == 0 ? of(6) : of(7))))
+#define FW_PICK4(of, k, i)                                             \
+    (((k) & 2) == 0 ? (((k) & 1) == 0 ? of(i) : of((i) + 1))           \
+                    : (((k) & 1) == 0 ? of((i) + 2) : of((i) + 3)))
+#define FW_PICK(of, k) (((k) & 4) == 0 ? FW_PICK4(of, k, 0) : FW_PICK4(of, k, 4))
 int pick(int of[8], int k) {
 #define FW_ONE(i) of[i]
     return FW_PICK(FW_ONE, k);
@@ -260,10 +270,11 @@ ivec3 pickLink(FrontRing ring, int k) {
 }
 #endif
 
-// Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it could light this
-// texel is dropped. `wake` is then lowered to the tick after which it cannot count again under another wind: until then
-// the texel's tile stays listed. settles: also computes `settledFrom`, the tick from which another source of this ring
-// would not change the result; kNever: unknown. It needs all eight links.
+// Arrival tick from the counting sources; kNever if none is left. A source that burnt out before it
+// could light this texel is dropped. `wake` is then lowered to the tick after which it cannot count
+// again under another wind: until then the texel's tile stays listed. settles: also computes
+// `settledFrom`, the tick from which another source of this ring would not change the result;
+// kNever: unknown. It needs all eight links.
 FW_SHARED_FN uint frontArrival(FW_IN(FrontRing) ring, uint counts, FW_IN(FrontDrive) p,
                                uint windowMax, uint windowEnd, uint floorTick, uint texel,
                                bool settles, FW_INOUT(uint) wake, FW_INOUT(uint) settledFrom) {
@@ -349,8 +360,8 @@ FW_SHARED_FN bool isFrontEligible(uint t, uint floorTick) {
     return isReceptive(t) || (isSource(t) && (t > floorTick || floorTick == 0u));
 }
 
-// State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending arrival. late: 1 if the
-// candidate came too late and was moved to the window's floor.
+// State after candidate tick `candidate`: the new tick, or t. `wake` is lowered to a pending
+// arrival. late: 1 if the candidate came too late and was moved to the window's floor.
 FW_SHARED_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorTick,
                               FW_INOUT(uint) wake, FW_OUT(uint) late) {
     late = 0u;
@@ -368,8 +379,8 @@ FW_SHARED_FN uint decideTick(uint t, uint candidate, uint windowEnd, uint floorT
     return candidate;
 }
 
-// Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in every 2^(stepShift -
-// shift)-th iteration.
+// Iteration k of a step (2^stepShift iterations). An object with fewer substeps (`shift`) runs in
+// every 2^(stepShift - shift)-th iteration.
 FW_SHARED_FN bool runsInIteration(uint k, uint stepShift, uint shift) {
     uint skip = stepShift - (shift < stepShift ? shift : stepShift);
     return (k & ((1u << skip) - 1u)) == 0u;
@@ -384,8 +395,9 @@ FW_SHARED_FN uint iterationEnd(uint stepNow, uint k, uint stepShift, uint shift)
     return stepNow + ((k >> (stepShift - own)) + 1u) * (kStepTicks >> own);
 }
 
-// Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that may still be
-// corrected is younger than the window, so its tile changed since. Unsigned: kNeverChanged is far in the past.
+// Must a latch of the drive at tick `now` touch this tile? A pending tile is listed; a source that
+// may still be corrected is younger than the window, so its tile changed since. Unsigned:
+// kNeverChanged is far in the past.
 FW_SHARED_FN bool latchReaches(bool listed, uint lastChange, uint now, uint window) {
     return listed || now - lastChange <= window + kStepTicks;
 }

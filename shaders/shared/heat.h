@@ -19,11 +19,14 @@ FW_SHARED_CONST uint kScorchBegins = 7568u;     // 473 K: begins to darken
 FW_SHARED_CONST uint kMaxFlux = 500000u;       // W/m^2, incoming or net: beyond any fire
 FW_SHARED_CONST uint kMaxFilm = 1023u;         // g/m^2
 FW_SHARED_CONST uint kMaxMoist = 255u;         // 1/128 kg/kg
-FW_SHARED_CONST uint kSoakSteps = 3u;            // steps of flaming under a film before the flame dies, minus one
-FW_SHARED_CONST uint kSleepTolerance = 16u;           // 1/16 K from ambient that still count as asleep
-FW_SHARED_CONST uint kColdWaterSteps = 32u;              // steps from one update to the next of a tile that only has cold water
-// Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to char, and a flux too
-// small to heat it much (wood needs 10 kW/m^2 to catch).
+// Steps of flaming under a film before the flame dies, minus one
+FW_SHARED_CONST uint kSoakSteps = 3u;
+// 1/16 K from ambient that still count as asleep
+FW_SHARED_CONST uint kSleepTolerance = 16u;
+FW_SHARED_CONST uint kColdWaterSteps =
+    32u;  // steps from one update to the next of a tile that only has cold water
+// Steps from one update to the next of a texel that is only warm: no flame, no water, too cold to
+// char, and a flux too small to heat it much (wood needs 10 kW/m^2 to catch).
 FW_SHARED_CONST uint kSleepShift = 3u;
 FW_SHARED_CONST uint kSleepSteps = 1u << kSleepShift;
 FW_SHARED_CONST uint kSleepFlux = 4096u;         // W/m^2: from here on it is updated every step
@@ -46,7 +49,8 @@ FW_SHARED_CONST uint kHeatDries = 8u;           // its film has dried
 // HeatMaterial::flags
 FW_SHARED_CONST uint kHeatBurns = 1u;
 FW_SHARED_CONST uint kHeatThick = 2u;
-FW_SHARED_CONST uint kHeatLacksShift = 8u;      // 9 bits, Q8: reduction of burning strength by lack of air
+// 9 bits, Q8: reduction of burning strength by lack of air
+FW_SHARED_CONST uint kHeatLacksShift = 8u;
 
 struct HeatTexel {
     uint fuel;     // kFuelFull .. 0
@@ -88,8 +92,9 @@ struct HeatMaterial {     // one material for one step length and pace, baked by
 FW_SHARED_SIZE(HeatMaterial, 96)
 
 FW_SHARED_FN uvec2 packHeat(FW_IN(HeatTexel) x) {
-    return uvec2(x.fuel | (x.heat << 16u), x.film | (x.soaked << 10u) | (x.moist << 12u) | (x.charred << 20u) |
-                     (x.epoch << 28u) | (x.phase << 30u));
+    return uvec2(x.fuel | (x.heat << 16u), x.film | (x.soaked << 10u) | (x.moist << 12u) |
+                                               (x.charred << 20u) | (x.epoch << 28u) |
+                                               (x.phase << 30u));
 }
 FW_SHARED_FN HeatTexel unpackHeat(uvec2 words) {
     HeatTexel x;
@@ -148,7 +153,8 @@ FW_SHARED_FN uint pyrolysis(uint heat) {
     return (((y * y) >> 12u) * (12288u - 2u * y)) >> 12u;
 }
 
-// Fuel left of thin material after `age` ticks of flaming, of `burnTicks`: 1 - smoothstep, so its rate rises and falls.
+// Fuel left of thin material after `age` ticks of flaming, of `burnTicks`: 1 - smoothstep, so its
+// rate rises and falls.
 FW_SHARED_FN uint thinFuel(uint age, uint burnTicks) {
     if (age >= burnTicks) return 0u;
     uint shift = 0u;
@@ -169,14 +175,15 @@ FW_SHARED_FN uint thinAge(uint fuel, uint burnTicks) {
     return low;
 }
 
-// Flux from a point source at a receiver, W/m^2: share * power * cosine / (4 pi d^2). power: W; share: radiated
-// fraction / (4 pi), Q16; cosine: Q8; distance2: cm^2, not 0.
+// Flux from a point source at a receiver, W/m^2: share * power * cosine / (4 pi d^2). power: W;
+// share: radiated fraction / (4 pi), Q16; cosine: Q8; distance2: cm^2, not 0.
 FW_SHARED_FN uint pointFlux(uint power, uint share, uint cosine, uint distance2) {
     uint sent = mulShift(power, share, 16u);  // W per sr
     uint whole = divide(sent, distance2);     // W/cm^2
     if (whole >= 0x10000u) return cosine == 0u ? 0u : kMaxFlux;
     uint rest = sent - whole * distance2;
-    uint part = distance2 < 0x100000u ? divide(rest << 12u, distance2) : divide(rest, distance2 >> 12u);
+    uint part =
+        distance2 < 0x100000u ? divide(rest << 12u, distance2) : divide(rest, distance2 >> 12u);
     return minU(mulShift((whole << 12u) + part, 10000u * cosine, 20u), kMaxFlux);
 }
 
@@ -196,11 +203,12 @@ FW_SHARED_FN HeatMaterial materialInAir(FW_IN(HeatMaterial) m, uint strength) {
 FW_SHARED_FN uint airDeficit(FW_IN(HeatMaterial) m) { return m.flags >> kHeatLacksShift; }
 FW_SHARED_FN bool isSmothered(FW_IN(HeatMaterial) m) { return airDeficit(m) >= kAirFull; }
 
-// Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow; ash has a quarter of
-// that. rise: 1/16 K from ambient; size: W/m^2, net flux.
+// Capacity of the skin, W/m^2/K, Q8. Water boils off at the least depth, as depth cannot follow;
+// ash has a quarter of that. rise: 1/16 K from ambient; size: W/m^2, net flux.
 FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint rise, uint size) {
     uint least = m.minCapacity >> (x.phase == kPhaseBurnt ? 2u : 0u);
-    if (m.inertia == 0u || x.phase == kPhaseBurnt || (x.film != 0u && x.heat > kBoiling)) return least;
+    if (m.inertia == 0u || x.phase == kPhaseBurnt || (x.film != 0u && x.heat > kBoiling))
+        return least;
     uint reach = divide(rise << 12u, maxU(size, 1u));  // K per W/m^2, Q16
     return minU(maxU(mulShift(m.inertia, reach, 8u), m.minCapacity), m.maxCapacity);
 }
@@ -208,10 +216,12 @@ FW_SHARED_FN uint skinCapacity(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint r
 FW_SHARED_FN uint heatResistance(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m, uint capacity) {
     return maxU(capacity + m.convects + mulShift(radiationSlope(x.heat), m.radiates, 8u), 1u);
 }
-// Water takes `spare` W/m^2 beyond boiling: first the film, then the moisture. Returns what it took.
+// Water takes `spare` W/m^2 beyond boiling: first the film, then the moisture. Returns what it
+// took.
 FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spare, uint chance,
                           FW_OUT(uint) evaporated) {
-    evaporated = x.film == 0u ? 0u : minU(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
+    evaporated =
+        x.film == 0u ? 0u : minU(divideByChance(spare, m.filmFlux, hash32(chance)), x.film);
     x.film -= evaporated;
     uint spent = evaporated * m.filmFlux;
     if (x.moist == 0u || spent >= spare) return spent;
@@ -220,9 +230,9 @@ FW_SHARED_FN uint boilOff(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint spa
     return spent + units * m.moistFlux;
 }
 
-// One step. flux: W/m^2 from other objects; air: wind gain of the burning rate, Q8, 256 = still; pilot: a flame is
-// near; chance: hash of texel and step. burnt: fuel units lost; evaporated: g/m^2 of film evaporated by fire. Returns
-// kHeat bits, already applied to x.
+// One step. flux: W/m^2 from other objects; air: wind gain of the burning rate, Q8, 256 = still;
+// pilot: a flame is near; chance: hash of texel and step. burnt: fuel units lost; evaporated: g/m^2
+// of film evaporated by fire. Returns kHeat bits, already applied to x.
 FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint air,
                            bool pilot, uint chance, FW_OUT(uint) burnt, FW_OUT(uint) evaporated) {
     burnt = 0u;
@@ -294,8 +304,8 @@ FW_SHARED_FN uint heatStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint fl
     return result;
 }
 
-// ---- A texel and its state in the front. A texel under water, or too damp, is a barrier (kWet, kOutWet)
-// exactly while it is that.
+// ---- A texel and its state in the front. A texel under water, or too damp, is a barrier (kWet,
+// kOutWet) exactly while it is that.
 
 FW_SHARED_FN bool isBarrierByWater(FW_IN(HeatTexel) x, FW_IN(HeatMaterial) m) {
     return x.film != 0u || x.moist >= m.moistDies;
@@ -320,8 +330,10 @@ FW_SHARED_FN HeatTexel unheatedTexel(FW_IN(HeatMaterial) m, bool burns) {
     return x;
 }
 
-// A jet gives `flux` W/m^2 for one step, in addition to the step itself: first to the water, then to the skin.
-FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux, uint chance) {
+// A jet gives `flux` W/m^2 for one step, in addition to the step itself: first to the water, then
+// to the skin.
+FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint flux,
+                               uint chance) {
     uint size = (minU(flux, kMaxFlux) * m.absorbs) >> 8u;
     uint rise = x.heat > m.ambient ? x.heat - m.ambient : 0u;
     uint resists = heatResistance(x, m, skinCapacity(x, m, rise, size));
@@ -335,10 +347,11 @@ FW_SHARED_FN void applyJetHeat(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uin
     x.heat = heat;
 }
 
-// Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change the answer: neither
-// phase nor ignition of a burnt-out texel changes.
+// Does a texel let a jet pass that met it as a gate (TexelEvent)? No event of the step can change
+// the answer: neither phase nor ignition of a burnt-out texel changes.
 FW_SHARED_FN bool gateOpens(uint gateKind, uint holeTicks, FW_IN(HeatTexel) x, uint t, uint now) {
-    bool gone = x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now && now - t >= holeTicks;
+    bool gone =
+        x.phase == kPhaseBurnt && x.fuel == 0u && isSource(t) && t <= now && now - t >= holeTicks;
     return gone == ((gateKind & kGateShut) == 0u);
 }
 
@@ -351,16 +364,19 @@ FW_SHARED_FN HeatTexel carriedTexel(FW_IN(HeatTexel) from, FW_IN(HeatMaterial) m
 // Can states be copied between these texels? Both can burn, or neither can.
 FW_SHARED_FN bool carries(uint from, uint to) { return from != kInert && to != kInert; }
 
-// Effect of one event on a texel and its state. Water alone does not extinguish: heat steps do, when it takes more than
-// the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of the step.
-FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind, uint tick, uint now) {
+// Effect of one event on a texel and its state. Water alone does not extinguish: heat steps do,
+// when it takes more than the fire gives. tick: as TexelEvent, W/m^2 for kEventHeat; now: start of
+// the step.
+FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t, uint kind,
+                            uint tick, uint now) {
     if (kind == kEventIgnite) return applyEvent(t, kind, tick, now);
     if (kind == kEventWet) wetTexel(x, tick, m);
     if (kind == kEventDry) x.film = 0u;
     if (kind == kEventHeat) {
         applyJetHeat(x, m, tick, hash32(x.heat * 0x9E3779B9u + now));
         t = wetState(t, isBarrierByWater(x, m));
-        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u && !isBarrierByWater(x, m);
+        bool ready = (m.flags & kHeatBurns) != 0u && x.phase != kPhaseBurnt && x.fuel != 0u &&
+                     !isBarrierByWater(x, m);
         return ready && x.heat >= m.ignitesAt ? applyEvent(t, kEventIgnite, now, now) : t;
     }
     if (kind == kEventExtinguish && isSource(t) && x.phase != kPhaseBurnt) {
@@ -374,8 +390,8 @@ FW_SHARED_FN uint heatEvent(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uint t
 // Random number per texel and step; `step`: a hash of the step's tick.
 FW_SHARED_FN uint heatChance(uint texel, uint step) { return hash32(texel * 0x9E3779B9u + step); }
 
-// How often heat steps update a texel: never (0), at intervals if it has cold water (kWorkColdWater) or is only warm
-// (kWorkWarm), or always (kWorkAlways).
+// How often heat steps update a texel: never (0), at intervals if it has cold water
+// (kWorkColdWater) or is only warm (kWorkWarm), or always (kWorkAlways).
 FW_SHARED_CONST uint kWorkColdWater = 1u;
 FW_SHARED_CONST uint kWorkWarm = 2u;
 FW_SHARED_CONST uint kWorkAlways = 4u;
@@ -427,7 +443,9 @@ FW_SHARED_FN uint heatTexelStep(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, ui
 }
 
 // The material over all steps of a sleep interval at once; a burning texel takes one step.
-FW_SHARED_FN uint sleepShift(uint flux) { return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift; }
+FW_SHARED_FN uint sleepShift(uint flux) {
+    return flux < kLongSleepFlux ? kLongSleepShift : kSleepShift;
+}
 FW_SHARED_FN HeatMaterial heatMaterialOver(FW_IN(HeatMaterial) m, bool rests, uint flux) {
     uint shift = rests ? sleepShift(flux) : 0u;
     HeatMaterial long_ = m;
@@ -447,8 +465,9 @@ FW_SHARED_FN uint dryColdWater(FW_INOUT(HeatTexel) x, FW_IN(HeatMaterial) m, uin
     return wetState(t, isBarrierByWater(x, m));
 }
 
-// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of kSleepSteps steps ends,
-// so the interval has one flux. Where a change alters the interval, some steps count twice or never, equally often.
+// Work classes of a tile that are due in this step. A tile's flux changes only where an interval of
+// kSleepSteps steps ends, so the interval has one flux. Where a change alters the interval, some
+// steps count twice or never, equally often.
 FW_SHARED_FN bool sleepEnds(uint tile, uint flux, uint now) {
     uint turn = now / (kStepTicks * kHeatSteps) + 1u;
     return ((turn - tile) & ((1u << sleepShift(flux)) - 1u)) == 0u;
@@ -461,8 +480,8 @@ FW_SHARED_FN uint workDue(bool warm, uint object, uint tile, uint flux, uint now
     return (warm ? kWorkAlways : 0u) | (sleepEnds(tile, flux, now) ? kWorkWarm : 0u) |
            (coldWaterTurn(object, tile, now) ? kWorkColdWater : 0u);
 }
-// Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an ordinary one. The
-// texel is due if (work & turn) is not 0.
+// Work of a texel under its tile's due classes: in a warm tile cold water takes every step, as an
+// ordinary one. The texel is due if (work & turn) is not 0.
 FW_SHARED_FN uint workThisStep(uint work, uint turn) {
     return work == kWorkColdWater && (turn & kWorkAlways) != 0u ? kWorkAlways : work;
 }

@@ -3,7 +3,7 @@
 // clang-format off
 #ifndef FW_SHARED_LOOK_H
 #define FW_SHARED_LOOK_H
-#include "shared/types.h"
+#include "shared/integer.h"
 
 FW_SHARED_BEGIN
 
@@ -32,7 +32,8 @@ FW_SHARED_CONST uint kSurfaceCold = 128u; // only triangles far from all traces 
 
 // Layers of the appearance texture array: 512^2 RGBA8, tiling, with mips.
 FW_SHARED_CONST float kLayerNoise = 0.0f;   // R fBm, G ridged fBm, B fine fBm, A flake id
-FW_SHARED_CONST float kLayerChar = 1.0f;    // R primary crack distance, G secondary, BA slopes of cracks
+// R primary crack distance, G secondary, BA slopes of cracks
+FW_SHARED_CONST float kLayerChar = 1.0f;
 FW_SHARED_CONST float kLayerRelief = 2.0f;  // RG slopes of crumpling
 FW_SHARED_CONST float kLookTextureSide = 512.0f;
 FW_SHARED_CONST float kCrackSlopeRange = 12.0f;   // per cell, at texel value 1
@@ -120,16 +121,15 @@ struct ViewParams {          // uniform block, one per view
     uint flameCapacity;      // limit of flame quads
     uint seed;
     vec4 viewport;           // px: x, y, width, height
-    vec4 quads;              // x: visible share of flames and particles; y: widening that compensates it; z: share
-                             // of its own fires that the last light represents
+    vec4 quads;  // x: visible share of flames and particles; y: widening that compensates it; z:
+                 // share of its own fires that the last light represents
 };
 FW_SHARED_SIZE(ViewParams, 240)
 
-// Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1, with a short fade so
-// that no item pops.
+// Opacity of the item with random number `own` in [0, 1) where a share of all is visible: 0 or 1,
+// with a short fade so that no item pops.
 FW_SHARED_FN float shownShare(float share, float own) {
-    float shows = (share - own) * 12.0f + share;
-    return shows < 0.0f ? 0.0f : shows > 1.0f ? 1.0f : shows;
+    return saturate((share - own) * 12.0f + share);
 }
 
 // Emission of 40 cd/m^2 shows as 1 in the host's linear units, at emission scale 1.
@@ -137,16 +137,17 @@ FW_SHARED_CONST float kWhiteLuminance = 40.0f;
 
 FW_SHARED_CONST uint kAppearanceRows = 16u; // of the appearance table
 
-// kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their corners: no point is
-// farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most kColdReach.
+// kSurfaceCold classifies triangles by the marks of the tiles within `coldReach` texels of their
+// corners: no point is farther than 0.58 edges from a corner, or sampled beyond 1.5 texels. At most
+// kColdReach.
 FW_SHARED_CONST float kColdReach = 12.0f;
 FW_SHARED_FN float coldReach(float edge) { return 0.58f * edge + 1.5f; }
 
 // Only the strongest lights light surfaces.
 FW_SHARED_CONST uint kSurfaceLights = 16u;
 
-// Push constants of the surface pass: one object, one material. Per-draw constants never come from storage buffers:
-// software devices gather those word by word and lane by lane.
+// Push constants of the surface pass: one object, one material. Per-draw constants never come from
+// storage buffers: software devices gather those word by word and lane by lane.
 struct SurfaceDraw {
     vec4 row0;               // object to world
     vec4 row1;
@@ -167,7 +168,8 @@ struct SurfaceDraw {
     uint heatBase;           // as BurnObject; with kDrawHeat, kDrawWet
     float maxFilm;          // g/m^2 of water that the surface holds; 0: no heat buffer
     float now;               // with kDrawPlaced: s on the clock of its holes
-    float nearness;          // with kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach
+    // With kDrawCut: 0 (cut and discarded rims must match) to 1; kSurfaceCold: texels, coldReach
+    float nearness;
 };
 FW_SHARED_SIZE(SurfaceDraw, 128)
 // SurfaceDraw::flags beyond kObject...: triangles are small, flames light their corners.
@@ -182,7 +184,8 @@ FW_SHARED_CONST uint kDrawWet = 0x80000u;
 FW_SHARED_CONST uint kDrawThick = 0x100000u;
 // Holes are cut out of the triangles: vertices hold the time until each point burns through.
 FW_SHARED_CONST uint kDrawCut = 0x200000u;
-// Walls along open edges without cut triangles: texels hold the time until each point burns through.
+// Walls along open edges without cut triangles: texels hold the time until each point burns
+// through.
 FW_SHARED_CONST uint kDrawPerPixelHoles = 0x400000u;
 // Placed vertices on the inner skin.
 FW_SHARED_CONST uint kDrawInner = 0x800000u;
@@ -193,8 +196,8 @@ struct FlameQuad {
     vec4 baseHeight;         // m, world, foot of the quad; w: height m
     vec4 axisWidth;          // unit, foot to tip; w: half width m
     float opacity;           // [0, 1]
-    float phase;             // s of scroll, offset by the seed; kQuadFire: its life, [0, 1]; with a flipbook:
-                             // flipbookPlaceAt's time
+    float phase;  // s of scroll, offset by the seed; kQuadFire: its life, [0, 1]; with a flipbook:
+                  // flipbookPlaceAt's time
     float kelvin;            // K of the hottest part; kQuadSmoke: share lit by fire, [0, 1]
     uint kind;               // kQuad... | seed << 2 | flipbook + 1 << 18 (0: none) | kQuadEmits
 };
@@ -208,20 +211,22 @@ FW_SHARED_CONST uint kQuadSeed = 2u;   // shifts
 FW_SHARED_CONST uint kQuadFlipbookShift = 18u;
 FW_SHARED_CONST uint kQuadEmits = 1u << 31;  // hides nothing; implied for kQuadSpark
 
-// Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads are first those of
-// burning tiles (at most kFlameCapacity), then of particles, then emissive ones: sparks, and flipbook fire that hides
-// nothing. Emissive quads are not sorted but placed between those that hide, farthest first.
+// Draw arguments of the flames, their draw order, then as many words of scratch for the sort. Quads
+// are first those of burning tiles (at most kFlameCapacity), then of particles, then emissive ones:
+// sparks, and flipbook fire that hides nothing. Emissive quads are not sorted but placed between
+// those that hide, farthest first.
 FW_SHARED_CONST uint kFlameTileQuads = 4u;       // word: requested quads of tiles
 FW_SHARED_CONST uint kFlameParticleQuads = 5u;   // word: quads of particles that hide
 FW_SHARED_CONST uint kFlameEmissiveQuads = 6u;      // word: emissive quads
-FW_SHARED_CONST uint kFlameEmissiveDraw = 8u;   // words: draw arguments of the emissive quads, in buffer order
+// words: draw arguments of the emissive quads, in buffer order
+FW_SHARED_CONST uint kFlameEmissiveDraw = 8u;
 FW_SHARED_CONST uint kFlameOrder = 12u;      // first word of the order
 FW_SHARED_CONST uint kFlameCapacity = 4096u; // limit of drawn tile quads
 FW_SHARED_CONST uint kMaxQuads = 65536u;    // of all
 FW_SHARED_CONST uint kMaxFewQuads = 2048u;  // capacity of the sort in shared memory
 
-// Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are as thin as a pixel
-// and are drawn at full resolution.
+// Specialization constant 3 of quad draws. A half-resolution target takes all but sparks, which are
+// as thin as a pixel and are drawn at full resolution.
 FW_SHARED_CONST uint kPartAll = 0u;
 FW_SHARED_CONST uint kPartSoft = 1u;
 FW_SHARED_CONST uint kPartSparks = 2u;

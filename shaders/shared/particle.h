@@ -8,14 +8,15 @@
 
 FW_SHARED_BEGIN
 
-// An emitter's particles form a ring: the k-th spawned particle lies at k mod `ring` after `first`. Nothing is
-// allocated or freed, and every device makes the same particles.
+// An emitter's particles form a ring: the k-th spawned particle lies at k mod `ring` after `first`.
+// Nothing is allocated or freed, and every device makes the same particles.
 FW_SHARED_CONST uint kParticleGroup = 1024u;  // ring slots that a group of 64 threads handles
 FW_SHARED_CONST uint kMaxEmitters = 256u;
 FW_SHARED_CONST float kMaxParticleStep = 0.0334f;  // s; longer frames take several steps
 FW_SHARED_CONST uint kMaxParticleSteps = 32u;
 
-FW_SHARED_CONST float kEddyField = 4096.0f;  // m: when the world's origin shifts, eddies shift along, modulo this
+// m: when the world's origin shifts, eddies shift along, modulo this
+FW_SHARED_CONST float kEddyField = 4096.0f;
 FW_SHARED_CONST uint kNoBurnRow = 0xFFFFFFFFu;
 FW_SHARED_CONST uint kTileTries = 32u;  // tiles that a birth samples, at most, and
 FW_SHARED_CONST uint kTileChoice = 6u;  // of its mesh among them, chosen by power
@@ -38,7 +39,8 @@ struct ParticleEmitter {  // one emitter in one frame
     vec4 turbulence; // m/s, 1/m, m/s that eddies travel along `direction`, rad wander of a stream
     vec4 size;       // m width at birth, m per m of path, m per s, length over width at birth
     vec4 life;       // s, its variance, smoke's life as a share of fire's, share that leaves smoke
-    vec4 heat;       // K at birth, K at the end, density of smoke, m along x by which eddies shifted
+    // K at birth, K at the end, density of smoke, m along x by which eddies shifted
+    vec4 heat;
     uint first;      // first particle
     uint ring;       // capacity
     uint head;       // ring slot of the next birth
@@ -51,15 +53,15 @@ struct ParticleEmitter {  // one emitter in one frame
     uint flags;
     uint steps;      // of this frame
     uint obstacleCount;
-    uint books;      // flipbooks of fire: one byte each, + 1; 0: end
-    uint otherBooks; // flipbooks of smoke (two), the same
+    uint fireFlipbooks;  // flipbooks of fire: one byte each, + 1; 0: end
+    uint smokeFlipbooks; // flipbooks of smoke (two), the same
     uint object;     // slot + 1 of the burning mesh whose flaming tiles spawn it; 0: none
     uint reserved0;
     vec4 waves0;     // rad, rad, share: swing and pulse of a stream at the frame's start
     vec4 waves1;     // and at its end
-    vec4 stuck;       // share of births from fuel that sticks to surfaces; number of patches; m along y and z
-                      // by which eddies shifted
-    vec4 shields[64]; // m, world, and radius; unit normal: obstacles of a jet
+    vec4 stuck;  // share of births from fuel that sticks to surfaces; number of patches; m along y
+                 // and z by which eddies shifted
+    vec4 obstacles[64]; // m, world, and radius; unit normal: obstacles of a jet
     vec4 patches[32]; // m, world, and cumulative share; unit normal: where fuel sticks
 };
 FW_SHARED_SIZE(ParticleEmitter, 1840)
@@ -89,13 +91,11 @@ struct ParticlePush {
 };
 FW_SHARED_SIZE(ParticlePush, 32)
 
-FW_SHARED_FN float particleUnit(float x) { return clamp(x, 0.0f, 1.0f); }
-FW_SHARED_FN uint particleBits(uint x) { return hash32(x); }
-FW_SHARED_FN float particleHash(uint x) { return float(hash32(x) >> 8) * (1.0f / 16777216.0f); }
 // Standard deviation 1, at most 3.
 FW_SHARED_FN float particleGauss(uint x) {
-    uint a = particleBits(x), b = particleBits(x + 0x9e3779b9u);
-    return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) * (2.0f / 65535.0f);
+    uint a = hash32(x), b = hash32(x + 0x9e3779b9u);
+    return (float(a & 0xFFFFu) + float(a >> 16) + float(b & 0xFFFFu) - 98302.5f) *
+           (2.0f / 65535.0f);
 }
 
 FW_SHARED_FN uint particleSpeedBits(float v) {
@@ -106,7 +106,7 @@ FW_SHARED_FN float particleSpeedOf(uint bits) {
 }
 FW_SHARED_FN uint particleHitBits(vec4 hit) {
     if (hit.w < 0.0f) return kNoHit << 16;
-    vec3 n = vec3(hit.x, hit.y, hit.z);
+    vec3 n = vec3(hit);
     float sum = (n.x < 0.0f ? -n.x : n.x) + (n.y < 0.0f ? -n.y : n.y) + (n.z < 0.0f ? -n.z : n.z);
     n = n / max(sum, 1e-6f);
     float x = n.x, y = n.y;
@@ -126,7 +126,8 @@ FW_SHARED_FN vec4 particleHitOf(uint bits) {
     x += x < 0.0f ? fold : -fold;
     y += y < 0.0f ? fold : -fold;
     vec3 n = normalize(vec3(x, y, z));
-    return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f) : vec4(n, float(since) * (1.0f / 1024.0f));
+    return since == kNoHit ? vec4(0.0f, 0.0f, 0.0f, -1.0f)
+                           : vec4(n, float(since) * (1.0f / 1024.0f));
 }
 FW_SHARED_FN ParticleWords particlePacked(Particle p) {
     ParticleWords w;
@@ -154,14 +155,14 @@ FW_SHARED_FN uint particleBirths(uint head, uint ring, uint i) {
     return i < head ? head - 1u - i : head + ring - 1u - i;
 }
 FW_SHARED_FN uint particleSeed(uint seed, uint serial) {
-    return particleBits(serial * 747796405u + seed * 2891336453u);
+    return hash32(serial * 747796405u + seed * 2891336453u);
 }
 
 // Flipbook of a particle, + 1, from up to `most` bytes of a word; 0: none.
 FW_SHARED_FN uint particleFlipbook(uint bytes, uint most, uint seed) {
     uint count = 0u;
     for (uint i = 0u; i < most; ++i) count += (bytes >> (8u * i) & 0xFFu) != 0u ? 1u : 0u;
-    uint one = count > 0u ? particleBits(seed + 31u) % count : 0u;
+    uint one = count > 0u ? hash32(seed + 31u) % count : 0u;
     return bytes >> (8u * one) & (count > 0u ? 0xFFu : 0u);
 }
 
@@ -175,18 +176,19 @@ struct ParticleTraits {
 };
 FW_SHARED_FN ParticleTraits particleTraits(ParticleEmitter e, uint seed) {
     ParticleTraits t;
-    float f = particleHash(seed + 4u), f2 = f * f;
+    float f = hashUnit(seed + 4u), f2 = f * f;
     t.life = e.life.x * (1.0f + e.life.y * (1.2f * f + 1.2f * f2 * f2 - 0.85f));
-    t.own = particleHash(seed + 5u);
-    t.other = particleHash(seed + 8u);
+    t.own = hashUnit(seed + 5u);
+    t.other = hashUnit(seed + 8u);
     float keep = e.life.w;
-    t.smoke = particleUnit((keep - t.other) * 20.0f) * e.heat.z;
+    t.smoke = saturate((keep - t.other) * 20.0f) * e.heat.z;
     t.all = t.smoke > 0.0f ? t.life * (1.0f + e.life.z) : t.life;
     return t;
 }
 
 FW_SHARED_FN vec3 particleAcross(vec3 d) {
-    return normalize(cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f)));
+    return normalize(
+        cross(d, (d.y < 0.9f && d.y > -0.9f) ? vec3(0.0f, 1.0f, 0.0f) : vec3(1.0f, 0.0f, 0.0f)));
 }
 // Point of a disc of radius `away` about n, at angle `turn`.
 FW_SHARED_FN vec3 particleDisc(vec3 n, float turn, float away) {
@@ -195,15 +197,15 @@ FW_SHARED_FN vec3 particleDisc(vec3 n, float turn, float away) {
 }
 // State at birth, `age` s before the frame's end.
 FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
-    float back = e.from.w > 0.0f ? particleUnit(age / e.from.w) : 0.0f;
+    float back = e.from.w > 0.0f ? saturate(age / e.from.w) : 0.0f;
     vec3 d = vec3(e.direction);
     vec3 r = particleAcross(d), u = cross(r, d);
     vec4 waves = mix(e.waves1, e.waves0, back);
     float a = particleGauss(seed + 1u) * e.direction.w + waves.x;
     float b = particleGauss(seed + 2u) * e.direction.w + waves.y;
-    float disc = e.place.w * sqrt(particleHash(seed + 6u));
-    float turn = 6.2831853f * particleHash(seed + 7u);
-    float along = 2.0f * particleHash(seed + 9u) - 1.0f;
+    float disc = e.place.w * sqrt(hashUnit(seed + 6u));
+    float turn = 6.2831853f * hashUnit(seed + 7u);
+    float along = 2.0f * hashUnit(seed + 9u) - 1.0f;
     vec3 at = mix(vec3(e.place), vec3(e.from), back);
     at += (r * cos(turn) + u * sin(turn)) * disc + vec3(e.half_) * along;
     float pulse = 1.0f + waves.z + 0.08f * particleGauss(seed + 3u);
@@ -216,9 +218,10 @@ FW_SHARED_FN Particle particleBorn(ParticleEmitter e, uint seed, float age) {
 }
 
 // Moves it to a flaming tile of `area` m^2 around `at`.
-FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n, float area) {
-    float turn = 6.2831853f * particleHash(seed + 41u);
-    float away = 0.8f * sqrt(area * particleHash(seed + 42u));
+FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n,
+                                     float area) {
+    float turn = 6.2831853f * hashUnit(seed + 41u);
+    float away = 0.8f * sqrt(area * hashUnit(seed + 42u));
     p.placeAge = p.placeAge + vec4(at + particleDisc(n, turn, away) + n * (0.1f * e.size.x), 0.0f);
     vec3 v = n * (0.6f * e.half_.w);
     p.speedPath = p.speedPath + vec4(v, 0.0f);
@@ -226,16 +229,19 @@ FW_SHARED_FN Particle particleOnTile(ParticleEmitter e, Particle p, uint seed, v
 }
 
 FW_SHARED_FN bool particleSticks(ParticleEmitter e, uint seed) {
-    return particleHash(seed + 61u) < e.stuck.x;
+    return hashUnit(seed + 61u) < e.stuck.x;
 }
-// Moves it to fuel that sticks at `at` on a surface with normal n, as a splash that has just happened.
+// Moves it to fuel that sticks at `at` on a surface with normal n, as a splash that has just
+// happened.
 FW_SHARED_FN Particle particleOnPatch(ParticleEmitter e, Particle p, uint seed, vec3 at, vec3 n) {
     vec3 r = particleAcross(n), u = cross(r, n), up = vec3(e.up);
-    float turn = 6.2831853f * particleHash(seed + 62u);
-    float away = 0.25f * sqrt(particleHash(seed + 63u));
+    float turn = 6.2831853f * hashUnit(seed + 62u);
+    float away = 0.25f * sqrt(hashUnit(seed + 63u));
     p.placeAge = vec4(at + (r * cos(turn) + u * sin(turn)) * away + n * 0.08f, 0.2f * e.life.x);
-    p.speedPath = vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +
-                           up * (0.5f + 0.5f * particleHash(seed + 65u)), 0.9f);
+    p.speedPath =
+        vec4(n * 0.25f + (up - n * dot(up, n)) * 0.5f + r * (0.2f * particleGauss(seed + 64u)) +
+                 up * (0.5f + 0.5f * hashUnit(seed + 65u)),
+             0.9f);
     p.hit = vec4(n, 0.0f);
     return p;
 }
@@ -257,14 +263,17 @@ FW_SHARED_FN vec3 particleEddies(vec3 x) {
     return v * 0.63f;
 }
 
-FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path, float own) {
+FW_SHARED_FN float particleSize(ParticleEmitter e, ParticleTraits t, float age, float path,
+                                float own) {
     float a = age / t.life;
-    float s = e.size.x + (e.size.y * path + e.size.z * age) * mix(1.0f, 0.8f + 0.45f * own, particleUnit(a * 3.0f));
-    return s * (1.0f + 0.5f * particleUnit((a - 1.0f) / 2.0f));
+    float s = e.size.x + (e.size.y * path + e.size.z * age) *
+                             mix(1.0f, 0.8f + 0.45f * own, saturate(a * 3.0f));
+    return s * (1.0f + 0.5f * saturate((a - 1.0f) / 2.0f));
 }
 
 // State `dt` later, at most kMaxParticleStep. now: s, cosmetic.
-FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now, float dt) {
+FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle p, float now,
+                                   float dt) {
     float a = p.placeAge.w / t.life, torn = smoothstep(0.15f, 0.6f, a);
     vec3 up = vec3(e.up), v = vec3(p.speedPath), at = vec3(p.placeAge);
     vec3 wind = vec3(e.wind), n = vec3(p.hit);
@@ -295,23 +304,25 @@ FW_SHARED_FN Particle particleStep(ParticleEmitter e, ParticleTraits t, Particle
 }
 
 FW_SHARED_CONST float kSplashOff = 0.35f;  // m off the surface it hit, at most
-// Collision at c with a surface of unit normal n: the tangential part continues, the rest turns into a sheet that
-// prefers the direction of arrival and up.
+// Collision at c with a surface of unit normal n: the tangential part continues, the rest turns
+// into a sheet that prefers the direction of arrival and up.
 FW_SHARED_FN Particle particleSplash(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
                                      vec3 c, vec3 n, float size) {
     vec3 v = vec3(p.speedPath), up = vec3(e.up);
     float into = max(-dot(v, n), 0.0f);
     vec3 along = v + n * into;
     vec3 r = particleAcross(n), s = cross(r, n);
-    float turn = 6.2831853f * particleHash(seed + 71u);
+    float turn = 6.2831853f * hashUnit(seed + 71u);
     vec3 side = r * cos(turn) + s * sin(turn) + (up - n * dot(up, n)) * 0.35f + along * 0.06f;
     side = side / max(length(side), 1e-4f);
     bool first = p.hit.w < 0.0f;
-    float out_ = min(into * (0.25f + 0.65f * sqrt(t.other)) + 0.28f * length(along) * (0.3f + t.other), 4.5f);
+    float out_ = min(
+        into * (0.25f + 0.65f * sqrt(t.other)) + 0.28f * length(along) * (0.3f + t.other), 4.5f);
     vec3 sheet = along * 0.75f + side * out_ + n * (into * (0.03f + 0.10f * t.own));
     v = first ? sheet : along + n * 0.2f;
     float off = min(0.30f * size, kSplashOff);
-    float age = first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f)) : p.placeAge.w;
+    float age =
+        first ? clamp(p.placeAge.w, 0.22f * t.life, max(0.38f * t.life, 0.0f)) : p.placeAge.w;
     p.placeAge = vec4(c + n * off, p.placeAge.w > t.life ? p.placeAge.w : age);
     p.speedPath = vec4(v, p.speedPath.w + (first ? 0.5f : 0.0f));
     p.hit = vec4(n, first ? 0.0f : p.hit.w);
@@ -340,10 +351,11 @@ FW_SHARED_FN bool particleLands(ParticleEmitter e, Particle p, float size, float
 FW_SHARED_FN float particleSunk(ParticleEmitter e, float above) {
     return (e.flags & kEmitterGround) != 0u ? max(-above, 0.0f) : 0.0f;
 }
-// Collision in a step from `from`: with an obstacle of its jet (at `share` of the step, at `disc` with normal n) or, if
-// share > 1, with the ground.
+// Collision in a step from `from`: with an obstacle of its jet (at `share` of the step, at `disc`
+// with normal n) or, if share > 1, with the ground.
 FW_SHARED_FN Particle particleMet(ParticleEmitter e, ParticleTraits t, Particle p, uint seed,
-                                  vec3 from, float share, vec4 disc, vec3 n, float size, float above) {
+                                  vec3 from, float share, vec4 disc, vec3 n, float size,
+                                  float above) {
     vec3 up = vec3(e.up), at = vec3(p.placeAge);
     vec3 c = at - up * above, normal = up;
     if (share <= 1.0f) {
@@ -362,30 +374,33 @@ FW_SHARED_FN float particleKelvin(ParticleEmitter e, float a, float own) {
            120.0f * own * smoothstep(0.15f, 0.7f, a);
 }
 FW_SHARED_FN float particleFire(float a, float own) {
-    return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) * (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
+    return mix(0.45f, 1.0f, smoothstep(0.0f, 0.10f, a)) *
+           (1.0f - smoothstep(0.62f + 0.18f * own, 0.98f, a));
 }
 FW_SHARED_FN float particleQuarter(float x) { return x * sqrt(sqrt(x)); }  // x^1.25
 FW_SHARED_FN float particleSmoke(ParticleEmitter e, float a) {
-    return smoothstep(0.65f, 1.05f, a) * particleQuarter(particleUnit((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
+    return smoothstep(0.65f, 1.05f, a) *
+           particleQuarter(saturate((1.0f + e.life.z - a) / max(e.life.z, 0.01f)));
 }
 FW_SHARED_CONST float kPuffReach = 0.55f;  // of its particle's size, from its middle
-// m by which a puff keeps off the wall that its particle hit: inside the wall it would end in a straight line. It
-// detaches as it begins to show. (The ground is handled by its height.)
+// m by which a puff keeps off the wall that its particle hit: inside the wall it would end in a
+// straight line. It detaches as it begins to show. (The ground is handled by its height.)
 FW_SHARED_FN float particleOffWall(Particle p, vec3 up, float size, float a) {
     float upright = dot(vec3(p.hit), up);
     float wall = p.hit.w >= 0.0f ? 1.0f - upright * upright : 0.0f;
     return wall * smoothstep(0.5f, 0.8f, a) * max(kPuffReach * size - kSplashOff * 0.5f, 0.0f);
 }
-// Length over width, and how far the quad follows the flight direction (1) or its own rotation (0). across: m/s on the
-// screen.
+// Length over width, and how far the quad follows the flight direction (1) or its own rotation (0).
+// across: m/s on the screen.
 FW_SHARED_FN float particleStretch(ParticleEmitter e, float a, float across, float hit) {
-    float k = particleUnit(across / max(e.half_.w, 0.1f));
-    return hit >= 0.0f ? 1.0f + 0.7f * particleUnit(across / 5.0f) * exp(-hit * 3.0f)
+    float k = saturate(across / max(e.half_.w, 0.1f));
+    return hit >= 0.0f ? 1.0f + 0.7f * saturate(across / 5.0f) * exp(-hit * 3.0f)
                        : 1.0f + (e.size.w - 1.0f) * k * exp(-a * 5.5f);
 }
 FW_SHARED_FN float particleFollows(ParticleEmitter e, float a, float across, float hit) {
-    float k = particleUnit(across / max(e.half_.w, 0.1f));
-    return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit) : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *
+    float k = saturate(across / max(e.half_.w, 0.1f));
+    return (hit >= 0.0f ? 1.0f - smoothstep(0.2f, 0.6f, hit)
+                        : 1.0f - 0.85f * smoothstep(0.25f, 0.65f, a)) *
            smoothstep(0.02f, 0.12f, k);
 }
 

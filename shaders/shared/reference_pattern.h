@@ -8,8 +8,9 @@
 
 FW_SHARED_BEGIN
 
-// Pattern word. Bits 0 and 6: lattice point of the right-angled corner, in steps of 2^depth from corner 0 of the coarse
-// triangle towards corners 1 and 2. Bit 12: halvings. Bit 15: points down. Bit 16: coarse triangle.
+// Pattern word. Bits 0 and 6: lattice point of the right-angled corner, in steps of 2^depth from
+// corner 0 of the coarse triangle towards corners 1 and 2. Bit 12: halvings. Bit 15: points down.
+// Bit 16: coarse triangle.
 FW_SHARED_CONST uint kPatternEmpty = 0xFFFFFFFFu;  // pads a list to whole groups
 FW_SHARED_CONST uint kPatternDown = 0x8000u;
 FW_SHARED_CONST uint kPatternMaxTriangles = 65535u;  // coarse triangles
@@ -41,8 +42,8 @@ FW_SHARED_FN uint patternDrawVertex(FW_IN(RefineTriangle) t, uint c1, uint c2) {
     return refineDrawVertex(t, refinePack(depth, depth, depth, depth), code);
 }
 
-// Burn-level rule. gone: one bit for each of the six points that is burnt through. A triangle is consumed if all
-// corners are gone, or if two of its four children are. finest: it has no children.
+// Burn-level rule. gone: one bit for each of the six points that is burnt through. A triangle is
+// consumed if all corners are gone, or if two of its four children are. finest: it has no children.
 FW_SHARED_FN bool isPatternConsumed(uint gone, bool finest) {
     if (finest || (gone & 7u) == 7u) return (gone & 7u) == 7u;
     uint children = ((gone & 0x29u) == 0x29u ? 1u : 0u) + ((gone & 0x1Au) == 0x1Au ? 1u : 0u) +

@@ -11,7 +11,8 @@ FW_SHARED_BEGIN
 
 // ---- levels
 
-// Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at a distance of 1 m.
+// Level at which a segment covers `pixels` on the screen. focal: pixels of 1 m at a distance of 1
+// m.
 FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels) {
     vec3 middle = (a + b) * 0.5f;
     float d = distance(middle, eye);
@@ -25,7 +26,8 @@ FW_SHARED_FN float refineLod(vec3 a, vec3 b, vec3 eye, float focal, float pixels
 }
 
 // Updates the heat times and sets the target. cool: s that a level outlives its heat.
-FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth, float now, float cool) {
+FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod, float depth,
+                                  float now, float cool) {
     if ((heat & kRefineHot) != 0u) s.lastHot = now;
     if ((heat & kRefineBurning) != 0u && s.burningSince > now) s.burningSince = now;
     bool kept = (heat & kRefineHot) != 0u || now - s.lastHot < cool;
@@ -34,7 +36,7 @@ FW_SHARED_FN void setRefineTarget(FW_INOUT(RefineLevel) s, uint heat, float lod,
 
 // Order in which items lose levels: burning items last, then by number.
 FW_SHARED_FN float levelLossOrder(uint id, uint heat) {
-    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * float(hash32(id) >> 8u) / 16777216.0f;
+    return ((heat & kRefineBurning) != 0u ? 0.5f : 0.0f) + 0.45f * hashUnit(id);
 }
 FW_SHARED_FN float biasedLevel(float target, float bias, float spread) {
     float less = bias - spread;
@@ -55,9 +57,10 @@ FW_SHARED_FN float levelMorphAge(float level, uint top) {
     return f < 1.0f ? f : 1.0f;
 }
 
-// Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per s. grace: s of
-// burning after which a surface is no longer flat.
-FW_SHARED_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now, float dt, float rate, float grace) {
+// Moves the level towards `want`: up at once while the surface is flat, else by `rate` levels per
+// s. grace: s of burning after which a surface is no longer flat.
+FW_SHARED_FN void moveRefineLevel(FW_INOUT(RefineLevel) s, float want, float now, float dt,
+                                  float rate, float grace) {
     float step = rate * dt;
     bool flatStill = now - s.burningSince < grace;
     if (want > s.level) s.level = flatStill || s.level + step > want ? want : s.level + step;
@@ -70,11 +73,12 @@ FW_SHARED_FN vec3 refineOffset(uint offset) {
     int x = int(offset << 21u) >> 21;
     int y = int(offset << 10u) >> 21;
     int z = int(offset) >> 22;
-    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f), float(z) * (2.0f / 511.0f));
+    return vec3(float(x) * (2.0f / 1023.0f), float(y) * (2.0f / 1023.0f),
+                float(z) * (2.0f / 511.0f));
 }
 
-// Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks). Ticks may lie
-// before the world began.
+// Arrival at a slot, s since `epoch`, from the texels among its four that are lit by `now` (ticks).
+// Ticks may lie before the world began.
 FW_SHARED_FN float refineArrival(FW_IN(uvec4) ticks, uint weights, uint now, uint epoch) {
     float sum = 0.0f, weight = 0.0f;
     for (int k = 0; k < 4; ++k) {
@@ -93,7 +97,8 @@ FW_SHARED_FN uint refineOppositeWeights(uint opposite) {
     return a | (b << 8u) | (c << 16u) | (d << 24u);
 }
 
-// When a wall burns through: `through` s after it is lit from one side; from both, when the fronts meet.
+// When a wall burns through: `through` s after it is lit from one side; from both, when the fronts
+// meet.
 FW_SHARED_FN float burnThroughTime(float a, float b, float through) {
     float one = a < b ? a : b;
     if (one >= kRefineNever) return kRefineNever;
@@ -105,7 +110,8 @@ FW_SHARED_FN float burnThroughTime(float a, float b, float through) {
     return alone < both ? alone : both;
 }
 
-// burnSeconds: of a wall of full thickness; negative: it never opens. recede: share of the slot's reach, [0, 1).
+// burnSeconds: of a wall of full thickness; negative: it never opens. recede: share of the slot's
+// reach, [0, 1).
 FW_SHARED_FN vec4 evaluateSlot(FW_IN(RefineSlot) s, float arrival, float opposite, float now,
                                  float burnSeconds, float recede) {
     vec3 rest = vec3(s.x, s.y, s.z);

@@ -7,15 +7,16 @@
 
 FW_SHARED_BEGIN
 
-// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon on the solid side.
+// ---- holes. Solid where the hole is still to come; a small triangle keeps the polygon on the
+// solid side.
 
 // s to the hole.
 FW_SHARED_FN float secondsToHole(float hole, float now) {
     float f = hole - now;
     return f < kRefineUnlit ? f : kRefineUnlit;
 }
-// Cut position between the low slot (fa) and the high one (fb), one of them burnt through: a function of the small
-// edge, equal for both triangles, and never on a vertex.
+// Cut position between the low slot (fa) and the high one (fb), one of them burnt through: a
+// function of the small edge, equal for both triangles, and never on a vertex.
 FW_SHARED_FN float refineCutAt(float fa, float fb) {
     float t = fa / (fa - fb);
     t = t > 1.0f / 64.0f ? t : 1.0f / 64.0f;
@@ -60,14 +61,8 @@ FW_SHARED_FN uint refineCutWalls(FW_IN(RefineCut) cut) {
     uint o = cut.open;
     return (cut.rim < 4u ? 1u : 0u) + (o & 1u) + ((o >> 1u) & 1u) + ((o >> 2u) & 1u) + (o >> 3u);
 }
-// Triangles: outer skin, inner skin, two per wall.
-FW_SHARED_FN uint refineCutCount(FW_IN(RefineCut) cut, bool inner) {
-    if (cut.points == 0u) return 0u;
-    uint fan = cut.points - 2u;
-    return inner ? 2u * fan + 2u * refineCutWalls(cut) : fan;
-}
-// Triangles drawn in addition to the index list; the k-th is refineCutTriangle(refineCutDrawn(k)). A whole triangle is
-// in the index list and only adds walls; sheets have no inner skin.
+// Triangles drawn in addition to the index list; the k-th is refineCutTriangle(refineCutDrawn(k)).
+// A whole triangle is in the index list and only adds walls; sheets have no inner skin.
 FW_SHARED_FN uint refineCutDrawnCount(FW_IN(RefineCut) cut, bool inner, bool whole) {
     if (cut.points == 0u) return 0u;
     uint fan = cut.points - 2u;
@@ -83,11 +78,10 @@ FW_SHARED_FN uint refineCutShare(uint room, uint first, uint triangles) {
     return room * (first < triangles ? first : triangles) / triangles;
 }
 FW_SHARED_CONST uint kMaxRefineCut = 1u << 14u;  // cut triangles of an object
-// Last word of a cut vertex, a float: s to the hole, 0 at the hole; for walls one of:
+// Last word of a cut vertex, a float: s to the hole, 0 at the hole; for walls one of these, and 1
+// less at the inner skin:
 FW_SHARED_CONST float kRefineCutRim = -1.0f;   // at the outer skin
-FW_SHARED_CONST float kRefineCutDeep = -2.0f;  // at the inner skin
 FW_SHARED_CONST float kRefineBorder = -3.0f;   // along an open edge, at the outer skin
-FW_SHARED_CONST float kRefineBorderDeep = -4.0f;
 // Polygon side on which the k-th triangle's wall stands.
 FW_SHARED_FN uint refineCutWallSide(FW_IN(RefineCut) cut, uint k) {
     uint wanted = (k - 2u * (cut.points - 2u)) >> 1u;
@@ -112,16 +106,5 @@ FW_SHARED_FN uvec3 refineCutTriangle(FW_IN(RefineCut) cut, uint k) {
     uint y = x + 1u < cut.points ? x + 1u : 0u;
     return (k & 1u) == 0u ? uvec3(y, x, x + 4u) : uvec3(y, x + 4u, y + 4u);
 }
-// A polygon point of a small triangle with these slots.
-FW_SHARED_FN RefineCorner refineCutCorner(FW_IN(RefineCut) cut, uint point, uvec3 slots) {
-    RefineCorner c;
-    uint at = cut.corner[point & 3u];
-    uint a = slots[at & 3u];
-    uint b = at < 4u ? a : slots[refineNext(at & 3u)];
-    c.low = a < b ? a : b;
-    c.high = (a < b ? b : a) | (point >= 4u ? kRefineInside : 0u);
-    return c;
-}
-
 FW_SHARED_END
 #endif

@@ -7,8 +7,8 @@
 
 FW_SHARED_BEGIN
 
-// ---- patterns. A vertex code: 0x8000 | side << 8 | i, i in 0..2^l from the side's first corner; or
-// c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
+// ---- patterns. A vertex code: 0x8000 | side << 8 | i, i in 0..2^l from the side's first corner;
+// or c1 << 6 | c2 of the lattice, both >= 1, c1 + c2 < 2^m.
 
 FW_SHARED_CONST uint kRefineOnSide = 0x8000u;
 FW_SHARED_FN uint refineOnSide(uint e, uint i) { return kRefineOnSide | (e << 8u) | i; }
@@ -25,9 +25,13 @@ FW_SHARED_FN uint refineInnerStart(uint m) {
 }
 
 // Token j of a strip: bit 0 set: (edge i, row j + 1, row j), else (edge i, edge i + 1, row j).
-FW_CONSTANT_FN uint refineStripToken(uint row, uint i, uint j) { return row | (i << 1u) | (j << 7u); }
+FW_CONSTANT_FN uint refineStripToken(uint row, uint i, uint j) {
+    return row | (i << 1u) | (j << 7u);
+}
 // Token of the lattice: bit 10: the triangle points down.
-FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) { return a | (b << 5u) | (down << 10u); }
+FW_CONSTANT_FN uint refineInnerToken(uint down, uint a, uint b) {
+    return a | (b << 5u) | (down << 10u);
+}
 // Token for m < 2: three vertices of three bits; 0..2 corners, 3..5 middles of the sides.
 FW_SHARED_FN uint refineHandCode(uint v) {
     return v < 3u ? refineOnSide(v, 0u) : refineOnSide(v - 3u, 1u);
@@ -49,7 +53,8 @@ FW_SHARED_FN RefinePlace refineLocate(uint levels, uint k) {
     RefinePlace place;
     uint m = refineInterior(levels);
     if (m < 2u) {
-        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) | (refineSide(levels, 2u) << 2u);
+        uint mask = refineSide(levels, 0u) | (refineSide(levels, 1u) << 1u) |
+                    (refineSide(levels, 2u) << 2u);
         place.entry = kRefineHand + mask * 4u + k;
         place.part = 4u;
         place.k = k;
@@ -89,16 +94,18 @@ FW_SHARED_FN uvec3 refineCodes(uint levels, FW_IN(RefinePlace) place, uint token
         uint a = token & 31u;
         uint b = (token >> 5u) & 31u;
         if ((token & 1024u) != 0u)
-            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u), refineInside(a + 1u, b + 2u));
-        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u), refineInside(a + 1u, b + 2u));
+            return uvec3(refineInside(a + 2u, b + 1u), refineInside(a + 2u, b + 2u),
+                         refineInside(a + 1u, b + 2u));
+        return uvec3(refineInside(a + 1u, b + 1u), refineInside(a + 2u, b + 1u),
+                     refineInside(a + 1u, b + 2u));
     }
     uint e = place.part, f = refineNext(e), p = refineBefore(e);
     uint m = refineInterior(levels), n = 1u << m;
     uint l = refineSide(levels, e), steps = 1u << l;
     uint i = (token >> 1u) & 63u, j = token >> 7u;
     uint row = refineRowPoint(e, j, n);
-    // Corners use the other diagonal where both sides have the lattice's level: with l = m everywhere the result is the
-    // regular lattice, and levels nest.
+    // Corners use the other diagonal where both sides have the lattice's level: with l = m
+    // everywhere the result is the regular lattice, and levels nest.
     if (place.k == 0u && l == m && refineSide(levels, p) == m)
         return uvec3(refineOnSide(e, 1u), row, refineOnSide(p, (1u << refineSide(levels, p)) - 1u));
     if (place.k == steps + n - 4u && l == m && refineSide(levels, f) == m)

@@ -17,13 +17,13 @@ FW_SHARED_BEGIN
 
 
 FW_SHARED_CONST uint kRefineDepth = 5u;
-// The table of u16 tokens: strips by (m, edge level), lattices by m, then eight rows of four for m < 2.
+// The table of u16 tokens: strips by (m, edge level), lattices by m, then eight rows of four for m
+// < 2.
 FW_SHARED_CONST uint kRefineInner = 540u;
 FW_SHARED_CONST uint kRefineHand = 1576u;
 FW_SHARED_CONST uint kRefineTableSize = 1608u;
 FW_SHARED_CONST float kRefineNever = 1e30f;   // s: not lit, or no hole
 FW_SHARED_CONST float kRefineUnlit = 1000.0f; // s to the hole of a vertex without one
-FW_SHARED_CONST uint kRefineInside = 0x80000000u;  // in RefineCorner::high: on the inner skin
 FW_SHARED_CONST uint kRefineOpposed = 0xFFFFFFFFu; // RefineSlot::opposite: none
 // Heat of a tile, an edge or an interior.
 FW_SHARED_CONST uint kRefineHot = 1u;      // the front is near, or it burns
@@ -34,7 +34,8 @@ FW_SHARED_CONST uint kRefineStays = 8u;    // some are not
 FW_SHARED_CONST uint kRefineGoing = 16u;   // some of the others are lit
 FW_SHARED_CONST uint kRefineLost = 32u;    // interior: the whole triangle is burnt through; kept
 
-struct RefineTriangle {  // coarse triangle; corners and sides counter-clockwise, side e from e to e + 1
+// Coarse triangle; corners and sides counter-clockwise, side e from e to e + 1
+struct RefineTriangle {
     uint edge[3];
     uint flags;          // bit e: side e runs from the edge's high end; 4 bits each from 4, 8, 12:
                          // deepest level of the sides; from 16: of the interior
@@ -56,17 +57,19 @@ FW_SHARED_SIZE(RefineEdge, 16)
 struct RefineSlot {      // a vertex at rest
     float x, y, z;       // m, object space
     uint offset;         // signed 11:11:10 of [-2, 2]: moving by d * offset moves every face by d
-    uint reach;          // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
+    // low: farthest recession, 10 um; high: burn-through time, 1/4096 of a wall's
+    uint reach;
     uint texel;          // 24 bits: lower left of four; 8 bits: material
     uint weights;        // 4 x 8 bits: of texel, + 1, + width, + width + 1
-    uint opposite;       // 24 bits: lower left texel of the opposite wall; 4 + 4 bits: place between
+    // 24 bits: lower left texel of the opposite wall; 4 + 4 bits: place between
+    uint opposite;
 };                       // texels, 1/16; or kRefineOpposed
 FW_SHARED_SIZE(RefineSlot, 32)
 
 struct RefineVertex {    // a vertex in this frame
     float x, y, z;       // m, object space
-    float hole;          // s since the object's epoch: burnt through; kRefineNever: unknown. On the inner skin:
-                         // when the opposite wall was lit, see evaluateSlotNow
+    float hole;  // s since the object's epoch: burnt through; kRefineNever: unknown. On the inner
+                 // skin: when the opposite wall was lit, see evaluateSlotNow
 };
 FW_SHARED_SIZE(RefineVertex, 16)
 
@@ -86,13 +89,8 @@ struct RefineLevel {     // of an edge or an interior; s since the object's epoc
 };
 FW_SHARED_SIZE(RefineLevel, 16)
 
-struct RefineCorner {    // corner of the cut shell
-    uint low;            // slot
-    uint high;           // the same, or a cut point of the small edge low < high; kRefineInside
-};
-
-// An object in the frame's passes, rewritten in each frame that refines it (see isDue). Bases are record indices of the
-// buffers; mesh...: shared by objects.
+// An object in the frame's passes, rewritten in each frame that refines it (see isDue). Bases are
+// record indices of the buffers; mesh...: shared by objects.
 struct RefineObject {
     uint items;          // edges, then interiors
     uint triangles;
@@ -130,12 +128,13 @@ FW_SHARED_CONST uint kRefineIsActive = 1u;
 FW_SHARED_CONST uint kRefineIsFresh = 2u;  // nothing is initialised yet
 FW_SHARED_CONST uint kRefineIsCut = 4u;    // near: holes are cut; else fragments are discarded
 FW_SHARED_CONST uint kRefineIsWhole = 8u;  // no longer cut: all triangles are emitted again
-FW_SHARED_CONST uint kRefineHasPerPixelHoles = 32u;  // cut, but coarser than its size requires: corners miss holes, and
-                                           // per-pixel holes are used
+FW_SHARED_CONST uint kRefineHasPerPixelHoles =
+    32u;  // cut, but coarser than its size requires: corners miss holes, and
+          // per-pixel holes are used
 FW_SHARED_CONST uint kRefineIsCounted = 16u;  // counts against the budget in every frame
 
-// A word of the heat buffer: heat from the tile lists for the next frame, then for this one, and whether this frame
-// places the item again.
+// A word of the heat buffer: heat from the tile lists for the next frame, then for this one, and
+// whether this frame places the item again.
 FW_SHARED_CONST uint kRefineHeatShift = 8u;
 FW_SHARED_CONST uint kRefineMoving = 0x10000u;
 
@@ -147,7 +146,8 @@ FW_SHARED_CONST uint kRefineWorkEdges = 12u;  // x, y, z, jobs: edges that move,
 FW_SHARED_CONST uint kRefineWorkMorph = 16u;  // as place: items with morphing points
 FW_SHARED_CONST uint kRefineWorkBias = 20u;   // least bias, in steps, that fits the budget
 FW_SHARED_CONST uint kRefineWorkLists = 24u;
-// Behind an object's triangles in the level buffer: triangle sum for each bias, two per record, from its last turn.
+// Behind an object's triangles in the level buffer: triangle sum for each bias, two per record,
+// from its last turn.
 FW_SHARED_CONST uint kRefineSums = 8u;
 
 struct RefinePush {

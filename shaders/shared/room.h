@@ -11,8 +11,10 @@ FW_SHARED_CONST uint kMaxRooms = 64u;
 // Oxygen by volume, 2^-32 of the air.
 FW_SHARED_CONST uint kAirOutside = 899795648u;  // 20.95 %
 FW_SHARED_CONST uint minKAir = 515396076u;    // 12 %: nothing burns below
-FW_SHARED_CONST uint kAirStep = 503316u;        // burning strength grows by 1/256 per step; 3 % to full
-FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;  // of room steps, which precede heat steps
+// Burning strength grows by 1/256 per step; 3 % to full
+FW_SHARED_CONST uint kAirStep = 503316u;
+// Of room steps, which precede heat steps
+FW_SHARED_CONST uint kRoomPeriod = kHeatSteps * kStepTicks;
 
 struct Room {     // as the host defines it
     uint takes;   // oxygen consumed per J of fire, Q20
@@ -41,7 +43,8 @@ FW_SHARED_CONST uint kRoomMeans = 8u;
 FW_SHARED_CONST uint kMaxFlash = (1u << 28u) - 1u;  // J per period: limit of the mean's bits
 
 // Whole J that an object's fire released since `drawn`; the remainder waits there. Both in 2^-20 J.
-FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow, FW_INOUT(uint) drawnHigh) {
+FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow,
+                                  FW_INOUT(uint) drawnHigh) {
     uint restLow = low - drawnLow;
     uint restHigh = high - drawnHigh - (low < drawnLow ? 1u : 0u);
     uint joules = (restHigh << 12u) | (restLow >> 20u);
@@ -51,7 +54,8 @@ FW_SHARED_FN uint takeWholeJoules(uint low, uint high, FW_INOUT(uint) drawnLow, 
     return joules;
 }
 
-// Updates the mean and the flashover state. A flashover is reported again only after the mean fell to half.
+// Updates the mean and the flashover state. A flashover is reported again only after the mean fell
+// to half.
 FW_SHARED_FN void updateFlashover(FW_INOUT(RoomAir) air, FW_IN(Room) room, uint joules, uint now) {
     air.power += (joules < kMaxFlash ? joules : kMaxFlash);
     air.power -= divide(air.power + kRoomMeans - 1u, kRoomMeans);

@@ -21,23 +21,28 @@ FW_SHARED_CONST uint kFlameOctaves = 4u;         // per flame, at most
 FW_SHARED_CONST uint kProfileWidth = 64u;        // texels over rho in [0, kProfileReach]
 FW_SHARED_CONST uint kProfileHeight = 128u;      // texels over y in [0, 1]
 FW_SHARED_CONST float kProfileReach = 1.25f;     // rho at the profile's right edge
-FW_SHARED_CONST float kFlameReach = 1.2f;        // |p| over the tube's radius beyond which nothing burns
+// |p| over the tube's radius beyond which nothing burns
+FW_SHARED_CONST float kFlameReach = 1.2f;
 FW_SHARED_CONST float kFlameTop = 2.6f;          // y beyond which nothing burns
-FW_SHARED_CONST float kFlameWrap = 4096.0f;      // noise cells after which noise repeats along a flame
-FW_SHARED_CONST float kFlameMeanAbs = 0.177f;    // E|flameNoise|, which removes the bias of ridged noise
+// Noise cells after which noise repeats along a flame
+FW_SHARED_CONST float kFlameWrap = 4096.0f;
+// E|flameNoise|, which removes the bias of ridged noise
+FW_SHARED_CONST float kFlameMeanAbs = 0.177f;
 FW_SHARED_CONST float kFlamePuffLag = 1.6f;      // a bulge travels slower than the gas
 
 struct FlameNode {        // point of a curve, evenly spaced
     vec4 centre;          // xyz m, world; w: m, radius of the tube
     vec4 along;           // xyz unit: normal of the bisector plane; w: m from the base
-    vec4 side;            // xyz unit, of the rotation-minimising frame; w: >= 1, widening of the tube by a wall
+    // Xyz unit, of the rotation-minimising frame; w: >= 1, widening of the tube by a wall
+    vec4 side;
     vec4 squeeze;         // xyz: unit, flattening direction of a wall; w: [0, 0.9] strength
 };
 FW_SHARED_SIZE(FlameNode, 64)
 
 struct FlameRecord {      // one flame in one frame
     vec4 low;             // xyz m, world: bounds of all its visible parts; w: m, diameter
-    vec4 high;            // w: m, height of the profile; the visible flame is higher, see heightFactor
+    // w: m, height of the profile; the visible flame is higher, see heightFactor
+    vec4 high;
     vec4 scroll;          // noise cells that each octave has risen, [0, kFlameWrap)
     vec4 place;           // xyz: noise cells, offset in the noise; w: [0, 1) phase of the puffing
     vec4 tint;            // rgb linear; w: weight, 0 is black body
@@ -134,7 +139,8 @@ FW_SHARED_FN float flameCornerDot(uint key, vec3 f) {
     return float(int(h)) * f.x + float(int(h << 11)) * f.y + float(int(h << 21)) * f.z;
 }
 
-struct FlameLattice {     // cell of a noise position: offsets from both corners, weights, hashes of corners
+// Cell of a noise position: offsets from both corners, weights, hashes of corners
+struct FlameLattice {
     vec3 f; vec3 g; vec3 u;
     uint i; uint i1; uint j; uint j1; uint k; uint k1;
 };
@@ -172,9 +178,10 @@ FW_SHARED_FN vec3 flameCornerSlope(uint h) {
     return vec3(float(int(h)), float(int(h << 11)), float(int(h << 21)));
 }
 
-// Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its weight, dw: slope of the
-// weight.
-FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first, FW_INOUT(vec3) second) {
+// Slopes of two noises on one lattice, scaled by 2^31 / 1.15: contribution of a corner. w: its
+// weight, dw: slope of the weight.
+FW_SHARED_FN void flameCornerCurl(uint key, vec3 f, float w, vec3 dw, FW_INOUT(vec3) first,
+                                  FW_INOUT(vec3) second) {
     uint h = flameCorner(key);
     vec3 g = flameCornerSlope(h);
     first += w * g + dot(g, f) * dw;
@@ -217,8 +224,8 @@ FW_SHARED_FN vec3 flameCurl(vec3 x) {
 
 // ---- rise
 
-// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of tau - t moves with
-// the gas and stretches with it.
+// Residence time from the base to s: McCaffrey's speed 6.84 sqrt(s), then constant. A function of
+// tau - t moves with the gas and stretches with it.
 FW_SHARED_FN float flameTau(float s, float tauStart, float tauFree) {
     float a = clamp(s, 0.0f, tauFree);
     return (2.0f / 6.84f) * (sqrt(a + tauStart) - sqrt(tauStart)) +
@@ -231,8 +238,8 @@ FW_SHARED_FN float flamePlane(vec3 x, FlameNode node) {
     return dot(x - vec3(node.centre), vec3(node.along));
 }
 
-// Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first, db < 0 before the
-// second. Continuous across segments.
+// Coordinates of a point between the bisector planes of two nodes: da >= 0 in front of the first,
+// db < 0 before the second. Continuous across segments.
 FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da, float db) {
     float w = da / max(da - db, 1e-9f);
     vec4 centre = mix(a.centre, b.centre, w);
@@ -247,17 +254,6 @@ FW_SHARED_FN FlamePlace flamePlaceAt(vec3 x, FlameNode a, FlameNode b, float da,
     place.s = mix(a.along.w, b.along.w, w);
     place.radius = centre.w / mix(a.side.w, b.side.w, w);
     return place;
-}
-
-// Range of a ray near a segment, by a bounding sphere: x to y, none where x >= y. reach: m from the axis.
-FW_SHARED_FN vec2 flameSegmentSpan(vec3 from, vec3 direction, FlameNode a, FlameNode b, float reach) {
-    vec3 half_ = 0.5f * (vec3(b.centre) - vec3(a.centre));
-    float radius = length(half_) + reach;
-    vec3 to = vec3(a.centre) + half_ - from;
-    float at = dot(to, direction);
-    float room = radius * radius - (dot(to, to) - at * at);
-    float along = sqrt(max(room, 0.0f));
-    return room > 0.0f ? vec2(max(at - along, 0.0f), at + along) : vec2(0.0f);
 }
 
 // ---- appearance
@@ -283,8 +279,9 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     // Gas flows in over the base: tongues lean inward.
     float narrow = 1.0f - 0.6f * f.converge * rise;
     vec2 p = at.p / narrow;
-    vec3 eddy = flameCurl(vec3(p.x / f.lambdaWarp + f.place.x, z / f.lambdaWarp + f.place.y - f.warpScroll,
-                               p.y / f.lambdaWarp + f.place.z));
+    vec3 eddy =
+        flameCurl(vec3(p.x / f.lambdaWarp + f.place.x, z / f.lambdaWarp + f.place.y - f.warpScroll,
+                       p.y / f.lambdaWarp + f.place.z));
     p += vec2(eddy.x, eddy.z) * (f.warp * diameter * grow);
     float yw = y + eddy.y * (0.5f * f.warp * grow);
     // Tongues of unequal height, changing slowly.
@@ -316,7 +313,8 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
     // Soot lies in sheets where the advected noise is 0, the crests of the displacement.
     float thin = 0.7f * size / (f.lambda * narrow);
     float width = sqrt(f.filamentWidth * f.filamentWidth + thin * thin);
-    float filament = f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
+    float filament =
+        f.filamentWidth / width * flameExp2(-1.442695f * sheet * sheet / (width * width));
     if (sheet > 0.0f) filament = max(filament, f.tipFill * smoothstep(0.3f, 0.9f, y));
     look.sheet = mix(1.0f, f.filamentBase + (1.6f - f.filamentBase) * filament,
                      f.filament * smoothstep(0.0f, f.filamentHeight, y));
@@ -328,12 +326,14 @@ FW_SHARED_FN FlameLookup flameLookup(FlameRecord f, FlamePlace at, float size) {
 }
 
 FW_SHARED_FN vec3 flameRadiance(FlameRecord f, float kelvin) {
-    vec3 radiance = sootColour(kelvin, flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f)));
+    vec3 radiance =
+        sootColour(kelvin, flameExp2(34981.0f * (1.0f / 1600.0f) - 34981.0f / max(kelvin, 400.0f)));
     if (f.tint.w > 0.0f) {  // coloured fire keeps the luminance
         float luminance = dot(radiance, vec3(0.2126f, 0.7152f, 0.0722f));
         float hot = smoothstep(f.tintLow, f.tintHigh, kelvin);
         vec3 core = vec3(unpackUnorm4x8(f.tintCore));
-        radiance = mix(radiance, 1.1f * luminance * mix(vec3(f.tint), core * core, hot * hot), f.tint.w);
+        radiance =
+            mix(radiance, 1.1f * luminance * mix(vec3(f.tint), core * core, hot * hot), f.tint.w);
     }
     return radiance;
 }
@@ -345,9 +345,11 @@ FW_SHARED_FN FlameMedium flameMedium(FlameRecord f, FlameLookup look, vec2 profi
     m.soot = f.soot * f.air.w * soot;
     m.smoke = 0.0f; m.smokeShade = 0.5f;
     m.emission = m.soot * flameRadiance(f, 1000.0f * profile.x);
-    float foot = smoothstep(0.0f, 0.02f, look.y) * (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
+    float foot = smoothstep(0.0f, 0.02f, look.y) *
+                 (1.0f - smoothstep(0.3f * f.blueHeight, f.blueHeight, look.y));
     float gas = clamp(profile.x, 0.0f, 1.0f) * foot * look.guard * (1.0f - 0.8f * min(soot, 1.0f));
-    m.emission += f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
+    m.emission +=
+        f.blue * f.air.w / f.low.w * gas * mix(vec3(0.02f, 0.10f, 1.0f), vec3(f.tint), f.tint.w);
     return m;
 }
 
@@ -356,7 +358,8 @@ FW_SHARED_FN float flamePlumeWide(FlameRecord f, float s) {
     return 0.45f * f.low.w + 0.16f * max(s - 0.6f * f.high.w, 0.0f);
 }
 
-// Smoke above a flame: billows in a widening plume. x: 1/m; y: [0, 1], how bright it appears in light.
+// Smoke above a flame: billows in a widening plume. x: 1/m; y: [0, 1], how bright it appears in
+// light.
 FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     float y = at.s / f.high.w;
     if (f.smoke <= 0.0f || y < 0.6f || y > f.smokeTop) return vec2(0.0f, 0.5f);
@@ -366,7 +369,8 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
     if (body < 0.01f) return vec2(0.0f, 0.5f);
     float scale = 0.55f * diameter * (0.7f + 0.35f * y);  // lateral only: along, it would shear
     vec3 x = vec3(at.p.x / scale + f.place.x,
-                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) - f.smokeScroll + f.place.y,
+                  f.speed * flameTau(at.s, f.tauStart, f.tauFree) / (0.75f * diameter) -
+                      f.smokeScroll + f.place.y,
                   at.p.y / scale + f.place.z);
     float billow = -0.5f * 1.875f; float weight = 2.0f;
     uint o = 0u;
@@ -377,15 +381,16 @@ FW_SHARED_FN vec2 flameSmoke(FlameRecord f, FlamePlace at) {
         o += 1u;
     } while (o < max(f.octaves, 3u));
     billow += weight * kFlameMeanAbs;  // mean of the omitted octave
-    float density = smoothstep(0.05f, 1.0f, 1.15f * body + 0.55f * billow - 0.25f * (1.0f - body) - 0.12f);
+    float density =
+        smoothstep(0.05f, 1.0f, 1.15f * body + 0.55f * billow - 0.25f * (1.0f - body) - 0.12f);
     density *= smoothstep(0.6f, 1.7f, y) * (1.0f - smoothstep(0.7f * f.smokeTop, f.smokeTop, y));
     density *= smoothstep(0.01f, 0.06f, body);
     float thin = 0.45f * diameter / wide;
     return vec2(f.smoke * density * thin * thin, clamp(0.5f + 0.8f * billow, 0.0f, 1.0f));
 }
 
-// Largest distance from the axis, m, of anything visible between two places along, in a tube of `radius`, widened by
-// `widened`.
+// Largest distance from the axis, m, of anything visible between two places along, in a tube of
+// `radius`, widened by `widened`.
 FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius, float widened) {
     float reach = kFlameReach * (1.0f + f.puff) * radius;
     if (f.smoke <= 0.0f || s1 < 0.6f * f.high.w || s0 > f.smokeTop * f.high.w) return reach;
@@ -394,7 +399,8 @@ FW_SHARED_FN float flameReachAt(FlameRecord f, float s0, float s1, float radius,
 
 struct FlameSun {         // sunlight for a ray's smoke
     vec3 light;           // scattered towards the camera by smoke in the open
-    vec3 to;              // unit, towards the sun, in the frame of the curve's end: along side, across it, along
+    // Unit, towards the sun, in the frame of the curve's end: along side, across it, along
+    vec3 to;
 };
 
 // Smoke scatters forwards: Henyey-Greenstein phase function relative to isotropic scattering.
@@ -414,8 +420,9 @@ FW_SHARED_FN float flameErfc(float x) {
     return t * (0.3480242f - t * (0.0958798f - t * 0.7478556f)) * exp(-x * x);
 }
 
-// Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a bell across the axis,
-// whose integral is known in closed form. Width and density are those of the position.
+// Optical depth of smoke towards the sun. The plume's body casts the shadow, not its billows: a
+// bell across the axis, whose integral is known in closed form. Width and density are those of the
+// position.
 FW_SHARED_CONST float kSmokeBell = 2.4f;  // of its density: the body's own, reduced by billows
 FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     float y = at.s / f.high.w;
@@ -434,22 +441,23 @@ FW_SHARED_FN float flameSmokeDepth(FlameRecord f, FlamePlace at, vec3 to) {
     return most * beside * 0.8862269f * ahead / sqrt(a * flat2);
 }
 
-// Light scattered by smoke towards the camera per unit of density: from the flame below, ambient and sun. Multiple
-// scattering reaches deeper than direct sun. Fresh smoke is finer than the wavelength and scatters blue more: the
-// flame's deep orange turns brown.
+// Light scattered by smoke towards the camera per unit of density: from the flame below, ambient
+// and sun. Multiple scattering reaches deeper than direct sun. Fresh smoke is finer than the
+// wavelength and scatters blue more: the flame's deep orange turns brown.
 FW_SHARED_CONST vec3 kSmokeAside = vec3(1.0f, 1.4f, 1.9f);
-FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun, float depth) {
+FW_SHARED_FN vec3 flameSmokeLight(FlameRecord f, float distance2, float shade, vec3 sun,
+                                  float depth) {
     vec3 fire = kSmokeAside * flameRadiance(f, 0.5f * (f.tintLow + f.tintHigh)) *
                 (f.glow.w / (distance2 + 0.3f * f.low.w * f.low.w));
     vec3 day = sun * (0.8f * exp(-depth) + 0.2f * exp(-0.2f * depth));
-    return f.smokeAlbedo * (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
+    return f.smokeAlbedo *
+           (fire * mix(1.25f, 0.5f, shade) + (vec3(f.air) + day) * mix(0.7f, 1.1f, shade));
 }
-
 
 FW_SHARED_CONST vec3 kFlameAbsorb = vec3(0.9f, 1.125f, 1.35f);  // soot absorbs more blue
 
-// One step of emission and absorption, exact for a constant medium: thick flame reddens. incoming: light that smoke
-// scatters towards the camera.
+// One step of emission and absorption, exact for a constant medium: thick flame reddens. incoming:
+// light that smoke scatters towards the camera.
 FW_SHARED_FN FlameRay flameStep(FlameRay ray, FlameMedium m, vec3 incoming, float d) {
     // One exponential; the three channels are its powers.
     float e = flameExp2(-1.442695f * 0.225f * m.soot * d);

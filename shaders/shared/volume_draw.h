@@ -11,13 +11,15 @@ FW_SHARED_CONST uint kMaxVolumeFlames = 256u;   // of a world, in a frame
 FW_SHARED_CONST uint kFirePresets = 9u;         // first layers of the profile texture
 FW_SHARED_CONST uint kMaxFireProfiles = 23u;    // the host's, behind them
 FW_SHARED_CONST uint kProfileBytes = 32768u;    // per layer: 64 x 128 pairs of half floats
-FW_SHARED_CONST uint kVolumeSlabs = 6u;         // slabs of a flame where the host's depth is only tested
+// Slabs of a flame where the host's depth is only tested
+FW_SHARED_CONST uint kVolumeSlabs = 6u;
 FW_SHARED_CONST float kVolumeWhite = 1.5f;      // host units of soot of luminance 1
 
 FW_SHARED_CONST uint kVolumeFlameBytes = 1792u; // a multiple of 256: each flame is a uniform block
 
-// Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view: perspective: depth * (rayO
-// + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth * forward.
+// Push constants: screen rectangle of a flame, and its depth slabs. Ray at x, y of the view:
+// perspective: depth * (rayO + x rayX + y rayY); orthographic: rayO + x rayX + y rayY + depth *
+// forward.
 struct VolumeDraw {
     vec4 rect;            // low x, low y, high x, high y, [-1, 1] over the viewport
     vec4 rayX;            // m, from the camera
@@ -48,14 +50,18 @@ FW_SHARED_FN float metresOfDepth(vec4 clip, float depth) {
     return at > 0.0f ? at : 1e9f;  // far end of an infinite view
 }
 
-// A flame stands on the plane through its base, often on ground in that plane. The plane's clip z / w is linear in x, y
-// of the view: base.x + base.y * x + base.z * y. base.w is 1 if the camera is on the flame's side of the plane (all
-// light is nearer than the plane), else -1 (all light is beyond).
-FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) { return base.x + base.y * at.x + base.z * at.y; }
+// A flame stands on the plane through its base, often on ground in that plane. The plane's clip z /
+// w is linear in x, y of the view: base.x + base.y * x + base.z * y. base.w is 1 if the camera is
+// on the flame's side of the plane (all light is nearer than the plane), else -1 (all light is
+// beyond).
+FW_SHARED_FN float volumeBaseDepth(vec4 base, vec2 at) {
+    return base.x + base.y * at.x + base.z * at.y;
+}
 
-// A slab from `front` to `front + deep` m is tested at one depth: its middle, or, where the base plane cuts it, the
-// middle of the part on the flame's side. So ground in the plane never hides it, and objects in front do. whole, cut:
-// those depths; the nearest counts, or the farthest if turn is -1.
+// A slab from `front` to `front + deep` m is tested at one depth: its middle, or, where the base
+// plane cuts it, the middle of the part on the flame's side. So ground in the plane never hides it,
+// and objects in front do. whole, cut: those depths; the nearest counts, or the farthest if turn is
+// -1.
 struct DepthTest { float whole; float cut; float turn; };
 FW_SHARED_FN DepthTest makeDepthTest(vec4 base, vec4 clip, float front, float deep, vec2 at) {
     DepthTest test;
@@ -75,8 +81,9 @@ FW_SHARED_FN float baseSide(vec4 base, vec4 clip, float front, float deep, vec2 
     return test.turn * (test.cut - test.whole);
 }
 
-// Splits a quad into two polygons along a line. Returns the place of vertex [0, kVolumeSplitVertices) in the unit square. over:
-// negative on the first polygon's side, at 0 0, 1 0, 1 1 and 0 1.
+// Splits a quad into two polygons along a line. Returns the place of vertex [0,
+// kVolumeSplitVertices) in the unit square. over: negative on the first polygon's side, at 0 0, 1
+// 0, 1 1 and 0 1.
 FW_SHARED_CONST uint kVolumeSplitVertices = 18u;  // three triangles each, some degenerate
 FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     float side = vertex < 9u ? 1.0f : -1.0f;
@@ -102,9 +109,10 @@ FW_SHARED_FN vec2 splitQuadVertex(vec4 over, uint vertex) {
     return at;
 }
 
-FW_SHARED_CONST uint kMarchTileSide = 8u;          // march pixels per side; a workgroup marches a tile
-FW_SHARED_CONST uint kMarchPixelWords = 4u;     // per march pixel and slab: half floats red and green, blue and alpha;
-                                                // packSlabRange; unused
+// March pixels per side; a workgroup marches a tile
+FW_SHARED_CONST uint kMarchTileSide = 8u;
+FW_SHARED_CONST uint kMarchPixelWords = 4u;  // per march pixel and slab: half floats red and green,
+                                             // blue and alpha; packSlabRange; unused
 
 // Indirect arguments of a flame's march and draw, one tile each. Zeroed before the probe.
 struct VolumeWork {
@@ -113,19 +121,22 @@ struct VolumeWork {
 };
 FW_SHARED_SIZE(VolumeWork, 32)
 
-// Tile data of a flame, array by array, zeroed before the probe. First a word per tile: one bit per visible slab, then
-// whether its first and last column, first and last row are visible.
+// Tile data of a flame, array by array, zeroed before the probe. First a word per tile: one bit per
+// visible slab, then whether its first and last column, first and last row are visible.
 FW_SHARED_CONST uint kMarchTileListed = 1u;        // 1: the tile is marched
 FW_SHARED_CONST uint kMarchTileList = 2u;          // marched tiles
-FW_SHARED_CONST uint kMarchQuarterSide = 4u;       // march pixels per side of a tile's quarter; per quarter, by marchQuarter:
+// March pixels per side of a tile's quarter; per quarter, by marchQuarter:
+FW_SHARED_CONST uint kMarchQuarterSide = 4u;
 FW_SHARED_CONST uint kMarchQuarterBegins = 3u;        // all samples minus the first that is marched
 FW_SHARED_CONST uint kMarchQuarterEnds = 7u;          // last marched sample + 1; 0: none
 FW_SHARED_CONST uint kMarchTileWords = 12u;    // pixels begin after whole texels of these
-FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }  // quarter x, y
+// Quarter x, y
+FW_SHARED_FN uint marchQuarter(uint x, uint y) { return (x & 1u) | (y & 1u) << 1u; }
 
-// Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a small flame; its ray
-// passes through its middle (but see marchRayShift). A flame's march pixels are tiles from its origin, row by row over
-// all tiles, slab by slab. Samples lie in planes across the view, equally many per slab.
+// Push constants of probe and march. A march pixel covers a few pixels, or a part of one for a
+// small flame; its ray passes through its middle (but see marchRayShift). A flame's march pixels
+// are tiles from its origin, row by row over all tiles, slab by slab. Samples lie in planes across
+// the view, equally many per slab.
 struct MarchPush {
     vec4 rayX;            // w: m, width of a march pixel at depth 1 (perspective)
     vec4 rayY;            // w: m along the view, between samples
@@ -150,8 +161,8 @@ FW_SHARED_SIZE(MarchPush, 112)
 // n / d, exact below 2^22: software devices divide integers lane by lane.
 FW_SHARED_FN uint quotient22(uint n, uint d) { return uint((float(n) + 0.5f) / float(d)); }
 
-// Sample refinement where only `few` (> 0) samples are worth a march. A thin flame would otherwise appear as a row of
-// beads, as it alternately meets and misses the samples.
+// Sample refinement where only `few` (> 0) samples are worth a march. A thin flame would otherwise
+// appear as a row of beads, as it alternately meets and misses the samples.
 FW_SHARED_CONST uint kVolumeClosest = 4u;
 FW_SHARED_FN uint sampleRefinement(uint few, uint least) {
     uint closer = quotient22(least + few / 2u, few);
@@ -169,18 +180,21 @@ struct CompositePush {
     uint slabs;
     uint tilesX; uint tilesY;
     uint flags; uint samples;
-    uint perPixel;        // march pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more
+    // March pixels per side of a pixel: 2, 4, 8, in one tile; 0: a march pixel is a pixel or more
+    uint perPixel;
     float from; float to; // see passesDither
     uint reserved0; uint reserved1;
-    vec4 window;          // low x, y, high x, y, march pixels from the origin: a finer march shows the flame there
+    // Low x, y, high x, y, march pixels from the origin: a finer march shows the flame there
+    vec4 window;
     vec4 base;            // as VolumeDraw's
 };
 FW_SHARED_SIZE(CompositePush, 112)
 
-// Billboard impostor: a flame that is marched once and shown for several frames. Tiles of one slab with a constant
-// world size per march pixel. Words: tile data, then march pixels.
+// Billboard impostor: a flame that is marched once and shown for several frames. Tiles of one slab
+// with a constant world size per march pixel. Words: tile data, then march pixels.
 FW_SHARED_CONST uint kMaxImpostorTiles = 128u;         // at most
-FW_SHARED_CONST uint kImpostorWords = kMaxImpostorTiles * (kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords);
+FW_SHARED_CONST uint kImpostorWords =
+    kMaxImpostorTiles * (kMarchTileWords + kMarchTileSide * kMarchTileSide * kMarchPixelWords);
 
 // Push constants of the impostor pass.
 struct VolumeImpostor {
@@ -218,8 +232,8 @@ struct HazePush {
 };
 FW_SHARED_SIZE(HazePush, 96)
 
-// Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors that share a range
-// interleave; blended over each other, both would be too faint.
+// Ordered dither (Bayer): does a pixel show the threshold range [from, to) of [0, 1)? Two impostors
+// that share a range interleave; blended over each other, both would be too faint.
 FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
     uint a = (x ^ y) & 3u;
     uint b = y & 3u;
@@ -228,29 +242,31 @@ FW_SHARED_FN bool passesDither(uint x, uint y, float from, float to) {
     return threshold >= from && threshold < to;
 }
 
-// Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical neighbours differ by half
-// a step: an upright tongue may be one march pixel wide and would appear dashed otherwise. The phase is constant over
-// frames, so a frame needs no history.
+// Phase, [0, 1), of a march pixel's samples within a step: four phases in a square. Vertical
+// neighbours differ by half a step: an upright tongue may be one march pixel wide and would appear
+// dashed otherwise. The phase is constant over frames, so a frame needs no history.
 FW_SHARED_FN float marchSamplePhase(uint x, uint y) {
     uint quarter = (x & 1u) | (2u * (y & 1u));
     return 0.085f + 0.25f * float(quarter);
 }
 
-// Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame is then sampled at
-// as many places as it has march pixels.
+// Offset, [-0.5, 0.5] march pixels, of a ray where many march pixels cover a pixel: a narrow flame
+// is then sampled at as many places as it has march pixels.
 FW_SHARED_FN vec2 marchRayShift(uint x, uint y) {
     float across = 0.61803399f * float(y);
     float along = 0.61803399f * float(x);
     return vec2(across - floor(across) - 0.5f, along - floor(along) - 0.5f);
 }
 
-// Weight of the march pixel `step` (-1, 0, 1) from the nearest, `off` [-0.5, 0.5] beyond its middle. Even and odd ones
-// weigh the same for any pixel position, so all four phases count alike and no grain shows.
+// Weight of the march pixel `step` (-1, 0, 1) from the nearest, `off` [-0.5, 0.5] beyond its
+// middle. Even and odd ones weigh the same for any pixel position, so all four phases count alike
+// and no grain shows.
 FW_SHARED_FN float neighbourWeight(int step, float off) {
     return step == 0 ? 0.5f : 0.25f + 0.5f * float(step) * off;
 }
 
-// Packs the range of a march pixel's light within a slab, and the transmittance of the slabs in front.
+// Packs the range of a march pixel's light within a slab, and the transmittance of the slabs in
+// front.
 #ifndef __cplusplus
 uint packSlabRange(vec2 reach, float through) {
     uvec2 ends = uvec2(clamp(reach, 0.0, 1.0) * 255.0 + 0.5);
@@ -262,8 +278,9 @@ float slabShareNearer(uint lies, float cut) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     return clamp((cut - ends.x) / max(ends.y - ends.x, 1e-2), 0.0, 1.0);
 }
-// Share of its light on the flame's side of the base, `cut` slabs beyond this slab's front; side: VolumeDraw::base.w. A
-// march pixel's own ray has no light beyond, so all counts until the base is nearer than its first eighth.
+// Share of its light on the flame's side of the base, `cut` slabs beyond this slab's front; side:
+// VolumeDraw::base.w. A march pixel's own ray has no light beyond, so all counts until the base is
+// nearer than its first eighth.
 float slabShareBeside(uint lies, float cut, float side) {
     vec2 ends = vec2(uvec2(lies, lies >> 8u) & 255u) * (1.0 / 255.0);
     float end = side < 0.0 ? ends.y : ends.x;
@@ -271,8 +288,8 @@ float slabShareBeside(uint lies, float cut, float side) {
 }
 #endif
 
-// Sample footprint, m, for rays of which perPixel^2 cover a pixel: finer than a ray's share, since the pixel averages
-// many rays; a single ray uses its own width.
+// Sample footprint, m, for rays of which perPixel^2 cover a pixel: finer than a ray's share, since
+// the pixel averages many rays; a single ray uses its own width.
 FW_SHARED_FN float sampleFootprint(float pixel, uint perPixel) {
     return perPixel > 1u ? 0.25f * pixel / float(perPixel) : pixel;
 }

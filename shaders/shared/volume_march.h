@@ -25,7 +25,8 @@ FW_SHARED_CONST uint kFlameSmokeSteps = 4u;   // per ray
 
 struct FlameChord {       // range of a ray in a tube
     float from; float gap;    // m along the ray: first knot, distance of knots
-    float first; float last;  // in gaps from the first knot: range that may burn; first > last: none
+    // In gaps from the first knot: range that may burn; first > last: none
+    float first; float last;
 };
 
 // Bounding sphere of two pieces of tube; w: its square radius.
@@ -59,8 +60,9 @@ FW_SHARED_FN vec4 flameSpans(FW_FLAME_OF FlameRecord f, vec3 from, vec3 directio
         fire = flameWiden(fire, ball, from, direction, a.along.w < kFlameTop * f.high.w);
         float widened = max(max(a.side.w, m.side.w), b.side.w);
         ball = flameBall(a, m, b, flameReachAt(f, a.along.w, b.along.w, radius, widened));
-        smoke = flameWiden(smoke, ball, from, direction,
-                           f.smoke > 0.0f && b.along.w > 0.6f * f.high.w && a.along.w < f.smokeTop * f.high.w);
+        smoke = flameWiden(
+            smoke, ball, from, direction,
+            f.smoke > 0.0f && b.along.w > 0.6f * f.high.w && a.along.w < f.smokeTop * f.high.w);
     }
     return vec4(max(fire.x, 0.0f), fire.y, max(smoke.x, 0.0f), smoke.y);
 }
@@ -80,12 +82,13 @@ FW_SHARED_FN FlamePieces flamePieces(FW_FLAME_ALONE) {
         pieces.plane[k] = vec4(along, -dot(along, vec3(FW_FLAME_NODE(flameNodeOf(k)).centre)));
     }
     FW_UNROLL
-    for (uint k = 0u; k < kFlamePieces; ++k) pieces.middle[k] = FW_FLAME_NODE(k * kFlameSkip + 1u).centre;
+    for (uint k = 0u; k < kFlamePieces; ++k)
+        pieces.middle[k] = FW_FLAME_NODE(k * kFlameSkip + 1u).centre;
     return pieces;
 }
 
-// Coordinates in the nearest piece whose planes enclose the point; the curve continues straight before its base and
-// beyond its end.
+// Coordinates in the nearest piece whose planes enclose the point; the curve continues straight
+// before its base and beyond its end.
 FW_SHARED_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
     float best = 1e30f;
     uint at = 0u;
@@ -96,14 +99,16 @@ FW_SHARED_FN FlamePlace flamePlaceNear(FW_FLAME_OF FlamePieces pieces, vec3 x) {
         float db = dot(x, vec3(pieces.plane[k + 1u])) + pieces.plane[k + 1u].w;
         vec3 off = x - vec3(pieces.middle[k]);
         float cost = dot(off, off);
-        bool nearer = (k == 0u || da >= 0.0f) && (k + 1u == kFlamePieces || db < 0.0f) && cost < best;
+        bool nearer =
+            (k == 0u || da >= 0.0f) && (k + 1u == kFlamePieces || db < 0.0f) && cost < best;
         best = nearer ? cost : best;
         at = nearer ? k : at;
         before = nearer ? da : before;
         after = nearer ? db : after;
         da = db;
     }
-    return flamePlaceAt(x, FW_FLAME_NODE(flameNodeOf(at)), FW_FLAME_NODE(flameNodeOf(at + 1u)), before, after);
+    return flamePlaceAt(x, FW_FLAME_NODE(flameNodeOf(at)), FW_FLAME_NODE(flameNodeOf(at + 1u)),
+                        before, after);
 }
 
 FW_SHARED_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
@@ -112,10 +117,13 @@ FW_SHARED_FN vec4 flameKnot(FW_FLAME_OF FlamePieces pieces, vec3 x) {
 }
 
 // Is the nearest place continuous over an interval? It jumps between the sides of a loop.
-FW_SHARED_FN bool flameWhole(FlameChord chord, vec4 delta) { return abs(delta.z) <= 3.0f * chord.gap + 1e-6f; }
+FW_SHARED_FN bool flameWhole(FlameChord chord, vec4 delta) {
+    return abs(delta.z) <= 3.0f * chord.gap + 1e-6f;
+}
 
 // Extends the chord by an interval's burning range. A discontinuous interval burns nowhere.
-FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot, vec4 delta) {
+FW_SHARED_FN FlameChord flameInterval(FlameRecord f, FlameChord chord, float i, vec4 knot,
+                                      vec4 delta) {
     bool whole = flameWhole(chord, delta);
     vec4 slack = 0.125f * vec4(abs(delta.x), abs(delta.y), abs(delta.z), abs(delta.w));
     FW_UNROLL
@@ -140,19 +148,20 @@ FW_SHARED_FN FlamePlace flameAlong(vec4 knot, vec4 delta[kFlameIntervals], float
     return place;
 }
 
-// Smoke is thin and wide and marched separately. Smoke beyond `middle` m is accumulated in `back`, which flameBetween
-// places behind the flame.
+// Smoke is thin and wide and marched separately. Smoke beyond `middle` m is accumulated in `back`,
+// which flameBetween places behind the flame.
 struct FlameSmokeRay {
     FlameRay front; FlameRay back;
 };
 
-FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x, FlameSun sun,
-                                          bool behind, float d) {
+FW_SHARED_FN FlameSmokeRay flameSmokeStep(FlameRecord f, FlameSmokeRay ray, FlamePlace at, vec3 x,
+                                          FlameSun sun, bool behind, float d) {
     vec2 smoke = flameSmoke(f, at);
     FlameMedium m;
     m.soot = 0.0f; m.smoke = f.air.w * smoke.x; m.smokeShade = smoke.y; m.emission = vec3(0.0f);
     vec3 to = vec3(f.glow) - x;
-    vec3 light = flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
+    vec3 light =
+        flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
     FlameRay front = flameStep(ray.front, m, light, behind ? 0.0f : d);
     ray.back = flameStep(ray.back, m, light, behind ? d : 0.0f);
     ray.front = front;
@@ -167,7 +176,8 @@ FW_SHARED_FN FlameRay flameBehind(FlameRay ray, FlameRay behind) {
 
 FW_SHARED_FN FlameRay flameBetween(FlameRay fire, FlameSmokeRay smoke) {
     FlameRay all;
-    all.radiance = smoke.front.radiance + smoke.front.through * (fire.radiance + fire.through * smoke.back.radiance);
+    all.radiance = smoke.front.radiance +
+                   smoke.front.through * (fire.radiance + fire.through * smoke.back.radiance);
     all.through = smoke.front.through * fire.through * smoke.back.through;
     return all;
 }

@@ -65,8 +65,8 @@ float holeDelay(vec4 grown, vec4 fine, float delay, MaterialAppearance m) {
     return m.holeVariation * n + 1.5 * m.jitter * delay;
 }
 
-// Burn-through offset, s, by the opposite wall, lit `other` s ago; as burnThroughTime: when one wall has
-// burnt through, or where both fronts meet.
+// Burn-through offset, s, by the opposite wall, lit `other` s ago; as burnThroughTime: when one
+// wall has burnt through, or where both fronts meet.
 float burnThroughOffset(float a, float other, float through) {
     if (other <= -0.999 * through) return 0.0;
     float both = max(0.5 * (through - a - other), -min(a, other));
@@ -95,8 +95,10 @@ vec4 charCracks(float a, Site s, MaterialAppearance m, vec4 c) {
     float d1 = mix(c.r, c.g, m.isotropic) * m.cellX;
     float d2 = mix(c.g, c.r, m.isotropic) * m.cellX * 0.4;
     // Widened to a pixel with constant area; otherwise wood looks like lava from two metres.
-    float k1 = open1 * (1.0 - smoothstep(0.25 * w1, w1 + s.pixel, d1)) * (w1 + 1e-5) / (w1 + 0.6 * s.pixel + 1e-5);
-    float k2 = 0.7 * open2 * (1.0 - smoothstep(0.2 * w2, w2 + s.pixel, d2)) * (w2 + 1e-5) / (w2 + 0.6 * s.pixel + 1e-5);
+    float k1 = open1 * (1.0 - smoothstep(0.25 * w1, w1 + s.pixel, d1)) * (w1 + 1e-5) /
+               (w1 + 0.6 * s.pixel + 1e-5);
+    float k2 = 0.7 * open2 * (1.0 - smoothstep(0.2 * w2, w2 + s.pixel, d2)) * (w2 + 1e-5) /
+               (w2 + 0.6 * s.pixel + 1e-5);
     float pillow = saturate(1.8 * c.r);
     return vec4(max(k1, k2), min(d1, d2 + 0.3 * m.cellX), random, pillow * (2.0 - pillow));
 }
@@ -182,8 +184,9 @@ Skin burningSkin(Site s, MaterialAppearance m) {
     float rough = mix(s.baseRough, 0.8, pre * (1.0 - m.melt));
 
     // Char keeps the relief of the unburnt material.
-    vec3 charred = m.charColor.rgb * ((0.65 + 0.7 * nA.b) * (0.85 + 0.3 * k.z) *
-                                      (0.35 + 0.85 * s.cavity) * (0.75 + 0.6 * (nB.r - 0.3)) * (1.25 - 0.5 * s.deep));
+    vec3 charred =
+        m.charColor.rgb * ((0.65 + 0.7 * nA.b) * (0.85 + 0.3 * k.z) * (0.35 + 0.85 * s.cavity) *
+                           (0.75 + 0.6 * (nB.r - 0.3)) * (1.25 - 0.5 * s.deep));
     albedo = mix(albedo, charred, c);
     rough = mix(rough, m.charColor.w + 0.25 * (nA.g - 0.5) + 0.2 * (k.z - 0.5), c);
     float f0 = mix(0.04, 0.05, c);
@@ -205,7 +208,8 @@ Skin burningSkin(Site s, MaterialAppearance m) {
 
     // Ash follows the glow, on exposed tops, not in cracks.
     float nearCrack = m.crackDepth > 0.0 ? 0.55 * exp(-k.y / (2.2 * m.crackWidth)) - 0.1 : 0.0;
-    float spread = 1.1 * (nB.g - 0.45) - 1.2 * (nB.r - 0.5) + 0.5 * (nA.r - 0.5) + 0.2 * (k.z - 0.5) + nearCrack;
+    float spread = 1.1 * (nB.g - 0.45) - 1.2 * (nB.r - 0.5) + 0.5 * (nA.r - 0.5) +
+                   0.2 * (k.z - 0.5) + nearCrack;
     float ash = m.ashMax * smoothstep(m.ashStart, m.ashEnd, a + (m.ashEnd - m.ashStart) * spread);
     ash *= smoothstep(0.5 * m.ashStart, 1.3 * m.ashStart, a);
     ash *= (1.0 - k.x) * (0.3 + 0.7 * smoothstep(0.2, 0.7, s.cavity)) *
@@ -215,14 +219,17 @@ Skin burningSkin(Site s, MaterialAppearance m) {
 
     // Glow: noise on temperature, not on brightness; long-lived in cracks only.
     float breath = 45.0 * sin(s.time * 2.1 + 40.0 * nB.b + 6.28 * k.z) * nA.r;
-    float dT = m.glowVariation * ((nB.b - 0.5) * 1.6 + (nA.b - 0.5) * 1.2 + (nA.r - 0.5) * 1.5 + 0.4 * (k.z - 0.5)) +
+    float dT = m.glowVariation * ((nB.b - 0.5) * 1.6 + (nA.b - 0.5) * 1.2 + (nA.r - 0.5) * 1.5 +
+                                  0.4 * (k.z - 0.5)) +
                breath;
     float face = 300.0 + (m.faceKelvin - 300.0) * smoothstep(0.0, m.facePeak, a) *
                              exp(-max(0.0, a - m.facePeak) / (m.faceDecay * s.keep));
-    vec3 emission = emberRadiance(limitGlow(face + dT, s)) * (0.9 * (1.0 - 0.9 * ash) * smoothstep(0.0, 0.4, c));
+    vec3 emission = emberRadiance(limitGlow(face + dT, s)) *
+                    (0.9 * (1.0 - 0.9 * ash) * smoothstep(0.0, 0.4, c));
     if ((kHasWood || kHasHide) && m.crackDepth > 0.0 && c > 0.0) {
         float life = m.crackLife * s.keep * (0.55 + 2.2 * nB.r * nB.r + 0.4 * k.z);
-        float crack = 300.0 + (m.crackKelvin - 300.0) * smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
+        float crack = 300.0 + (m.crackKelvin - 300.0) *
+                                  smoothstep(0.3 * m.facePeak, 2.0 * m.facePeak, a) *
                                   exp(-a * a / (life * life));
         crack += dT - 0.8 * m.glowVariation * (nA.r - 0.5);
         float wall = exp(-k.y / (1.6 * m.crackWidth + 1e-5)) * c;
@@ -253,7 +260,8 @@ Skin burningSkin(Site s, MaterialAppearance m) {
         float t = saturate(1.0 - e / (0.9 * m.thickness));
         // Rounded towards the rim, or a bead of molten material; thin material curls.
         float bead = m.lip * 2.0 * e / (2.5e-3 * 2.5e-3) * exp(-e * e / (2.5e-3 * 2.5e-3));
-        o.slope += s.ahead * (bead - 1.1 * t * (1.0 - m.melt) - m.curl * exp(-e / (6.0 * m.rimWidth + 1e-4)) * c);
+        o.slope += s.ahead * (bead - 1.1 * t * (1.0 - m.melt) -
+                              m.curl * exp(-e / (6.0 * m.rimWidth + 1e-4)) * c);
     }
     rough = mix(rough, 0.16 + 0.3 * c, m.melt * smoothstep(-0.7 * m.scorchWidth, 0.0, x));
 
@@ -278,16 +286,10 @@ Skin burningSkin(Site s, MaterialAppearance m) {
 
 // Surface without fire nearby: burningSkin's result at low cost.
 Skin freshSkin(Site s, MaterialAppearance m) {
-    Skin o;
-    o.albedo = soaked(s.base, m.wetDark * s.water) * (1.0 - 0.25 * min(m.wetDark, 1.0) * s.water);
-    o.rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);
-    o.f0 = mix(0.04, 0.03, s.water);
-    o.emission = vec3(0.0);
-    o.occlusion = 1.0;
-    o.edge = 1.0;
-    o.sheen = 0.0;
-    o.slope = vec2(0.0);
-    return o;
+    vec3 albedo = soaked(s.base, m.wetDark * s.water);
+    albedo *= 1.0 - 0.25 * min(m.wetDark, 1.0) * s.water;
+    float rough = clamp(mix(s.baseRough, 0.16, s.water * wetShine(s, m)), 0.08, 1.0);
+    return Skin(albedo, rough, mix(0.04, 0.03, s.water), vec3(0.0), 1.0, 1.0, 0.0, vec2(0.0));
 }
 
 // Wall of a hole in a thin shell: distance along the view ray, m; negative: the ray passes through.

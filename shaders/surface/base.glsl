@@ -23,7 +23,8 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     float sharp = saturate(1.2 - pixel / 0.012);
     float wave = 0.5 + 0.5 * sin(ring * 502.65);
     float g = wave * wave * sharp + 0.35 * (1.0 - sharp);
-    float fibre = textureLod(lookTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise), noiseLod(pixel, 24.0)).b;
+    float fibre =
+        textureLod(lookTextures, vec3(q.x * 24.0, q.y * 1.1, kLayerNoise), noiseLod(pixel, 24.0)).b;
     int id = int(plank);
     b.factor = mix(vec3(1.085, 1.118, 1.146), vec3(0.698, 0.590, 0.478), g * 0.75) *
                ((0.82 + 0.36 * fibre) * (0.85 + 0.3 * hash(id, 3, 5)));
@@ -33,7 +34,8 @@ void woodBase(vec2 d, float pixel, bool planks, vec4 grown, out Base b) {
     b.rough = 0.62;
     if (planks) {
         float gap = min(across, 1.0 - across) * 0.15;
-        float dark = (1.0 - smoothstep(0.0012, 0.0016 + pixel, gap)) * min(1.0, 0.0028 / (0.0028 + pixel));
+        float dark =
+            (1.0 - smoothstep(0.0012, 0.0016 + pixel, gap)) * min(1.0, 0.0028 / (0.0028 + pixel));
         b.factor *= 1.0 - 0.85 * dark;
         b.height -= 0.003 * dark;
         b.cavity *= 1.0 - 0.8 * dark;
@@ -52,11 +54,8 @@ void paintBase(vec3 color, vec4 coarse, inout Base b) {  // over woodBase
 }
 
 void paperBase(vec2 d, float pixel, bool print, vec4 coarse, vec4 fine, out Base b) {
-    b.factor = vec3((0.96 + 0.08 * fine.b) * (0.97 + 0.06 * coarse.r));
-    b.rough = 0.85;
-    b.delay = (fine.b - 0.5) * 1.2;
-    b.cavity = 1.0;
-    b.height = 0.0;
+    b = Base(vec3((0.96 + 0.08 * fine.b) * (0.97 + 0.06 * coarse.r)), 0.85, (fine.b - 0.5) * 1.2,
+             1.0, 0.0);
     if (print) {
         int column = int(floor(d.x / 0.062)), line = int(floor(d.y / 0.0042));
         float x = fract(d.x / 0.062), y = fract(d.y / 0.0042);
@@ -139,13 +138,9 @@ void strawBase(vec2 d, float pixel, out Base b) {
     b.rough = 0.65;
 }
 
-Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine, vec4 grown) {
-    Base b;
-    b.factor = vec3(0.94 + 0.12 * coarse.r);
-    b.rough = 0.7;
-    b.delay = 0.0;
-    b.cavity = 1.0;
-    b.height = 0.0;
+Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coarse, vec4 fine,
+               vec4 grown) {
+    Base b = Base(vec3(0.94 + 0.12 * coarse.r), 0.7, 0.0, 1.0, 0.0);
     if (kHasWood && (kind == kBaseWood || kind == kBasePaint)) woodBase(d, pixel, planks, grown, b);
     if (kHasPaint && kind == kBasePaint) paintBase(color, coarse, b);
     if (kHasSheet && (kind == kBasePaper || kind == kBasePrint))
@@ -154,7 +149,8 @@ Base freshBase(uint kind, vec2 d, float pixel, bool planks, vec3 color, vec4 coa
     if (kHasPlant && kind == kBaseLeaf) leafBase(d, pixel, coarse, b);
     if (kHasPlant && kind == kBaseStraw) strawBase(d, pixel, b);
     if (kHasHide && kind == kBaseLeather) {
-        float pore = smoothstep(0.02, 0.12, lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
+        float pore =
+            smoothstep(0.02, 0.12, lookLayer(d / 0.022, kLayerChar, noiseLod(pixel, 45.0)).g);
         b.factor = vec3((0.75 + 0.5 * coarse.r) * (0.7 + 0.3 * pore));
         b.rough = 0.60 - 0.15 * pore;
         b.height = -0.0003 * (1.0 - pore);

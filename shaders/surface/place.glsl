@@ -10,6 +10,7 @@ vec3 fromEye(vec3 rest) {  // m, world, relative to the camera, from object spac
     return place;
 }
 vec4 clipPlace(vec3 position) {
-    precise vec4 place = view.clip0 * position.x + view.clip1 * position.y + view.clip2 * position.z + view.clip3;
+    precise vec4 place =
+        view.clip0 * position.x + view.clip1 * position.y + view.clip2 * position.z + view.clip3;
     return place;
 }

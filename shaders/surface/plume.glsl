@@ -8,7 +8,8 @@ float plumeHeight(float power) { return 0.02 + 0.014 * pow(max(power, 1.0), 0.4)
 bool plumeNear(vec3 d, float power, vec3 up, float reach) {
     float tall = plumeHeight(power), above = -dot(d, up) / tall, margin = reach / tall;
     float width = 2.7 * (0.25 + 0.12 * max(above, 0.0)) + margin;
-    return above > -0.1 - margin && above < 6.0 + margin && dot(d, d) / (tall * tall) - above * above < width * width;
+    return above > -0.1 - margin && above < 6.0 + margin &&
+           dot(d, d) / (tall * tall) - above * above < width * width;
 }
 
 // d: m, from the surface to the flames' light; power: W.
@@ -17,6 +18,7 @@ float plumeSoot(vec3 d, float power, vec3 up) {
     float above = -dot(d, up) / tall;
     float aside2 = (dot(d, d) / (tall * tall) - above * above);
     float width = 0.25 + 0.12 * max(above, 0.0);
-    float soot = 0.85 * smoothstep(-0.1, 0.5, above) * exp2(-0.9 * max(above, 0.0)) * exp2(-aside2 / (width * width));
+    float soot = 0.85 * smoothstep(-0.1, 0.5, above) * exp2(-0.9 * max(above, 0.0)) *
+                 exp2(-aside2 / (width * width));
     return mix(0.0, soot, power > 0.0);  // 0: no light in this slot
 }

@@ -15,16 +15,6 @@ FW_READ_WRITE(GRADIENT) FW_PUSH(StepPush)
 const uint kUnseen = 3u;  // invisible amount of soot
 const float kSootPerSecond = 2.0;  // simulated: slower than a tongue licks, faster than it burns
 
-vec3 inWorld(uint object, vec3 rest) {
-    vec4 at = vec4(rest, 1.0);
-    return vec3(dot(objects[object].worldRow0, at), dot(objects[object].worldRow1, at),
-                dot(objects[object].worldRow2, at));
-}
-vec3 restOf(uint object, uvec2 texel) {
-    return objects[object].originQuantum.xyz + objects[object].originQuantum.w *
-               vec3(texel.x & 0xFFFFu, texel.x >> 16u, texel.y & 0xFFFFu);
-}
-
 void sootRow(uint i, uint row) {
     uint worldTile = push.object + i;
     TileRef tile = tileRef(worldTile);
@@ -41,19 +31,25 @@ void sootRow(uint i, uint row) {
     if ((texel.y & (kTexelReal << 16u)) == 0u) return;
     vec3 middle = restOf(object, texel);
     bool skinned = (objects[object].flags & kObjectSkinned) != 0u;
-    SkinPlace moved = skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
+    SkinPlace moved =
+        skinPlace(skinned, objects[object].skinBase + first + anchor, objects[object].shownBase);
     vec3 shift = skinned ? moved.place - middle : vec3(0.0);
     middle = inWorld(object, middle + shift);
     float reach = 9.0 * sqrt(max(objects[object].tint.w, 0.0));  // m
     uint near = 0u;
     uint count = min(view.lightCount, kSurfaceLights);
     for (uint i = 0u; i < count && lights[i].power > 0.0; ++i)
-        near |= plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach) ? 1u << i : 0u;
-    uint most = uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
+        near |=
+            plumeNear(lights[i].positionRadius.xyz - middle, lights[i].power, view.up.xyz, reach)
+                ? 1u << i
+                : 0u;
+    uint most =
+        uint(min(255.0 * kSootPerSecond / float(kTicksPerSecond) * float(push.count), 255.0));
     bool marks = false;
     for (uint x = 0u; near != 0u && x < 8u; ++x) {
         uint t = predict[at + x];
-        if (t == kInert || t == kOut || t == kOutWet) continue;  // the word has another meaning then
+        // The word has another meaning then
+        if (t == kInert || t == kOut || t == kOutWet) continue;
         vec3 place = inWorld(object, restOf(object, texels[texelAt + x]) + shift);
         float soot = 0.0;
         for (uint bits = near; bits != 0u; bits &= bits - 1u) {
@@ -61,9 +57,10 @@ void sootRow(uint i, uint row) {
             soot += plumeSoot(lights[i].positionRadius.xyz - place, lights[i].power, view.up.xyz);
         }
         uint word = gradient[at + x];
-        uint lies = word & 0xFFu, wants = uint(255.0 * min(soot, 1.0));
-        marks = marks || (wants > lies && wants > kUnseen);
-        if (wants > lies) gradient[at + x] = (word & ~0xFFu) | min(wants, lies + max(most, 1u));
+        uint stored = word & 0xFFu, wanted = uint(255.0 * min(soot, 1.0));
+        marks = marks || (wanted > stored && wanted > kUnseen);
+        if (wanted > stored)
+            gradient[at + x] = (word & ~0xFFu) | min(wanted, stored + max(most, 1u));
     }
     if (marks) atomicOr(tileState[worldTile].flag, kTileMarked);
 }

@@ -1,6 +1,6 @@
 #version 450
-// A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and lights
-// the result. Writes linear HDR or encoded colour.
+// A burning surface in the host's pass: looks up the ignition time, evaluates appearance.glsl, and
+// lights the result. Writes linear HDR or encoded colour.
 #extension GL_GOOGLE_include_directive : require
 #include "lib/view.glsl"
 #include "shared/heat.h"
@@ -55,12 +55,12 @@ layout(location = 8) in vec4 inMiddleUv;
 layout(constant_id = 4) const uint kSamples = 4u;
 // Vulkan's standard sample positions for 2, 4, 8 and 16 samples, in sixteenths of a pixel from its
 // middle.
-const ivec2 kSamplePlaces[30] = ivec2[30](ivec2(4, 4), ivec2(-4, -4),
-    ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
-    ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1), ivec2(3, 7), ivec2(7, -7),
-    ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1), ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3),
-    ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7), ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4),
-    ivec2(6, 7), ivec2(-7, -8));
+const ivec2 kSamplePlaces[30] =
+    ivec2[30](ivec2(4, 4), ivec2(-4, -4), ivec2(-2, -6), ivec2(6, -2), ivec2(-6, 2), ivec2(2, 6),
+              ivec2(1, -3), ivec2(-1, 3), ivec2(5, 1), ivec2(-3, -5), ivec2(-5, 5), ivec2(-7, -1),
+              ivec2(3, 7), ivec2(7, -7), ivec2(1, 1), ivec2(-1, -3), ivec2(-3, 2), ivec2(4, -1),
+              ivec2(-5, -2), ivec2(2, 5), ivec2(5, 3), ivec2(3, -5), ivec2(-2, 6), ivec2(0, -7),
+              ivec2(-4, -6), ivec2(-6, 4), ivec2(-8, 0), ivec2(7, -4), ivec2(6, 7), ivec2(-7, -8));
 #endif
 
 #include "lib/colour.glsl"
@@ -160,15 +160,15 @@ Warmth warmthAt(vec2 uv) {
     vec2 corner = floor(st);
     ivec2 limit = lastTexel();
     float total = 1e-6, kelvin = 300.0 * total, fuel = total;
-    bool plane = (draw.flags & kDrawHeat) != 0u;
-    int taps = plane ? 4 : 1, i = 0;
+    bool hasHeat = (draw.flags & kDrawHeat) != 0u;
+    int taps = hasHeat ? 4 : 1, i = 0;
     do {
         ivec2 o2 = ivec2(i & 1, i >> 1);
         ivec2 texel = clamp(ivec2(corner) + o2, ivec2(0), limit);
         uint at = 2u * (draw.heatBase + texelAt(texel));
-        uint word = heat[plane ? at : 0u];
+        uint word = heat[hasHeat ? at : 0u];
         vec2 share = 1.0 - abs(st - corner - vec2(o2));
-        float w = plane ? share.x * share.y : 0.0;
+        float w = hasHeat ? share.x * share.y : 0.0;
         total += w;
         kelvin += w * float(word >> 16u) * (1.0 / 16.0);
         fuel += w * float(word & 0xFFFFu) * (1.0 / float(kFuelFull));
@@ -184,7 +184,7 @@ vec2 wetnessAt(vec2 uv) {
     ivec2 limit = lastTexel();
     vec2 sum = vec2(0.0);
     float total = 1e-6, least = 1.0, most = 0.0;
-    bool plane = draw.maxFilm > 0.0;
+    bool hasHeat = draw.maxFilm > 0.0;
     float perGram = 1.5 / max(draw.maxFilm, 1.0);
     int taps = (draw.flags & kDrawWet) != 0u ? 5 : 0;
     for (int i = 0; i < taps; ++i) {
@@ -193,10 +193,10 @@ vec2 wetnessAt(vec2 uv) {
         ivec2 texel = clamp(ivec2(middle) + o2, ivec2(0), limit);
         uint index = texelAt(texel);
         uint t = predict[draw.stateBase + index];
-        uint word = plane ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
+        uint word = hasHeat ? heat[2u * (draw.heatBase + index) + 1u] : 0u;
         float film = min(float(word & 0x3FFu) * perGram, 1.0);
         float brown = t < kLiveEnd ? 0.0 : float((word >> 20u) & 0xFFu) * (1.0 / 160.0);
-        if (!plane) film = t == kWet || t == kOutWet ? 1.0 : 0.0;
+        if (!hasHeat) film = t == kWet || t == kOutWet ? 1.0 : 0.0;
         vec2 x = abs(off - vec2(o2)) * 0.6;
         vec2 tail = max(1.5 - x, 0.0);
         vec2 k = mix(0.5 * tail * tail, 0.75 - x * x, lessThan(x, vec2(0.5)));
@@ -219,7 +219,8 @@ vec2 wetnessAt(vec2 uv) {
 float dampen(float age, float damp, float young, float wetAge) {
     if (damp <= 0.0) return age;
     float top = clamp(age, wetAge, young);
-    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0) : mix(top, wetAge, (damp - 0.25) / 0.75);
+    return damp < 0.25 ? mix(max(age, wetAge), top, damp * 4.0)
+                       : mix(top, wetAge, (damp - 0.25) / 0.75);
 }
 
 vec3 lit(Skin s, vec3 n, vec3 v, vec3 l, vec3 e) {
@@ -259,9 +260,11 @@ vec3 shade(Skin s, vec3 position, vec3 n, vec3 v, float open, float soot, float 
     s.albedo = sooted(s.albedo, sootable * saturate(soot));
     s.rough = mix(s.rough, 0.9, sootable * saturate(soot));
     vec3 c = s.emission * (view.sunColor.w / kWhiteLuminance);
-    c += lit(s, n, v, view.sunDirection.xyz, view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
+    c += lit(s, n, v, view.sunDirection.xyz,
+             view.sunColor.rgb * (open * (0.35 + 0.65 * s.occlusion)));
     float height = dot(n, view.up.xyz);
-    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo * (open * s.occlusion);
+    c += mix(view.ambientGround.rgb, view.ambientSky.rgb, 0.5 + 0.5 * height) * s.albedo *
+         (open * s.occlusion);
     vec3 mirror = reflect(-v, n);
     vec3 env = mix(view.ambientGround.rgb * 0.8, view.ambientSky.rgb * 1.6,
                    smoothstep(-0.3, 0.6, dot(mirror, view.up.xyz)));
@@ -326,7 +329,8 @@ void main() {
     vec3 ez = vec3(draw.row0.z, draw.row1.z, draw.row2.z) * inverseScale;
     float da = zigzag(5.0 * (inRest.x + inRest.z) + 0.8 * zigzag(7.3 * inRest.y + 0.2));
     float db = zigzag(4.3 * (inRest.y + 0.7 * inRest.z) + 0.8 * zigzag(9.2 * inRest.x));
-    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) + 0.1 * vec3(da, db, -0.5 * (da + db));
+    vec3 w = abs(vec3(dot(normal, ex), dot(normal, ey), dot(normal, ez))) +
+             0.1 * vec3(da, db, -0.5 * (da + db));
     bool facesX = w.x > w.y && w.x > w.z, facesY = !facesX && w.y > w.z;
     vec2 flatPlace = vec2(facesX ? inRest.z : inRest.x, facesY ? inRest.z : inRest.y);
 
@@ -377,7 +381,8 @@ void main() {
     // anyway.
     bool sheet = (draw.flags & kObjectTwoSided) != 0u;
     vec2 grownAt = sheet ? d : flatPlace;
-    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3) : vec2(grownAt.x, grownAt.y / look.drip);
+    grownAt = kHasWood ? inTree(d, plankOf(d, detailed)) * vec2(1.0, 0.3)
+                       : vec2(grownAt.x, grownAt.y / look.drip);
     vec4 grown = noiseAt(grownAt, kHasWood ? 2.6 : look.holeTiles, max(pixel, look.blur));
     vec3 color = draw.colorRough.rgb;
     bool cutOut = false;  // transparent image texel; decided below, where no derivatives are needed
@@ -386,11 +391,8 @@ void main() {
         vec4 texel = texture(baseImage, inTexture.zw);
         color = texel.rgb;
         cutOut = texel.a < 0.5;
-        fresh.factor = vec3(1.0);
-        fresh.rough = draw.colorRough.w;
-        fresh.delay = (fine.b - 0.5) * 1.2;
-        fresh.cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
-        fresh.height = 0.0;
+        float cavity = 0.45 + 0.55 * saturate(dot(color, vec3(0.9)) + 0.3);
+        fresh = Base(vec3(1.0), draw.colorRough.w, (fine.b - 0.5) * 1.2, cavity, 0.0);
     } else {
         fresh = freshBase(look.base, d, pixel, detailed, color, coarse, fine, grown);
         fresh.rough = clamp(fresh.rough + draw.colorRough.w - 0.7, 0.1, 1.0);
@@ -464,7 +466,8 @@ void main() {
         site.left = saturate(-1.0 - inSootOffset.y) * look.thickness * site.slow;
     }
     bool soon = site.offset >= 1e-3 || (cut && site.left >= 0.0 && site.left < look.holeTime);
-    bool cold = !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
+    bool cold =
+        !kBurns || look.spreadRate <= 0.0 || (site.age < -ahead && !soon && site.brown < 0.01);
     Skin skin;
 #if FW_MULTISAMPLED == 2
     int covered = -1;
@@ -473,7 +476,8 @@ void main() {
     // Refined faces recede while they burn, by a wall's thickness in its burn time (up to
     // kRefineRecede): they tilt towards the part that caught first.
     float burnt = look.holeTime > 0.0 ? site.age / look.holeTime : 0.0;
-    bool recedes = kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
+    bool recedes =
+        kBurns && (draw.flags & (kDrawPlaced | kDrawCut)) != 0u && burnt > 0.0 && !wall && !inside;
     float fall = recedes ? draw.thickness / look.holeTime : 0.0;
     fall *= 1.0 - smoothstep(0.9 * kRefineRecede, 1.1 * kRefineRecede, burnt);
     vec3 leaned = normal - slope * min(fall, 1.5 * inversesqrt(max(dot(slope, slope), 1e-8)));
@@ -506,7 +510,8 @@ void main() {
             // Positions for 2, 4, 8 and 16 samples start at count - 2.
             vec2 off = vec2(kSamplePlaces[kSamples - 2u + i]) * (1.0 / 16.0);
             float there = edge + dot(perPixel, off);
-            bool stands = there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
+            bool stands =
+                there >= 0.0 || (walled && rimHit(there, rise, look.thickness, ray) >= 0.0);
             standing |= stands ? 1 << i : 0;
         }
         if (site.left < 0.0) covered = standing;  // a cut mesh ends at its rim
@@ -551,7 +556,8 @@ void main() {
 
     // Cavities are black with smoke.
     float soot = inside && deep < 0.0 && (kBurns || kCold) ? 0.85 : arrival.soot;
-    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot, (1.0 - charred) * (0.6 + 0.5 * coarse.r));
+    vec3 linear = shade(skin, position, n, toEye, inside ? 0.5 : 1.0, soot,
+                        (1.0 - charred) * (0.6 + 0.5 * coarse.r));
     outColor = vec4(encodeOutput(min(linear, vec3(60000.0)) * view.sunDirection.w, kEncoding), 1.0);
 #if FW_MULTISAMPLED == 2
     gl_SampleMask[0] = covered;

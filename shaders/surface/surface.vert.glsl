@@ -24,15 +24,17 @@ layout(location = 8) in vec3 inRest;   // m, object space, before deformation
 
 // centroid: values at a pixel's middle beside the triangle would extrapolate off the mesh and
 // outline burnt triangles.
-layout(location = 0) centroid out vec4 outPosition;  // m, world, relative to the camera; w: flame light, red
+// M, world, relative to the camera; w: flame light, red
+layout(location = 0) centroid out vec4 outPosition;
 layout(location = 1) centroid out vec4 outRest;      // m, object axes, world scale; w: green
 layout(location = 2) centroid out vec4 outNormal;    // w: blue
 layout(location = 3) centroid out vec4 outTexture;   // xy: texels of the atlas; zw: UV
 layout(location = 4) centroid out vec4 outDetail;    // xy: m; zw and ...
 layout(location = 5) centroid out vec4 outTint;      // w: ... mean direction to the flames
-layout(location = 6) centroid out vec2 outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
-                                            // kDrawCut the last word of a cut vertex, in s; with
-                                            // kSurfaceCold x: 1 near traces of fire
+layout(location = 6) centroid out vec2
+    outSootOffset;  // soot of flames below; appearance seconds, see inOffset; with
+                    // kDrawCut the last word of a cut vertex, in s; with
+                    // kSurfaceCold x: 1 near traces of fire
 #ifdef FW_MULTISAMPLED
 // At pixels' middles, which form a grid, so differences between them are safe.
 layout(location = 7) out vec3 outMiddle;    // as outPosition

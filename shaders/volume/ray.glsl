@@ -22,7 +22,8 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
     uint i = 0u;
     // Uniform loops test at their end: see lib/compute.glsl.
     do {
-        vec4 next = flameKnot(tube.pieces, from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
+        vec4 next = flameKnot(
+            tube.pieces, from + direction * (tube.chord.from + tube.chord.gap * float(i + 1u)));
         FW_UNROLL
         for (uint k = 0u; k < kFlameIntervals; ++k)
             tube.delta[k] = i == k ? next - knot : tube.delta[k];
@@ -36,7 +37,8 @@ RayTube rayTube(FlameRecord f, vec4 spans, vec3 from, vec3 direction, uint turns
 
 // Medium of a lookup.
 FlameMedium lookMedium(FlameRecord f, FlameLookup look) {
-    vec2 texel = vec2(look.rho * (float(kProfileWidth) / kProfileReach), look.y * float(kProfileHeight));
+    vec2 texel =
+        vec2(look.rho * (float(kProfileWidth) / kProfileReach), look.y * float(kProfileHeight));
     vec2 texels = vec2(float(kProfileWidth), float(kProfileHeight));
     vec2 uv = clamp(texel, vec2(0.5), texels - 0.5) / texels;
     FlameMedium m = FlameMedium(0.0, 0.0, 0.5, vec3(0.0));
@@ -71,11 +73,11 @@ struct ViewRay {
     float perDepth;   // m along the ray per m along the view
     float perMetre;   // footprint growth of a pixel of width 1 along the ray; 0: orthographic
 };
-ViewRay viewRay(vec3 way) {
+ViewRay viewRay(vec3 at) {
     bool perspective = view.forward.w > 0.5;
-    vec3 along = perspective ? way : view.forward.xyz;
+    vec3 along = perspective ? at : view.forward.xyz;
     ViewRay ray;
-    ray.from = view.eye.xyz + (perspective ? vec3(0.0) : way);
+    ray.from = view.eye.xyz + (perspective ? vec3(0.0) : at);
     ray.perDepth = length(along);
     ray.direction = along / ray.perDepth;
     ray.perMetre = perspective ? 1.0 / ray.perDepth : 0.0;
@@ -91,7 +93,8 @@ void addZero(inout FlameRecord f, uint zero) {
     f.puff += float(zero);
 }
 FlameSun raySun(vec3 direction, vec3 white) {
-    return flameSun(FW_FLAME_NODE(kFlameNodes - 1u), view.sunDirection.xyz, direction, 0.3 * view.sunColor.rgb / white);
+    return flameSun(FW_FLAME_NODE(kFlameNodes - 1u), view.sunDirection.xyz, direction,
+                    0.3 * view.sunColor.rgb / white);
 }
 
 // Premultiplied, encoded; scattered: the smoke's share of the light.
@@ -103,7 +106,8 @@ vec4 flameShown(FlameRay ray, vec3 scattered, vec3 white, uint encoding) {
         // thin one must turn red, not grey.
         vec3 grey = scattered * white;
         float cover = max(alpha, 1e-4);
-        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) + encodeOutput(grey / cover, encoding) * cover;
+        color = encodeOutput(max(color - grey, vec3(0.0)), encoding) +
+                encodeOutput(grey / cover, encoding) * cover;
     }
     return vec4(min(color, vec3(60000.0)), alpha);
 }

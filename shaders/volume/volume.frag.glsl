@@ -34,8 +34,9 @@ const float kOneSurface = 0.02;
 
 // Smoke has few samples with a phase per pixel: unfiltered they show as a screen-door pattern.
 FlameSmokeRay smokeOfFour(FlameSmokeRay smoke) {
-    FlameSmokeRay mean = FlameSmokeRay(FlameRay(meanOfFour(smoke.front.radiance), meanOfFour(smoke.front.through)),
-                                       FlameRay(meanOfFour(smoke.back.radiance), meanOfFour(smoke.back.through)));
+    FlameSmokeRay mean =
+        FlameSmokeRay(FlameRay(meanOfFour(smoke.front.radiance), meanOfFour(smoke.front.through)),
+                      FlameRay(meanOfFour(smoke.back.radiance), meanOfFour(smoke.back.through)));
     bool alike = draw.perPixel == 1u;
 #ifdef FW_SOFT
     // No light from behind a depth edge leaks in front of it.
@@ -50,7 +51,8 @@ FlameSmokeRay smokeOfFour(FlameSmokeRay smoke) {
 // step.
 vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     vec2 perPixel = 2.0 / abs(view.viewport.zw);
-    ViewRay along = viewRay(inRay + off.x * perPixel.x * draw.rayX.xyz + off.y * perPixel.y * draw.rayY.xyz);
+    ViewRay along =
+        viewRay(inRay + off.x * perPixel.x * draw.rayX.xyz + off.y * perPixel.y * draw.rayY.xyz);
     vec3 from = along.from, direction = along.direction;
     float perDepth = along.perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
@@ -94,12 +96,13 @@ vec4 shownAlong(FlameRecord f, vec2 off, float jitter) {
     ends = clamp(ceil((slab - spans.z) / max(stride, 1e-9) - jitter), 0.0, float(kFlameSmokeSteps));
     k = ends.x;
     last = spans.z < spans.w ? ends.y : 0.0;
-    FlameSmokeRay smoke = FlameSmokeRay(FlameRay(vec3(0.0), vec3(1.0)), FlameRay(vec3(0.0), vec3(1.0)));
+    FlameSmokeRay smoke =
+        FlameSmokeRay(FlameRay(vec3(0.0), vec3(1.0)), FlameRay(vec3(0.0), vec3(1.0)));
     while (k < last) {
         float t = spans.z + stride * (k + jitter);
         vec3 x = from + direction * t;
-        smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, sun, metres > 0.0 && t > middle,
-                               k < last ? stride : 0.0);
+        smoke = flameSmokeStep(f, smoke, flamePlaceNear(tube.pieces, x), x, sun,
+                               metres > 0.0 && t > middle, k < last ? stride : 0.0);
         k += 1.0;
     }
     smoke = smokeOfFour(smoke);
@@ -117,10 +120,12 @@ void main() {
     vec4 sum = vec4(0.0);
     uint k = 0u;
     do {  // the same number of iterations for all
-        uvec2 cell = first + uvec2(k % side, k / side);
-        vec2 off = (vec2(k % side, k / side) + 0.5 + (side > 1u ? marchRayShift(cell.x, cell.y) : vec2(0.0))) /
-                       float(side) - 0.5;
-        sum += shownAlong(f, off, marchSamplePhase(cell.x, cell.y));
+        uvec2 at = first + uvec2(k % side, k / side);
+        vec2 off = (vec2(k % side, k / side) + 0.5 +
+                    (side > 1u ? marchRayShift(at.x, at.y) : vec2(0.0))) /
+                       float(side) -
+                   0.5;
+        sum += shownAlong(f, off, marchSamplePhase(at.x, at.y));
         k += 1u;
     } while (k < side * side);
     outColor = sum / float(side * side);

@@ -9,68 +9,57 @@
 
 layout(push_constant) uniform Push { CompositePush draw; };
 
-layout(location = 0) centroid in vec2 inCell;
+layout(location = 0) centroid in vec2 inPixel;
 layout(location = 1) flat in uint inWords;
 layout(location = 2) flat in vec2 inSlab;
-layout(location = 3) flat in ivec4 inCells;
+layout(location = 3) flat in ivec4 inPixels;
 layout(location = 4) flat in uint inPerPixel;
 layout(location = 5) flat in vec2 inShows;
 layout(location = 6) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
-#include "volume/cells.glsl"
-
-#ifdef FW_SOFT
-#include "volume/scene_depth.glsl"
-#endif
-
-float cut = 0.0;  // slabs from this slab's front to the scene, or to the base
+#include "volume/march_pixels.glsl"
 
 // A march pixel is weighted by the transmittance of the slabs in front: its mean is what they let
 // through when drawn, so slabs neither lose nor create light.
-void add(uint at, float weight, inout vec4 color, inout float through) {
-    uvec4 cell = cellAt(at);
-    weight *= slabTransmittance(cell.z);
+void add(uint at, float weight, float cut, inout vec4 color, inout float through) {
+    uvec4 pixel = marchPixelAt(at);
+    weight *= slabTransmittance(pixel.z);
     through += weight;
-#ifdef FW_SOFT
-    weight *= slabShareNearer(cell.z, cut);
-#else
-    // March pixels smaller than a pixel have bases of their own.
-    weight *= inPerPixel > 1u ? 1.0 : slabShareBeside(cell.z, cut, inBase.y);
-#endif
-    color += weight * cellColor(cell);
+    color += weight * countingShare(pixel.z, cut, inPerPixel > 1u) * marchPixelColor(pixel);
 }
 
 void main() {
     outColor = vec4(0.0);
-    bool elsewhere = all(greaterThan(inCell + 0.5, draw.window.xy)) && all(lessThan(inCell + 0.5, draw.window.zw));
-    if (elsewhere || !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
+    bool elsewhere = all(greaterThan(inPixel + 0.5, draw.window.xy)) &&
+                     all(lessThan(inPixel + 0.5, draw.window.zw));
+    if (elsewhere ||
+        !passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y))
+        return;
     uint pitch = kMarchPixelWords * kMarchTileSide * draw.tilesX;
     vec4 color = vec4(0.0);
-    float through = 0.0;
-#ifdef FW_SOFT
-    cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
-#else
-    cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
-#endif
+    float through = 0.0, cut = slabsToCut();
     if (inPerPixel > 1u) {
-        uvec2 first = uvec2(floor((inCell + 0.5) / float(inPerPixel))) * inPerPixel;
+        uvec2 first = uvec2(floor((inPixel + 0.5) / float(inPerPixel))) * inPerPixel;
         uint row = inWords + pitch * first.y + kMarchPixelWords * first.x;
         for (uint y = 0u; y < inPerPixel; ++y) {
-            for (uint x = 0u; x < inPerPixel; ++x) add(row + kMarchPixelWords * x, 1.0, color, through);
+            for (uint x = 0u; x < inPerPixel; ++x)
+                add(row + kMarchPixelWords * x, 1.0, cut, color, through);
             row += pitch;
         }
     } else {
-        vec2 whole = floor(inCell + 0.5);
-        vec2 off = inCell - whole;
+        vec2 whole = floor(inPixel + 0.5);
+        vec2 off = inPixel - whole;
         FW_UNROLL
         for (int y = -1; y <= 1; ++y) {
-            uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inCells.y, inCells.w));
+            uint row = inWords + pitch * uint(clamp(int(whole.y) + y, inPixels.y, inPixels.w));
             FW_UNROLL
             for (int x = -1; x <= 1; ++x) {
-                uint column = kMarchPixelWords * uint(clamp(int(whole.x) + x, inCells.x, inCells.z));
-                add(row + column, neighbourWeight(x, off.x) * neighbourWeight(y, off.y), color, through);
+                uint column =
+                    kMarchPixelWords * uint(clamp(int(whole.x) + x, inPixels.x, inPixels.z));
+                float weight = neighbourWeight(x, off.x) * neighbourWeight(y, off.y);
+                add(row + column, weight, cut, color, through);
             }
         }
     }

@@ -8,13 +8,15 @@
 FW_READ(VOLUME_RAYS)
 layout(push_constant) uniform Push { CompositePush draw; };
 
-layout(location = 0) centroid out vec2 outCell;        // of the flame, from the middle of its first
+// of the flame, from the middle of its first
+layout(location = 0) centroid out vec2 outPixel;
 layout(location = 1) flat out uint outWords;  // first of the slab
 layout(location = 2) flat out vec2 outSlab;   // m along the view: near distance; 1/m: depth
-layout(location = 3) flat out ivec4 outCells; // first and last valid
+layout(location = 3) flat out ivec4 outPixels; // first and last valid
 layout(location = 4) flat out uint outPerPixel;
 layout(location = 5) flat out vec2 outShows;
-layout(location = 6) centroid out vec2 outBase;  // clip z / w of the plane through the base; VolumeDraw::base.w
+// Clip z / w of the plane through the base; VolumeDraw::base.w
+layout(location = 6) centroid out vec2 outBase;
 
 void main() {
     uint vertex = uint(gl_VertexIndex);
@@ -35,7 +37,8 @@ void main() {
         FW_UNROLL
         for (int x = -1; x <= 1; ++x) {
             ivec2 near = at + ivec2(x, y);
-            bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) && near.y < int(draw.tilesY);
+            bool inside = near.x >= 0 && near.y >= 0 && near.x < int(draw.tilesX) &&
+                          near.y < int(draw.tilesY);
             uint of = draw.flags + (inside ? uint(near.y) * draw.tilesX + uint(near.x) : tile);
             bool is = inside && rays[of + kMarchTileListed * tiles] != 0u;
             uint there = rays[of], edges = there >> kVolumeSlabs;
@@ -50,16 +53,17 @@ void main() {
             if (y > 0) reach.w = may ? reach.w : 0;
         }
     }
-    outCells = ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
-    vec2 cell = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kMarchTileSide);
-    outCell = cell - 0.5;
-    uint cells = tiles * kMarchTileSide * kMarchTileSide;
-    outWords = draw.samples + kMarchPixelWords * cells * slab;
+    outPixels =
+        ivec4(at, at) * int(kMarchTileSide) + reach + ivec4(0, 0, ivec2(kMarchTileSide - 1u));
+    vec2 pixel = vec2((uvec2(at) + uvec2(corner & 1u, corner >> 1u)) * kMarchTileSide);
+    outPixel = pixel - 0.5;
+    uint pixels = tiles * kMarchTileSide * kMarchTileSide;
+    outWords = draw.samples + kMarchPixelWords * pixels * slab;
     float front = draw.front + draw.deep * float(slab);
     outPerPixel = draw.perPixel | (vertex >> 31u);  // not constant, see volume_march
     outShows = vec2(draw.from, draw.to) + float(vertex >> 31u);
     outSlab = vec2(front, 1.0 / draw.deep);
-    vec2 place = draw.place.xy + draw.place.zw * cell;
+    vec2 place = draw.place.xy + draw.place.zw * pixel;
     outBase = vec2(volumeBaseDepth(draw.base, place), draw.base.w);
     float depth = testedDepth(makeDepthTest(draw.base, draw.clip, front, draw.deep, place));
     gl_Position = ((lit >> slab) & 1u) != 0u ? vec4(place, depth, 1.0) : vec4(0.0, 0.0, 0.0, 1.0);

@@ -21,7 +21,8 @@ const float kSeen = 0.25;        // px of displacement at full opacity
 
 // Position in pixels of the view.
 vec2 pixelOf(vec3 fromEye) {
-    vec4 clip = fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
+    vec4 clip =
+        fromEye.x * view.clip0 + fromEye.y * view.clip1 + fromEye.z * view.clip2 + view.clip3;
     return 0.5 * clip.xy / clip.w * view.viewport.zw;
 }
 
@@ -29,11 +30,11 @@ void main() {
     outColor = vec4(0.0);
     float perspective = view.forward.w;  // a weight instead of a branch, see ARCHITECTURE.md
     vec3 start = inRay * (1.0 - perspective);
-    vec3 way = mix(view.forward.xyz, inRay, perspective);
-    float perDepth = length(way), away = inBend.w;
+    vec3 ray = mix(view.forward.xyz, inRay, perspective);
+    float perDepth = length(ray), away = inBend.w;
     float behind = min(depthOfScene(draw.clip) * perDepth - away, kFarthest);
     if (behind <= 0.0 || away <= 0.0) return;
-    vec3 seen = start + way * ((away + behind) / perDepth);
+    vec3 seen = start + ray * ((away + behind) / perDepth);
     vec2 shift = pixelOf(seen + inBend.xyz * behind) - pixelOf(seen);
     float pixels = length(shift);
     shift *= min(kHazePixels / max(pixels, 1e-6), 1.0);

@@ -8,7 +8,8 @@
 layout(push_constant) uniform Push { HazePush draw; };
 
 layout(location = 0) centroid out vec3 outRay;   // m, see VolumeDraw
-layout(location = 1) centroid out vec4 outBend;  // deflection per m behind the column; m along the ray to the column
+// Deflection per m behind the column; m along the ray to the column
+layout(location = 1) centroid out vec4 outBend;
 
 #include "shared/volume_march.h"
 
@@ -25,16 +26,18 @@ Passing passAxis(FlameRecord f, vec3 from, vec3 direction) {
     uint piece = 0u;
     FW_UNROLL
     for (uint k = 0u; k < kFlamePieces; ++k) {
-        vec4 a = FW_FLAME_NODE(flameNodeOf(k)).centre, b = FW_FLAME_NODE(flameNodeOf(k + 1u)).centre;
+        vec4 a = FW_FLAME_NODE(flameNodeOf(k)).centre,
+             b = FW_FLAME_NODE(flameNodeOf(k + 1u)).centre;
         float s = FW_FLAME_NODE(flameNodeOf(k)).along.w;
         float long_ = FW_FLAME_NODE(flameNodeOf(k + 1u)).along.w - s;
-        vec3 way = b.xyz - a.xyz, to = a.xyz - from;
+        vec3 segment = b.xyz - a.xyz, to = a.xyz - from;
         to -= direction * dot(to, direction);
-        way -= direction * dot(way, direction);
+        segment -= direction * dot(segment, direction);
         // The last piece is extended to the end of the column.
-        float most = k + 1u < kFlamePieces ? 1.0 : max((kHazeTop * f.high.w - s) / max(long_, 1e-6), 1.0);
-        float u = clamp(-dot(to, way) / max(dot(way, way), 1e-9), 0.0, most);
-        vec3 off = to + u * way;
+        float most =
+            k + 1u < kFlamePieces ? 1.0 : max((kHazeTop * f.high.w - s) / max(long_, 1e-6), 1.0);
+        float u = clamp(-dot(to, segment) / max(dot(segment, segment), 1e-9), 0.0, most);
+        vec3 off = to + u * segment;
         float wide = flamePlumeWide(f, s + u * long_);
         open = min(open, 1.0 - FW_FLAME_NODE(flameNodeOf(k + 1u)).squeeze.w / 0.9);
         float cost = dot(off, off) / (wide * wide);

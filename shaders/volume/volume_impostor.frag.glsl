@@ -8,7 +8,7 @@
 
 layout(push_constant) uniform Push { VolumeImpostor draw; };
 
-layout(location = 0) centroid in vec2 inCell;
+layout(location = 0) centroid in vec2 inPixel;
 layout(location = 1) flat in vec2 inSlab;
 layout(location = 2) flat in ivec4 inTaps;
 layout(location = 3) flat in vec2 inHalf;
@@ -17,24 +17,17 @@ layout(location = 5) centroid in vec2 inBase;
 
 layout(location = 0) out vec4 outColor;
 
-#include "volume/cells.glsl"
-
-#ifdef FW_SOFT
-#include "volume/scene_depth.glsl"
-#endif
+#include "volume/march_pixels.glsl"
 
 void main() {
     outColor = vec4(0.0);
     if (!passesDither(uint(gl_FragCoord.x), uint(gl_FragCoord.y), inShows.x, inShows.y)) return;
-#ifdef FW_SOFT
-    float cut = (depthOfScene(draw.clip) - inSlab.x) * inSlab.y;
-#else
-    float cut = (metresOfDepth(draw.clip, inBase.x) - inSlab.x) * inSlab.y;
-#endif
-    vec2 low = inCell - inHalf, high = inCell + inHalf;
+    float cut = slabsToCut();
+    bool small = min(draw.perX, draw.perY) >= 1.0;
+    vec2 low = inPixel - inHalf, high = inPixel + inHalf;
     ivec2 first = ivec2(floor(low));
     vec4 color = vec4(0.0);
-    // The same number of iterations for all pixels; cells outside have weight 0.
+    // The same number of iterations for all pixels; march pixels outside have weight 0.
     for (int j = 0; j < inTaps.y; ++j) {
         int y = first.y + j;
         float tall = clamp(min(high.y, float(y + 1)) - max(low.y, float(y)), 0.0, 1.0);
@@ -44,14 +37,9 @@ void main() {
             int x = first.x + i;
             float weight = tall * clamp(min(high.x, float(x + 1)) - max(low.x, float(x)), 0.0, 1.0);
             if (x < 0 || x >= inTaps.z) weight = 0.0;
-            uvec4 cell = cellAt(draw.samples + kMarchPixelWords * (row + uint(clamp(x, 0, inTaps.z - 1))));
-#ifdef FW_SOFT
-            weight *= slabShareNearer(cell.z, cut);
-#else
-            // March pixels smaller than a pixel have bases of their own.
-            weight *= max(slabShareBeside(cell.z, cut, inBase.y), step(1.0, min(draw.perX, draw.perY)));
-#endif
-            color += weight * cellColor(cell);
+            uint column = uint(clamp(x, 0, inTaps.z - 1));
+            uvec4 pixel = marchPixelAt(draw.samples + kMarchPixelWords * (row + column));
+            color += weight * countingShare(pixel.z, cut, small) * marchPixelColor(pixel);
         }
     }
     outColor = color / (4.0 * inHalf.x * inHalf.y);

@@ -19,7 +19,7 @@ FlameRay fresh() { return FlameRay(vec3(0.0), vec3(1.0)); }
 // Stores what slab `s` adds to the light without it and those behind; where_: light, and its first
 // and second moment in the slab. The nearest slabs then compose to exactly what one ray would show.
 // Also stores the transmittance in front, which is the march pixel's weight among its neighbours.
-vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
+vec4 keep(vec4 before, vec4 shown, uint s, uint pixel, vec3 where_) {
     float left = 1.0 / max(1.0 - before.a, 1e-4);
     vec4 color = max((shown - before) * left, 0.0);
     float middle = where_.y / max(where_.x, 1e-20);
@@ -27,15 +27,15 @@ vec4 keep(vec4 before, vec4 shown, uint s, uint cell, vec3 where_) {
     float half_ = sqrt(3.0 * max(where_.z / max(where_.x, 1e-20) - middle * middle, 1e-4));
     half_ = min(half_, min(middle, 1.0 - middle));  // within the slab, around the same middle
     vec2 reach = vec2(middle - half_, middle + half_);
-    uint at = march.samples + kMarchPixelWords * (march.cells * s + cell);
+    uint at = march.samples + kMarchPixelWords * (march.cells * s + pixel);
     rays[at] = packHalf2x16(color.rg);
     rays[at + 1u] = packHalf2x16(color.ba);
     rays[at + 2u] = packSlabRange(reach, 1.0 - before.a);
     return color;
 }
 
-void nothing(uint s, uint cell, float through) {
-    uint at = march.samples + kMarchPixelWords * (march.cells * s + cell);
+void nothing(uint s, uint pixel, float through) {
+    uint at = march.samples + kMarchPixelWords * (march.cells * s + pixel);
     rays[at] = rays[at + 1u] = 0u;
     rays[at + 2u] = packSlabRange(vec2(0.0, 1.0), through);
 }
@@ -70,22 +70,24 @@ void main() {
 
     uint row = quotient22(tile, march.tilesX);
     uvec2 place = uvec2(tile - row * march.tilesX, row) * kMarchTileSide + in_;
-    uint cell = place.y * (march.tilesX * kMarchTileSide) + place.x;
+    uint pixel = place.y * (march.tilesX * kMarchTileSide) + place.x;
     place += uvec2(march.originX, march.originY);
     vec2 at_ = vec2(place) + (march.perPixel > 1u ? marchRayShift(place.x, place.y) : vec2(0.0));
-    ViewRay way = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
-    vec3 from = way.from, direction = way.direction;
-    float perDepth = way.perDepth;
+    ViewRay ray = viewRay(march.rayO.xyz + at_.x * march.rayX.xyz + at_.y * march.rayY.xyz);
+    vec3 from = ray.from, direction = ray.direction;
+    float perDepth = ray.perDepth;
     vec3 white = flameWhite(f, view.sunColor.w);
     f.air.rgb = flameAir(view.ambientSky.rgb, view.ambientGround.rgb, white);
     float phase = marchSamplePhase(place.x, place.y);
-    float pixel = march.rayX.w * way.perMetre;
+    float footprint = march.rayX.w * ray.perMetre;
     float stride = march.rayY.w * perDepth, first = march.rayO.w * perDepth;
     float size = 0.35 * stride;  // equal for all, or a change of the spacing would show
     stride /= float(closer);
     // As many knots per metre as over the whole flame.
-    uint intervals = min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
-    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from, direction, intervals);
+    uint intervals =
+        min(quotient22(march.intervals * (end - begin), all) + 2u, march.intervals | zero);
+    RayTube tube = rayTube(f, first + stride * vec4(float(begin), float(end), 0.0, 0.0), from,
+                           direction, intervals);
 
     FlameSmokeRay smoke = FlameSmokeRay(fresh(), fresh());
 #ifdef FW_SMOKE
@@ -113,8 +115,9 @@ void main() {
     uint s = quotient22(begin, turns), k = begin;
     if (s > 0u) {
         before = flameShown(one, scattered, lit, encoding);
-        for (uint i = 1u; i < s; ++i) nothing(i, cell, 1.0 - before.a);
-        bits = shows(keep(vec4(0.0), before, 0u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
+        for (uint i = 1u; i < s; ++i) nothing(i, pixel, 1.0 - before.a);
+        bits =
+            shows(keep(vec4(0.0), before, 0u, pixel, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0))) ? 1u : 0u;
     }
     float length_ = burns ? stride : 0.0;
     // Every loop has the same length for all lanes of a quarter: divergent loops are slow on a
@@ -124,7 +127,7 @@ void main() {
         vec3 where_ = vec3(0.0);
         do {
             float t = first + stride * (float(k) + phase);
-            FlameMedium m = rayMedium(f, tube, t, max(size, pixel * t));
+            FlameMedium m = rayMedium(f, tube, t, max(size, footprint * t));
             float dark = one.through.g, bright = one.radiance.r;
             one = flameStep(one, m, vec3(0.0), length_);
             float w = dark - one.through.g + one.radiance.r - bright;
@@ -139,15 +142,15 @@ void main() {
             now = flameBehind(now, smoke.back);
         }
         vec4 shown = flameShown(now, grey, lit, encoding);
-        bits |= shows(keep(before, shown, s, cell, where_)) ? 1u << s : 0u;
+        bits |= shows(keep(before, shown, s, pixel, where_)) ? 1u << s : 0u;
         before = shown;
         s += 1u;
     } while (s <= last);
     if (s < slabs) {
-        for (uint i = s; i + 1u < slabs; ++i) nothing(i, cell, 1.0 - before.a);
+        for (uint i = s; i + 1u < slabs; ++i) nothing(i, pixel, 1.0 - before.a);
         scattered += one.through * smoke.back.radiance;
         vec4 shown = flameShown(flameBehind(one, smoke.back), scattered, lit, encoding);
-        bits |= shows(keep(before, shown, slabs - 1u, cell, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0)))
+        bits |= shows(keep(before, shown, slabs - 1u, pixel, vec3(1.0, 0.5, 0.25 + 1.0 / 12.0)))
                     ? 1u << (slabs - 1u) : 0u;
     }
 

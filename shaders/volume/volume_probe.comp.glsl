@@ -5,8 +5,7 @@
 #include "volume/flame.glsl"
 
 layout(local_size_x = 64) in;
-FW_READ_WRITE(VOLUME_RAYS)
-FW_READ_WRITE(VOLUME_WORK)
+FW_READ_WRITE(VOLUME_RAYS) FW_READ_WRITE(VOLUME_WORK)
 layout(set = 1, binding = 0) uniform sampler2DArray profiles;
 layout(push_constant) uniform Push { MarchPush march; };
 
@@ -23,13 +22,15 @@ void main() {
     uint tilesY = march.cells / (kMarchTileSide * kMarchTileSide * march.tilesX);
     uint blocksX = probeBlockCount(march.tilesX, march.apart);
     uint lane = gl_LocalInvocationIndex;
-    uvec2 in_ = uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
+    uvec2 in_ =
+        uvec2((lane & 3u) | ((lane >> 1u) & 4u), ((lane >> 2u) & 1u) | ((lane >> 4u) << 1u));
     uint row = quotient22(gl_WorkGroupID.x, blocksX);
     uvec2 probe = uvec2(gl_WorkGroupID.x - row * blocksX, row) * 8u + in_;
-    vec2 place = vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
-    ViewRay way = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
-    vec3 from = way.from, direction = way.direction;
-    float perDepth = way.perDepth;
+    vec2 place =
+        vec2(march.originX, march.originY) + float(march.apart) * (vec2(probe) + 0.5) - 0.5;
+    ViewRay ray = viewRay(march.rayO.xyz + place.x * march.rayX.xyz + place.y * march.rayY.xyz);
+    vec3 from = ray.from, direction = ray.direction;
+    float perDepth = ray.perDepth;
 
     vec4 spans = flameSpans(f, from, direction);
     RayTube tube = rayTube(f, spans, from, direction, march.intervals | zero);
@@ -39,11 +40,12 @@ void main() {
     vec2 ends = tube.chord.from + tube.chord.gap * vec2(tube.chord.first, tube.chord.last);
     float k = clamp(floor((ends.x - first) / stride), 0.0, most);
     float last = burns ? clamp(ceil((ends.y - first) / stride), 0.0, most) : 0.0;
-    float pixel = march.rayX.w * way.perMetre;
+    float pixel = march.rayX.w * ray.perMetre;
     float nearest = 1e9, farthest = -1.0;
     while (k < last) {
         float t = first + stride * (k + 0.5);
-        FlamePlace at = flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
+        FlamePlace at =
+            flameAlong(tube.first, tube.delta, (t - tube.chord.from) / max(tube.chord.gap, 1e-9));
         FlameLookup look = flameLookup(f, at, max(0.35 * stride, pixel * t));
         // Here, and slightly closer to the axis and the base.
         vec2 scale = 1.0 / vec2(kProfileReach, 1.0), here = vec2(look.rho, look.y);
@@ -68,7 +70,8 @@ void main() {
             FlamePlace at = flamePlaceNear(tube.pieces, x);
             float y = at.s / f.high.w;
             float wide = flamePlumeWide(f, at.s);
-            smokes = smokes || (spans.z < spans.w && y > 0.6 && y < f.smokeTop && dot(at.p, at.p) < 3.2 * wide * wide);
+            smokes = smokes || (spans.z < spans.w && y > 0.6 && y < f.smokeTop &&
+                                dot(at.p, at.p) < 3.2 * wide * wide);
             k += 1.0;
         } while (k < 8.0);
     }

@@ -37,7 +37,8 @@ void main() {
     float stride = draw.spacing * perDepth;
     float pixel = view.eye.w * (perspective ? inDepth : 1.0);
     // Sampled at a random depth in the slice, different among four pixels, to hide layers.
-    float later = draw.spacing * (marchSamplePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
+    float later =
+        draw.spacing * (marchSamplePhase(uint(gl_FragCoord.x), uint(gl_FragCoord.y)) - 0.5);
     vec4 place = inPlace + later * inSlope;
     FlamePlace at;
     at.p = place.xy;
@@ -49,7 +50,8 @@ void main() {
     vec3 x = view.eye.xyz + inOff + later * perDepth * direction;
     FlameSun sun = raySun(direction, white);
     vec3 to = f.glow.xyz - x;
-    vec3 light = flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
+    vec3 light =
+        flameSmokeLight(f, dot(to, to), smoke.y, sun.light, flameSmokeDepth(f, at, sun.to));
     float part = 1.0;
 #ifdef FW_SOFT
     part = clamp((depthOfScene(draw.clip) - inDepth) / draw.spacing + 0.5, 0.0, 1.0);

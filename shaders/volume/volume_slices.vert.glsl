@@ -8,7 +8,8 @@ layout(push_constant) uniform Push { SlicesPush draw; };
 
 #include "shared/volume_slices.h"
 
-layout(location = 0) centroid out vec4 outPlace;        // m: off the axis, along it, the tube's radius
+// m: off the axis, along it, the tube's radius
+layout(location = 0) centroid out vec4 outPlace;
 layout(location = 1) centroid out vec3 outOff;          // m, relative to the camera
 layout(location = 2) flat out vec2 outShows;
 layout(location = 3) flat out float outDepth;  // m along the view
@@ -23,7 +24,8 @@ void main() {
     f.smoke += float(zero);
     FlameNode a = FW_FLAME_NODE(flameNodeOf(piece));
     FlameNode b = FW_FLAME_NODE(flameNodeOf(piece + 1u));
-    float depth = draw.front + draw.spacing * (float(draw.slices - 1u - uint(gl_InstanceIndex)) + 0.5);
+    float depth =
+        draw.front + draw.spacing * (float(draw.slices - 1u - uint(gl_InstanceIndex)) + 0.5);
     SlicePoint point = sliceVertex(f, a, b, view.eye.xyz, view.forward.xyz, depth,
                                    sliceFan(vertex - kSliceVertices * piece));
     FlamePlace place = slicePlace(a, b, point.at);
@@ -40,5 +42,6 @@ void main() {
     float top = f.high.w * max(kFlameTop, f.smoke > 0.0 ? f.smokeTop : 0.0);
     bool shows = point.corners > 0u && a.along.w < top;
     vec4 clip = outOff.x * view.clip0 + outOff.y * view.clip1 + outOff.z * view.clip2 + view.clip3;
-    gl_Position = shows ? vec4(clip.xy, clamp(clip.z, 0.0, clip.w), clip.w) : vec4(0.0, 0.0, 0.0, 1.0);
+    gl_Position =
+        shows ? vec4(clip.xy, clamp(clip.z, 0.0, clip.w), clip.w) : vec4(0.0, 0.0, 0.0, 1.0);
 }

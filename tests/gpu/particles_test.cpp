@@ -431,7 +431,7 @@ TEST_F(ParticlePass, TheRadixSortOrdersSixtyThousandQuads) {
     const float* m = view_.view;  // its third row points towards the camera
     const vec3 back(m[2], m[6], m[10]);
     const auto depthOf = [](uint32_t kind, uint32_t i) {
-        const uint32_t chance = gpu::particleBits(i) % kDepths;
+        const uint32_t chance = gpu::hash32(i) % kDepths;
         return kind == 0   ? 2 + 0.05f * float(chance)
                : kind == 1 ? 7.0f
                            : 2 + 0.5f * float(i * uint64_t(kDepths) / kQuads);
@@ -475,7 +475,7 @@ TEST_F(ParticlePass, QuadsBeyondTheCapacityAreOmitted) {
 // Random depths of covering and additive quads.
 class AdditiveQuads : public ParticlePass {
  protected:
-    static float depthOf(uint32_t quad) { return 2 + 30 * gpu::particleHash(quad * 31 + 7); }
+    static float depthOf(uint32_t quad) { return 2 + 30 * gpu::hashUnit(quad * 31 + 7); }
     // The draw order of so many of both.
     std::vector<uint32_t> order(uint32_t hiding, uint32_t lights, uint32_t few) {
         makeRig(std::max(hiding, 1u), false, lights);

@@ -210,9 +210,9 @@ WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now, bool 
     for (size_t i = 0; i < shell.corners.size(); i += 3) {
         int inner = 0, cut = 0;
         for (size_t v = 0; v < 3; ++v) {
-            const gpu::RefineCorner& c = shell.corners[i + v];
-            inner += (c.high & gpu::kRefineInside) != 0 ? 1 : 0;
-            cut += (c.high & ~gpu::kRefineInside) != c.low ? 1 : 0;
+            const mesh::RefineCorner& c = shell.corners[i + v];
+            inner += (c.high & mesh::kRefineInside) != 0 ? 1 : 0;
+            cut += (c.high & ~mesh::kRefineInside) != c.low ? 1 : 0;
         }
         const bool wall = inner == 1 || inner == 2;
         if (inner == 3 && (cut == 0 || !thick)) continue;
@@ -222,12 +222,12 @@ WantedCut wantedCut(RefinePlayer& player, const RefineRig& rig, float now, bool 
         }
         CutPiece piece{};
         for (size_t v = 0; v < 3; ++v) {
-            const gpu::RefineCorner& c = shell.corners[i + v];
+            const mesh::RefineCorner& c = shell.corners[i + v];
             const glm::vec3 p = mesh::refineCornerPlace(scene.model, player.state, now, c);
             piece.corners[v] = {p.x, p.y, p.z};
             // A rim stands between two cut points.
             const float outer = cut == 3 ? gpu::kRefineCutRim : gpu::kRefineBorder;
-            const bool deep = (c.high & gpu::kRefineInside) != 0;
+            const bool deep = (c.high & mesh::kRefineInside) != 0;
             piece.left[v] = !wall ? 0 : deep ? outer - 1 : outer;
         }
         wanted.pieces.push_back(piece);

@@ -98,7 +98,8 @@ vec3 bendingOf(const DeformParticle& node, const DeformMaterial& material, const
     const vec3 x = self.place[now];
     self.normal = normalOf(node, state, now);
     const float charred = gpu::charredShare(self.burnt);
-    const float stiff = gpu::mixF(material.bend, std::max(material.bend, 0.9f), charred);
+    const float loose = material.bend;
+    const float stiff = loose + (std::max(loose, 0.9f) - loose) * charred;
     const float curl = gpu::curlSide(self.normal, drive.up) * material.curl * charred;
     vec3 bending(0);
     const auto bend = [&](uint32_t kind, vec3 sum, float count, float rise, float relax, bool whole,

@@ -12,6 +12,18 @@ float reachOf(const gpu::FlameRecord& flame, const gpu::FlameNode& a,
                              std::max(a.side.w, b.side.w));
 }
 
+// Range of a ray near a segment, by a bounding sphere: x to y, none where x >= y. reach: m from the
+// axis.
+vec2 segmentSpan(vec3 from, vec3 direction, const gpu::FlameNode& a, const gpu::FlameNode& b,
+                 float reach) noexcept {
+    const vec3 half = 0.5f * (vec3(b.centre) - vec3(a.centre));
+    const vec3 to = vec3(a.centre) + half - from;
+    const float radius = glm::length(half) + reach, at = glm::dot(to, direction);
+    const float room = radius * radius - (glm::dot(to, to) - at * at);
+    const float along = std::sqrt(std::max(room, 0.0f));
+    return room > 0.0f ? vec2(std::max(at - along, 0.0f), at + along) : vec2(0.0f);
+}
+
 }  // namespace
 
 gpu::FlameMedium sampleFlame(const gpu::FlameRecord& flame, const Profile& profile,
@@ -30,8 +42,8 @@ vec2 flameSpan(const gpu::FlameRecord& flame, std::span<const gpu::FlameNode> no
                vec3 direction) noexcept {
     vec2 span(1e30f, -1e30f);
     for (size_t k = 0; k + 1 < nodes.size(); ++k) {
-        const vec2 s = gpu::flameSegmentSpan(from, direction, nodes[k], nodes[k + 1],
-                                             reachOf(flame, nodes[k], nodes[k + 1]));
+        const vec2 s = segmentSpan(from, direction, nodes[k], nodes[k + 1],
+                                   reachOf(flame, nodes[k], nodes[k + 1]));
         if (s.x < s.y) span = vec2(std::min(span.x, s.x), std::max(span.y, s.y));
     }
     return span;

@@ -3,6 +3,8 @@
 
 #include "mesh/refine/table.h"
 
+#include <algorithm>
+
 namespace fw::mesh {
 namespace {
 
@@ -27,6 +29,20 @@ uint32_t openSides(const RefineModel& model, const gpu::RefineTriangle& t, uint3
     return bits;
 }
 
+// Triangles: outer skin, inner skin, two per wall.
+uint32_t cutCount(const gpu::RefineCut& cut, bool inner) {
+    if (cut.points == 0) return 0;
+    const uint32_t fan = cut.points - 2;
+    return inner ? 2 * fan + 2 * gpu::refineCutWalls(cut) : fan;
+}
+
+// A polygon point of a small triangle with these slots.
+RefineCorner cutCorner(const gpu::RefineCut& cut, uint32_t point, const glm::uvec3& slots) {
+    const uint32_t at = cut.corner[point & 3], a = slots[int(at & 3)];
+    const uint32_t b = at < 4 ? a : slots[int(gpu::refineNext(at & 3))];
+    return {std::min(a, b), std::max(a, b) | (point >= 4 ? kRefineInside : 0)};
+}
+
 }  // namespace
 
 void refineShell(const RefineModel& model, const RefineState& state, float now, bool inner,
@@ -49,10 +65,10 @@ void refineShell(const RefineModel& model, const RefineState& state, float now, 
                 ++shell.gone;
                 continue;
             }
-            for (uint32_t k = 0; k < gpu::refineCutCount(cut, inner); ++k) {
+            for (uint32_t k = 0; k < cutCount(cut, inner); ++k) {
                 const glm::uvec3 points = gpu::refineCutTriangle(cut, k);
                 for (int v = 0; v < 3; ++v)
-                    shell.corners.push_back(gpu::refineCutCorner(cut, points[v], slots));
+                    shell.corners.push_back(cutCorner(cut, points[v], slots));
             }
             shell.outer += cut.points - 2;
             if (!inner) continue;
@@ -65,9 +81,9 @@ void refineShell(const RefineModel& model, const RefineState& state, float now, 
 }
 
 glm::vec3 refineCornerPlace(const RefineModel& model, const RefineState& state, float now,
-                            const gpu::RefineCorner& corner) {
-    const bool inner = (corner.high & gpu::kRefineInside) != 0;
-    const uint32_t high = corner.high & ~gpu::kRefineInside;
+                            const RefineCorner& corner) {
+    const bool inner = (corner.high & kRefineInside) != 0;
+    const uint32_t high = corner.high & ~kRefineInside;
     const glm::vec3 a = placeOf(model, state, corner.low, inner);
     if (high == corner.low) return a;
     return gpu::refineCutPoint(a, placeOf(model, state, high, inner),

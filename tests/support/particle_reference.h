@@ -55,7 +55,7 @@ class ParticleReference {
             const float lived = fresh ? e.age + e.apart * float(ago) : e.from.w;
             if (fresh) p = gpu::particleBorn(e, seed, lived);
             if (fresh && gpu::particleSticks(e, seed)) {
-                const float which = gpu::particleHash(seed + 66);
+                const float which = gpu::hashUnit(seed + 66);
                 uint32_t k = 0;
                 for (uint32_t i = 0; i + 1 < uint32_t(e.stuck.y); ++i)
                     k += e.patches[2 * i].w < which ? 1 : 0;
@@ -73,12 +73,12 @@ class ParticleReference {
                 gpu::vec4 disc(0.0f), normal(e.up);
                 for (uint32_t k = 0; k < e.obstacleCount; ++k) {
                     const float f =
-                        gpu::particleMeets(from, gpu::vec3(p.placeAge), e.shields[2 * k],
-                                           gpu::vec3(e.shields[2 * k + 1]), reach);
+                        gpu::particleMeets(from, gpu::vec3(p.placeAge), e.obstacles[2 * k],
+                                           gpu::vec3(e.obstacles[2 * k + 1]), reach);
                     if (f >= least) continue;
                     least = f;
-                    disc = e.shields[2 * k];
-                    normal = e.shields[2 * k + 1];
+                    disc = e.obstacles[2 * k];
+                    normal = e.obstacles[2 * k + 1];
                 }
                 const float above = gpu::particleAbove(e, p);
                 if (least <= 1 || gpu::particleLands(e, p, size, above))

@@ -20,7 +20,7 @@ constexpr double kSlopes = 2e-3;
 
 // Rest position of a corner on the outer skin, cut or not.
 glm::vec3 restOf(const mesh::RefineModel& model, const mesh::RefineState& state, float now,
-                 const gpu::RefineCorner& corner) {
+                 const mesh::RefineCorner& corner) {
     const auto rest = [&](uint32_t slot) {
         const gpu::RefineSlot& s = model.slots[slot];
         return glm::vec3(s.x, s.y, s.z);
@@ -94,7 +94,7 @@ Burn burnDown(const RefineScene& scene, int steps, bool byDistance) {
             b.slivers += glm::length(across) / 2 < 1e-10f;
             bool outer = true;
             for (size_t v = 0; v < 3; ++v)
-                outer &= (shell.corners[i + v].high & gpu::kRefineInside) == 0;
+                outer &= (shell.corners[i + v].high & mesh::kRefineInside) == 0;
             if (!outer) continue;
             area += double(glm::length(across)) / 2;
             for (size_t v = 0; v < 3; ++v)

@@ -47,7 +47,8 @@ void recordEmitters(VkBackend::State& s, const EmitterUpdate& update, FrameRecor
     const std::span<const ParticleEmitter> emitters(update.records, update.count);
     s.particles.particlesByFlipbook =
         std::all_of(emitters.begin(), emitters.end(), [](const ParticleEmitter& emitter) {
-            return emitter.books != 0 && (emitter.otherBooks != 0 || emitter.life.w == 0);
+            return emitter.fireFlipbooks != 0 &&
+                   (emitter.smokeFlipbooks != 0 || emitter.life.w == 0);
         });
     const Staged records = writer.write(emitters);
     recorder.copyIn(records.at, FW_BIND_EMITTERS, 0, emitters.size_bytes());

@@ -1,22 +1,24 @@
-// Hash grid of heat-release clusters: two cell sizes per object, keyed by place. Slots depend on
+// Hash grid of heat-release clusters: two sizes per object, keyed by place. Slots depend on
 // thread order, contents do not.
 #include "shared/integer.h"
 
 float tileSide(uint object) { return 8.0 * sqrt(max(objects[object].tint.w, 1e-8)); }
 // Side of the clusters that form lights, m: fixed per object, so nothing pops.
-float lightCellSide(uint object) {
+float lightClusterSide(uint object) {
     return clamp(exp2(floor(log2(2.5 * tileSide(object)) + 0.5)), 0.125, 2.0);
 }
 // Side of the clusters within which flames merge, m.
-float flameCellSide(uint object) { return clamp(4.0 * lightCellSide(object), 0.5, 4.0); }
+float flameClusterSide(uint object) { return clamp(4.0 * lightClusterSide(object), 0.5, 4.0); }
 
 // A tile's cluster position: above the surface, as flames are. Light clusters are smaller, and
 // lights stand further off.
 vec3 lightPlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) + view.up.xyz * (0.15 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.35 * side) +
+           view.up.xyz * (0.15 * side);
 }
 vec3 flamePlaceOf(BurnTile tile, float side) {
-    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) + view.up.xyz * (0.1 * side);
+    return tile.positionArea.xyz + tile.normalPower.xyz * (0.3 * tileSide(tile.object)) +
+           view.up.xyz * (0.1 * side);
 }
 // Wood flames as long as it lasts, but most heat is released near the front. age: ticks since
 // ignition; share: of the duration.
@@ -28,26 +30,24 @@ float flameFade(BurnTile tile) {
     return flameFade(materials[tile.object * kMaterialsPerObject], float(tile.age), 1.0);
 }
 
-float unit(uint x) { return float(hash32(x) >> 8) * (1.0 / 16777216.0); }
-
-uint cellKey(ivec3 cell, float side) {
+uint clusterKey(ivec3 cell, float side) {
     uint h = hash32(uint(cell.x) * 73856093u ^ floatBitsToUint(side));
     h = hash32(h ^ uint(cell.y) * 19349663u);
     return max(hash32(h ^ uint(cell.z) * 83492791u), 1u);
 }
-uint cellWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
+uint clusterWord(uint slot, uint word) { return kLightCellHeader + slot * kLightCellWords + word; }
 
-const uint kCellProbes = 24u;
+const uint kClusterProbes = 24u;
 const float kFlameCover = 3.8;  // overlapping quads over a burning area
-const uint kNoCell = 0xFFFFFFFFu;
-uint findCell(uint key) {
-    for (uint i = 0u; i < kCellProbes; ++i) {
+const uint kNoCluster = 0xFFFFFFFFu;
+uint findCluster(uint key) {
+    for (uint i = 0u; i < kClusterProbes; ++i) {
         uint slot = (key + i) % kLightCells;
-        uint there = cells[cellWord(slot, 0u)];
+        uint there = clusters[clusterWord(slot, 0u)];
         if (there == key) return slot;
-        if (there == 0u) return kNoCell;
+        if (there == 0u) return kNoCluster;
     }
-    return kNoCell;
+    return kNoCluster;
 }
 
 // Flame height by Heskestad, m; a wide weak fire counts as many small ones.
@@ -56,10 +56,10 @@ float flameLength(float watts, float area) {
     return max(tall - 0.6 * diameter, 0.45 * tall);
 }
 // W and m^2 that flame in the cluster of this key.
-vec2 cellFire(uint key) {
-    uint slot = findCell(key);
-    return slot == kNoCell ? vec2(0.0) : vec2(float(cells[cellWord(slot, 1u)]),
-                                              float(cells[cellWord(slot, 5u)]) * 1e-5);
+vec2 clusterFire(uint key) {
+    uint slot = findCluster(key);
+    return slot == kNoCluster ? vec2(0.0) : vec2(float(clusters[clusterWord(slot, 1u)]),
+                                              float(clusters[clusterWord(slot, 5u)]) * 1e-5);
 }
 // Flame height from a fire and its surroundings: neighbours draw each other up.
 float flameLength(vec2 near, vec2 around) {
