@@ -138,7 +138,7 @@ void colorOverlay(App& app) {
     }
     app.live.overlay.color(page.mesh, page.surface, values, paletteOf(page.kind),
                            {0, 0, width, height});
-    app.live.laidOver = {page.mesh};
+    app.live.overlaid = {page.mesh};
     app.live.redraw();
 }
 
@@ -814,7 +814,7 @@ void showLayers(App& app, const Rect& rect) {
 }  // namespace
 
 void colorMultipliers(App& app) {
-    app.live.laidOver.clear();
+    app.live.overlaid.clear();
     for (const fwedit::Mesh& mesh : app.document.scene.meshes) {
         const auto surface = app.live.surfaceOf(mesh.id);
         if (!surface) continue;
@@ -829,7 +829,7 @@ void colorMultipliers(App& app) {
                          .flat();
         app.live.overlay.color(mesh.id, surface, values, paletteOf(fwedit::PaintMultiplier),
                                {0, 0, surface->width, surface->height});
-        app.live.laidOver.push_back(mesh.id);
+        app.live.overlaid.push_back(mesh.id);
     }
     app.live.redraw();
 }

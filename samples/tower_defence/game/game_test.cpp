@@ -42,7 +42,7 @@ struct Play {
     }
 };
 
-TEST(GameRules, OrdersCostWhatTheySayAndRefusalsChangeNothing) {
+TEST(GameRules, OrdersCostTheirPriceAndRefusalsChangeNothing) {
     Play play;
     const uint64_t before = hashOf(play.state);
     for (const Order& order :
