@@ -1,7 +1,7 @@
 // Flipbooks of a volumetric flame. It burns for slightly more than one loop. Each frame stores its
 // curve, and rays from the side sample it.
 #include "finish.h"
-#include "flame_book.h"
+#include "flame_flipbook.h"
 
 #include "core/error.h"
 #include "volume/flame.h"
@@ -163,7 +163,7 @@ std::unique_ptr<Scene> makeFlame(const BakeDef& def) {
 
 namespace {
 
-void readShape(const FlameBookDef& def, const volume::FlamePresetDef& preset,
+void readShape(const FlameFlipbookDef& def, const volume::FlamePresetDef& preset,
                volume::Profile& profile) {
     if (!def.cooked.empty()) {
         volume::readProfile(def.cooked, profile);
@@ -178,8 +178,8 @@ void readShape(const FlameBookDef& def, const volume::FlamePresetDef& preset,
 
 }  // namespace
 
-bool bakeFlameBook(const FlameBookDef& def, const std::function<bool(float)>& progress,
-                   std::vector<std::byte>& bytes, std::string& error) {
+bool bakeFlameFlipbook(const FlameFlipbookDef& def, const std::function<bool(float)>& progress,
+                       std::vector<std::byte>& bytes, std::string& error) {
     error.clear();
     try {
         volume::FlamePresetDef preset =
