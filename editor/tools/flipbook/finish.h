@@ -19,7 +19,7 @@ std::vector<vec2> findMotion(const Frame& now, const Frame& next, uint32_t width
 fw::flipbook::Flipbook finishFlipbook(const fw::flipbook::Facts& facts, std::vector<Frame>& frames,
                                       uint32_t threads, std::pmr::memory_resource* memory);
 
-// Images, sRGB bytes, top row first: eight frames of a book in a row, over dark grey or sky.
+// Images, sRGB bytes, top row first: eight frames of a flipbook in a row, over dark grey or sky.
 struct Picture {
     uint32_t width = 0, height = 0;
     std::vector<uint8_t> rgb;
