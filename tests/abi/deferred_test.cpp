@@ -185,7 +185,7 @@ TEST(Snapshot, HoldsStatesAndLightsOfTheLastStep) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("is already destroyed"));
 }
 
-TEST(MemoryReport, CpuRowsFollowWhatIsCreatedAndDestroyed) {
+TEST(MemoryReport, CpuRowsFollowCreationAndDestruction) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const auto states = [&] {
         FwMemoryRow rows[16];

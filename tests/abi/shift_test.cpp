@@ -231,7 +231,7 @@ TEST(ShiftOrigin, SavesWithOldPositionsBeyondTheLimits) {
 }
 
 // A host's sight answers stay valid: it is not asked again, and a changed answer is not used.
-TEST(ShiftOrigin, KeepsTheHostsSightAnswers) {
+TEST(ShiftOrigin, KeepsTheHostsVisibilityAnswers) {
     struct Asked {
         int times = 0;
         float answer = 0.5f;

@@ -1266,7 +1266,7 @@ TEST_F(Volume, EveryTierShowsTheSameFlame) {
 
 // The same fire as a volume near, as flipbook particles further away, and as a field on a billboard
 // far away. Light, brightness, colour and place do not depend on the tier.
-TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
+TEST_F(Volume, VolumeFlipbooksAndFieldLookTheSame) {
     if (!device_) return;
     nudges_ = true;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
@@ -1850,7 +1850,7 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
 
 // The scene is bent behind hot gas above a flame and nowhere else. Objects in front neither move
 // nor smear, and there is no haze where the view, the tier or the frame disables it.
-TEST_F(Volume, HazeBendsOnlyWhatIsBehindTheFlame) {
+TEST_F(Volume, HazeBendsOnlyTheSceneBehindTheFlame) {
     if (!device_) return;
     makeRig();
     const float eye[3] = {0, 1.0f, 4}, at[3] = {0, 1.0f, 0};
