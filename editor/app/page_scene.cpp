@@ -529,8 +529,8 @@ void updateMaps(App& app) {
     }
     app.multipliersOf = ~0ull;
     if (!app.burnTimes || !app.showHelpers) {
-        if (!app.live.laidOver.empty()) app.live.redraw();
-        app.live.laidOver.clear();
+        if (!app.live.overlaid.empty()) app.live.redraw();
+        app.live.overlaid.clear();
         app.burnTimesAt = -1;
         return;
     }

@@ -25,11 +25,14 @@ constexpr MapStop kMultiplierStops[] = {{0, hex(0x1F4E9E)},
                                         {1, hex(0xB8480C)}};
 constexpr MapStop kMoistureStops[] = {
     {0, hex(0xF1F5F7)}, {0.33f, hex(0x9CCFE0)}, {0.67f, hex(0x3A93BF)}, {1, hex(0x0B3F73)}};
-// Colours only distinguish neighbours; materials are named.
-constexpr ImU32 kMaterialColors[FW_MATERIAL_PRESET_COUNT] = {
-    hex(0x6E7681), hex(0xC79A5B), hex(0x8C5A3C), hex(0xC9C5B8), hex(0xF2EBD9),
-    hex(0xB9CBE0), hex(0x7B6FC4), hex(0xB8862B), hex(0x5E9C4A), hex(0xE0C24B),
-    hex(0xA8B84A), hex(0xD8A878), hex(0x9A4F4F), hex(0x3FA7A0)};
+// Colours only distinguish neighbours, and repeat beyond the last one; materials are named.
+constexpr ImU32 kMaterialColors[] = {hex(0x6E7681), hex(0xC79A5B), hex(0x8C5A3C), hex(0xC9C5B8),
+                                     hex(0xF2EBD9), hex(0xB9CBE0), hex(0x7B6FC4), hex(0xB8862B),
+                                     hex(0x5E9C4A), hex(0xE0C24B), hex(0xA8B84A), hex(0xD8A878),
+                                     hex(0x9A4F4F), hex(0x3FA7A0)};
+ImU32 materialColor(uint32_t preset) {
+    return kMaterialColors[preset % std::size(kMaterialColors)];
+}
 constexpr float kAsIs = 128;  // neutral byte of the multiplier
 
 std::string materialName(uint32_t preset) {
@@ -54,8 +57,7 @@ fwview::Palette paletteOf(uint32_t kind) {
                 fwview::premultiplied(sampleMap(kMoistureStops, value / 255),
                                       std::min(1.0f, value / 60) * fwview::kOverlayOpacity * 1.2f);
         } else if (i > 0) {
-            palette[i] =
-                fwview::premultiplied(kMaterialColors[(i - 1) % FW_MATERIAL_PRESET_COUNT], 0.8f);
+            palette[i] = fwview::premultiplied(materialColor(i - 1), 0.8f);
         }
     }
     return palette;
@@ -138,7 +140,7 @@ void colorOverlay(App& app) {
     }
     app.live.overlay.color(page.mesh, page.surface, values, paletteOf(page.kind),
                            {0, 0, width, height});
-    app.live.laidOver = {page.mesh};
+    app.live.overlaid = {page.mesh};
     app.live.redraw();
 }
 
@@ -369,8 +371,7 @@ void drawLegend(const App& app, ImDrawList* list, ImVec2 low, float room) {
     if (page.kind == fwedit::PaintMaterial) {
         const ImVec2 high(low.x + std::min(room, dp(190)), low.y + dp(30));
         drawBox(list, low, high, hex(0x151618, 215), 6);
-        drawBox(list, low + dp(10, 9), low + dp(22, 21),
-                kMaterialColors[page.material % FW_MATERIAL_PRESET_COUNT], 3);
+        drawBox(list, low + dp(10, 9), low + dp(22, 21), materialColor(uint32_t(page.material)), 3);
         drawTextFit(list, fonts().smallSemi, low.x + dp(30), low.y + dp(15),
                     high.x - low.x - dp(40), colors::title,
                     materialName(uint32_t(page.material)).c_str());
@@ -610,8 +611,7 @@ void showBrush(App& app, const Rect& rect) {
     // Preview of the dab and its falloff.
     const ImVec2 low(rows.x0, rows.y), high(rows.x1, rows.y + dp(84));
     drawBox(list, low, high, colors::well, 6);
-    const ImU32 color = page.kind == fwedit::PaintMaterial
-                            ? kMaterialColors[page.material % FW_MATERIAL_PRESET_COUNT]
+    const ImU32 color = page.kind == fwedit::PaintMaterial ? materialColor(uint32_t(page.material))
                         : page.kind == fwedit::PaintMoisture
                             ? sampleMap(kMoistureStops, page.moisture * 0.01f)
                             : sampleMap(kMultiplierStops, page.multiplier * 0.5f);
@@ -814,7 +814,7 @@ void showLayers(App& app, const Rect& rect) {
 }  // namespace
 
 void colorMultipliers(App& app) {
-    app.live.laidOver.clear();
+    app.live.overlaid.clear();
     for (const fwedit::Mesh& mesh : app.document.scene.meshes) {
         const auto surface = app.live.surfaceOf(mesh.id);
         if (!surface) continue;
@@ -829,7 +829,7 @@ void colorMultipliers(App& app) {
                          .flat();
         app.live.overlay.color(mesh.id, surface, values, paletteOf(fwedit::PaintMultiplier),
                                {0, 0, surface->width, surface->height});
-        app.live.laidOver.push_back(mesh.id);
+        app.live.overlaid.push_back(mesh.id);
     }
     app.live.redraw();
 }

@@ -1104,7 +1104,7 @@ void showViewport(App& app, const Rect& rect) {
     if (app.multipliers && app.showHelpers) {
         drawMultiplierLegend(
             list, legend, worked.x1 - dp(12) - legend.x,
-            app.live.laidOver.empty() ? "Burn multiplier: nothing is painted" : "Burn multiplier");
+            app.live.overlaid.empty() ? "Burn multiplier: nothing is painted" : "Burn multiplier");
     } else if (app.burnTimes && app.showHelpers) {
         drawTimeLegend(app, list, legend);
     }

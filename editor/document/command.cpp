@@ -65,8 +65,8 @@ class Reader {
 
     [[nodiscard]] bool done() const { return at_ == words_.size(); }
     [[nodiscard]] const Word& peek() const { return words_[at_]; }
-    bool next(std::string& text, const char* wish) {
-        if (done()) return refuse(std::string("The line ends where ") + wish + " is needed");
+    bool next(std::string& text, const char* needed) {
+        if (done()) return refuse(std::string("The line ends where ") + needed + " is needed");
         text = words_[at_++].text;
         return true;
     }

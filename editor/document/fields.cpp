@@ -8,6 +8,7 @@
 
 #include "document/flame_curve.h"
 #include "document/text.h"
+#include "flamewright/flamewright.h"
 
 namespace fwedit {
 namespace {
@@ -82,14 +83,6 @@ Entry<T> points(const char* key, const char* label, double most, Keys T::*member
     return {{key, label, "", FieldType::KeyList, 0, 1, 2, {}, 0, most}, member};
 }
 
-const std::vector<const char*>& materialWords() {
-    static const std::vector<const char*> words = {
-        "noncombustible", "pine",      "painted_wood", "newspaper",  "paper",
-        "cotton",         "polyester", "dry_leaf",     "green_leaf", "thatch",
-        "dry_grass",      "plywood",   "leather",      "plastic"};
-    return words;
-}
-
 template <typename T>
 Table<T> withObject(std::vector<Entry<T>> own) {
     std::vector<Entry<T>> all = {words<T>("name", "Name", FieldType::Text, &T::name)};
@@ -110,7 +103,8 @@ const Table<Mesh>& tableOf() {
         vector("position", "Position", "m", -kFar, kFar, &Mesh::position),
         vector("rotation", "Rotation", "°", -3600, 3600, &Mesh::rotation),
         vector("scale", "Scale", "", -1000, 1000, &Mesh::scale),
-        {{"materials", "Materials", "", FieldType::Choices, 0, 13, 8, materialWords()},
+        {{"materials", "Materials", "", FieldType::Choices, 0, FW_MATERIAL_PRESET_COUNT - 1, 8,
+          materialWords()},
          &Mesh::materials},
         number("thickness", "Thickness", "m", 0, 10, &Mesh::thickness),
         number("moisture", "Moisture", "", 0, 2, &Mesh::moisture),
@@ -584,6 +578,23 @@ std::vector<std::string_view> split(std::string_view text, char by) {
 }
 
 }  // namespace
+
+const std::vector<const char*>& materialWords() {
+    static const std::vector<std::string> kept = [] {
+        std::vector<std::string> made;
+        for (uint32_t i = 0; i < FW_MATERIAL_PRESET_COUNT; ++i) {
+            made.emplace_back(fwMaterialPresetName(i));
+            std::replace(made.back().begin(), made.back().end(), ' ', '_');
+        }
+        return made;
+    }();
+    static const std::vector<const char*> words = [] {
+        std::vector<const char*> made;
+        for (const std::string& word : kept) made.push_back(word.c_str());
+        return made;
+    }();
+    return words;
+}
 
 const char* kindKey(Kind kind) { return kKinds[size_t(kind)].key; }
 const char* kindLabel(Kind kind) { return kKinds[size_t(kind)].label; }

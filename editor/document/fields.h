@@ -46,6 +46,9 @@ const char* kindKey(Kind kind);    // "source", in files and commands
 const char* kindLabel(Kind kind);  // "Heat source"
 bool kindOfKey(std::string_view key, Kind& kind);
 
+// Words of the library's material presets, by FwMaterialPreset: "painted_wood".
+const std::vector<const char*>& materialWords();
+
 std::span<const FieldInfo> fieldsOf(Kind kind);
 // Returns null if there is no such key.
 const FieldInfo* findField(Kind kind, std::string_view key);

@@ -65,9 +65,9 @@ TriangleGrid gridOf(const ImportedModel& model, float spacing) {
     grid.low = model.low;
     float longest = 0;
     for (size_t k = 0; k < 3; ++k) longest = std::max(longest, model.high[k] - model.low[k]);
-    const float wish =
+    const float preferred =
         longest / std::clamp(std::sqrt(static_cast<float>(model.triangleCount())), 8.0f, 96.0f);
-    grid.cell = std::max({wish, spacing, 1e-6f});
+    grid.cell = std::max({preferred, spacing, 1e-6f});
     for (size_t k = 0; k < 3; ++k)
         grid.cells[k] = static_cast<uint32_t>((model.high[k] - model.low[k]) / grid.cell) + 1;
     grid.begin.assign(size_t{grid.cells[0]} * grid.cells[1] * grid.cells[2] + 1, 0);

@@ -38,9 +38,9 @@ int FloatPicture::channel(const std::string& name) const {
 
 bool readPicture(const std::filesystem::path& path, FloatPicture& picture, std::string& error) {
     try {
-        OIIO::ImageSpec wish;
-        wish["oiio:UnassociatedAlpha"] = 1;
-        const auto input = OIIO::ImageInput::open(path.string(), &wish);
+        OIIO::ImageSpec request;
+        request["oiio:UnassociatedAlpha"] = 1;
+        const auto input = OIIO::ImageInput::open(path.string(), &request);
         if (!input) return refused(path, reasonOf(OIIO::geterror()), error);
         input->threads(1);
         const OIIO::ImageSpec spec = input->spec();

@@ -367,10 +367,10 @@ void Materials::unwrapPictures() {
                             "are shown as REPEAT: the UVs reach too far beyond the picture");
             continue;
         }
-        DecodedImage laid;
-        laid.width = static_cast<uint32_t>(axes[0].length);
-        laid.height = static_cast<uint32_t>(axes[1].length);
-        laid.rgba.resize(bytes);
+        DecodedImage tiled;
+        tiled.width = static_cast<uint32_t>(axes[0].length);
+        tiled.height = static_cast<uint32_t>(axes[1].length);
+        tiled.rgba.resize(bytes);
         const auto source = [](const Axis& axis, int64_t at, int64_t texels) {
             if (axis.wrap == kMirror) return at < texels ? at : 2 * texels - 1 - at;
             return std::clamp<int64_t>(axis.from + at, 0, texels - 1);
@@ -380,14 +380,14 @@ void Materials::unwrapPictures() {
             for (int64_t x = 0; x < axes[0].length; ++x) {
                 const int64_t column = source(axes[0], x, image.width);
                 std::copy_n(&image.rgba[static_cast<size_t>(row * image.width + column) * 4], 4,
-                            &laid.rgba[static_cast<size_t>(y * axes[0].length + x) * 4]);
+                            &tiled.rgba[static_cast<size_t>(y * axes[0].length + x) * 4]);
             }
         }
         if (--users[material.image] == 0) {
-            model_.images[static_cast<size_t>(material.image)] = std::move(laid);
+            model_.images[static_cast<size_t>(material.image)] = std::move(tiled);
         } else {
             material.image = static_cast<int32_t>(model_.images.size());
-            model_.images.push_back(std::move(laid));
+            model_.images.push_back(std::move(tiled));
         }
         layouts[m] = layout;
     }

@@ -2,10 +2,12 @@
 // frame. Numbers print without loss and are combined as in burn.cpp, so that the game's fire equals
 // the editor's.
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstdio>
 #include <set>
 
+#include "document/fields.h"
 #include "document/world_parts.h"
 #include "output/output.h"
 
@@ -180,15 +182,15 @@ void printFields(Fields& fields, const FwHeatOccluderDef& def) {
 #undef FW_ONE
 #undef FW_LIST
 
-const char* presetWord(uint32_t preset) {
-    static constexpr const char* kWords[] = {
-        "FW_MATERIAL_NONCOMBUSTIBLE", "FW_MATERIAL_PINE",      "FW_MATERIAL_PAINTED_WOOD",
-        "FW_MATERIAL_NEWSPAPER",      "FW_MATERIAL_PAPER",     "FW_MATERIAL_COTTON",
-        "FW_MATERIAL_POLYESTER",      "FW_MATERIAL_DRY_LEAF",  "FW_MATERIAL_GREEN_LEAF",
-        "FW_MATERIAL_THATCH",         "FW_MATERIAL_DRY_GRASS", "FW_MATERIAL_PLYWOOD",
-        "FW_MATERIAL_LEATHER",        "FW_MATERIAL_PLASTIC"};
-    static_assert(std::size(kWords) == FW_MATERIAL_PRESET_COUNT);
-    return kWords[std::min<uint32_t>(preset, FW_MATERIAL_PRESET_COUNT - 1)];
+// "painted_wood"; the constant is FW_MATERIAL_PAINTED_WOOD.
+std::string materialWord(uint32_t preset) {
+    return materialWords()[std::min<uint32_t>(preset, FW_MATERIAL_PRESET_COUNT - 1)];
+}
+std::string materialConstant(uint32_t preset) {
+    std::string word = "FW_MATERIAL_" + materialWord(preset);
+    std::transform(word.begin(), word.end(), word.begin(),
+                   [](unsigned char c) { return char(std::toupper(c)); });
+    return word;
 }
 
 // The library's flipbooks that emitters show, as in burn.cpp.
@@ -264,8 +266,7 @@ class Writer {
                 const std::string name = material(preset, mesh.thickness, planned.ownColors);
                 if (!seen.insert(name).second) continue;
                 member("FwMaterialId", name);
-                body +=
-                    "    fwInitMaterialPreset(&def, " + std::string(presetWord(preset)) + ");\n";
+                body += "    fwInitMaterialPreset(&def, " + materialConstant(preset) + ");\n";
                 if (planned.ownColors)
                     body += "    def.baseColor[0] = def.baseColor[1] = def.baseColor[2] = 1.0f;\n";
                 if (mesh.thickness > 0)
@@ -348,8 +349,7 @@ class Writer {
 
     // `colored`: base colour 1, for meshes with their own colours.
     std::string material(uint32_t preset, float thickness, bool colored) const {
-        std::string name = presetWord(preset) + 12;  // strips FW_MATERIAL_
-        for (char& c : name) c = static_cast<char>(std::tolower(c));
+        std::string name = materialWord(preset);
         if (colored) name += "_colored";
         if (thickness <= 0) return "material_" + name;
         std::string size = number(static_cast<double>(thickness));

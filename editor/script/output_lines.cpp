@@ -32,7 +32,7 @@ bool size(const Words& words, size_t at, uint32_t& width, uint32_t& height, std:
     return at >= words.size() || parseSize(words[at], width, height, error);
 }
 
-void sayAll(ScriptHost& host, const std::vector<fs::path>& files) {
+void reportFiles(ScriptHost& host, const std::vector<fs::path>& files) {
     for (const fs::path& file : files) host.say(file.string());
 }
 
@@ -44,7 +44,7 @@ bool cook(ScriptHost& host, const Words& words, std::string& error) {
         !planOutput(outputOf(host), plan, error) ||
         !cookScene(outputOf(host), plan, cpu, host.folder / words[1], host.progress, files, error))
         return false;
-    sayAll(host, files);
+    reportFiles(host, files);
     return true;
 }
 
@@ -88,7 +88,7 @@ bool turntable(ScriptHost& host, const Words& words, std::string& error) {
         !writeTurntable(outputOf(host), device, def, host.folder / words[1], host.progress, files,
                         error))
         return false;
-    sayAll(host, files);
+    reportFiles(host, files);
     return true;
 }
 
@@ -112,7 +112,7 @@ bool bake(ScriptHost& host, const Words& words, std::string& error) {
     if (!need(words, 2, 2, "bake FOLDER", error) || !(cpu = host.cpu(error)) ||
         !writeArrivals(outputOf(host), cpu, host.folder / words[1], host.progress, files, error))
         return false;
-    sayAll(host, files);
+    reportFiles(host, files);
     return true;
 }
 

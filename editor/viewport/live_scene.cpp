@@ -128,7 +128,7 @@ void LiveScene::forget() {
     film.forget();
     overlay.clear();
     burnt_.clear();
-    laidOver.clear();
+    overlaid.clear();
     why = {};
     pins.clear();
     endCompare();
@@ -397,7 +397,7 @@ void LiveScene::seek(double time, bool held) {
     previewed_ = false;
     if (!burn_) return;
     if (held && rest_.burn && !isComparing() && memory_.isKnown(wanted_)) {
-        (isPreviewing() ? laid_ : stale_) = true;
+        (isPreviewing() ? overlayStale_ : stale_) = true;
         preview_ = wanted_;
         previewed_ = true;
         preview();
@@ -425,14 +425,14 @@ void LiveScene::preview() {
 }
 
 void LiveScene::colorBurnTimes(std::span<const fwui::MapStop> map) {
-    laidOver.clear();
+    overlaid.clear();
     if (!burn_) return;
     const Palette palette = rampPalette(map, kOverlayOpacity);
     for (const fwedit::BurnMesh& mesh : burn_->meshes) {
         const auto surface = surfaceOf(mesh.id);
         if (!surface || !memory_.timesOf(*burn_, mesh.id, values_)) continue;
         overlay.color(mesh.id, surface, values_, palette, {0, 0, surface->width, surface->height});
-        laidOver.push_back(mesh.id);
+        overlaid.push_back(mesh.id);
     }
     stale_ = true;
 }
@@ -522,8 +522,8 @@ FwResult LiveScene::recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame
 }
 
 // The kept picture is current, so only the overlays must be drawn.
-bool LiveScene::canLayOver(bool moved) const {
-    return kept_ && laid_ && !stale_ && !moved && isPreviewing() && !isSeeking();
+bool LiveScene::canRedrawOverlay(bool moved) const {
+    return kept_ && overlayStale_ && !stale_ && !moved && isPreviewing() && !isSeeking();
 }
 
 void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime) {
@@ -537,11 +537,11 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     const bool moved = !(camera == camera_);
     const bool catchesUp = isSeeking();
     const bool compares = showsComparison() && !rests;
-    if (deltaTime <= 0 && !moved && !stale_ && !laid_ && !catchesUp && !memory_.isPending() &&
-        !hasOpenQuestion() && !(compares && isOtherBehind()))
+    if (deltaTime <= 0 && !moved && !stale_ && !overlayStale_ && !catchesUp &&
+        !memory_.isPending() && !hasOpenQuestion() && !(compares && isOtherBehind()))
         return;
-    const bool fresh = stale_, laysOver = canLayOver(moved);
-    stale_ = laid_ = false;
+    const bool fresh = stale_, redrawsOverlay = canRedrawOverlay(moved);
+    stale_ = overlayStale_ = false;
     camera_ = camera;
 
     fwedit::Scene seen;  // viewOf reads only these fields
@@ -590,7 +590,7 @@ void LiveScene::record(const fwui::Frame& frame, const fwedit::Camera& camera, f
     if (isPreviewing() && catchesUp && !moved && !fresh) return;
     overlay.upload(frame);
     burnt_.upload(frame);
-    if (laysOver) {
+    if (redrawsOverlay) {
         target.restore(frame);
         drawOverlays(frame);
         return;
@@ -650,7 +650,7 @@ void LiveScene::recordInside(const Half& part, const FwVulkanFrame& described, F
 }
 
 void LiveScene::drawOverlays(const fwui::Frame& frame) {
-    if (!isPreviewing() && laidOver.empty()) return;
+    if (!isPreviewing() && overlaid.empty()) return;
     const glm::mat4 seen = glm::make_mat4(view.projection) * glm::make_mat4(view.view);
     target.beginOver(frame);
     if (showsComparison()) {
@@ -662,7 +662,7 @@ void LiveScene::drawOverlays(const fwui::Frame& frame) {
         if (!object || object->hidden) continue;
         const glm::mat4 clip = seen * poseOf(*object);
         if (isPreviewing()) burnt_.draw(frame, mesh.id, clip, 1);
-        if (std::find(laidOver.begin(), laidOver.end(), mesh.id) != laidOver.end())
+        if (std::find(overlaid.begin(), overlaid.end(), mesh.id) != overlaid.end())
             overlay.draw(frame, mesh.id, clip, 1);
     }
     target.endOver(frame);

@@ -64,8 +64,9 @@ class LiveScene {
     void record(const fwui::Frame& frame, const fwedit::Camera& camera, float deltaTime);
     // Nothing visible would change, so no frame is necessary.
     [[nodiscard]] bool isSettled() const {
-        return !isPreparing() && !isSeeking() && !stale_ && !laid_ && !memory_.isPending() &&
-               overlay.isSettled() && !hasOpenQuestion() && !isOtherBehind();
+        return !isPreparing() && !isSeeking() && !stale_ && !overlayStale_ &&
+               !memory_.isPending() && overlay.isSettled() && !hasOpenQuestion() &&
+               !isOtherBehind();
     }
     // Compares with another scene: the picture has two halves at the same time, the other scene on
     // the left. The other scene ignores document changes.
@@ -132,7 +133,7 @@ class LiveScene {
     std::vector<WhyCard> pins;  // numbered from 1
     MapOverlay overlay;
     FilmStrip film;                          // of this burn, as far as played
-    std::vector<fwedit::ObjectId> laidOver;  // meshes whose overlay map is visible
+    std::vector<fwedit::ObjectId> overlaid;  // meshes whose overlay map is visible
 
  private:
     struct Outline {  // as last requested
@@ -161,7 +162,7 @@ class LiveScene {
     void adoptRest(Rest made);
     bool goBack();
     void preview();
-    [[nodiscard]] bool canLayOver(bool moved) const;
+    [[nodiscard]] bool canRedrawOverlay(bool moved) const;
     FwResult recordOutside(fwedit::Burn& burn, const FwVulkanFrame& frame, const FwView& from);
     void followWhy();
     void pollWhy(WhyCard& card);
@@ -194,11 +195,11 @@ class LiveScene {
     bool restWanted_ = false;
     bool restFresh_ = false;  // nothing has been recorded since it was created
     fwedit::BurnMemory memory_;
-    MapOverlay burnt_;        // overlay of the preview
-    bool laid_ = false;       // only the overlays over the preview changed
-    bool kept_ = false;       // the target has a copy of the picture below the overlays
-    double preview_ = -1;     // s, time shown from memory; < 0: none
-    bool previewed_ = false;  // the user holds the preview
+    MapOverlay burnt_;           // overlay of the preview
+    bool overlayStale_ = false;  // only the overlays over the preview changed
+    bool kept_ = false;          // the target has a copy of the picture below the overlays
+    double preview_ = -1;        // s, time shown from memory; < 0: none
+    bool previewed_ = false;     // the user holds the preview
     bool owesPaint_ = false;
     std::atomic<bool> stop_{false};
     bool stopped_ = false;

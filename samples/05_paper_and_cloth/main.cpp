@@ -179,8 +179,8 @@ int run(const sample::Options& options, float seconds, bool compare) {
                                         .yaw = glm::radians(18.0f),
                                         .pitch = glm::radians(8.0f),
                                         .fieldOfView = 0.46f});
-        sample::Filming filming(stage, options,
-                                {.name = compare ? "compared" : "paper_and_cloth", .moments = 9});
+        sample::Filming filming(
+            stage, options, {.name = compare ? "compared" : "paper_and_cloth", .stripCount = 9});
 
         sample::StageFrame frame;
         while (table.next(frame)) {

@@ -104,7 +104,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         film.name = "volumetric_fire";
         film.animationWidth = 960;
         film.stripWidth = 1280;
-        film.moments = 4;
+        film.stripCount = 4;
         film.columns = 1;
         sample::Filming filming(stage, options, film);
 

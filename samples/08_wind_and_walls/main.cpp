@@ -163,7 +163,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         film.name = "wind_and_walls";
         film.animationWidth = 960;
         film.stripWidth = 1280;
-        film.moments = 5;
+        film.stripCount = 5;
         film.columns = 1;
         sample::Filming filming(stage, options, film);
 

@@ -188,7 +188,7 @@ int run(const sample::Options& options, float seconds, const sample::FireLook& l
         film.name = "flamethrower";
         film.animationWidth = 720;
         film.stripWidth = 1280;
-        film.moments = static_cast<uint32_t>(cases().size());
+        film.stripCount = static_cast<uint32_t>(cases().size());
         film.columns = 3;
         sample::Filming filming(stage, options, film);
 

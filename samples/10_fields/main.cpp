@@ -157,7 +157,7 @@ int run(const sample::Options& options, float seconds, float dusk, float wind) {
         film.name = "fields";
         film.animationWidth = 960;
         film.stripWidth = 1280;
-        film.moments = 4;
+        film.stripCount = 4;
         film.columns = 1;
         sample::Filming filming(stage, options, film);
 

@@ -65,7 +65,7 @@ int run(const sample::Options& options, float seconds, const std::string& mode, 
         film.name = "parallax";
         film.animationWidth = 960;
         film.stripWidth = 1280;
-        film.moments = 4;
+        film.stripCount = 4;
         film.columns = 2;
         sample::Filming filming(stage, options, film);
 

@@ -25,10 +25,12 @@ void Film::add(uint32_t number, const Picture& picture) {
         animation_.add(scaled(made_.animationWidth));
     }
     // The stills are evenly spaced and include the first and the last frame.
-    const uint32_t last = std::max(1u, made_.frames) - 1, moments = std::max(1u, made_.moments);
-    const auto next = static_cast<uint32_t>(moments_.size());
-    const uint32_t due = moments > 1 ? (last * next + (moments - 1) / 2) / (moments - 1) : last;
-    if (next < moments && number >= due) moments_.push_back(scaled(made_.stripWidth));
+    const uint32_t last = std::max(1u, made_.frames) - 1,
+                   stripCount = std::max(1u, made_.stripCount);
+    const auto next = static_cast<uint32_t>(strip_.size());
+    const uint32_t due =
+        stripCount > 1 ? (last * next + (stripCount - 1) / 2) / (stripCount - 1) : last;
+    if (next < stripCount && number >= due) strip_.push_back(scaled(made_.stripWidth));
 }
 
 std::vector<std::string> Film::close() {
@@ -41,9 +43,9 @@ std::vector<std::string> Film::close() {
         files.push_back((made_.folder / (made_.name + "_animated.png")).string() +
                         " (animated: open it in a browser)");
     }
-    if (moments_.size() > 1) {
+    if (strip_.size() > 1) {
         const std::filesystem::path path = made_.folder / (made_.name + "_strip.png");
-        writePng(path, contactSheet(moments_, made_.columns));
+        writePng(path, contactSheet(strip_, made_.columns));
         files.push_back(path.string());
     }
     return files;

@@ -16,7 +16,7 @@ struct FilmRequest {
     uint32_t frames = 1;            // total number of frames
     uint32_t animationWidth = 480;  // pixels; frames are scaled down to it
     uint32_t animationEvery = 1;    // one frame in so many enters the animation
-    uint32_t moments = 6;           // pictures in the strip
+    uint32_t stripCount = 6;        // pictures in the strip
     uint32_t columns = 3;           // of the strip
     uint32_t stripWidth = 640;      // pixels of one still in the strip
 };
@@ -31,7 +31,7 @@ class Film {
  private:
     FilmRequest made_;
     AnimationWriter animation_;
-    std::vector<Picture> moments_;
+    std::vector<Picture> strip_;
     uint32_t count_ = 0;
 };
 

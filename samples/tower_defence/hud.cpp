@@ -385,7 +385,7 @@ void Board::showPlotMenu() {
 
 void Board::drawMessage(double time) {
     constexpr double kFor = 3;  // s
-    if (!player.paused && time - player.saidAt >= kFor) return;
+    if (!player.paused && time - player.messageTime >= kFor) return;
     ImFont* font = player.paused ? fonts().title : fonts().heading;
     const char* words = player.paused ? "paused" : player.said.c_str();
     const ImVec2 half{fwui::textSize(font, words).x / 2 + dp(18), dp(player.paused ? 26 : 18)};

@@ -19,9 +19,9 @@ struct Player {
     int32_t plot = -1;                                // selected
     int32_t speed = 1;                                // 1, 2, 4
     bool paused = false;
-    bool showsLedger = false;  // the energy ledger is open
-    std::string said;          // the last message
-    double saidAt = -100;      // s of the stage's clock
+    bool showsLedger = false;   // the energy ledger is open
+    std::string said;           // the last message
+    double messageTime = -100;  // s of the stage's clock
 };
 
 // Summary of all fires.

@@ -232,9 +232,9 @@ int play(const sample::Options& options, const Choices& choices) {
         fire.registerTarget(stage);
         tower::Renderer renderer(host, stage, field.scene, painted, groundOf(choices.ground));
         tower::FireVillage fires(fire.context, fire.world, field.scene, &painted);
-        tower::Siege siege(
-            fire.world, fires, field,
-            byHand ? game::newGame(options.seed) : game::underWay(field.ground, options.seed));
+        tower::Siege siege(fire.world, fires, field,
+                           byHand ? game::newGame(options.seed)
+                                  : game::gameInProgress(field.ground, options.seed));
         tower::Rewind rewind(fire.world, siege);
         tower::Hud hud(host, stage);
         tower::Player player;
@@ -306,7 +306,7 @@ int play(const sample::Options& options, const Choices& choices) {
                          countFires(fires, fire.world, player.showsLedger), player);
             auto say = [&](const std::string& what) {
                 player.said = what;
-                player.saidAt = frame.time;
+                player.messageTime = frame.time;
             };
             if (bot) requests.orders.push_back(game::botsOrder(siege.state()));
             for (const game::Order& order : requests.orders) {

@@ -34,7 +34,7 @@ int playScripted(const ScriptedGame& wanted) {
     // Late enough that objects burn, enemies have fallen and new ones use their slots.
     constexpr int32_t kRewindAt = 18 * game::kTicksPerSecond;
     Rewind rewind(world, siege);
-    bool goesBack = wanted.rewind;
+    bool rewinds = wanted.rewind;
     const std::clock_t began = std::clock();
     uint32_t steps = 0;
     const game::State& state = siege.state();
@@ -45,8 +45,8 @@ int playScripted(const ScriptedGame& wanted) {
         if (wanted.rewind) rewind.remember();
         checkFire(world, fwWorld_Step(world, kTicks * kTickSeconds), "fwWorld_Step");
         ++steps;
-        if (goesBack && state.tick >= kRewindAt) {
-            goesBack = false;
+        if (rewinds && state.tick >= kRewindAt) {
+            rewinds = false;
             const int32_t from = state.tick;
             rewind.goBack();
             std::fprintf(stderr, "rewind: %d ticks, %.1f ms, %zu KB a snapshot, saved in %.1f ms\n",
@@ -54,7 +54,7 @@ int playScripted(const ScriptedGame& wanted) {
                          rewind.bytes() / rewind.snapshotCount() / 1024, 1e3 * rewind.fetchSeconds);
         }
     }
-    if (wanted.rewind && goesBack)
+    if (wanted.rewind && rewinds)
         throw sample::Failure("the game was over before it could be rewound");
     const char* outcome = state.outcome == game::Outcome::kLost  ? "lost"
                           : state.outcome == game::Outcome::kWon ? "won"

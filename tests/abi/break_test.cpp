@@ -86,7 +86,7 @@ struct Board : HostedWorld {
 constexpr float kRowArea = kWide * kHigh / kRows;
 constexpr double kBurns = 20;  // s: one band burns through, with a margin
 
-TEST(Breakage, ReportsWhatABurntBandSupportedOnce) {
+TEST(Breakage, ReportsTheUnsupportedPartOnce) {
     for (const uint32_t flags : {0u, uint32_t(FW_BURNABLE_LITE)}) {
         Board board(FW_BACKEND_CPU, flags);
         board.light(11, kWide / 2, 0.02f);
@@ -246,7 +246,7 @@ TEST(Breakage, PendingEventsKeepTheirStepAcrossSaves) {
 }
 
 // A loading host that requests another kind gets no events of areas lost before.
-TEST(Breakage, DoesNotReportOldLossesToAHostThatAsksForOtherKinds) {
+TEST(Breakage, DoesNotReportOldLossesOfNewlyRequestedKinds) {
     Board asks(FW_BACKEND_CPU, 0, 0.09f), none(FW_BACKEND_CPU, 0, 0, 0),
         other(FW_BACKEND_CPU, 0, 0.02f);
     asks.light(11);

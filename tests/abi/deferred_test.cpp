@@ -91,8 +91,8 @@ TEST(Deferred, DestroysEveryKindOfObject) {
     const FwWindZoneId zone = created(fwWorld_CreateWindZone, w.world, zoneDef);
     const FwRoomDef roomDef = fwDefaultRoomDef();
     const FwRoomId room = created(fwWorld_CreateRoom, w.world, roomDef);
-    const FwHeatOccluderDef blockerDef = fwDefaultHeatOccluderDef();
-    const FwHeatOccluderId occluder = created(fwWorld_AddHeatOccluder, w.world, blockerDef);
+    const FwHeatOccluderDef occluderDef = fwDefaultHeatOccluderDef();
+    const FwHeatOccluderId occluder = created(fwWorld_AddHeatOccluder, w.world, occluderDef);
     const FwFireColliderDef colliderDef = fwDefaultFireColliderDef();
     const FwFireColliderId collider = created(fwWorld_AddFireCollider, w.world, colliderDef);
     const uint32_t pixels[4] = {};
@@ -185,7 +185,7 @@ TEST(Snapshot, HoldsStatesAndLightsOfTheLastStep) {
     EXPECT_NE(std::string::npos, lastMessage(w.world).find("is already destroyed"));
 }
 
-TEST(MemoryReport, CpuRowsFollowWhatIsCreatedAndDestroyed) {
+TEST(MemoryReport, CpuRowsFollowCreationAndDestruction) {
     SheetWorld w(host::evenMaterial(0.05f, 5));
     const auto states = [&] {
         FwMemoryRow rows[16];

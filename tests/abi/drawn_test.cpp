@@ -328,7 +328,7 @@ TEST(DrawnMesh, SkinnedStripsBurnAtTheirCurrentPlace) {
 
 // A burnt sheet of paper leaves nothing. Without damage all of it stays, without holes a charred
 // sheet.
-TEST(DrawnMesh, WithoutDamageABurntSheetLooksNew) {
+TEST(DrawnMesh, ABurntSheetWithoutDamageLooksUnburnt) {
     FwWorldDef worldDef = fwDefaultWorldDef();
     worldDef.paceFactor = 20;
     worldDef.maxLights = 0;

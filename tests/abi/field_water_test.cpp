@@ -41,7 +41,7 @@ struct Fountain : Panels {
     uint32_t burning(size_t i) { return state(ids[i]).burning; }
 };
 
-TEST(FieldWater, ExtinguishesOnlyWhatItHits) {
+TEST(FieldWater, ExtinguishesOnlyWhereItHits) {
     Fountain w;
     w.panel(0);
     w.panel(6);

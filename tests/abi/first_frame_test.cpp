@@ -74,7 +74,7 @@ struct Camp : HostedWorld {
     FwVolumetricFireId fire{};
 };
 
-void looksAsItDid(uint32_t backend) {
+void matchesTheFrameAfterTheSave(uint32_t backend) {
     Camp first(backend);
     if (!first.world) GTEST_SKIP() << "there is no such backend here";
     first.burn();
@@ -111,8 +111,10 @@ void looksAsItDid(uint32_t backend) {
         }
     }
 }
-TEST(FirstFrame, MatchesTheFrameAfterTheSave) { looksAsItDid(FW_BACKEND_CPU); }
-TEST(FirstFrame, MatchesTheFrameAfterTheSaveOnADevice) { looksAsItDid(FW_BACKEND_VULKAN); }
+TEST(FirstFrame, MatchesTheFrameAfterTheSave) { matchesTheFrameAfterTheSave(FW_BACKEND_CPU); }
+TEST(FirstFrame, MatchesTheFrameAfterTheSaveOnADevice) {
+    matchesTheFrameAfterTheSave(FW_BACKEND_VULKAN);
+}
 
 // FwWorldStats::flames on a backend that draws.
 TEST(FirstFrame, StatsCountTheQuadsOfThePicture) {

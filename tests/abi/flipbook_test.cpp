@@ -48,7 +48,7 @@ TEST(CreateFlipbook, RefusesInvalidData) {
     refuses(FW_ERROR_INVALID_ARGUMENT, "32 flipbooks are there; the limit is 32.");
 }
 
-TEST(CreateFlipbook, LivesWhileInUse) {
+TEST(CreateFlipbook, StaysAliveWhileInUse) {
     FireWorld w;
     const FwFlipbookId fire = make(w, FW_FLIPBOOK_FLAME), smoke = make(w, FW_FLIPBOOK_HAZE);
     FwFireEmitterDef def = fwDefaultFireEmitterDef();

@@ -56,7 +56,7 @@ struct Range : Panels {
 };
 
 // "Flamethrowers go through walls" (RMC-14#5776, #6308).
-TEST(Jet, AClosedWallBurnsAndOccludesWhatIsBehind) {
+TEST(Jet, AClosedWallBurnsAndProtectsTheRoomBehind) {
     for (const bool heat : {false, true}) {
         Range r(heat);
         r.wall(3);
@@ -364,7 +364,7 @@ TEST(Jet, AThinWallStopsAFastStream) {
 }
 
 // "Sets things alight behind doors" (Barotrauma#4146), while its owner walks by.
-TEST(Jet, AMovingNozzleBurnsOnlyWhatItPasses) {
+TEST(Jet, AMovingNozzleBurnsOnlyObjectsOnItsPath) {
     Range r;
     for (const float z : {-3.0f, -2.0f, -1.0f, 0.0f}) r.wall(3, z);
     r.wall(4.5f, -1);

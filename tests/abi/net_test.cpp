@@ -49,7 +49,7 @@ void play(Busy& session, uint32_t from, uint32_t to) {
 
 // One client from the beginning, one that joins mid-burn. At frames 60 and 130 water and a dousing
 // ball extinguish parts of the fire.
-void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
+void burnsIdentically(uint32_t seed, uint32_t clients, uint32_t end) {
     Busy session(std::make_unique<BusyWorld>(FW_BACKEND_CPU), seed);
     const auto add = [&] {
         auto world = std::make_unique<BusyWorld>(clients);
@@ -77,9 +77,9 @@ void burnsAlike(uint32_t seed, uint32_t clients, uint32_t end) {
 }
 
 TEST(Net, BurnsIdenticallyUnderPacketLoss) {
-    for (const uint32_t seed : {1u, 2u, 3u}) burnsAlike(seed, FW_BACKEND_CPU, 200);
+    for (const uint32_t seed : {1u, 2u, 3u}) burnsIdentically(seed, FW_BACKEND_CPU, 200);
 }
-TEST(Net, BurnsIdenticallyOnADevice) { burnsAlike(4, FW_BACKEND_VULKAN, 160); }
+TEST(Net, BurnsIdenticallyOnADevice) { burnsIdentically(4, FW_BACKEND_VULKAN, 160); }
 
 // Half of a burning sheet is extinguished: it stays out, and the rest burns, on both sides.
 TEST(Net, ExtinguishedPartsStayOut) {

@@ -19,7 +19,7 @@ struct Act {
         makeRoom,
         dropRoom,
         makeOccluder,
-        dropBlocker,
+        dropOccluder,
         makeFire,
         dropFire,
         makeJet,
@@ -243,7 +243,7 @@ class SessionDraw {
             if (occluders_.empty() || (occluders_.size() < 3 && once(2)))
                 place(act(Act::makeOccluder, make(occluders_)).numbers);
             else if (once(3))
-                act(Act::dropBlocker, drop(occluders_));
+                act(Act::dropOccluder, drop(occluders_));
             else
                 place(act(Act::moveHeatOccluder, any(occluders_)).numbers);
         } else if (kind < 41 && exact_) {
@@ -634,7 +634,7 @@ class SessionWorld {
             case Act::moveHeatOccluder:
                 poseAt(at, n[0], n[1], n[2], 0.3f);
                 return ok(fwWorld_MoveHeatOccluder(world, occluders_[act.name], at));
-            case Act::dropBlocker:
+            case Act::dropOccluder:
                 return ok(fwWorld_RemoveHeatOccluder(world, occluders_[act.name]));
             case Act::makeFire: {
                 FwVolumetricFireDef def = fwDefaultVolumetricFireDef();

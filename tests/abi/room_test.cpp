@@ -62,7 +62,7 @@ struct Paper : HostedWorld {
     std::vector<FwEvent> events;
 };
 
-TEST(FireInRoom, FireUsesUpTheOxygenAndGoesOut) {
+TEST(FireInRoom, FireConsumesTheOxygenAndGoesOut) {
     Paper free(FW_BACKEND_CPU), large(FW_BACKEND_CPU), shut(FW_BACKEND_CPU);
     const FwRoomId hall = large.put(large.roomOf(20 * large.fuel));
     const FwRoomId closet = shut.put(shut.roomOf(0.3 * shut.fuel));

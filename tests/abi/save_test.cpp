@@ -11,19 +11,19 @@ namespace {
 using namespace host;
 
 // Saves at several frames; each is loaded into a new world, which runs to the end.
-void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
+void continuesIdentically(uint32_t saves, uint32_t loads, uint32_t end) {
     BusyWorld first(saves);
     if (!there(first)) GTEST_SKIP() << "there is no such backend here";
-    const uint32_t moments[] = {25, 92, 140};
+    const uint32_t savedFrames[] = {25, 92, 140};
     std::vector<Bytes> bytes;
     std::vector<uint64_t> hashes;
     uint32_t frame = 0;
-    for (const uint32_t moment : moments) {
-        if (moment >= end) continue;
-        first.run(frame, moment);
+    for (const uint32_t saved : savedFrames) {
+        if (saved >= end) continue;
+        first.run(frame, saved);
         bytes.push_back(first.save());
         hashes.push_back(first.hash());
-        frame = moment;
+        frame = saved;
     }
     first.run(frame, end);
     const uint64_t last = first.hash();
@@ -32,22 +32,26 @@ void goesOnAlike(uint32_t saves, uint32_t loads, uint32_t end) {
         BusyWorld other(loads);
         if (!there(other)) GTEST_SKIP() << "there is no such backend here";
         ASSERT_EQ(FW_OK, other.load(bytes[i])) << lastMessage(other.world);
-        EXPECT_EQ(hashes[i], other.hash()) << "at " << moments[i];
-        EXPECT_EQ(bytes[i], other.save()) << "saved again, at " << moments[i];
-        other.run(moments[i], end);
-        EXPECT_EQ(last, other.hash()) << "from " << moments[i];
+        EXPECT_EQ(hashes[i], other.hash()) << "at " << savedFrames[i];
+        EXPECT_EQ(bytes[i], other.save()) << "saved again, at " << savedFrames[i];
+        other.run(savedFrames[i], end);
+        EXPECT_EQ(last, other.hash()) << "from " << savedFrames[i];
     }
 }
 
-TEST(Save, ContinuesIdentically) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
+TEST(Save, ContinuesIdentically) { continuesIdentically(FW_BACKEND_CPU, FW_BACKEND_CPU, 260); }
 TEST(Save, ContinuesIdenticallyOnADevice) {
-    goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150);
+    continuesIdentically(FW_BACKEND_VULKAN, FW_BACKEND_VULKAN, 150);
 }
-TEST(Save, MovesFromADeviceToTheCpu) { goesOnAlike(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110); }
-TEST(Save, MovesFromTheCpuToADevice) { goesOnAlike(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110); }
+TEST(Save, MovesFromADeviceToTheCpu) {
+    continuesIdentically(FW_BACKEND_VULKAN, FW_BACKEND_CPU, 110);
+}
+TEST(Save, MovesFromTheCpuToADevice) {
+    continuesIdentically(FW_BACKEND_CPU, FW_BACKEND_VULKAN, 110);
+}
 
 // Loads into the same world twice, from a later and from an earlier frame.
-void goesBack(uint32_t backend) {
+void rewinds(uint32_t backend) {
     BusyWorld w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
     w.run(0, 70);
@@ -63,12 +67,12 @@ void goesBack(uint32_t backend) {
         EXPECT_EQ(later, w.hash());
     }
 }
-TEST(Save, RewindsTheSameWorld) { goesBack(FW_BACKEND_CPU); }
-TEST(Save, RewindsTheSameWorldOnADevice) { goesBack(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsTheSameWorld) { rewinds(FW_BACKEND_CPU); }
+TEST(Save, RewindsTheSameWorldOnADevice) { rewinds(FW_BACKEND_VULKAN); }
 
 // Rewinds to before the first fire, also in a world that never had the save's wind: a fire lit then
 // burns in that wind.
-void goesBackToBefore(uint32_t backend) {
+void rewindsToBeforeTheFire(uint32_t backend) {
     BusyWorld w(backend);
     if (!there(w)) GTEST_SKIP() << "there is no such backend here";
     const float wind[3] = {2, 0, 1};
@@ -86,8 +90,8 @@ void goesBackToBefore(uint32_t backend) {
     other.run(1, 60);
     EXPECT_EQ(then, other.hash());
 }
-TEST(Save, RewindsToBeforeTheFirstFire) { goesBackToBefore(FW_BACKEND_CPU); }
-TEST(Save, RewindsToBeforeTheFirstFireOnADevice) { goesBackToBefore(FW_BACKEND_VULKAN); }
+TEST(Save, RewindsToBeforeTheFirstFire) { rewindsToBeforeTheFire(FW_BACKEND_CPU); }
+TEST(Save, RewindsToBeforeTheFirstFireOnADevice) { rewindsToBeforeTheFire(FW_BACKEND_VULKAN); }
 
 // A sleeping world stays asleep: the wind of its first fire starts with that fire, not at the load.
 TEST(Save, FirstFireAfterALoadIsIdentical) {

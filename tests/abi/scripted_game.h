@@ -200,7 +200,7 @@ class ScriptedGame {
             tag(0);
         }
         if (now_ == 180) {
-            act(Act::dropBlocker, walls_[0]);
+            act(Act::dropOccluder, walls_[0]);
             walls_.erase(walls_.begin());
         }
         if (now_ == 200) {

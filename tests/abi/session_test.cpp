@@ -190,7 +190,7 @@ class TouchingSheets {
 };
 
 // Compares every save until both burn.
-void expectAlike(TouchingSheets& a, TouchingSheets& b, int steps) {
+void expectEqual(TouchingSheets& a, TouchingSheets& b, int steps) {
     for (int i = 0; i < steps; ++i) {
         a.step(1);
         b.step(1);
@@ -228,7 +228,7 @@ TEST(Save, ASeparatedPairBurnsIdenticallyAfterALoad) {
             w->step(away);
             w->moveSecond(TouchingSheets::kApart);
         }
-        expectAlike(a, b, 90);
+        expectEqual(a, b, 90);
     }
     fwDestroyContext(context);
 }
@@ -243,7 +243,7 @@ TEST(Save, AReusedSlotOfATouchingObjectBurnsIdenticallyAfterALoad) {
         a.replaceSecond();
         b.replaceSecond();
         ASSERT_EQ(FW_OK, b.load(saveOf(a.world))) << lastMessage(b.world);
-        expectAlike(a, b, 90);
+        expectEqual(a, b, 90);
     }
     fwDestroyContext(context);
 }
@@ -370,7 +370,7 @@ struct Reported {
     std::vector<std::string> words;
     std::vector<SessionWorld::Place> places;
 };
-void expectAlike(const Reported& still, const Reported& shifted) {
+void expectEqual(const Reported& still, const Reported& shifted) {
     EXPECT_EQ(still.words, shifted.words);
     ASSERT_EQ(still.places.size(), shifted.places.size());
     for (size_t i = 0; i < still.places.size(); ++i)
@@ -420,7 +420,7 @@ void shiftsChangeNothingElse(uint32_t backend, uint64_t seed, uint32_t frames) {
                 saves[k] = saveOf(w.world);
             }
             if (frame % 8 != 7) continue;
-            expectAlike(reported[0], reported[1]);
+            expectEqual(reported[0], reported[1]);
             reported[0] = reported[1] = {};
             EXPECT_EQ(figures[0], figures[1]);
             EXPECT_EQ(hashes[0], hashes[1]);

@@ -44,7 +44,7 @@ struct ShiftedWorld : BusyWorld {
     uint32_t frame = 0;
 };
 
-void burnsOnAlike(uint32_t backend, uint32_t frames) {
+void burnsIdentically(uint32_t backend, uint32_t frames) {
     ShiftedWorld stays(backend), moves(backend);
     if (!there(stays)) GTEST_SKIP() << "there is no such backend here";
     stays.go(40);
@@ -83,11 +83,11 @@ void burnsOnAlike(uint32_t backend, uint32_t frames) {
                 << "pending events move too";
     }
 }
-TEST(ShiftOrigin, DoesNotChangeTheBurn) { burnsOnAlike(FW_BACKEND_CPU, 240); }
-TEST(ShiftOrigin, DoesNotChangeTheBurnOnADevice) { burnsOnAlike(FW_BACKEND_VULKAN, 120); }
+TEST(ShiftOrigin, DoesNotChangeTheBurn) { burnsIdentically(FW_BACKEND_CPU, 240); }
+TEST(ShiftOrigin, DoesNotChangeTheBurnOnADevice) { burnsIdentically(FW_BACKEND_VULKAN, 120); }
 
 // Hits of jets, igniting fires and wetting fields agree but for float rounding.
-void strikesAlike(uint32_t backend, uint32_t frames) {
+void hitsTheSamePlaces(uint32_t backend, uint32_t frames) {
     ShiftedWorld stays(backend, ShiftedWorld::ordinary), moves(backend, ShiftedWorld::ordinary);
     if (!there(stays)) GTEST_SKIP() << "there is no such backend here";
     for (uint32_t part = 0; part < 3; ++part) {
@@ -101,8 +101,10 @@ void strikesAlike(uint32_t backend, uint32_t frames) {
     EXPECT_NEAR(double(stays.ignited()), double(moves.ignited()), 0.02 * stays.ignited());
     EXPECT_GT(stays.ignited(), 100u);
 }
-TEST(ShiftOrigin, JetsAndWaterHitTheSamePlaces) { strikesAlike(FW_BACKEND_CPU, 120); }
-TEST(ShiftOrigin, JetsAndWaterHitTheSamePlacesOnADevice) { strikesAlike(FW_BACKEND_VULKAN, 60); }
+TEST(ShiftOrigin, JetsAndWaterHitTheSamePlaces) { hitsTheSamePlaces(FW_BACKEND_CPU, 120); }
+TEST(ShiftOrigin, JetsAndWaterHitTheSamePlacesOnADevice) {
+    hitsTheSamePlaces(FW_BACKEND_VULKAN, 60);
+}
 
 // A volumetric fire and an emitter continue in the next frame.
 TEST(ShiftOrigin, FiresAndEmittersKeepTheirState) {
@@ -229,7 +231,7 @@ TEST(ShiftOrigin, SavesWithOldPositionsBeyondTheLimits) {
 }
 
 // A host's sight answers stay valid: it is not asked again, and a changed answer is not used.
-TEST(ShiftOrigin, KeepsTheHostsSightAnswers) {
+TEST(ShiftOrigin, KeepsTheHostsVisibilityAnswers) {
     struct Asked {
         int times = 0;
         float answer = 0.5f;

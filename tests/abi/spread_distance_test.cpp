@@ -210,7 +210,7 @@ TEST(Spread, PlumesIgniteObjectsAbove) {
     }
 }
 
-TEST(Spread, RespectsTheHostsSightAnswers) {
+TEST(Spread, RespectsTheHostsVisibilityAnswers) {
     for (const float seen : {0.0f, 1.0f}) {
         FwWorldDef def = worldDef(FW_WORLD_RADIATION);
         float part = seen;

@@ -668,10 +668,10 @@ class Session {
             get("FwFireEmitterState::lightPosition", emitter.lightPosition);
             same("heated", double(emitter.heated));
         }
-        askPlaces();
-        if (first) askMeshes();
+        queryPlaces();
+        if (first) queryMeshes();
     }
-    void askPlaces() {
+    void queryPlaces() {
         FwQueryId query{};
         auto place = at("fwWorld_RequestPoint::position", 0.875f, 0.25f, 0.125f);
         ok(fwWorld_RequestPoint(world, objects_[1], place.data(), &query));
@@ -730,7 +730,7 @@ class Session {
         for (const double value : origin) get("fwWorld_GetOrigin::origin", value);
     }
     // In the mesh's own unit: an asset in metres reports metres in both worlds.
-    void askMeshes() {
+    void queryMeshes() {
         auto of = info<FwMeshInfo>();
         ok(fwWorld_GetMeshInfo(world, mesh_, &of));
         get("FwMeshInfo::boundsLow", of.boundsLow);

@@ -33,7 +33,7 @@ void gameFrame(benchmark::State& bench) {
         return bench.SkipWithError("no world");
     const tower::Battlefield field = tower::makeBattlefield(kSeed);
     tower::FireVillage fires(context.get(), world, field.scene, nullptr);
-    tower::Siege siege(world, fires, field, game::underWay(field.ground, kSeed));
+    tower::Siege siege(world, fires, field, game::gameInProgress(field.ground, kSeed));
 
     std::vector<uint8_t> pixels(size_t{kWidth} * kHeight * 4);
     FwOffscreenDef shot = fwDefaultOffscreenDef();

@@ -804,9 +804,9 @@ TEST(EditorScene, AttachedObjectsMoveWithTheirParentAndStayWithoutIt) {
     mustRun(document, "import a.glb name=Box position 1 0 0 rotation 0 90 0 scale 2 2 2");
     mustRun(document, "add source point name=Torch position 1 0 -2");
     mustRun(document, "set \"Torch\" sticks_to \"Box\"");
-    const auto near = [&](Vec3 wish) {
+    const auto near = [&](Vec3 expected) {
         const Vec3 at = worldPosition(document.scene, document.scene.sources[0].id);
-        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], at[k], 1e-5f) << k;
+        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(expected[k], at[k], 1e-5f) << k;
     };
     near({1, 0, -2});
     EXPECT_NEAR(1.0f, document.scene.sources[0].position[0], 1e-5f);  // along the box's own x
@@ -825,8 +825,8 @@ bool poseOfTheHook(const Mesh&, std::string_view node, Pose& pose, std::string& 
     return node == "hook";
 }
 
-void expectNear(Vec3 wish, Vec3 given) {
-    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], given[k], 1e-5f) << k;
+void expectNear(Vec3 expected, Vec3 given) {
+    for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(expected[k], given[k], 1e-5f) << k;
 }
 
 TEST(EditorScene, ObjectsAttachedToANodeFollowIt) {

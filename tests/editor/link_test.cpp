@@ -32,10 +32,10 @@ constexpr const char* kPainted =
     "add layer multiplier name=Belt mesh Board size 512\n";
 
 // Polls for up to two seconds.
-template <typename Ask>
-bool soon(Ask&& ask) {
+template <typename Predicate>
+bool soon(Predicate&& predicate) {
     for (int i = 0; i < 1000; ++i) {
-        if (ask()) return true;
+        if (predicate()) return true;
         std::this_thread::sleep_for(std::chrono::milliseconds(2));
     }
     return false;

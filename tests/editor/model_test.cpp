@@ -254,7 +254,7 @@ TEST(NeutralStage, TheEditorShowsEachMaterialsColour) {
 }
 
 #ifdef FW_TEST_BURNING_MESH
-TEST(NeutralStage, SampleAndEditorShowEveryFileAlike) {
+TEST(NeutralStage, SampleAndEditorShowEveryFileEqually) {
     Yard yard;
     if (!hasDevice(yard)) GTEST_SKIP() << "no Vulkan device";
     struct Case {

@@ -209,8 +209,8 @@ TEST(EditorBurn, AFlameFollowsANodeOfTheFile) {
     ASSERT_TRUE(burnToPlayhead(*yard.host, yard.host->cpu(error), error)) << error;
     Burn& burn = *yard.host->burn;
     EXPECT_THAT(burn.report, ::testing::IsEmpty());
-    const auto near = [](Vec3 wish, const float* given) {
-        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(wish[k], given[k], 1e-5f) << k;
+    const auto near = [](Vec3 expected, const float* given) {
+        for (size_t k = 0; k < 3; ++k) EXPECT_NEAR(expected[k], given[k], 1e-5f) << k;
     };
     near({0.4f, 0.3f, 0.02f}, fireDefOf(burn.scene, burn.scene.flames[0]).position);
     near({1, 0, 0}, emitterDefOf(burn.scene, burn.scene.emitters[0]).direction);

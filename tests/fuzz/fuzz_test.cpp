@@ -608,7 +608,7 @@ class Fuzz {
                                              random_.once(4) ? nullptr : &def));
     }
 
-    void askFlames() {
+    void queryFlames() {
         float place[3];
         for (float& x : place) x = random_.number();
         FwFireSample answer{};
@@ -857,7 +857,7 @@ class Fuzz {
                 if (random_.once(2))
                     scriptFlame();
                 else
-                    askFlames();
+                    queryFlames();
                 break;
             default:
                 check(fwWorld_Step(world_, random_.once(30) ? values[0] : random_.unit() * 0.2f));

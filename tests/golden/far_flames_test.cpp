@@ -11,7 +11,7 @@ namespace fw::test::far_flames_test {
 namespace {
 
 constexpr uint32_t kSide = 160;  // px
-constexpr int kMoments = 6;
+constexpr int kTimes = 6;
 constexpr float kHigh = 0.5f;  // m, size of a burning cube
 
 class FarFlames : public OwnWorld {
@@ -54,9 +54,9 @@ TEST_F(FarFlames, KeepTheirLight) {
     run(8, 1.0f);
     constexpr float kPx[] = {80, 20, 10};
     double seen[3] = {};
-    for (int moment = 0; moment < kMoments; ++moment) {
+    for (int moment = 0; moment < kTimes; ++moment) {
         fwWorld_Step(world_, 0.125f);
-        for (int i = 0; i < 3; ++i) seen[i] += light(kPx[i]) / kMoments;
+        for (int i = 0; i < 3; ++i) seen[i] += light(kPx[i]) / kTimes;
     }
     if (const char* folder = std::getenv("FLAMEWRIGHT_MOTION"))
         for (float px : kPx) {

@@ -253,14 +253,14 @@ class EveryPass : public GpuTest {
         links_.clear();
         for (uint32_t i = 0; i < scene_->domains[0].texelCount(); i += 3)
             links_.push_back({0, i, 0, scene_->domains[0].texelCount() - 1 - i, 100, 0, 0, 0});
-        blocker_.size = {10, 10, 10, 1};
+        occluder_.size = {10, 10, 10, 1};
         exchange_.objects = {&placed_, 1};
         exchange_.neighbours = {&self_, 1};
         exchange_.neighbourRanges = {&selfRange_, 1};
         exchange_.links = links_;
         linkRange_ = {0, uint32_t(links_.size())};
         exchange_.linkRanges = {&linkRange_, 1};
-        exchange_.occluders = {&blocker_, 1};
+        exchange_.occluders = {&occluder_, 1};
         // Its faces occlude each other, and so does a wall of the host's.
         components::HeatOcclusion grid(std::pmr::get_default_resource());
         grid.shape.counts = {24, 24, 24};
@@ -422,11 +422,11 @@ class EveryPass : public GpuTest {
         std::pmr::memory_resource* memory = std::pmr::get_default_resource();
         flipbook::Flipbook books[3]{flipbook::Flipbook(memory), flipbook::Flipbook(memory),
                                     flipbook::Flipbook(memory)};
-        const flipbook::Flipbook* laid[] = {&books[0], &books[1], &books[2]};
+        const flipbook::Flipbook* placed[] = {&books[0], &books[1], &books[2]};
         const uint32_t presets[] = {FW_FLIPBOOK_FLAME, FW_FLIPBOOK_SMOKE, FW_FLIPBOOK_SPARK};
         for (int i = 0; i < 3; ++i)
             flipbook::readFlipbook(flipbook::presetFlipbook(presets[i], memory), books[i]);
-        const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory);
+        const flipbook::Picture picture = flipbook::packFlipbooks(placed, memory);
         rig_->backend.setFlipbooks(picture.width, picture.height,
                                    std::as_bytes(std::span(picture.texels)), picture.words);
         rig_->backend.setTileFlipbooks(1u | 2u << 8);
@@ -536,7 +536,7 @@ class EveryPass : public GpuTest {
     gpu::OcclusionUpdate occlusion_;
     std::pmr::vector<uint32_t> occlusionWords_;
     std::vector<gpu::ContactLink> links_;
-    gpu::HeatOccluder blocker_{};
+    gpu::HeatOccluder occluder_{};
     gpu::VolumeFlame flames_[4]{};
     std::unique_ptr<ParticleReference> emitter_;
     gpu::FieldDraw fieldDraws_[3]{};

@@ -659,7 +659,7 @@ TEST_F(SparkPass, FollowTheLibrarysHeightfield) {
     if (!device_) return;
     SparkRig rig(200);
     for (int i = 0; i < 150; ++i) ASSERT_TRUE(rig.step(1 / 30.0f));
-    rig.layHill();
+    rig.makeHill();
     rig.record.flags &= ~gpu::kSparkGround;
     rig.record.up.w = -1e9f;
     const std::vector<Spark> wanted = rig.sparks();

@@ -565,10 +565,10 @@ class Volume : public GpuTest {
     // ---- fires of equal power, averaged over time
 
     using Mean = std::vector<vec4>;
-    static constexpr int kMoments = 24;
+    static constexpr int kAveraged = 24;
     static constexpr float kApart = 0.21f;  // s
-    static void addMoment(Mean& sum, const Mean& picture) {
-        for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kMoments);
+    static void addToMean(Mean& sum, const Mean& picture) {
+        for (size_t k = 0; k < sum.size(); ++k) sum[k] += picture[k] / float(kAveraged);
     }
     // Moves the view of look() by a part of a pixel, because the exact pixel coverage of an edge
     // does not matter.
@@ -597,8 +597,8 @@ class Volume : public GpuTest {
             books.emplace_back(memory);
             flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory), books.back());
         }
-        const flipbook::Flipbook* const laid[] = {&books[0], &books[1], &books[2]};
-        const flipbook::Picture pages = flipbook::packFlipbooks(laid, memory);
+        const flipbook::Flipbook* const placed[] = {&books[0], &books[1], &books[2]};
+        const flipbook::Picture pages = flipbook::packFlipbooks(placed, memory);
         rig_->backend.setFlipbooks(pages.width, pages.height,
                                    std::as_bytes(std::span(pages.texels)), pages.words);
     }
@@ -609,12 +609,12 @@ class Volume : public GpuTest {
         def.power = power;
         def.diameter = 0.45f * tallOf(power);
         def.tier = FW_FIRE_TIER_MARCH_HIGH;
-        for (int i = 0; i < kMoments; ++i) {
+        for (int i = 0; i < kAveraged; ++i) {
             def.seed = 7 + uint32_t(i);
             gpu::VolumeFlame flame = flameAlone(def, 2 + kApart * float(i));
             flame.record.key = ++key_;
             nudge(i);
-            addMoment(mean, draw({&flame, 1}, FW_DEPTH_TEST));
+            addToMean(mean, draw({&flame, 1}, FW_DEPTH_TEST));
         }
     }
     // Adds the emitter's fire, by the created flipbooks or by noise.
@@ -633,11 +633,11 @@ class Volume : public GpuTest {
         update.particleEnd = update.particles = emitter.emitter.ring;
         emitters_ = &update;
         constexpr int kWarm = 60;
-        for (int i = 0; i < kWarm + kMoments; ++i) {
+        for (int i = 0; i < kWarm + kAveraged; ++i) {
             EXPECT_TRUE(emitter.step(i < kWarm ? 1 / 30.0f : kApart) || i < 3);
             nudge(i);
             const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
-            if (i >= kWarm) addMoment(mean, picture);
+            if (i >= kWarm) addToMean(mean, picture);
         }
         emitters_ = nullptr;
     }
@@ -1266,7 +1266,7 @@ TEST_F(Volume, EveryTierShowsTheSameFlame) {
 
 // The same fire as a volume near, as flipbook particles further away, and as a field on a billboard
 // far away. Light, brightness, colour and place do not depend on the tier.
-TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
+TEST_F(Volume, VolumeFlipbooksAndFieldLookTheSame) {
     if (!device_) return;
     nudges_ = true;
     std::pmr::memory_resource* memory = std::pmr::get_default_resource();
@@ -1284,7 +1284,7 @@ TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
         const float calm[3] = {0, 0, 0};
         rig_->backend.createField(0, components::rulesOf(field, calm), field.masks);
         constexpr uint32_t kWarm = 60, kSteps = 5;
-        for (uint32_t i = 0; i < kWarm + kSteps * kMoments; ++i) {
+        for (uint32_t i = 0; i < kWarm + kSteps * kAveraged; ++i) {
             const gpu::FieldRun run{0, i};
             const uint32_t round = 1, slot = 0;
             const double ticks = double(gpu::kTicksPerSecond) / 24 * (i + 1);
@@ -1297,7 +1297,7 @@ TEST_F(Volume, VolumeFlipbooksAndFieldLookAlike) {
             fields_ = &fields;
             nudge(int(i / kSteps));
             const Mean picture = drawOnce({}, FW_DEPTH_TEST, 0);
-            if (i >= kWarm && i % kSteps == 0) addMoment(mean, picture);
+            if (i >= kWarm && i % kSteps == 0) addToMean(mean, picture);
         }
         fields_ = nullptr;
         rig_->backend.destroyField(0);
@@ -1850,7 +1850,7 @@ TEST_F(Volume, AFireShowsAnothersImpostorAsItsOwn) {
 
 // The scene is bent behind hot gas above a flame and nowhere else. Objects in front neither move
 // nor smear, and there is no haze where the view, the tier or the frame disables it.
-TEST_F(Volume, HazeBendsOnlyWhatIsBehindTheFlame) {
+TEST_F(Volume, HazeBendsOnlyTheSceneBehindTheFlame) {
     if (!device_) return;
     makeRig();
     const float eye[3] = {0, 1.0f, 4}, at[3] = {0, 1.0f, 0};
@@ -2004,10 +2004,10 @@ TEST(MarchLayout, FitsAnyFlamesIntoTheMemory) {
     }
     const auto cell = [&](size_t i) { return 640 * out[i].composite.place.z; };  // px
     for (const size_t count : {size_t(1), size_t(7), items.size()}) {
-        const lod::VolumeAllocation laid =
+        const lod::VolumeAllocation allocation =
             lod::allocateVolumes({items.data(), count}, screen, 1, words, out);
-        ASSERT_EQ(laid.count, count);
-        EXPECT_EQ(laid.end, out[0].march.samples);
+        ASSERT_EQ(allocation.count, count);
+        EXPECT_EQ(allocation.end, out[0].march.samples);
         std::printf("           %zu over all: cells of %.0f px\n", count, double(cell(0)));
         uint32_t known = 0, sample = out[0].march.samples;
         for (size_t i = 0; i < count; ++i) {
@@ -2318,9 +2318,9 @@ TEST_F(Volume, HalfResolutionKeepsBrightnessAndEdges) {
         }
         const auto mean = [&](std::span<const gpu::VolumeFlame> flames) {
             Mean sum(kSide * kSide, vec4(0.0f));
-            for (int i = 0; i < kMoments; ++i) {
+            for (int i = 0; i < kAveraged; ++i) {
                 EXPECT_TRUE(emitter.step(kApart));
-                addMoment(sum, drawOnce(flames, FW_DEPTH_SAMPLED, 0));
+                addToMean(sum, drawOnce(flames, FW_DEPTH_SAMPLED, 0));
             }
             return sum;
         };

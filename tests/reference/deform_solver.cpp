@@ -286,28 +286,29 @@ void recede(const DeformModel& model, const gpu::DeformObject& object,
 
 void skinVertices(const DeformModel& model, DeformState& state, bool tears) {
     for (size_t i = 0; i < model.embeddings.size(); ++i) {
-        const gpu::DeformEmbedding& coat = model.embeddings[i];
-        const ShownVertex& node = state.shown[coat.node];
+        const gpu::DeformEmbedding& embedding = model.embeddings[i];
+        const ShownVertex& node = state.shown[embedding.node];
         const vec3 at = placeOf(node);
         vec3 turned(0), before(0);
         float square = 0;
-        for (const uint32_t neighbour : coat.ring) {
+        for (const uint32_t neighbour : embedding.ring) {
             const vec3 arm = placeOf(state.shown[neighbour]) - at;
             turned += gpu::cross(before, arm);
             before = arm;
             square = std::max(square, gpu::dot(arm, arm));
         }
         const float size = gpu::length(turned);
-        const vec3 rest = gpu::unpackDirection(coat.normal);
+        const vec3 rest = gpu::unpackDirection(embedding.normal);
         vec3 normal = rest;
         if (size > 1e-18f)
-            normal =
-                gpu::rotateNormal(rest, vec3(coat.faceX, coat.faceY, coat.faceZ), turned / size);
+            normal = gpu::rotateNormal(
+                rest, vec3(embedding.faceX, embedding.faceY, embedding.faceZ), turned / size);
         ShownVertex& shown = state.shown[i];
-        shown.normal = normal == rest ? coat.normal : gpu::packDirection(normal);
+        shown.normal = normal == rest ? embedding.normal : gpu::packDirection(normal);
         shown.lead = node.behind;
         if (tears)
-            shown.lead = std::max(shown.lead, gpu::tornOffset(square, coat.longest, node.burnt));
+            shown.lead =
+                std::max(shown.lead, gpu::tornOffset(square, embedding.longest, node.burnt));
         shown.burnt = node.burnt;
         place(shown, at);
     }

@@ -23,22 +23,22 @@ std::string pathOf(const std::string& name, const char* ending) {
     return std::string(FW_TEST_SOURCE_DIR) + "/replay/" + name + ending;
 }
 
-Mesh generate(const ReplayMesh& wish) {
+Mesh generate(const ReplayMesh& recipe) {
     const auto number = [&](size_t i, double fallback) {
-        return i < wish.numbers.size() ? wish.numbers[i] : fallback;
+        return i < recipe.numbers.size() ? recipe.numbers[i] : fallback;
     };
     const auto count = [&](size_t i, double fallback) { return int(number(i, fallback)); };
-    if (wish.generator == "plane")
+    if (recipe.generator == "plane")
         return makePlane(number(0, 1), number(1, 1), number(2, 0), number(3, 1), number(4, 0),
                          count(5, 1));
-    if (wish.generator == "cube") return makeCube(number(0, 1), count(1, 2));
-    if (wish.generator == "sphere") return makeCube(number(0, 1), count(1, 8), true);
-    if (wish.generator == "cylinder")
+    if (recipe.generator == "cube") return makeCube(number(0, 1), count(1, 2));
+    if (recipe.generator == "sphere") return makeCube(number(0, 1), count(1, 8), true);
+    if (recipe.generator == "cylinder")
         return makeCylinder(number(0, 0.2), number(1, 1), count(2, 16), count(3, 4), count(4, 3),
                             true);
-    if (wish.generator == "confetti")
+    if (recipe.generator == "confetti")
         return makeConfetti(number(0, 0.5), count(1, 4), number(2, 0.02));
-    ADD_FAILURE() << "no mesh generator is called " << wish.generator;
+    ADD_FAILURE() << "no mesh generator is called " << recipe.generator;
     return makePlane(1, 1);
 }
 
@@ -112,13 +112,13 @@ class Player {
         FwWorldDef def = fwDefaultWorldDef();
         def.paceFactor = float(log.pace);
         ASSERT_EQ(FW_OK, fwCreateWorld(context_, &def, &world_));
-        for (const ReplayMesh& wish : log.meshes) {
-            const Mesh mesh = generate(wish);
+        for (const ReplayMesh& recipe : log.meshes) {
+            const Mesh mesh = generate(recipe);
             FwMeshDef meshDef = meshDefOf(mesh);
             meshDef.normals = nullptr;
-            meshDef.texelsPerMetre = float(wish.density);
-            meshDef.noiseAmplitude = float(wish.noise);
-            ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world_, &meshDef, &meshes_[wish.name])) << said();
+            meshDef.texelsPerMetre = float(recipe.density);
+            meshDef.noiseAmplitude = float(recipe.noise);
+            ASSERT_EQ(FW_OK, fwWorld_CreateMesh(world_, &meshDef, &meshes_[recipe.name])) << said();
         }
     }
 

@@ -45,7 +45,7 @@ class SparkRig {
     }
     // A slope along x with waves along z, for the host's heightfield; no plane.
     static float hill(float x, float z) { return 0.6f * x + 0.4f * std::sin(1.1f * z); }
-    void layHill() {
+    void makeHill() {
         emitter.def.flags &= ~uint32_t(FW_EMITTER_GROUND);
         emitter.def.ground = -1e9f;
         record.grid = {-4, -4, gpu::kSparkCellSide, 1};

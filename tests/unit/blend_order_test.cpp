@@ -13,12 +13,12 @@ namespace {
 using gpu::Orderer;
 using gpu::PlacedBy;
 
-TEST(BlendOrder, TheDeviceSortsWhatItPlaces) {
+TEST(BlendOrder, TheDeviceSortsItsOwnQuads) {
     for (const uint32_t hiding : {1u, 1000u, gpu::kMaxQuads})
         EXPECT_EQ(Orderer::Device, gpu::ordererOf(PlacedBy::Device, hiding));
 }
 
-TEST(BlendOrder, TheHostSortsWhatItPlaces) {
+TEST(BlendOrder, TheHostSortsItsOwnDraws) {
     for (const uint32_t hiding : {1u, 256u})
         EXPECT_EQ(Orderer::Host, gpu::ordererOf(PlacedBy::Host, hiding));
 }

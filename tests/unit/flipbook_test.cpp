@@ -182,13 +182,13 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
         books.emplace_back(memory());
         flipbook::readFlipbook(flipbook::presetFlipbook(preset, memory()), books.back());
     }
-    const flipbook::Flipbook* const laid[] = {&books[0], nullptr, &books[1], &books[2]};
-    const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory());
+    const flipbook::Flipbook* const placed[] = {&books[0], nullptr, &books[1], &books[2]};
+    const flipbook::Picture picture = flipbook::packFlipbooks(placed, memory());
     EXPECT_LE(picture.width, flipbook::kMaxPicture);
     std::vector<uint8_t> taken(size_t(picture.width) * picture.height);
     for (uint32_t slot = 0; slot < 4; ++slot) {
-        if (!laid[slot]) continue;
-        const flipbook::Facts& f = laid[slot]->facts;
+        if (!placed[slot]) continue;
+        const flipbook::Facts& f = placed[slot]->facts;
         gpu::FlipbookRecord record;
         std::memcpy(&record, picture.words.data() + slot * gpu::kFlipbookRecordWords,
                     sizeof record);
@@ -199,7 +199,7 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
                                        : gpu::flipbookFrameOrigin(record, frame);
                 const uint32_t w = motion ? f.motionWidth : f.width;
                 const uint32_t h = motion ? f.motionHeight : f.height, bytes = motion ? 2 : 4;
-                const auto& from = motion ? laid[slot]->motion : laid[slot]->texels;
+                const auto& from = motion ? placed[slot]->motion : placed[slot]->texels;
                 for (uint32_t y = 0; y < h; ++y)
                     for (uint32_t x = 0; x < w; ++x) {
                         const size_t to = size_t(at.y + y) * picture.width + at.x + x;
@@ -222,8 +222,8 @@ TEST(Flipbook, TheAtlasHoldsAllFlipbooks) {
 TEST(Flipbook, MipLevelsAreMeansAndDoNotBleed) {
     flipbook::Flipbook one(memory());
     flipbook::readFlipbook(flipbook::presetFlipbook(FW_FLIPBOOK_FLAME, memory()), one);
-    const flipbook::Flipbook* const laid[] = {&one};
-    const flipbook::Picture picture = flipbook::packFlipbooks(laid, memory());
+    const flipbook::Flipbook* const placed[] = {&one};
+    const flipbook::Picture picture = flipbook::packFlipbooks(placed, memory());
     gpu::FlipbookRecord record;
     std::memcpy(&record, picture.words.data(), sizeof record);
     const uint32_t ats[] = {record.at, record.at1, record.at2, record.at3};
@@ -269,9 +269,9 @@ TEST(Flipbook, RefusesMoreFlipbooksThanTheAtlasHolds) {
     huge.facts.width = huge.facts.height = 512;
     huge.facts.motionWidth = huge.facts.motionHeight = 512;
     huge.facts.frames = 256;
-    const flipbook::Flipbook* const laid[] = {&huge};
+    const flipbook::Flipbook* const placed[] = {&huge};
     try {
-        (void)flipbook::packFlipbooks(laid, memory());
+        (void)flipbook::packFlipbooks(placed, memory());
         FAIL();
     } catch (const core::Error& error) {
         EXPECT_EQ(FW_ERROR_OUT_OF_MEMORY, error.result);

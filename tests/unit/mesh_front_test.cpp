@@ -120,7 +120,7 @@ double arrivalAt(const BurnDomain& d, const FrontRig& rig, uint32_t i, Vec3 poin
     return mean + m[0][3] / m[0][0] * e.x + m[1][3] / m[1][1] * e.y + m[2][3] / m[2][2] * e.z;
 }
 
-TEST(MeshFront, TenUnwrapsBurnAlike) {
+TEST(MeshFront, TenUnwrapsBurnAtTheSameTimes) {
     Mesh mesh;
     FW_LOAD_OR_SKIP(mesh, "bunny_4k.glb");
     struct Sample {

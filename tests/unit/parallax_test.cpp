@@ -27,10 +27,12 @@ using parallax::ReliefRay;
 
 constexpr float kDeep = 0.5f;  // m
 
-// A ray into a level relief from `from`, on or below z = 0, along unit `way`.
-ReliefRay rayOf(vec3 from, vec3 way) { return {vec2(from), vec2(way), -from.z, -way.z, 0, 1e3f}; }
+// A ray into a level relief from `from`, on or below z = 0, along unit `direction`.
+ReliefRay rayOf(vec3 from, vec3 direction) {
+    return {vec2(from), vec2(direction), -from.z, -direction.z, 0, 1e3f};
+}
 
-vec3 unitWay(float angle, float down) {
+vec3 unitDirection(float angle, float down) {
     const float flat = std::sqrt(1 - down * down);
     return {flat * std::cos(angle), flat * std::sin(angle), -down};
 }
@@ -41,9 +43,9 @@ float dome(vec2 at) {
     return square > 0 ? 1 - std::sqrt(square) / kDeep : 1;
 }
 // m from z = 0 to the ball; negative: misses.
-float domeHit(vec3 from, vec3 way) {
+float domeHit(vec3 from, vec3 direction) {
     const vec3 middle = from + vec3(0, 0, kDeep);
-    const float b = glm::dot(middle, way), c = glm::dot(middle, middle) - kDeep * kDeep;
+    const float b = glm::dot(middle, direction), c = glm::dot(middle, middle) - kDeep * kDeep;
     return b * b >= c ? -b - std::sqrt(b * b - c) : -1;
 }
 
@@ -54,20 +56,22 @@ TEST(Parallax, ADomeLooksLikeItsBall) {
         for (int j = -60; j <= 60; ++j)
             for (int i = -60; i <= 60; ++i) {
                 // Parallel rays across a picture, passing around the ball's middle.
-                const vec3 way = unitWay(0.4f, down), side(-std::sin(0.4f), std::cos(0.4f), 0);
-                const vec3 up = glm::cross(way, side);
+                const vec3 direction = unitDirection(0.4f, down),
+                           side(-std::sin(0.4f), std::cos(0.4f), 0);
+                const vec3 up = glm::cross(direction, side);
                 const vec3 at = vec3(0, 0, -kDeep) + 0.011f * (float(i) * side + float(j) * up);
-                const vec3 from = at + way * (at.z / down);  // back to z = 0
-                const float mesh = domeHit(from, way);
-                const bool there = mesh >= 0 && (from + way * mesh).z > -kDeep;
-                const ReliefRay ray = rayOf(from, way);
+                const vec3 from = at + direction * (at.z / down);  // back to z = 0
+                const float mesh = domeHit(from, direction);
+                const bool there = mesh >= 0 && (from + direction * mesh).z > -kDeep;
+                const ReliefRay ray = rayOf(from, direction);
                 const float hit = parallax::reliefHit(ray, kDeep, 48);
                 ASSERT_GE(hit, 0);  // the floor is always hit
                 const bool found = parallax::reliefBelow(ray, hit) < 0.999f * kDeep;
                 both += there && found;
                 either += there || found;
                 if (there && found) {
-                    const double off = parallax::reliefBelow(ray, hit) + (from + way * mesh).z;
+                    const double off =
+                        parallax::reliefBelow(ray, hit) + (from + direction * mesh).z;
                     squares += off * off;
                     ++hits;
                 }
@@ -87,10 +91,11 @@ TEST(Parallax, UsesFewLayersFromAbove) {
     EXPECT_EQ(4, parallax::reliefLayers(1, 0, 8, 48));
     parallax::relief = dome;
     for (int i = 0; i < 50; ++i) {
-        const vec3 from(0.01f * float(i), 0.1f, 0), way = unitWay(float(i), 0.97f);
-        const float mesh = domeHit(from, way);
+        const vec3 from(0.01f * float(i), 0.1f, 0), direction = unitDirection(float(i), 0.97f);
+        const float mesh = domeHit(from, direction);
         if (mesh < 0) continue;
-        EXPECT_NEAR(mesh, parallax::reliefHit(rayOf(from, way), kDeep, 8), 0.01f * kDeep) << i;
+        EXPECT_NEAR(mesh, parallax::reliefHit(rayOf(from, direction), kDeep, 8), 0.01f * kDeep)
+            << i;
     }
 }
 
@@ -111,21 +116,22 @@ TEST(Parallax, SilhouettesShrinkOnCurvedSurfaces) {
         }
         if (expected && hit >= 0 && offset < 0.8f * (kRound - kBark)) {
             const float inner = kRound - kBark;
-            const float way = std::sqrt(kRound * kRound - offset * offset) -
-                              std::sqrt(inner * inner - offset * offset);
-            EXPECT_NEAR(way, hit, 0.08f * way) << offset;
+            const float direction = std::sqrt(kRound * kRound - offset * offset) -
+                                    std::sqrt(inner * inner - offset * offset);
+            EXPECT_NEAR(direction, hit, 0.08f * direction) << offset;
         }
     }
 }
 
 TEST(Parallax, StopsAtTheBorder) {
     parallax::relief = dome;
-    ReliefRay ray = rayOf({-2, 0, 0}, unitWay(0, 0.1f));
+    ReliefRay ray = rayOf({-2, 0, 0}, unitDirection(0, 0.1f));
     ray.most = 0.5f;  // the ray ends before it reaches the relief
     EXPECT_LT(parallax::reliefHit(ray, kDeep, 48), 0);
     // From inside the stone sideways it hits at once; upwards out of it, nothing.
-    EXPECT_EQ(0, parallax::reliefHit(rayOf({0, 0, -0.3f}, unitWay(0, 0.5f)), kDeep, 48));
-    EXPECT_LT(parallax::reliefHit(rayOf({-0.9f, 0, -0.3f}, unitWay(3.1f, -0.5f)), kDeep, 48), 0);
+    EXPECT_EQ(0, parallax::reliefHit(rayOf({0, 0, -0.3f}, unitDirection(0, 0.5f)), kDeep, 48));
+    EXPECT_LT(parallax::reliefHit(rayOf({-0.9f, 0, -0.3f}, unitDirection(3.1f, -0.5f)), kDeep, 48),
+              0);
 }
 
 TEST(Parallax, ShadowsGrowWithTheirCaster) {
@@ -231,7 +237,7 @@ TEST(Parallax, ConeStepsMatchManyLayers) {
         int rays = 0;
         for (int i = 0; i < 4000; ++i) {
             const vec3 from(0.0137f * float(i % 63), 0.0219f * float(i / 63), 0);
-            const ReliefRay ray = rayOf(from, unitWay(0.37f * float(i), down));
+            const ReliefRay ray = rayOf(from, unitDirection(0.37f * float(i), down));
             const float wanted = parallax::reliefHit(ray, kStoneDepth, 400);
             const float hit = parallax::reliefHitByCones(ray, kStoneDepth, 8);
             ASSERT_GE(hit, 0) << i;
@@ -258,7 +264,7 @@ TEST(Parallax, HorizonsMatchSteppedShadows) {
     for (const float up : {0.2f, 0.45f, 0.8f})
         for (int i = 0; i < 2000; ++i) {
             const vec2 at(0.0137f * float(i % 63), 0.0219f * float(i / 63));
-            const vec3 light = -unitWay(0.71f * float(i), up);
+            const vec3 light = -unitDirection(0.71f * float(i), up);
             const float depth = kStoneDepth * maps.read(at).x;
             const float wanted =
                 parallax::reliefLit(at, vec2(light), light.z, depth, kStoneDepth, 3, 200);

@@ -202,7 +202,7 @@ class CountingMemory : public std::pmr::memory_resource {
     }
 };
 
-constexpr uint32_t kAllWays =
+constexpr uint32_t kAllModes =
     FW_WORLD_RADIATION | FW_WORLD_PLUME | FW_WORLD_CONTACT | FW_WORLD_EMBERS;
 
 struct Square {  // a square of crates
@@ -216,7 +216,7 @@ struct Square {  // a square of crates
     float apart = 0.7f;
     uint64_t frame = 0;
 
-    explicit Square(uint32_t count, uint32_t flags = kAllWays, float apart_ = 0.7f,
+    explicit Square(uint32_t count, uint32_t flags = kAllModes, float apart_ = 0.7f,
                     uint32_t preset = FW_MATERIAL_PINE)
         : apart(apart_) {
         FwWorldDef worldDef = plainWorldDef(flags);
@@ -418,7 +418,7 @@ TEST(BurnDomain, NearestTexelIsFoundFromAnyDistance) {
 
 // Lists updated per object must equal those that a world builds from a save.
 TEST(World, IncrementalListsEqualThoseOfALoadedWorld) {
-    for (const uint32_t flags : {kAllWays, uint32_t(FW_WORLD_RADIATION | FW_WORLD_CONTACT)}) {
+    for (const uint32_t flags : {kAllModes, uint32_t(FW_WORLD_RADIATION | FW_WORLD_CONTACT)}) {
         constexpr uint32_t kCount = 36;
         Square first(kCount, flags, 0.42f, FW_MATERIAL_PAPER);
         Square second(kCount, flags, 0.42f, FW_MATERIAL_PAPER);
@@ -492,7 +492,7 @@ TEST(World, RefusesAnOccluderScaledTooLarge) {
 }
 
 TEST(World, DestroyedNeighboursAreForgotten) {
-    Square square(25, kAllWays, 0.42f);
+    Square square(25, kAllModes, 0.42f);
     square.light();
     square.step(40);
     for (const uint32_t slot : {6u, 7u, 12u, 1u})

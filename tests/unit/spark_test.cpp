@@ -62,7 +62,7 @@ TEST(Sparks, SettleOnAHeightfield) {
     int bounced = 0, rest = 0, high = 0, all = 0;
     for (int i = 0; i < 300; ++i) {
         ASSERT_TRUE(rig.step(1 / 30.0f));
-        rig.layHill();
+        rig.makeHill();
         for (const Spark& one : rig.sparks()) {
             // Cells are bilinear between corners.
             const vec3 p(glm::clamp(one.place.x, -4.0f, 4.0f), one.place.y,

@@ -111,15 +111,15 @@ TEST(VolumeSmoke, TheSunnySideIsBrighter) {
 vec3 comesTo(const Flame& flame, const Profile& profile, vec3 place) {
     MarchRules rules;
     rules.steps = 40, rules.smoke = false;
-    constexpr int kWays = 256;
+    constexpr int kDirections = 256;
     vec3 sum(0.0f);
-    for (int k = 0; k < kWays; ++k) {
-        const float y = 1.0f - 2.0f * (float(k) + 0.5f) / float(kWays);
+    for (int k = 0; k < kDirections; ++k) {
+        const float y = 1.0f - 2.0f * (float(k) + 0.5f) / float(kDirections);
         const float side = std::sqrt(1.0f - y * y), turn = 2.3999632f * float(k);
         const vec3 way(side * std::cos(turn), y, side * std::sin(turn));
         sum += marchRay(flame.record, flame.nodes, profile, place, way, rules).radiance;
     }
-    return sum / float(kWays);
+    return sum / float(kDirections);
 }
 
 float luminance(vec3 c) { return glm::dot(c, vec3(0.2126f, 0.7152f, 0.0722f)); }

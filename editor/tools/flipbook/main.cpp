@@ -25,7 +25,7 @@ using namespace fwtools;
 constexpr const char* kHelp =
     "flamewright_flipbook SCENE OUT.fwbook [options]   bakes a flipbook\n"
     "flamewright_flipbook --import SHEET OUT.fwbook [options]   imports an artist's sheet\n"
-    "flamewright_flipbook --sheet OUT.png FLIPBOOK...      a picture with eight frames of each\n"
+    "flamewright_flipbook --sheet OUT.png FLIPBOOK... a picture with eight frames of each\n"
     "  --frames N      [2, 256], default 64\n"
     "  --size N        texels per side, [8, 512], default 128\n"
     "  --seconds S     duration, (0, 600], default: 2 for loops, 1 for one-shots\n"

@@ -24,15 +24,15 @@ constexpr PlannedTower kPlan[] = {
 }  // namespace
 
 Order botsOrder(const State& state) {
-    for (const PlannedTower& wish : kPlan) {
-        const Tower& tower = state.towers[size_t(wish.plot)];
+    for (const PlannedTower& planned : kPlan) {
+        const Tower& tower = state.towers[size_t(planned.plot)];
         if (tower.kind == TowerKind::kNone) {
-            if (state.coins < kTowers[size_t(wish.kind)].price[0]) break;
-            return {Order::Type::kPlace, wish.plot, wish.kind};
+            if (state.coins < kTowers[size_t(planned.kind)].price[0]) break;
+            return {Order::Type::kPlace, planned.plot, planned.kind};
         }
-        if (tower.level >= wish.level) continue;
+        if (tower.level >= planned.level) continue;
         if (state.coins < priceOf(tower)) break;
-        return {Order::Type::kUpgrade, wish.plot, wish.kind};
+        return {Order::Type::kUpgrade, planned.plot, planned.kind};
     }
     // Calling a wave early earns coins, once the first towers stand.
     constexpr int32_t kEarlyCallTicks = 5 * kTicksPerSecond;
@@ -42,7 +42,7 @@ Order botsOrder(const State& state) {
     return {};
 }
 
-State underWay(const Ground& ground, uint32_t seed) {
+State gameInProgress(const Ground& ground, uint32_t seed) {
     constexpr int32_t kWave = 3, kSeconds = 22;
     State state = newGame(seed);
     state.wave = kWave;

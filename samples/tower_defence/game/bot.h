@@ -9,6 +9,6 @@ namespace game {
 Order botsOrder(const State& state);
 
 // Returns a game in progress: its towers stand, and the fourth wave is on the road.
-State underWay(const Ground& ground, uint32_t seed);
+State gameInProgress(const Ground& ground, uint32_t seed);
 
 }  // namespace game

@@ -42,7 +42,7 @@ struct Play {
     }
 };
 
-TEST(GameRules, OrdersCostWhatTheySayAndRefusalsChangeNothing) {
+TEST(GameRules, OrdersCostTheirPriceAndRefusedOrdersChangeNothing) {
     Play play;
     const uint64_t before = hashOf(play.state);
     for (const Order& order :
@@ -65,7 +65,7 @@ TEST(GameRules, OrdersCostWhatTheySayAndRefusalsChangeNothing) {
     EXPECT_EQ(play.state.towers[0].kind, TowerKind::kNone);
 }
 
-TEST(GameRules, ThreeLevelsAndNoMore) {
+TEST(GameRules, TowersHaveThreeLevels) {
     Play play;
     play.state.coins = 10000;
     ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 3, TowerKind::kEmberMortar}), nullptr);
@@ -92,7 +92,7 @@ TEST(GameRules, AnEnemyFallsWhenEnoughOfItHasBurnt) {
     EXPECT_EQ(play.count(Event::Type::kFell), 1u);
 }
 
-TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
+TEST(GameRules, EnemiesAtTheMillCostLivesAndLoseTheGame) {
     Play play;
     int32_t guard = 100000;
     while (play.state.outcome == Outcome::kPlaying && --guard) play.run(1);
@@ -105,7 +105,7 @@ TEST(GameRules, WhoComesToTheMillCostsLivesAndLosesTheGame) {
     EXPECT_EQ(hashOf(play.state), end);
 }
 
-TEST(GameRules, EveryWaveBringsWhoItNames) {
+TEST(GameRules, EveryWaveSpawnsItsListedEnemies) {
     Play play;
     play.burning.enemyBurnt.fill(1000);  // every enemy falls at once
     std::array<int32_t, kEnemyKinds> born{}, named{};
@@ -120,7 +120,7 @@ TEST(GameRules, EveryWaveBringsWhoItNames) {
     EXPECT_EQ(play.state.lives, kLivesAtStart);
 }
 
-TEST(GameRules, FlamethrowersTurnToWhatDoesNotBurnYet) {
+TEST(GameRules, FlamethrowersAimAtUnburntEnemies) {
     Play play;
     play.state.coins = 1000;
     ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 0, TowerKind::kFlamethrower}), nullptr);
@@ -145,7 +145,7 @@ TEST(GameRules, FlamethrowersTurnToWhatDoesNotBurnYet) {
     EXPECT_GT(play.state.towers[0].streams, 0);
 }
 
-TEST(GameRules, EmbersComeDownWhereTheyWereAimedAndTheWindBlew) {
+TEST(GameRules, EmbersLandAtTheirAimPlusWindDrift) {
     Play play;
     ASSERT_EQ(give(play.state, play.ground, {Type::kPlace, 1, TowerKind::kEmberMortar}), nullptr);
     play.first();
@@ -178,7 +178,7 @@ TEST(GameRules, WaterGoesToTheHouseThatCanBeSaved) {
     }
 }
 
-TEST(GameRules, FansTurnTheWindAndHoldEnemiesUp) {
+TEST(GameRules, FansTurnTheWindAndSlowEnemies) {
     Play with, without;
     ASSERT_EQ(give(with.state, with.ground, {Type::kPlace, 0, TowerKind::kWindFan}), nullptr);
     const Point calm = windOf(without.state, without.ground),
@@ -270,7 +270,7 @@ uint64_t botsGame(uint32_t seed, State* end) {
     return hashOf(play.state);
 }
 
-TEST(GameRules, TheBotWinsAndItsGameIsOneOfItsSeed) {
+TEST(GameRules, TheBotWinsAndItsGameDependsOnItsSeed) {
     State end, again, other;
     const uint64_t hash = botsGame(7, &end);
     EXPECT_EQ(end.outcome, Outcome::kWon);
@@ -279,7 +279,7 @@ TEST(GameRules, TheBotWinsAndItsGameIsOneOfItsSeed) {
     EXPECT_NE(botsGame(8, &other), hash);
 }
 
-TEST(GameRules, ACopyIsAPointToComeBackTo) {
+TEST(GameRules, ACopyRestoresTheGame) {
     Play play;
     play.first();
     play.run(300);
