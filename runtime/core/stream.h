@@ -7,6 +7,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <memory_resource>
 #include <span>
 #include <type_traits>
@@ -29,6 +30,18 @@ inline uint32_t wordAt(std::span<const std::byte> bytes, size_t at) noexcept {
     return word;
 }
 
+// Visits the numbers of fields in order; a field may be an array.
+template <class Visit, class... T>
+void eachNumber(Visit&& visit, T&... fields) {
+    const auto one = [&](auto& field) {
+        if constexpr (requires { std::begin(field); })
+            for (auto& value : field) visit(value);
+        else
+            visit(field);
+    };
+    (one(fields), ...);
+}
+
 class Writer {
  public:
     static constexpr bool kReads = false;
@@ -39,6 +52,10 @@ class Writer {
         for (size_t k = 0; k < sizeof(T); ++k) out_.push_back(std::byte(word >> (8 * k)));
     }
     void number(bool value) { out_.push_back(std::byte(value ? 1 : 0)); }
+    template <class... T>
+    void numbers(const T&... values) {  // each a number, or an array of them
+        eachNumber([&](const auto& value) { number(value); }, values...);
+    }
     // Overwrites a number: a checksum of later bytes is known only after them.
     template <Number T>
     void numberAt(size_t at, const T& value) noexcept {
@@ -71,6 +88,10 @@ class Reader {
             fail(FW_ERROR_BAD_DATA, "Byte %zu of the %s is %u where a 0 or 1 is expected.", at_ - 1,
                  what_, word);
         value = word == 1;
+    }
+    template <class... T>
+    void numbers(T&... values) {
+        eachNumber([&](auto& value) { number(value); }, values...);
     }
     // A count of items of at least `bytesEach` bytes each.
     uint32_t count(const char* name, size_t bytesEach) {

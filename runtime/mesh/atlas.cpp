@@ -19,8 +19,6 @@ constexpr double kIslandBadLimit = 0.1;  // an island with more bad area is cut 
 constexpr double kSparseLimit = 64;      // an island's box over its area; sparser: cut again
 constexpr double kIslandTexels = 16;     // a smaller island joins our charts
 
-uint32_t roundUp8(double texels) { return (uint32_t(std::ceil(texels)) + 7) & ~7u; }
-
 // Bad: no area in the atlas, stretched, or far denser or sparser than texels of `meanArea` m^2.
 bool badTexels(const Triangle& t, double meanArea) {
     const TexelShape shape = texelShape(t);
@@ -107,11 +105,9 @@ uint32_t keepIslands(Surface& surface, double density, double longest,
             flat += std::abs(uvArea(surface.triangles[i]));
         }
         const double scale = flat > 1e-9 ? std::sqrt(area / flat) : 0;
-        Extent2 extent;
-        for (uint32_t i : members) {
+        for (uint32_t i : members)
             for (glm::dvec2& u : surface.triangles[i].uv) u *= scale;
-            extent.add(surface.triangles[i]);
-        }
+        const Extent2 extent = extentOf(surface, members);
         const glm::dvec2 size = extent.size();
         const bool usable = scale > 0 && area * density * density >= kIslandTexels &&
                             std::max(size.x, size.y) <= longest &&
@@ -144,22 +140,18 @@ uint32_t Coverage::add(const Triangle& t, glm::dvec2 offset, double scale) {
     for (int k = 0; k < 3; ++k) moved.uv[k] = (t.uv[k] + offset) * scale;
     FW_ASSERT(owner_.size() == size_t(width_) * height_, "%zu of %u x %u texels", owner_.size(),
               width_, height_);
-    const RowSpan rows = rowsOf(moved, int(height_));
     uint32_t conflicts = 0;
-    for (int pass = 0; pass < 2 && conflicts == 0; ++pass)  // look first, then mark
-        for (int y = rows.first; y <= rows.last; ++y) {
-            const RowSpan span = rowSpan(moved, y, int(width_));
-            for (int x = span.first; x <= span.last; ++x) {
-                glm::dvec3 w;
-                if (!weightsAt(moved, {x + 0.5, y + 0.5}, w)) return 0;
-                if (std::min({w.x, w.y, w.z}) < 1e-6) continue;
-                uint8_t& owner = owner_[size_t(y) * width_ + size_t(x)];
-                if (pass == 0)
-                    conflicts += owner;
-                else
-                    owner = 1;
-            }
-        }
+    for (const bool marks : {false, true}) {  // look first, then mark
+        if (conflicts != 0) break;
+        eachTouched(moved, width_, height_, [&](int x, int y) {
+            glm::dvec3 w;
+            if (!weightsAt(moved, {x + 0.5, y + 0.5}, w) || std::min({w.x, w.y, w.z}) < 1e-6)
+                return;
+            uint8_t& owner = owner_[size_t(y) * width_ + size_t(x)];
+            conflicts += owner;
+            if (marks) owner = 1;
+        });
+    }
     return conflicts;
 }
 

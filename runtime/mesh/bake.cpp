@@ -17,8 +17,7 @@ void quantise(const Surface& surface, const TexelGrid& grid, BurnDomain& domain)
     // A mesh smaller than a texel still gets a thousand units.
     const double coarse = std::min(grid.side, surface.extent) / kUnitsPerTexel;
     const double quantum = std::max({surface.extent / 65535, coarse, grid.linkMax / kLongestLink});
-    domain.quantum = float(quantum);
-    if (double(domain.quantum) < quantum) domain.quantum = std::nextafter(domain.quantum, 1e30f);
+    domain.quantum = floatAtLeast(quantum);
     const auto units = [&](float metres) {
         const double u = std::floor(double(metres) / double(domain.quantum) + 0.5);
         return uint16_t(std::clamp(u, 0.0, 65535.0));

@@ -1,12 +1,14 @@
 // The burn domain of a triangle mesh, made by the bake: a unique-UV atlas of texels with rest
-// positions, normals and areas, links across chart borders, tiles and their readers. Immutable and
-// shared by all objects of the mesh. The simulation reads integers only; doubles and floats serve
-// the bake, drawing and queries.
+// positions, normals and areas, links across chart borders, tiles and their dependents. Immutable
+// and shared by all objects of the mesh. The simulation reads integers only; doubles and floats
+// serve the bake, drawing and queries.
 #pragma once
 #include "core/assert.h"
 
 #include <array>
+#include <bit>
 #include <cstdint>
+#include <glm/vec3.hpp>
 #include <memory_resource>
 #include <span>
 #include <vector>
@@ -29,17 +31,29 @@ enum TexelFlag : uint32_t {
 
 struct TexelPosition {  // 8 bytes, RGBA16_UINT: rest position in units of `quantum` from `origin`
     uint16_t x = 0, y = 0, z = 0, materialFlags = 0;
+    [[nodiscard]] glm::ivec3 units() const noexcept { return {x, y, z}; }
 };
 
 struct TileStatic {            // 32 bytes, mirrored by the shaders (shaders/shared/burn.h)
     uint32_t seamMaskLow = 0;  // texels of this tile that some other tile reads through a link
     uint32_t seamMaskHigh = 0;
-    uint32_t dependentStart = 0;  // into readers
+    uint32_t dependentStart = 0;  // into BurnDomain::readers
     uint32_t dependentCount = 0;
     uint32_t rimMaskLow = 0;  // texels of this tile with a link record
     uint32_t rimMaskHigh = 0;
     uint32_t rimBase = 0;  // record of a rim texel = rimBase + popcount(rimMask below its lane)
     uint32_t reserved = 0;
+    [[nodiscard]] uint64_t seamMask() const noexcept {
+        return uint64_t(seamMaskHigh) << 32 | seamMaskLow;
+    }
+    [[nodiscard]] uint64_t rimMask() const noexcept {
+        return uint64_t(rimMaskHigh) << 32 | rimMaskLow;
+    }
+    // The link record of a rim texel.
+    [[nodiscard]] uint32_t recordOf(uint32_t lane) const noexcept {
+        FW_ASSERT(lane < 64 && (rimMask() >> lane & 1) != 0, "lane %u is no rim texel", lane);
+        return rimBase + uint32_t(std::popcount(rimMask() & ((uint64_t(1) << lane) - 1)));
+    }
 };
 
 // The texels of a tile, by lane.
@@ -65,6 +79,9 @@ struct RenderVertex {
     float detail[2] = {};         // m, y along the grain; see BurnDomain::hasDetail
     uint32_t tint = 0xFFFFFFFFu;  // RGBA8 linear, multiplies the base colour
     uint32_t material = 0;        // material index of the triangle
+    [[nodiscard]] glm::vec3 place() const noexcept {
+        return {position[0], position[1], position[2]};
+    }
 };
 
 struct BakeReport {                       // for people and tests; never read by the simulation
@@ -82,23 +99,10 @@ struct BakeReport {                       // for people and tests; never read by
 };
 
 struct BurnDomain {
-    explicit BurnDomain(std::pmr::memory_resource* memory)
-        : texels(memory),
-          normals(memory),
-          areas(memory),
-          thickness(memory),
-          slowness(memory),
-          triangleOf(memory),
-          links(memory),
-          readers(memory),
-          tiles(memory),
-          tileBounds(memory),
-          partLinks(memory),
-          vertices(memory),
-          sources(memory),
-          indices(memory) {}
+    explicit BurnDomain(std::pmr::memory_resource* of) : memory(of) {}
 
-    uint32_t width = 0, height = 0;  // texels, multiples of 8
+    std::pmr::memory_resource* memory;  // that the vectors begin with
+    uint32_t width = 0, height = 0;     // texels, multiples of 8
     uint32_t tilesX = 0, tilesY = 0;
     float quantum = 0;     // m per position unit; every link is shorter than 8191 units
     float origin[3] = {};  // m, object space, of position 0,0,0
@@ -109,21 +113,25 @@ struct BurnDomain {
     uint32_t materialCount = 0;                   // 1 + highest material index
     uint32_t hasDetail = 0;  // 1: RenderVertex::detail is given; 0: shade triplanar
 
-    std::pmr::vector<TexelPosition> texels;   // width * height, row-major
-    std::pmr::vector<uint32_t> normals;       // signed 11:11:10 xyz, per texel
-    std::pmr::vector<float> areas;            // m^2 per texel; sum = mesh area within 1 %
-    std::pmr::vector<uint16_t> thickness;     // 0.1 mm by an inward ray; 0xFFFF: none hit
-    std::pmr::vector<uint16_t> slowness;      // Q7 noise factor per texel, 128 = 1; 0 = not real
-    std::pmr::vector<uint32_t> triangleOf;    // per texel: drawn triangle (index / 3), or kNone
-    std::pmr::vector<uint32_t> links;         // 8 texel indices (or kNone) per rim record
-    std::pmr::vector<uint32_t> readers;       // tiles, see TileStatic
-    std::pmr::vector<TileStatic> tiles;       // tilesX * tilesY
-    std::pmr::vector<TileBounds> tileBounds;  // per tile, for queries; not stored when cooked
-    std::pmr::vector<uint32_t> partLinks;     // 4 per tile, as gpu::ExchangeTile::parts; not stored
-                                              // when cooked. Empty: no part is near another one
-    std::pmr::vector<RenderVertex> vertices;  // what is drawn, split at chart borders
-    std::pmr::vector<uint32_t> sources;       // per drawn vertex: the host's, for skinning
-    std::pmr::vector<uint32_t> indices;       // 3 per triangle
+    std::pmr::vector<TexelPosition> texels{memory};  // width * height, row-major
+    std::pmr::vector<uint32_t> normals{memory};      // signed 11:11:10 xyz, per texel
+    std::pmr::vector<float> areas{memory};           // m^2 per texel; sum = mesh area within 1 %
+    std::pmr::vector<uint16_t> thickness{memory};    // 0.1 mm by an inward ray; 0xFFFF: none hit
+    std::pmr::vector<uint16_t> slowness{
+        memory};  // Q7 noise factor per texel, 128 = 1; 0 = not real
+    std::pmr::vector<uint32_t> triangleOf{
+        memory};                                 // per texel: drawn triangle (index / 3), or kNone
+    std::pmr::vector<uint32_t> links{memory};    // 8 texel indices (or kNone) per rim record
+    std::pmr::vector<uint32_t> readers{memory};  // tiles, see TileStatic
+    std::pmr::vector<TileStatic> tiles{memory};  // tilesX * tilesY
+    std::pmr::vector<TileBounds> tileBounds{
+        memory};  // per tile, for queries; not stored when cooked
+    std::pmr::vector<uint32_t> partLinks{
+        memory};  // 4 per tile, as gpu::ExchangeTile::parts; not stored
+                  // when cooked. Empty: no part is near another one
+    std::pmr::vector<RenderVertex> vertices{memory};  // what is drawn, split at chart borders
+    std::pmr::vector<uint32_t> sources{memory};       // per drawn vertex: the host's, for skinning
+    std::pmr::vector<uint32_t> indices{memory};       // 3 per triangle
     BakeReport report;
 
     // m^2, mean over the real texels, at scale 1.
@@ -132,6 +140,17 @@ struct BurnDomain {
                                  : double(texelSide) * double(texelSide);
     }
     [[nodiscard]] uint32_t texelCount() const noexcept { return width * height; }
+    // m, object space, at rest.
+    [[nodiscard]] glm::dvec3 placeOf(uint32_t texel) const noexcept {
+        FW_ASSERT(texel < texels.size(), "%u of %zu texels", texel, texels.size());
+        return glm::dvec3(origin[0], origin[1], origin[2]) +
+               double(quantum) * glm::dvec3(texels[texel].units());
+    }
+    // The vertex at a corner, 0 to 2, of a drawn triangle.
+    [[nodiscard]] const RenderVertex& cornerOf(uint32_t triangle, size_t corner) const noexcept {
+        FW_ASSERT(size_t(triangle) * 3 + corner < indices.size(), "triangle %u", triangle);
+        return vertices[indices[size_t(triangle) * 3 + corner]];
+    }
     [[nodiscard]] uint32_t tileCount() const noexcept { return tilesX * tilesY; }
     [[nodiscard]] bool real(uint32_t texel) const noexcept {
         FW_ASSERT(texel < texels.size(), "%u of %zu texels", texel, texels.size());
@@ -150,5 +169,18 @@ struct BurnDomain {
         return {tile / tilesX * kTileSide * width + tile % tilesX * kTileSide, width};
     }
 };
+
+// Calls visit(texel) or visit(texel, lane) for the real texels of a tile, in order.
+template <class Visit>
+void eachTexel(const BurnDomain& domain, uint32_t tile, Visit&& visit) {
+    const TileTexels texels = domain.texelsOf(tile);
+    for (uint32_t lane = 0; lane < kTileLanes; ++lane)
+        if (domain.real(texels[lane])) {
+            if constexpr (requires { visit(texels[lane], lane); })
+                visit(texels[lane], lane);
+            else
+                visit(texels[lane]);
+        }
+}
 
 }  // namespace fw::mesh

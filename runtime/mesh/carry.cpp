@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace fw::mesh {
 namespace {
@@ -16,13 +17,8 @@ constexpr double kFarthest = 2e9;             // micrometres, of a reach: square
 using Place = std::array<int64_t, 3>;
 
 Place micrometresOf(const BurnDomain& domain, uint32_t texel) noexcept {
-    const TexelPosition& p = domain.texels[texel];
-    const uint16_t units[3] = {p.x, p.y, p.z};
-    Place place;
-    for (size_t i = 0; i < 3; ++i)
-        place[i] = std::llround(
-            (double(domain.origin[i]) + double(domain.quantum) * double(units[i])) * 1e6);
-    return place;
+    const glm::dvec3 place = domain.placeOf(texel) * 1e6;
+    return {std::llround(place.x), std::llround(place.y), std::llround(place.z)};
 }
 
 struct PlacedTile {  // a tile with real texels
@@ -30,31 +26,21 @@ struct PlacedTile {  // a tile with real texels
     Place low{}, high{};
 };
 
-// Calls visit(texel) for the real texels of a tile.
-template <class Visit>
-void eachTexel(const BurnDomain& domain, uint32_t tile, Visit&& visit) {
-    const TileTexels texels = domain.texelsOf(tile);
-    for (uint32_t lane = 0; lane < kTileLanes; ++lane)
-        if (domain.real(texels[lane])) visit(texels[lane]);
-}
-
 // `places`: by texel.
 std::pmr::vector<PlacedTile> tilesOf(const BurnDomain& domain, std::pmr::vector<Place>& places) {
     places.resize(domain.texelCount());
     std::pmr::vector<PlacedTile> tiles(places.get_allocator().resource());
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
-        PlacedTile tile;
-        tile.tile = t;
-        bool any = false;
+        constexpr int64_t kFar = std::numeric_limits<int64_t>::max();
+        PlacedTile tile{t, {kFar, kFar, kFar}, {-kFar, -kFar, -kFar}};
         eachTexel(domain, tile.tile, [&](uint32_t texel) {
             const Place& place = places[texel] = micrometresOf(domain, texel);
             for (size_t i = 0; i < 3; ++i) {
-                tile.low[i] = any ? std::min(tile.low[i], place[i]) : place[i];
-                tile.high[i] = any ? std::max(tile.high[i], place[i]) : place[i];
+                tile.low[i] = std::min(tile.low[i], place[i]);
+                tile.high[i] = std::max(tile.high[i], place[i]);
             }
-            any = true;
         });
-        if (any) tiles.push_back(tile);
+        if (tile.low[0] <= tile.high[0]) tiles.push_back(tile);
     }
     return tiles;
 }
@@ -73,9 +59,7 @@ int64_t gapOf(const Place& lowA, const Place& highA, const PlacedTile& b, int64_
 struct NearTile {
     int64_t gap = 0;  // square
     uint32_t tile = 0;
-    bool operator<(const NearTile& other) const noexcept {
-        return gap != other.gap ? gap < other.gap : tile < other.tile;
-    }
+    auto operator<=>(const NearTile&) const = default;
 };
 
 }  // namespace

@@ -31,10 +31,6 @@ struct Candidate {
     }
 };
 
-glm::dvec3 centre(const Triangle& t) {
-    return (t.position[0] + t.position[1] + t.position[2]) / 3.0;
-}
-
 // Two rounds of averaging over edge neighbours: scanned surfaces are rough.
 void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
                    std::pmr::memory_resource* memory) {
@@ -56,11 +52,8 @@ void smoothNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& smooth,
 class Grower {
  public:
     Grower(Surface& surface, std::pmr::memory_resource* memory)
-        : triangles_(surface.triangles),
-          smooth_(memory),
-          heap_(memory),
-          charts_(memory),
-          inPool_(surface.triangles.size(), 0, memory) {
+        : triangles_(surface.triangles), memory_(memory) {
+        inPool_.resize(surface.triangles.size());
         smoothNormals(surface, smooth_, memory);
     }
 
@@ -81,7 +74,7 @@ class Grower {
 
  private:
     void growOne(uint32_t seed, uint32_t chart) {
-        const glm::dvec3 from = centre(triangles_[seed]);
+        const glm::dvec3 from = centreOf(triangles_[seed]);
         glm::dvec3 sum(0), axis = smooth_[seed];
         if (glm::dot(axis, triangles_[seed].normal) < kRoughCosine) axis = triangles_[seed].normal;
         double area = 0;
@@ -102,7 +95,7 @@ class Grower {
             if (area > 0) axis = unitOr(sum + axis * (0.1 * area), axis);
             for (uint32_t n : t.neighbour) {
                 if (n == kNone || !inPool_[n] || triangles_[n].chart != kNone) continue;
-                const glm::dvec3 d = centre(triangles_[n]) - from;
+                const glm::dvec3 d = centreOf(triangles_[n]) - from;
                 heap_.push_back({glm::dot(d, d), n});
                 std::push_heap(heap_.begin(), heap_.end());
             }
@@ -138,10 +131,11 @@ class Grower {
     }
 
     std::pmr::vector<Triangle>& triangles_;
-    std::pmr::vector<glm::dvec3> smooth_;
-    std::pmr::vector<Candidate> heap_;
-    std::pmr::vector<Chart> charts_;
-    std::pmr::vector<uint8_t> inPool_;
+    std::pmr::memory_resource* memory_;
+    std::pmr::vector<glm::dvec3> smooth_{memory_};
+    std::pmr::vector<Candidate> heap_{memory_};
+    std::pmr::vector<Chart> charts_{memory_};
+    std::pmr::vector<uint8_t> inPool_{memory_};
 };
 
 // Flattens chart members onto the plane of their mean normal, at the surface's own scale. A
@@ -177,9 +171,7 @@ void flatten(Surface& surface, std::span<const uint32_t> members) {
 // Cuts a chart longer than `longest` into several along its longer side. Returns the next number.
 uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t nextChart,
                    double longest) {
-    Extent2 extent;
-    for (uint32_t i : members)
-        if (surface.triangles[i].chart != kNone) extent.add(surface.triangles[i]);
+    const Extent2 extent = extentOf(surface, members);
     const glm::dvec2 size = extent.size(), low = extent.low;
     const double side = std::max(size.x, size.y);
     if (!(side > longest)) return nextChart;
@@ -198,14 +190,10 @@ uint32_t splitLong(Surface& surface, std::span<const uint32_t> members, uint32_t
 // A triangle that lies over another of its chart loses its chart.
 void dropOverlaps(Surface& surface, std::span<const uint32_t> members, double density,
                   Coverage& coverage) {
-    Extent2 extent;
+    const Extent2 extent = extentOf(surface, members);
     double area = 0;
-    for (uint32_t i : members) {
-        const Triangle& t = surface.triangles[i];
-        if (t.chart == kNone) continue;
-        area += t.area;
-        extent.add(t);
-    }
+    for (uint32_t i : members)
+        if (surface.triangles[i].chart != kNone) area += surface.triangles[i].area;
     if (members.size() < 2 || !(area > 0)) return;
     // Huge or sparse charts are tested more coarsely.
     const glm::dvec2 size = extent.size();

@@ -4,6 +4,7 @@
 // The reader trusts nothing: it also refuses a file with a right checksum and wrong indices.
 #include "core/hash.h"
 #include "core/stream.h"
+#include "mesh/ring.h"
 #include "mesh/texels.h"
 #include "shared/front.h"
 
@@ -21,81 +22,79 @@ using core::Writer;
 constexpr uint32_t kMagic = 0x44425746;  // "FWBD"
 constexpr uint32_t kVersion = 2;         // of the format
 constexpr uint32_t kBakeVersion = 2;     // of the algorithm: part of the key
-constexpr size_t kHeaderBytes = 32;
+constexpr size_t kSizeAt = 16, kChecksumAt = 24, kHeaderBytes = 32;
 constexpr const char* kWhat = "cooked mesh";
 
 // One description of every record for both directions.
-template <typename Stream, typename T>
-requires std::is_arithmetic_v<T>
-void record(Stream& s, T& value) { s.number(value); }
-template <typename Stream>
-void record(Stream& s, std::conditional_t<Stream::kReads, TexelPosition, const TexelPosition>& t) {
-    s.number(t.x), s.number(t.y), s.number(t.z), s.number(t.materialFlags);
+void record(auto& s, auto& number) { s.number(number); }
+template <class T>
+concept Texel = std::is_same_v<std::remove_const_t<T>, TexelPosition>;
+template <class T>
+concept Tile = std::is_same_v<std::remove_const_t<T>, TileStatic>;
+template <class T>
+concept Vertex = std::is_same_v<std::remove_const_t<T>, RenderVertex>;
+void record(auto& s, Texel auto& t) { s.numbers(t.x, t.y, t.z, t.materialFlags); }
+void record(auto& s, Tile auto& t) {
+    s.numbers(t.seamMaskLow, t.seamMaskHigh, t.dependentStart, t.dependentCount, t.rimMaskLow,
+              t.rimMaskHigh, t.rimBase, t.reserved);
 }
-template <typename Stream>
-void record(Stream& s, std::conditional_t<Stream::kReads, TileStatic, const TileStatic>& t) {
-    s.number(t.seamMaskLow), s.number(t.seamMaskHigh), s.number(t.dependentStart);
-    s.number(t.dependentCount), s.number(t.rimMaskLow), s.number(t.rimMaskHigh),
-        s.number(t.rimBase);
-    s.number(t.reserved);
+void record(auto& s, Vertex auto& v) {
+    s.numbers(v.position, v.normal, v.atlasUv, v.textureUv, v.detail, v.tint, v.material);
 }
-template <typename Stream>
-void record(Stream& s, std::conditional_t<Stream::kReads, RenderVertex, const RenderVertex>& v) {
-    for (auto& c : v.position) s.number(c);
-    s.number(v.normal);
-    for (auto& c : v.atlasUv) s.number(c);
-    for (auto& c : v.textureUv) s.number(c);
-    for (auto& c : v.detail) s.number(c);
-    s.number(v.tint), s.number(v.material);
-}
-template <typename Stream, typename Report>
-void reportRecord(Stream& s, Report& r) {  // all but the time: equal inputs, equal bytes
-    s.number(r.meshArea), s.number(r.texelArea), s.number(r.linkMin), s.number(r.linkMax);
-    s.number(r.aspectP99), s.number(r.aspectMax), s.number(r.vertices), s.number(r.triangles);
-    s.number(r.charts), s.number(r.degenerate), s.number(r.openEdges);
-    s.number(r.nonManifoldEdges), s.number(r.seamEdges), s.number(r.realTexels);
-    s.number(r.forcedTexels), s.number(r.rimTexels), s.number(r.overlaps), s.number(r.linksOpen);
-    s.number(r.linksLost), s.number(r.readerless), s.number(r.usedOwnUv);
-    s.number(r.rechartedTriangles);
+void reportRecord(auto& s, auto& r) {  // all but the time: equal inputs, equal bytes
+    s.numbers(r.meshArea, r.texelArea, r.linkMin, r.linkMax, r.aspectP99, r.aspectMax, r.vertices,
+              r.triangles, r.charts, r.degenerate, r.openEdges, r.nonManifoldEdges, r.seamEdges,
+              r.realTexels, r.forcedTexels, r.rimTexels, r.overlaps, r.linksOpen, r.linksLost,
+              r.readerless, r.usedOwnUv, r.rechartedTriangles);
 }
 
 struct Counts {
     uint32_t linkWords = 0, readers = 0, vertices = 0, indices = 0;
 };
 
-// Bytes a record takes in the file.
-constexpr size_t kTexelBytes = sizeof(TexelPosition) + 4 + 4 + 2 + 2 + 4;
-
-template <typename Stream, typename Domain>
-void scalars(Stream& s, Domain& d, Counts& counts) {
-    s.number(d.width), s.number(d.height), s.number(d.quantum), s.number(d.texelSide);
-    s.number(d.linkShort), s.number(d.linkMax), s.number(d.materialCount), s.number(d.hasDetail);
-    for (int k = 0; k < 3; ++k)
-        s.number(d.origin[k]), s.number(d.boundsLow[k]), s.number(d.boundsHigh[k]);
-    s.number(counts.linkWords), s.number(counts.readers);
-    s.number(counts.vertices), s.number(counts.indices);
+void scalars(auto& s, auto& d, Counts& counts) {
+    s.numbers(d.width, d.height, d.quantum, d.texelSide, d.linkShort, d.linkMax, d.materialCount,
+              d.hasDetail);
+    for (int k = 0; k < 3; ++k) s.numbers(d.origin[k], d.boundsLow[k], d.boundsHigh[k]);
+    s.numbers(counts.linkWords, counts.readers, counts.vertices, counts.indices);
     reportRecord(s, d.report);
 }
 
-template <typename Stream, typename Domain>
-void arrays(Stream& s, Domain& d) {
-    const auto all = [&](auto& array) {
-        for (auto& element : array) record(s, element);
-    };
-    all(d.texels), all(d.normals), all(d.areas), all(d.thickness), all(d.slowness);
-    all(d.triangleOf), all(d.tiles), all(d.links), all(d.readers), all(d.vertices);
-    all(d.sources), all(d.indices);
+// Bytes of the arrays in the file.
+uint64_t arrayBytes(const BurnDomain& d, const Counts& counts) {
+    constexpr uint64_t kTexelBytes = sizeof(TexelPosition) + 4 + 4 + 2 + 2 + 4;
+    return d.texelCount() * kTexelBytes + uint64_t(d.tileCount()) * sizeof(TileStatic) +
+           (uint64_t(counts.linkWords) + counts.readers + counts.indices) * 4 +
+           uint64_t(counts.vertices) * (sizeof(RenderVertex) + 4);
 }
 
-[[noreturn]] void refuse(const char* what, uint64_t element, uint64_t value, uint64_t limit) {
-    core::fail(FW_ERROR_BAD_DATA, "%s %llu of the cooked mesh is %llu; it must be less than %llu.",
-               what, static_cast<unsigned long long>(element),
-               static_cast<unsigned long long>(value), static_cast<unsigned long long>(limit));
+template <typename Stream>
+void arrays(Stream& s, auto& d, const Counts& counts) {
+    const auto all = [&](size_t count, auto&... arrays) {
+        const auto one = [&](auto& array) {
+            if constexpr (Stream::kReads) array.resize(count);
+            FW_ASSERT(array.size() == count, "%zu of %zu records", array.size(), count);
+            for (auto& element : array) record(s, element);
+        };
+        (one(arrays), ...);
+    };
+    all(d.texelCount(), d.texels, d.normals, d.areas, d.thickness, d.slowness, d.triangleOf);
+    all(d.tileCount(), d.tiles);
+    all(counts.linkWords, d.links);
+    all(counts.readers, d.readers);
+    all(counts.vertices, d.vertices, d.sources);
+    all(counts.indices, d.indices);
 }
-void require(bool holds, const char* what, uint64_t element) {
+
+void requireBelow(size_t limit, size_t value, const char* what, size_t element) {
+    if (value >= limit)
+        core::fail(FW_ERROR_BAD_DATA, "%s %zu of the cooked mesh is %zu; it must be less than %zu.",
+                   what, element, value, limit);
+}
+void require(bool holds, const char* what, size_t element) {
     if (!holds)
-        core::fail(FW_ERROR_BAD_DATA, "%s (element %llu) of the cooked mesh is not consistent.",
-                   what, static_cast<unsigned long long>(element));
+        core::fail(FW_ERROR_BAD_DATA, "%s (element %zu) of the cooked mesh is not consistent.",
+                   what, element);
 }
 bool usable(float v) { return std::isfinite(v) && std::abs(v) < 1e7f; }
 
@@ -106,12 +105,12 @@ void checkTexels(const BurnDomain& d) {
         require((flags & ~uint32_t(0xFF | kTexelReal | kTexelRim | kTexelForced)) == 0 &&
                     ((flags & kTexelReal) != 0 || flags == 0),
                 "Flags of a texel", i);
-        if ((flags & 0xFF) >= d.materialCount)
-            refuse("Material of texel", i, flags & 0xFF, d.materialCount);
+        requireBelow(d.materialCount, flags & 0xFF, "Material of texel", i);
         require((d.slowness[i] != 0) == d.real(i), "Slowness of a texel", i);
         require(d.areas[i] >= 0 && d.areas[i] < 1e12f, "Area of a texel", i);
-        if (d.real(i) ? d.triangleOf[i] >= d.indices.size() / 3 : d.triangleOf[i] != kNone)
-            refuse("Triangle of texel", i, d.triangleOf[i], d.indices.size() / 3);
+        if (d.real(i) || d.triangleOf[i] != kNone)
+            requireBelow(d.indices.size() / 3, d.real(i) ? d.triangleOf[i] : ~size_t(0),
+                         "Triangle of texel", i);
         if (!d.real(i) || (flags & kTexelRim)) continue;
         const uint32_t x = i % d.width, y = i / d.width;
         bool whole = x > 0 && y > 0 && x + 1 < d.width && y + 1 < d.height;
@@ -125,7 +124,7 @@ void checkTiles(const BurnDomain& d) {
     uint32_t records = 0, readers = 0;
     for (uint32_t t = 0; t < d.tileCount(); ++t) {
         const TileStatic& tile = d.tiles[t];
-        const uint64_t rim = uint64_t(tile.rimMaskHigh) << 32 | tile.rimMaskLow;
+        const uint64_t rim = tile.rimMask();
         require(tile.rimBase == records, "First link record of a tile", t);
         require(tile.dependentStart == readers && tile.dependentCount <= d.readers.size() - readers,
                 "Readers of a tile", t);
@@ -141,10 +140,10 @@ void checkTiles(const BurnDomain& d) {
     require(uint64_t(records) * 8 == d.links.size(), "Number of link records", records);
     require(readers == d.readers.size(), "Number of readers", readers);
     for (size_t i = 0; i < d.readers.size(); ++i)
-        if (d.readers[i] >= d.tileCount()) refuse("Reader", i, d.readers[i], d.tileCount());
+        requireBelow(d.tileCount(), d.readers[i], "Reader", i);
     for (size_t i = 0; i < d.links.size(); ++i) {
         if (d.links[i] == kNone) continue;
-        if (d.links[i] >= d.texelCount()) refuse("Link", i, d.links[i], d.texelCount());
+        requireBelow(d.texelCount(), d.links[i], "Link", i);
         require(d.real(d.links[i]), "Target of a link", i);
     }
 }
@@ -152,46 +151,32 @@ void checkTiles(const BurnDomain& d) {
 // Limits of the integer products of shaders/shared/front.h: links of at most kLongest units, and
 // normals no longer than a rounded unit vector.
 void checkFront(const BurnDomain& d) {
-    constexpr int64_t kLongest = 8191;
+    constexpr double kLongest = 8191;
     constexpr double kUnit = 16384 * 1.01;  // Q14
-    const auto checkLink = [&](uint32_t from, uint32_t to) {
-        const TexelPosition &a = d.texels[from], &b = d.texels[to];
-        const int64_t x = int64_t(a.x) - b.x, y = int64_t(a.y) - b.y, z = int64_t(a.z) - b.z;
-        const int64_t squared = x * x + y * y + z * z;
-        if (squared > kLongest * kLongest)
-            core::fail(
-                FW_ERROR_BAD_DATA,
-                "Positions of texels %u and %u of the cooked mesh, which are neighbours, are %.0f "
-                "units apart; the limit is %lld. Cook the mesh again.",
-                from, to, std::sqrt(double(squared)), static_cast<long long>(kLongest));
-    };
     uint32_t real = 0;
     double area = 0;
-    for (uint32_t t = 0; t < d.tileCount(); ++t) {
-        uint32_t record = d.tiles[t].rimBase;
-        const TileTexels texels = d.texelsOf(t);
-        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
-            const uint32_t texel = texels[lane];
-            if (!d.real(texel)) continue;
+    for (uint32_t t = 0; t < d.tileCount(); ++t)
+        eachTexel(d, t, [&](uint32_t texel) {
             ++real;
             area += double(d.areas[texel]);
-            const gpu::ivec3 n = gpu::decodeNormal(d.normals[texel]);
-            const double length = std::hypot(double(n.x), double(n.y), double(n.z));
-            if (length > kUnit)
+            const glm::dvec3 n(gpu::decodeNormal(d.normals[texel]));
+            if (glm::length(n) > kUnit)
                 core::fail(
                     FW_ERROR_BAD_DATA,
                     "The normal of texel %u of the cooked mesh has length %.3f; the limit is 1.01.",
-                    texel, length / 16384);
-            const bool isRim = (d.texels[texel].materialFlags & kTexelRim) != 0;
-            for (size_t k = 0; k < 8; ++k) {
-                const uint32_t to =
-                    isRim ? d.links[size_t(record) * 8 + k]
-                          : uint32_t(int(texel) + kRingY[k] * int(d.width) + kRingX[k]);
-                if (to != kNone) checkLink(texel, to);
+                    texel, glm::length(n) / 16384);
+            for (uint32_t k = 0; k < 8; ++k) {
+                const uint32_t to = ringOf(d, texel, k);
+                if (to == kNone) continue;
+                const glm::dvec3 link(d.texels[texel].units() - d.texels[to].units());
+                if (glm::dot(link, link) > kLongest * kLongest)
+                    core::fail(FW_ERROR_BAD_DATA,
+                               "Positions of texels %u and %u of the cooked mesh, which are "
+                               "neighbours, are %.0f units apart; the limit is %.0f. Cook the mesh "
+                               "again.",
+                               texel, to, glm::length(link), kLongest);
             }
-            record += isRim ? 1 : 0;
-        }
-    }
+        });
     if (real != d.report.realTexels)
         core::fail(FW_ERROR_BAD_DATA,
                    "The cooked mesh has %u texels of the surface; its report says %u.", real,
@@ -204,20 +189,16 @@ void checkFront(const BurnDomain& d) {
 
 void checkDrawn(const BurnDomain& d) {
     for (size_t i = 0; i < d.indices.size(); ++i)
-        if (d.indices[i] >= d.vertices.size()) refuse("Index", i, d.indices[i], d.vertices.size());
+        requireBelow(d.vertices.size(), d.indices[i], "Index", i);
     for (size_t i = 0; i < d.vertices.size(); ++i) {
         const RenderVertex& v = d.vertices[i];
         bool finite = true;
-        for (float c : v.position) finite &= usable(c);
-        for (float c : v.textureUv) finite &= usable(c);
-        for (float c : v.detail) finite &= usable(c);
+        core::eachNumber([&](float c) { finite &= usable(c); }, v.position, v.textureUv, v.detail);
         finite &= v.atlasUv[0] >= 0 && v.atlasUv[0] <= float(d.width) && v.atlasUv[1] >= 0 &&
                   v.atlasUv[1] <= float(d.height);
         require(finite, "A vertex", i);
-        if (v.material >= d.materialCount)
-            refuse("Material of vertex", i, v.material, d.materialCount);
-        if (d.sources[i] >= d.report.vertices)
-            refuse("Source of vertex", i, d.sources[i], d.report.vertices);
+        requireBelow(d.materialCount, v.material, "Material of vertex", i);
+        requireBelow(d.report.vertices, d.sources[i], "Source of vertex", i);
     }
 }
 
@@ -238,12 +219,12 @@ void checkScalars(const BurnDomain& d) {
     for (int k = 0; k < 3; ++k)
         require(usable(d.origin[k]) && usable(d.boundsLow[k]) && usable(d.boundsHigh[k]) &&
                     d.boundsLow[k] <= d.boundsHigh[k],
-                "Bounds", uint64_t(k));
+                "Bounds", size_t(k));
 }
 
 // FNV-1a over the header before the checksum, and the payload after it.
-uint64_t checksumOf(std::span<const std::byte> head, std::span<const std::byte> payload) {
-    return hashBytes(payload, hashBytes(head));
+uint64_t checksumOf(std::span<const std::byte> file) {
+    return hashBytes(file.subspan(kHeaderBytes), hashBytes(file.first(kChecksumAt)));
 }
 
 uint64_t hashMore(uint64_t hash, const void* data, size_t bytes) {
@@ -271,32 +252,16 @@ uint64_t bakeKey(const BakeInput& input) noexcept {
 std::pmr::vector<std::byte> writeCooked(const BurnDomain& domain, uint64_t key,
                                         std::pmr::memory_resource* memory) {
     std::pmr::vector<std::byte> out(memory);
-    out.reserve(kHeaderBytes + 512 + domain.texelCount() * kTexelBytes +
-                domain.tiles.size() * sizeof(TileStatic) + domain.links.size() * 4 +
-                domain.readers.size() * 4 + domain.vertices.size() * (sizeof(RenderVertex) + 4) +
-                domain.indices.size() * 4);
-    FW_ASSERT(domain.tiles.size() == domain.tileCount() &&
-                  domain.texels.size() == domain.texelCount() &&
-                  domain.sources.size() == domain.vertices.size(),
-              "%zu tiles, %zu texels, %zu sources", domain.tiles.size(), domain.texels.size(),
-              domain.sources.size());
-    out.resize(kHeaderBytes);
-    Writer writer(out);
     Counts counts{uint32_t(domain.links.size()), uint32_t(domain.readers.size()),
                   uint32_t(domain.vertices.size()), uint32_t(domain.indices.size())};
+    out.reserve(kHeaderBytes + 512 + arrayBytes(domain, counts));
+    Writer writer(out);
+    writer.numbers(kMagic, kVersion, key, uint64_t(0), uint64_t(0));  // size and checksum: below
+    FW_ASSERT(out.size() == kHeaderBytes, "%zu bytes", out.size());
     scalars(writer, domain, counts);
-    arrays(writer, domain);
-
-    std::pmr::vector<std::byte> header(memory);
-    header.reserve(kHeaderBytes);
-    Writer headerWriter(header);
-    headerWriter.number(kMagic);
-    headerWriter.number(kVersion);
-    headerWriter.number(key);
-    headerWriter.number(uint64_t(out.size() - kHeaderBytes));
-    headerWriter.number(checksumOf(header, std::span(out).subspan(kHeaderBytes)));
-    FW_ASSERT(header.size() == kHeaderBytes, "%zu bytes", header.size());
-    std::copy(header.begin(), header.end(), out.begin());
+    arrays(writer, domain, counts);
+    writer.numberAt(kSizeAt, uint64_t(out.size() - kHeaderBytes));
+    writer.numberAt(kChecksumAt, checksumOf(out));
     return out;
 }
 
@@ -307,9 +272,7 @@ uint64_t cookedKey(std::span<const std::byte> bytes) {
     Reader header(bytes.first(kHeaderBytes), kWhat);
     uint32_t magic = 0, version = 0;
     uint64_t key = 0;
-    header.number(magic);
-    header.number(version);
-    header.number(key);
+    header.numbers(magic, version, key);
     if (magic != kMagic)
         core::fail(FW_ERROR_BAD_DATA,
                    "The cooked mesh begins with 0x%08X; 0x%08X (\"FWBD\") is expected.", magic,
@@ -323,22 +286,18 @@ uint64_t cookedKey(std::span<const std::byte> bytes) {
 
 BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resource* memory) {
     cookedKey(bytes);
-    Reader header(bytes.subspan(16), kWhat);
+    Reader header(bytes.subspan(kSizeAt), kWhat);
     uint64_t size = 0, checksum = 0;
-    header.number(size);
-    header.number(checksum);
+    header.numbers(size, checksum);
     const auto payload = bytes.subspan(kHeaderBytes);
     if (size != payload.size())
         core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh has %zu bytes of payload; its header says "
-                   "%llu.",
-                   payload.size(), static_cast<unsigned long long>(size));
-    const uint64_t found = checksumOf(bytes.first(kHeaderBytes - sizeof checksum), payload);
-    if (found != checksum)
+                   "The cooked mesh has %zu bytes of payload; its header says %zu.", payload.size(),
+                   size_t(size));
+    if (const uint64_t found = checksumOf(bytes); found != checksum)
         core::fail(FW_ERROR_BAD_DATA,
-                   "The cooked mesh's checksum is 0x%016llX; its header says 0x%016llX.",
-                   static_cast<unsigned long long>(found),
-                   static_cast<unsigned long long>(checksum));
+                   "The cooked mesh's checksum is 0x%016zX; its header says 0x%016zX.",
+                   size_t(found), size_t(checksum));
 
     BurnDomain domain(memory);
     Reader reader(payload, kWhat);
@@ -348,28 +307,11 @@ BurnDomain readCooked(std::span<const std::byte> bytes, std::pmr::memory_resourc
     domain.tilesX = domain.width / kTileSide;
     domain.tilesY = domain.height / kTileSide;
     // Sizes before memory: the arrays must need exactly the bytes that are left.
-    const uint64_t texels = domain.texelCount();
-    const uint64_t expected = texels * kTexelBytes +
-                              uint64_t(domain.tileCount()) * sizeof(TileStatic) +
-                              (uint64_t(counts.linkWords) + counts.readers + counts.indices) * 4 +
-                              uint64_t(counts.vertices) * (sizeof(RenderVertex) + 4);
-    if (expected != reader.left())
-        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %llu bytes; it has %zu.",
-                   static_cast<unsigned long long>(expected), reader.left());
+    if (const uint64_t expected = arrayBytes(domain, counts); expected != reader.left())
+        core::fail(FW_ERROR_BAD_DATA, "The cooked mesh's arrays need %zu bytes; it has %zu.",
+                   size_t(expected), reader.left());
     require(counts.linkWords % 8 == 0 && counts.indices % 3 == 0, "Number of links or indices", 0);
-    domain.texels.resize(texels);
-    domain.normals.resize(texels);
-    domain.areas.resize(texels);
-    domain.thickness.resize(texels);
-    domain.slowness.resize(texels);
-    domain.triangleOf.resize(texels);
-    domain.tiles.resize(domain.tileCount());
-    domain.links.resize(counts.linkWords);
-    domain.readers.resize(counts.readers);
-    domain.vertices.resize(counts.vertices);
-    domain.sources.resize(counts.vertices);
-    domain.indices.resize(counts.indices);
-    arrays(reader, domain);
+    arrays(reader, domain, counts);
     checkTexels(domain);
     checkTiles(domain);
     checkFront(domain);

@@ -40,10 +40,8 @@ void computeNormals(const Surface& surface, std::pmr::vector<glm::dvec3>& normal
         const glm::dvec3 sum = normals[rootOf(parent, i)];
         if (rootOf(parent, i) != i) normals[i] = sum;
     }
-    for (uint32_t i = 0; i < normals.size(); ++i) {
-        const double length = glm::length(normals[i]);
-        normals[i] = length > 1e-300 ? normals[i] / length : triangles[i / 3].normal;
-    }
+    for (uint32_t i = 0; i < normals.size(); ++i)
+        normals[i] = unitOr(normals[i], triangles[i / 3].normal);
 }
 
 }  // namespace
@@ -70,22 +68,18 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
             const size_t source = t.corner[k];
             FW_ASSERT(source < first.size(), "vertex %zu of %zu", source, first.size());
             RenderVertex v;
-            glm::dvec3 normal = t.normal;
+            glm::dvec3 normal = input.normals.empty() ? computed[i * 3 + k] : t.normal;
             if (!input.normals.empty()) {
-                const glm::dvec3 given(input.normals[source * 3], input.normals[source * 3 + 1],
-                                       input.normals[source * 3 + 2]);
+                const float* const n = &input.normals[source * 3];
+                const glm::dvec3 given(n[0], n[1], n[2]);
                 const double length = glm::length(given);
                 if (length > 1e-12) normal = given / length;
-            } else {
-                normal = computed[i * 3 + k];
             }
             v.normal = packNormal(normal);
-            for (size_t c = 0; c < 3; ++c) v.position[c] = input.positions[source * 3 + c];
+            std::copy_n(&input.positions[source * 3], 3, v.position);
             for (int c = 0; c < 2; ++c) v.atlasUv[c] = float(t.uv[k][c]);
-            for (size_t c = 0; c < 2; ++c) {
-                if (!input.uvs.empty()) v.textureUv[c] = input.uvs[source * 2 + c];
-                if (!input.details.empty()) v.detail[c] = input.details[source * 2 + c];
-            }
+            if (!input.uvs.empty()) std::copy_n(&input.uvs[source * 2], 2, v.textureUv);
+            if (!input.details.empty()) std::copy_n(&input.details[source * 2], 2, v.detail);
             if (!input.tints.empty()) v.tint = input.tints[source];
             v.material = t.material;
             uint32_t same = first[source];

@@ -18,19 +18,16 @@ struct TileSum {
 
 TileSum sumTile(const BurnDomain& domain, uint32_t tile) noexcept {
     TileSum sum;
-    const TileTexels texels = domain.texelsOf(tile);
-    for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
-        const uint32_t texel = texels[lane];
-        if (!domain.real(texel)) continue;
-        const TexelPosition& p = domain.texels[texel];
-        sum.position[0] += p.x;
-        sum.position[1] += p.y;
-        sum.position[2] += p.z;
+    eachTexel(domain, tile, [&](uint32_t texel) {
+        const glm::ivec3 p = domain.texels[texel].units();
         const gpu::ivec3 n = gpu::decodeNormal(domain.normals[texel]);
-        for (int i = 0; i < 3; ++i) sum.normal[i] += n[i];
+        for (int i = 0; i < 3; ++i) {
+            sum.position[i] += uint64_t(p[i]);
+            sum.normal[i] += n[i];
+        }
         ++sum.texels;
-        ++sum.materials[p.materialFlags & 7];
-    }
+        ++sum.materials[domain.texels[texel].materialFlags & 7];
+    });
     return sum;
 }
 
@@ -138,20 +135,13 @@ struct ContactCells {
 };
 
 bool inside(const gpu::ivec3& p, const Box& box, int more) noexcept {
-    for (int i = 0; i < 3; ++i)
-        if (p[i] < box.low[i] - more || p[i] > box.high[i] + more) return false;
-    return true;
+    return glm::all(glm::greaterThanEqual(p, box.low - more)) &&
+           glm::all(glm::lessThanEqual(p, box.high + more));
 }
 
 Box wholeBox(const ContactSide& side) noexcept {
-    Box box;
     const gpu::ExchangeObject& o = *side.place;
-    const int low[3] = {o.turn0.w, o.turn1.w, o.turn2.w};
-    for (int i = 0; i < 3; ++i) {
-        box.low[i] = low[i];
-        box.high[i] = o.high[i];
-    }
-    return box;
+    return {{o.turn0.w, o.turn1.w, o.turn2.w}, glm::ivec3(o.high)};
 }
 
 bool burnsAt(const ContactSide& side, uint32_t texel) noexcept {
@@ -160,8 +150,7 @@ bool burnsAt(const ContactSide& side, uint32_t texel) noexcept {
 }
 
 gpu::ivec3 placeOf(const ContactSide& side, uint32_t texel) noexcept {
-    const TexelPosition& p = side.domain->texels[texel];
-    return gpu::toWorldMm(*side.place, gpu::ivec3(p.x, p.y, p.z));
+    return gpu::toWorldMm(*side.place, side.domain->texels[texel].units());
 }
 
 // The burnable texels of `side` that are near `other`, block by block.
@@ -299,20 +288,10 @@ uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeT
     return std::max(cells, 1u);
 }
 
-uint32_t sourceCells(const BurnDomain& domain) noexcept {
-    const Grid grid = gridOf(domain);
-    uint64_t seen = 0;
-    for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
-        const TileSum sum = sumTile(domain, tile);
-        if (sum.texels == 0) continue;
-        uint32_t middle[3];
-        for (int i = 0; i < 3; ++i) middle[i] = uint32_t(sum.position[i] / sum.texels);
-        FW_ASSERT(cellAt(middle, grid) < 64, "cell %u", cellAt(middle, grid));
-        seen |= uint64_t(1) << cellAt(middle, grid);
-    }
-    uint32_t cells = 0;
-    for (; seen != 0; seen &= seen - 1) ++cells;
-    return std::max(cells, 1u);
+uint32_t sourceCells(std::span<const gpu::ExchangeTile> tiles) noexcept {
+    uint32_t cells = 1;  // an empty tile is in the first one
+    for (const gpu::ExchangeTile& tile : tiles) cells = std::max(cells, gpu::tileCell(tile) + 1);
+    return cells;
 }
 
 Box placedBox(const gpu::ExchangeObject& place, const uint16_t (&low)[3],

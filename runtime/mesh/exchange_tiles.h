@@ -8,11 +8,11 @@ namespace fw::mesh {
 
 // One per tile, in their order; replaces `out`. Returns the number of their source cells.
 uint32_t exchangeTiles(const BurnDomain& domain, std::pmr::vector<gpu::ExchangeTile>& out);
-// The same count, without the tiles.
-uint32_t sourceCells(const BurnDomain& domain) noexcept;
+// The same count, from the tiles.
+uint32_t sourceCells(std::span<const gpu::ExchangeTile> tiles) noexcept;
 
 struct Box {  // mm, world; low > high: empty
-    int low[3] = {1, 1, 1}, high[3] = {0, 0, 0};
+    glm::ivec3 low{1}, high{0};
 };
 [[nodiscard]] Box placedBox(const gpu::ExchangeObject& place, const uint16_t (&low)[3],
                             const uint16_t (&high)[3]) noexcept;

@@ -3,7 +3,6 @@
 #include "mesh/ring.h"
 
 #include <algorithm>
-#include <array>
 
 namespace fw::mesh {
 namespace {
@@ -12,14 +11,11 @@ namespace {
 // the texels that it accepts.
 template <class Stack, class Joins>
 void spread(const BurnDomain& domain, Stack& stack, Joins joins) {
-    std::array<uint32_t, 8> around;  // offsets of an inner texel, whose ring lies in the image
-    for (size_t k = 0; k < 8; ++k) around[k] = uint32_t(kRingY[k] * int(domain.width) + kRingX[k]);
     while (!stack.empty()) {
         const uint32_t texel = stack.back();
         stack.pop_back();
-        const bool rim = (domain.texels[texel].materialFlags & kTexelRim) != 0;
         for (uint32_t k = 0; k < 8; ++k) {
-            const uint32_t other = rim ? ringOf(domain, texel, k) : texel + around[k];
+            const uint32_t other = ringOf(domain, texel, k);
             if (other == kNone || !joins(other)) continue;
             FW_ASSERT(other < domain.texelCount(), "%u of %u texels", other, domain.texelCount());
             stack.push_back(other);

@@ -13,7 +13,7 @@ constexpr int kWeakSteps = 4;    // likewise, once the crossings below are used 
 // Crossings of all walks, and the further ones per texel of the atlas. Only meshes with triangles
 // hundreds of times smaller than a texel use them up.
 constexpr int64_t kWalkBudget = 1 << 25, kWalkPerTexel = 8;
-constexpr int kDeafRounds = 64;       // searches for texels that read no other
+constexpr int kUnlinkedRounds = 64;   // searches for texels that read no other
 constexpr int kReaches = 3;           // a chart too small to own a texel is stepped over
 constexpr int kLandingSearch = 3;     // texels around a landing place that owns none
 constexpr double kStepLimit = 3;      // texel sides: a longer Jacobian step is cut
@@ -95,27 +95,21 @@ class Borders {
             for (uint32_t e = 0; e < 3; ++e)
                 if (const Triangle& t = surface.triangles[i]; t.neighbour[e] == kNone || t.seam[e])
                     add(t.uv[e], t.uv[(e + 1) % 3], i * 3 + e);
-        std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
-            return a.texel != b.texel ? a.texel < b.texel : a.edge < b.edge;
-        });
-        for (const Piece& piece : pieces_) {
-            const int x = int(piece.texel % grid.width), y = int(piece.texel / grid.width);
-            for (int dy = -1; dy <= 1; ++dy)
-                for (int dx = -1; dx <= 1; ++dx)
-                    if (grid.inside(x + dx, y + dy)) near_[grid.at(x + dx, y + dy)] = 1;
-        }
+        std::sort(pieces_.begin(), pieces_.end());
+        for (const Piece& piece : pieces_)
+            grid.around(grid.placeOf(piece.texel), 1,
+                        [&](uint32_t texel, glm::ivec2) { near_[texel] = 1; });
     }
 
     [[nodiscard]] bool near(uint32_t texel) const { return near_[texel] != 0; }
 
     // Whether the segment between the centres of two neighbouring texels crosses a border.
     [[nodiscard]] bool between(uint32_t i, uint32_t j) const {
-        const glm::dvec2 p(i % grid_.width + 0.5, i / grid_.width + 0.5);
-        const glm::dvec2 q(j % grid_.width + 0.5, j / grid_.width + 0.5);
-        const int x0 = int(std::min(p.x, q.x)), x1 = int(std::max(p.x, q.x));
-        const int y0 = int(std::min(p.y, q.y)), y1 = int(std::max(p.y, q.y));
-        for (int y = y0; y <= y1; ++y)
-            for (int x = x0; x <= x1; ++x)
+        const glm::ivec2 from = grid_.placeOf(i), to = grid_.placeOf(j);
+        const glm::dvec2 p = glm::dvec2(from) + 0.5, q = glm::dvec2(to) + 0.5;
+        const glm::ivec2 low = glm::min(from, to), high = glm::max(from, to);
+        for (int y = low.y; y <= high.y; ++y)
+            for (int x = low.x; x <= high.x; ++x)
                 if (crossedIn(grid_.at(x, y), p, q)) return true;
         return false;
     }
@@ -123,6 +117,7 @@ class Borders {
  private:
     struct Piece {
         uint32_t texel, edge;  // triangle * 3 + its edge; millions of these: no copies
+        auto operator<=>(const Piece&) const = default;
     };
 
     void add(glm::dvec2 a, glm::dvec2 b, uint32_t edge) {
@@ -166,25 +161,38 @@ class Linker {
           report_(report),
           borders_(surface, grid, memory),
           loose_(memory),
-          heard_(memory),
+          dependents_(memory),
           crossingsLeft_(kWalkBudget + kWalkPerTexel * int64_t(grid.count())),
           memory_(memory) {}
 
     void run() {
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.real(texel)) linkOne(texel);
-        dropDeaf();
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+        eachReal([&](uint32_t texel) { linkOne(texel); });
+        dropUnlinked();
+        eachReal([&](uint32_t texel) {
             if (isRim(texel)) tighten(texel);
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (isRim(texel)) answerReaders(texel);
+        });
+        eachReal([&](uint32_t texel) {
+            if (isRim(texel)) answerDependents(texel);
+        });
         countDependents();
-        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
-            if (grid_.real(texel) && heard_[texel] == 0) findDependent(texel);
+        eachReal([&](uint32_t texel) {
+            if (dependents_[texel] == 0) findDependent(texel);
+        });
         measure();
     }
 
  private:
+    template <class Visit>
+    void eachReal(Visit visit) const {
+        for (uint32_t texel = 0; texel < grid_.count(); ++texel)
+            if (grid_.real(texel)) visit(texel);
+    }
+    // Calls visit(other) for the texels that a real texel reads.
+    template <class Visit>
+    void eachRead(uint32_t texel, Visit visit) const {
+        for (int k = 0; k < 8; ++k)
+            if (const uint32_t other = grid_.ring(texel, k); other != kNone) visit(other);
+    }
     [[nodiscard]] bool isRim(uint32_t texel) const {
         return grid_.real(texel) && grid_.linkRecord[texel] != kNone;
     }
@@ -223,13 +231,11 @@ class Linker {
     }
 
     void linkOne(uint32_t texel) {
-        const int x = int(texel % grid_.width), y = int(texel / grid_.width);
         uint32_t ring[8];
         uint8_t loose = 0;
         bool rim = false;
         for (size_t k = 0; k < 8; ++k) {
-            const int nx = x + kRingX[k], ny = y + kRingY[k];
-            ring[k] = grid_.inside(nx, ny) ? grid_.at(nx, ny) : kNone;
+            ring[k] = grid_.inImage(texel, k);
             if (plain(texel, ring[k], k)) continue;
             rim = true;
             bool exact = false;
@@ -284,38 +290,31 @@ class Linker {
         uint32_t best = kNone;
         double nearest = 36 * grid_.side * grid_.side;
         for (int r = 1; r <= kLandingSearch && best == kNone; ++r)
-            for (int dy = -r; dy <= r; ++dy)
-                for (int dx = -r; dx <= r; ++dx) {
-                    if (!grid_.inside(x + dx, y + dy)) continue;
-                    const uint32_t texel = grid_.at(x + dx, y + dy);
-                    if (texel == self || !grid_.real(texel) || grid_.chart[texel] != t.chart)
-                        continue;
-                    const glm::dvec3 d = glm::dvec3(grid_.position[texel]) - point;
-                    if (glm::dot(d, d) >= nearest) continue;
-                    nearest = glm::dot(d, d);
-                    best = texel;
-                }
+            grid_.around({x, y}, r, [&](uint32_t texel, glm::ivec2) {
+                if (texel == self || !grid_.real(texel) || grid_.chart[texel] != t.chart) return;
+                const glm::dvec3 d = glm::dvec3(grid_.position[texel]) - point;
+                if (glm::dot(d, d) >= nearest) return;
+                nearest = glm::dot(d, d);
+                best = texel;
+            });
         return best;
     }
 
     // A forced texel that reads no other could never burn: it leaves, and a neighbour takes its
     // area. A texel alone on its piece of the surface (a leaf) stays: other objects may light it.
-    void dropDeaf() {
+    void dropUnlinked() {
         AreaHeir heir(surface_, grid_, memory_);
         std::pmr::vector<uint32_t> forced(memory_);
         for (uint32_t i = 0; i < grid_.count(); ++i)
             if (grid_.real(i) && (grid_.flags[i] & kTexelForced)) forced.push_back(i);
         bool again = true;  // a texel that read only leaving ones leaves in the next round
-        for (int round = 0; again && round < kDeafRounds; ++round) {
+        for (int round = 0; again && round < kUnlinkedRounds; ++round) {
             again = false;
             for (uint32_t i : forced) {
                 if (!grid_.real(i)) continue;
-                bool hears = false;
-                for (int k = 0; k < 8; ++k) {
-                    const uint32_t j = grid_.ring(i, k);
-                    hears |= j != kNone && grid_.real(j);
-                }
-                if (hears) continue;
+                bool linked = false;
+                eachRead(i, [&](uint32_t j) { linked |= grid_.real(j); });
+                if (linked) continue;
                 const uint16_t flags = grid_.flags[i];
                 grid_.flags[i] = 0;
                 const uint32_t to = heir.onSurface(grid_.owner[i]);
@@ -382,12 +381,11 @@ class Linker {
 
     // If i reads j and j, a rim texel, does not read i: i takes a spare slot of j, beside the ring
     // neighbour nearest to i.
-    void answerReaders(uint32_t i) {
-        for (int k = 0; k < 8; ++k) {
-            const uint32_t j = grid_.ring(i, k);
-            if (j == kNone || !isRim(j)) continue;
+    void answerDependents(uint32_t i) {
+        eachRead(i, [&](uint32_t j) {
+            if (!isRim(j)) return;
             uint32_t* ring = ringOf(j);
-            if (std::find(ring, ring + 8, i) != ring + 8) continue;
+            if (std::find(ring, ring + 8, i) != ring + 8) return;
             int slot = -1;
             double nearest = 2 * grid_.side;
             for (int q = 0; q < 8; ++q) {
@@ -402,15 +400,16 @@ class Linker {
                 }
             }
             if (slot >= 0) ring[slot] = i;
-        }
+        });
     }
 
     void countDependents() {
-        heard_.assign(grid_.count(), 0);
-        for (uint32_t i = 0; i < grid_.count(); ++i)
-            for (int k = 0; grid_.real(i) && k < 8; ++k)
-                if (const uint32_t j = grid_.ring(i, k); j != kNone)
-                    heard_[j] = uint8_t(std::min(heard_[j] + 1, 255));
+        dependents_.assign(grid_.count(), 0);
+        eachReal([&](uint32_t i) {
+            eachRead(i, [&](uint32_t j) {
+                dependents_[j] = uint8_t(std::min(dependents_[j] + 1, 255));
+            });
+        });
     }
 
     // For a texel i that no other reads, where a fire would stay: among the texels that i reads,
@@ -418,12 +417,11 @@ class Linker {
     void findDependent(uint32_t i) {
         double least = kMissLimit * grid_.side;
         uint32_t* slot = nullptr;
-        for (int k = 0; k < 8; ++k) {
-            const uint32_t j = grid_.ring(i, k);
-            if (j == kNone || !isRim(j)) continue;
+        eachRead(i, [&](uint32_t j) {
+            if (!isRim(j)) return;
             uint32_t* ring = ringOf(j);
             for (size_t q = 0; q < 8; ++q) {
-                if (ring[q] != kNone && heard_[ring[q]] < 2) continue;
+                if (ring[q] != kNone && dependents_[ring[q]] < 2) continue;
                 const Aim aim = aimOf(j, q);
                 if (!aim.landed || grid_.distance(i, j) > aim.reach) continue;
                 const double loss = missOf(aim, i) - (ring[q] == kNone ? 0 : missOf(aim, ring[q]));
@@ -431,31 +429,27 @@ class Linker {
                 least = loss;
                 slot = &ring[q];
             }
-        }
+        });
         if (slot == nullptr) return;
-        FW_ASSERT(*slot == kNone || heard_[*slot] > 1, "texel %u would lose its only reader",
+        FW_ASSERT(*slot == kNone || dependents_[*slot] > 1, "texel %u would lose its only reader",
                   *slot);
-        if (*slot != kNone) --heard_[*slot];
+        if (*slot != kNone) --dependents_[*slot];
         *slot = i;
-        ++heard_[i];
+        ++dependents_[i];
     }
 
     void measure() {
         double shortest = 1e300, longest = 0;
-        for (uint32_t i = 0; i < grid_.count(); ++i) {
-            if (!grid_.real(i)) continue;
+        eachReal([&](uint32_t i) {
             ++report_.realTexels;
             report_.forcedTexels += (grid_.flags[i] & kTexelForced) != 0;
             report_.rimTexels += (grid_.flags[i] & kTexelRim) != 0;
-            for (int k = 0; k < 8; ++k) {
-                const uint32_t j = grid_.ring(i, k);
-                if (j == kNone) continue;
+            report_.readerless += dependents_[i] == 0;
+            eachRead(i, [&](uint32_t j) {
                 shortest = std::min(shortest, grid_.distance(i, j));
                 longest = std::max(longest, grid_.distance(i, j));
-            }
-        }
-        for (uint32_t i = 0; i < grid_.count(); ++i)
-            report_.readerless += grid_.real(i) && heard_[i] == 0;
+            });
+        });
         grid_.linkMax = longest;
         report_.linkMin = longest > 0 ? shortest / grid_.side : 0;
         report_.linkMax = longest / grid_.side;
@@ -465,8 +459,8 @@ class Linker {
     TexelGrid& grid_;
     BakeReport& report_;
     Borders borders_;
-    std::pmr::vector<uint8_t> loose_;  // per record: slots whose step ends in no texel
-    std::pmr::vector<uint8_t> heard_;  // per texel: slots that name it, 255: that many or more
+    std::pmr::vector<uint8_t> loose_;       // per record: slots whose step ends in no texel
+    std::pmr::vector<uint8_t> dependents_;  // per texel: slots that name it, at most 255
     int64_t crossingsLeft_;
     std::pmr::memory_resource* memory_;
 };

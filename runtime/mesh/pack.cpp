@@ -43,11 +43,9 @@ Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t 
         bestCosSin = cs;
         if (size.x > size.y) bestCosSin = {-cs.y, cs.x};  // a quarter turn more
     }
-    Extent2 extent;
-    for (uint32_t i : members) {
+    for (uint32_t i : members)
         for (glm::dvec2& u : surface.triangles[i].uv) u = turned(u, bestCosSin);
-        extent.add(surface.triangles[i]);
-    }
+    const Extent2 extent = extentOf(surface, members);
     for (uint32_t i : members)
         for (glm::dvec2& u : surface.triangles[i].uv) u -= extent.low;
     Piece piece;
@@ -59,14 +57,7 @@ Piece orientPiece(Surface& surface, std::span<const uint32_t> members, uint32_t 
 class Packer {
  public:
     Packer(Surface& surface, uint32_t charts, std::pmr::memory_resource* memory)
-        : surface_(surface),
-          groups_(groupByChart(surface, charts, memory)),
-          pieces_(memory),
-          bottoms_(memory),
-          tops_(memory),
-          plainBottoms_(memory),
-          plainTops_(memory),
-          skyline_(memory) {
+        : surface_(surface), groups_(groupByChart(surface, charts, memory)), memory_(memory) {
         for (uint32_t c = 0; c < charts; ++c)
             if (!groups_.of(c).empty()) pieces_.push_back(orientPiece(surface, groups_.of(c), c));
         std::sort(pieces_.begin(), pieces_.end(), [](const Piece& a, const Piece& b) {
@@ -178,12 +169,12 @@ class Packer {
 
     Surface& surface_;
     Groups groups_;
-    std::pmr::vector<Piece> pieces_;
-    std::pmr::vector<int> bottoms_, tops_, plainBottoms_, plainTops_, skyline_;
+    std::pmr::memory_resource* memory_;
+    std::pmr::vector<Piece> pieces_{memory_};
+    std::pmr::vector<int> bottoms_{memory_}, tops_{memory_}, skyline_{memory_};
+    std::pmr::vector<int> plainBottoms_{memory_}, plainTops_{memory_};
     uint32_t widest_ = 0, tallest_ = 0;
 };
-
-uint32_t roundUp8(uint32_t texels) { return (texels + 7) & ~7u; }
 
 }  // namespace
 
@@ -213,11 +204,7 @@ AtlasPlan packCharts(Surface& surface, uint32_t charts, double density, uint32_t
                 if (over > 1 && width < side) continue;
                 if (over > 1) break;  // both widths may be the same
                 packer.commit(density);
-                AtlasPlan plan;
-                plan.width = width;
-                plan.height = height;
-                plan.density = density;
-                return plan;
+                return {.width = width, .height = height, .density = density};
             }
         }
         // Height shrinks with the square of the density, until only borders are left.

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <array>
+#include <tuple>
 
 namespace fw::mesh {
 namespace {
@@ -18,13 +19,16 @@ constexpr uint32_t kBlockTexels = 16;
 
 struct Entry {  // one part's texel in a block
     uint64_t key = 0;
-    int place[3] = {};
     uint32_t block = 0;  // tile * 4 + block of it
     uint32_t part = 0;
+    glm::ivec3 place{0};
+    bool operator<(const Entry& other) const noexcept {
+        return std::tie(key, block, part) < std::tie(other.key, other.block, other.part);
+    }
 };
 
 struct Near {
-    uint32_t square = 0xFFFFFFFFu;
+    uint32_t square = kNone;
     uint32_t entry = 0;
 };
 
@@ -35,13 +39,13 @@ uint32_t texelOf(const BurnDomain& domain, uint32_t block, uint32_t lane) noexce
     return y * domain.width + x;
 }
 
-uint64_t keyOf(int x, int y, int z) noexcept {  // cells from -1 on
-    return uint64_t(x + 1) << 42 | uint64_t(y + 1) << 21 | uint64_t(z + 1);
+uint64_t keyOf(glm::ivec3 cell) noexcept {  // cells from -1 on
+    return uint64_t(cell.x + 1) << 42 | uint64_t(cell.y + 1) << 21 | uint64_t(cell.z + 1);
 }
 
-uint32_t squareBetween(const TexelPosition& a, const TexelPosition& b) noexcept {
-    const int64_t x = int64_t(a.x) - b.x, y = int64_t(a.y) - b.y, z = int64_t(a.z) - b.z;
-    return uint32_t(std::min<int64_t>(x * x + y * y + z * z, 0xFFFFFFFFll));
+int64_t squareBetween(glm::ivec3 a, glm::ivec3 b) noexcept {
+    const int64_t x = a.x - b.x, y = a.y - b.y, z = a.z - b.z;
+    return x * x + y * y + z * z;
 }
 
 struct Blocks {
@@ -49,8 +53,6 @@ struct Blocks {
     const Pieces& pieces;
     std::pmr::vector<Entry> entries;  // by cell
     int cell = 1;                     // units
-
-    [[nodiscard]] int cellOf(int place) const noexcept { return place / cell; }
 
     // One for each part in each block: the texel of it that is nearest to the block's middle.
     void gather() {
@@ -65,34 +67,25 @@ struct Blocks {
                     std::any_of(entries.begin() + std::ptrdiff_t(first), entries.end(),
                                 [&](const Entry& entry) { return entry.part == part; }))
                     continue;
-                const TexelPosition& p = domain.texels[texel];
-                entries.push_back(
-                    {keyOf(cellOf(p.x), cellOf(p.y), cellOf(p.z)), {p.x, p.y, p.z}, block, part});
+                const glm::ivec3 place = domain.texels[texel].units();
+                entries.push_back({keyOf(place / cell), block, part, place});
             }
         }
-        std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
-            return a.key != b.key       ? a.key < b.key
-                   : a.block != b.block ? a.block < b.block
-                                        : a.part < b.part;
-        });
+        std::sort(entries.begin(), entries.end());
     }
 
     // The nearest entries of other parts, within a cell's side.
     void nearest(const Entry& of, std::array<Near, kCandidates>& found) const noexcept {
         found = {};
-        const int at[3] = {cellOf(of.place[0]), cellOf(of.place[1]), cellOf(of.place[2])};
+        const glm::ivec3 at = of.place / cell;
         for (int column = 0; column < 9; ++column) {
-            const int x = at[0] + column / 3 - 1, y = at[1] + column % 3 - 1;
-            const uint64_t last = keyOf(x, y, at[2] + 1);
-            auto entry = std::lower_bound(entries.begin(), entries.end(), keyOf(x, y, at[2] - 1),
+            const glm::ivec3 first = at + glm::ivec3(column / 3 - 1, column % 3 - 1, -1);
+            const uint64_t last = keyOf(first + glm::ivec3(0, 0, 2));
+            auto entry = std::lower_bound(entries.begin(), entries.end(), keyOf(first),
                                           [](const Entry& e, uint64_t key) { return e.key < key; });
             for (; entry != entries.end() && entry->key <= last; ++entry) {
                 if (entry->part == of.part) continue;
-                int64_t square = 0;
-                for (int k = 0; k < 3; ++k) {
-                    const int64_t d = int64_t(entry->place[k]) - of.place[k];
-                    square += d * d;
-                }
+                const int64_t square = squareBetween(entry->place, of.place);
                 if (square > int64_t(cell) * cell || square >= found.back().square) continue;
                 found.back() = {uint32_t(square), uint32_t(entry - entries.begin())};
                 for (size_t i = kCandidates - 1; i > 0 && found[i].square < found[i - 1].square;
@@ -121,10 +114,10 @@ PartPath partPath(const BurnDomain& domain, std::span<const gpu::BurnMaterial> m
     const auto materialOf = [&](const TexelPosition& at) {
         return &materials[at.materialFlags & (gpu::kMaterialsPerObject - 1)];
     };
-    PartPath way{materialOf(p), materialOf(q)};
-    const gpu::ivec3 gap(int(q.x) - p.x, int(q.y) - p.y, int(q.z) - p.z);
-    way.delay = (way.reached->flags & 1) != 0 ? gpu::partDelay(*way.reached, gap) : gpu::kNever;
-    return way;
+    PartPath path{materialOf(p), materialOf(q)};
+    if ((path.reached->flags & 1) != 0)
+        path.delay = gpu::partDelay(*path.reached, q.units() - p.units());
+    return path;
 }
 
 void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
@@ -138,15 +131,14 @@ void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
     Blocks blocks{domain, pieces, std::pmr::vector<Entry>(memory),
                   int(std::clamp(gap + block, 1.0, 1e6))};
     blocks.gather();
-    std::pmr::vector<uint32_t> squares(size_t(domain.tileCount()) * 4,
-                                       uint32_t(gap) * uint32_t(gap) + 1, memory);
+    std::pmr::vector<int64_t> squares(size_t(domain.tileCount()) * 4, int64_t(gap) * gap + 1,
+                                      memory);
     std::pmr::vector<uint32_t> links(squares.size(), kNone, memory);
-    bool any = false;
     std::array<Near, kCandidates> near;
     for (const Entry& of : blocks.entries) {
         blocks.nearest(of, near);
         for (const Near& candidate : near) {
-            if (candidate.square == 0xFFFFFFFFu) break;
+            if (candidate.square == kNone) break;
             const Entry& other = blocks.entries[candidate.entry];
             for (uint32_t lane = 0; lane < kBlockTexels; ++lane) {
                 const uint32_t from = texelOf(domain, of.block, lane);
@@ -154,16 +146,17 @@ void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory) {
                 for (uint32_t there = 0; there < kBlockTexels; ++there) {
                     const uint32_t to = texelOf(domain, other.block, there);
                     if (pieces.of[to] != other.part) continue;
-                    const uint32_t square = squareBetween(domain.texels[from], domain.texels[to]);
+                    const int64_t square =
+                        squareBetween(domain.texels[from].units(), domain.texels[to].units());
                     if (square >= squares[of.block]) continue;
                     squares[of.block] = square;
                     links[of.block] = lane << 28 | to;
-                    any = true;
                 }
             }
         }
     }
-    if (any) domain.partLinks.assign(links.begin(), links.end());
+    if (std::any_of(links.begin(), links.end(), [](uint32_t link) { return link != kNone; }))
+        domain.partLinks.assign(links.begin(), links.end());
 }
 
 }  // namespace fw::mesh

@@ -17,7 +17,7 @@ struct PartLink {
 
 struct PartPath {  // fire's path over a link
     const gpu::BurnMaterial *left = nullptr, *reached = nullptr;
-    uint32_t delay = 0;  // ticks; gpu::kNever: the material reached does not burn
+    uint32_t delay = gpu::kNever;  // ticks; kNever: the material reached does not burn
 };
 // `materials`: the object's, kMaterialsPerObject of them.
 [[nodiscard]] PartPath partPath(const BurnDomain& domain,

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 
 namespace fw::mesh {
@@ -58,13 +59,10 @@ void visitWithin(const BurnDomain& domain, const Units& point, const int64_t& li
     for (uint32_t t = 0; t < domain.tileCount(); ++t) {
         const TileBounds& bounds = domain.tileBounds[t];
         if (bounds.low[0] > bounds.high[0] || squareTo(bounds, point) > limit) continue;
-        const TileTexels texels = domain.texelsOf(t);
-        for (uint32_t lane = 0; lane < kTileLanes; ++lane) {
-            const uint32_t texel = texels[lane];
-            if (!domain.real(texel)) continue;
+        eachTexel(domain, t, [&](uint32_t texel) {
             const int64_t square = squareTo(domain.texels[texel], point);
             if (square <= limit) visit(texel, square);
-        }
+        });
     }
 }
 
@@ -109,23 +107,14 @@ void texelsNear(const BurnDomain& domain, const float point[3], float radius,
 void texelWeights(const BurnDomain& domain, uint32_t texel, float (&weights)[3]) noexcept {
     FW_ASSERT(domain.real(texel) && domain.triangleOf[texel] < domain.indices.size() / 3,
               "texel %u has no triangle", texel);
-    const TexelPosition& t = domain.texels[texel];
-    const uint16_t units[3] = {t.x, t.y, t.z};
-    double corner[3][3], at[3];
-    for (int c = 0; c < 3; ++c) {
-        at[c] = double(domain.origin[c]) + double(domain.quantum) * units[c];
-        for (size_t k = 0; k < 3; ++k)
-            corner[k][c] =
-                double(domain.vertices[domain.indices[size_t(domain.triangleOf[texel]) * 3 + k]]
-                           .position[c]);
-    }
+    const uint32_t triangle = domain.triangleOf[texel];
+    const glm::dvec3 last(domain.cornerOf(triangle, 2).place());
+    const glm::dvec3 a = glm::dvec3(domain.cornerOf(triangle, 0).place()) - last,
+                     b = glm::dvec3(domain.cornerOf(triangle, 1).place()) - last,
+                     p = domain.placeOf(texel) - last;
     // Least squares in the triangle's plane.
-    double aa = 0, ab = 0, bb = 0, ap = 0, bp = 0;
-    for (int c = 0; c < 3; ++c) {
-        const double a = corner[0][c] - corner[2][c], b = corner[1][c] - corner[2][c];
-        const double p = at[c] - corner[2][c];
-        aa += a * a, ab += a * b, bb += b * b, ap += a * p, bp += b * p;
-    }
+    const double aa = glm::dot(a, a), ab = glm::dot(a, b), bb = glm::dot(b, b);
+    const double ap = glm::dot(a, p), bp = glm::dot(b, p);
     const double determinant = aa * bb - ab * ab;
     double u = 1.0 / 3, v = 1.0 / 3;
     if (determinant > 1e-12 * aa * bb) {

@@ -102,20 +102,16 @@ class Rasteriser {
     void ownTexels() {
         for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
             const Triangle& t = surface_.triangles[i];
-            const RowSpan rows = rowsOf(t, int(grid_.height));
-            for (int y = rows.first; y <= rows.last; ++y) {
-                const RowSpan span = rowSpan(t, y, int(grid_.width));
-                for (int x = span.first; x <= span.last; ++x) {
-                    glm::dvec3 w;
-                    if (!weightsAt(t, {x + 0.5, y + 0.5}, w)) continue;
-                    if (std::min({w.x, w.y, w.z}) < -1e-9) continue;
-                    const uint32_t texel = grid_.at(x, y);
-                    if (grid_.owner[texel] == kNone)
-                        own(texel, i, w);
-                    else if (std::min({w.x, w.y, w.z}) > 1e-6)
-                        ++report_.overlaps;
-                }
-            }
+            eachTouched(t, grid_.width, grid_.height, [&](int x, int y) {
+                glm::dvec3 w;
+                if (!weightsAt(t, {x + 0.5, y + 0.5}, w)) return;
+                if (std::min({w.x, w.y, w.z}) < -1e-9) return;
+                const uint32_t texel = grid_.at(x, y);
+                if (grid_.owner[texel] == kNone)
+                    own(texel, i, w);
+                else if (std::min({w.x, w.y, w.z}) > 1e-6)
+                    ++report_.overlaps;
+            });
         }
     }
 
@@ -132,7 +128,6 @@ class Rasteriser {
         for (uint32_t i = 0; i < surface_.triangles.size(); ++i) {
             const Triangle& t = surface_.triangles[i];
             const double flat = std::abs(uvArea(t));
-            const RowSpan rows = rowsOf(t, int(grid_.height));
             if (flat < 1e-9) {  // no area in the atlas: all of it is one part, at its first corner
                 const glm::dvec2 at = t.uv[0];
                 const int x = std::clamp(int(at.x), 0, int(grid_.width) - 1);
@@ -141,20 +136,17 @@ class Rasteriser {
                 continue;
             }
             const TriangleSides sides(t);
-            for (int y = rows.first; y <= rows.last; ++y) {
-                const RowSpan span = rowSpan(t, y, int(grid_.width));
-                for (int x = span.first; x <= span.last; ++x) {
-                    const int place = sides.classify(x, y);
-                    if (place < 0) continue;
-                    const double area = (place > 0 ? 1 : clippedArea(t, x, y)) * (t.area / flat);
-                    if (!(area > 0)) continue;
-                    const uint32_t texel = grid_.at(x, y);
-                    if (grid_.chart[texel] == t.chart)
-                        grid_.area[texel] += area;
-                    else
-                        parts_.push_back({texel, i, area});
-                }
-            }
+            eachTouched(t, grid_.width, grid_.height, [&](int x, int y) {
+                const int place = sides.classify(x, y);
+                if (place < 0) return;
+                const double area = (place > 0 ? 1 : clippedArea(t, x, y)) * (t.area / flat);
+                if (!(area > 0)) return;
+                const uint32_t texel = grid_.at(x, y);
+                if (grid_.chart[texel] == t.chart)
+                    grid_.area[texel] += area;
+                else
+                    parts_.push_back({texel, i, area});
+            });
         }
         std::sort(parts_.begin(), parts_.end(), [](const Part& a, const Part& b) {
             if (a.texel != b.texel) return a.texel < b.texel;
@@ -169,16 +161,14 @@ class Rasteriser {
         for (const Part& part : parts_) {
             if (grid_.owner[part.texel] != kNone) continue;
             if (!forced.empty() && forced.back().texel == part.texel) continue;
-            const int x = int(part.texel % grid_.width), y = int(part.texel / grid_.width);
             bool beside = false;
             for (size_t k = 0; k < 8; k += 2)
-                beside |= grid_.inside(x + kRingX[k], y + kRingY[k]) &&
-                          grid_.chart[grid_.at(x + kRingX[k], y + kRingY[k])] ==
-                              surface_.triangles[part.triangle].chart;
+                if (const uint32_t texel = grid_.inImage(part.texel, k); texel != kNone)
+                    beside |= grid_.chart[texel] == surface_.triangles[part.triangle].chart;
             if (!beside) forced.push_back(part);
         }
         for (const Part& part : forced) {
-            const glm::dvec2 middle(part.texel % grid_.width + 0.5, part.texel / grid_.width + 0.5);
+            const glm::dvec2 middle = glm::dvec2(grid_.placeOf(part.texel)) + 0.5;
             own(part.texel, part.triangle,
                 closestWeights(surface_.triangles[part.triangle], middle));
             grid_.flags[part.texel] |= kTexelForced;
@@ -190,17 +180,16 @@ class Rasteriser {
         AreaHeir heir(surface_, grid_, memory_);
         for (const Part& part : parts_) {
             const uint32_t chart = surface_.triangles[part.triangle].chart;
-            const int px = int(part.texel % grid_.width), py = int(part.texel / grid_.width);
+            const glm::ivec2 middle = grid_.placeOf(part.texel);
             uint32_t best = kNone;
             int nearest = 1 << 30;
-            for (int dy = -3; dy <= 3; ++dy)
-                for (int dx = -3; dx <= 3; ++dx) {
-                    if (!grid_.inside(px + dx, py + dy)) continue;
-                    const uint32_t texel = grid_.at(px + dx, py + dy);
-                    if (grid_.chart[texel] != chart || dx * dx + dy * dy >= nearest) continue;
-                    nearest = dx * dx + dy * dy;
-                    best = texel;
-                }
+            grid_.around(middle, 3, [&](uint32_t texel, glm::ivec2 at) {
+                const glm::ivec2 d = at - middle;
+                const int square = d.x * d.x + d.y * d.y;
+                if (grid_.chart[texel] != chart || square >= nearest) return;
+                nearest = square;
+                best = texel;
+            });
             if (best == kNone) {
                 if (heirOf[chart] == kNone)
                     heirOf[chart] = heir.anywhere(part.triangle, part.texel);
@@ -278,13 +267,11 @@ TexelGrid rasterise(const Surface& surface, uint32_t width, uint32_t height, dou
     grid.height = height;
     grid.side = 1 / density;
     const size_t count = size_t(width) * height;
-    grid.owner.assign(count, kNone);
-    grid.chart.assign(count, kNone);
+    for (auto* texels : {&grid.owner, &grid.chart, &grid.linkRecord}) texels->assign(count, kNone);
     grid.position.assign(count, glm::vec3(0));
     grid.weights.assign(count, glm::vec2(0));
     grid.area.assign(count, 0);
     grid.flags.assign(count, 0);
-    grid.linkRecord.assign(count, kNone);
     grid.shapes.reserve(surface.triangles.size());
     for (const Triangle& t : surface.triangles) grid.shapes.push_back(texelShape(t));
     Rasteriser(surface, grid, report, memory).run();

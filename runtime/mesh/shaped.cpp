@@ -6,26 +6,20 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 namespace fw::mesh {
 namespace {
 
-glm::dvec3 unpackNormal(uint32_t packed) {
-    const auto n = gpu::decodeNormal(packed);
-    return glm::dvec3(n.x, n.y, n.z) / 16384.0;
-}
+// As the front reads it.
+glm::dvec3 normalOf(uint32_t packed) { return glm::dvec3(gpu::decodeNormal(packed)) / 16384.0; }
 
 // Stretched places of texels, m.
 struct Places {
     const BurnDomain& from;
     glm::dvec3 shape;
 
-    [[nodiscard]] glm::dvec3 at(uint32_t texel) const {
-        const TexelPosition& p = from.texels[texel];
-        const double q = double(from.quantum);
-        return shape * (glm::dvec3(from.origin[0], from.origin[1], from.origin[2]) +
-                        q * glm::dvec3(p.x, p.y, p.z));
-    }
+    [[nodiscard]] glm::dvec3 at(uint32_t texel) const { return shape * from.placeOf(texel); }
 };
 
 void measure(const Places& places, BurnDomain& out, std::pmr::memory_resource* memory) {
@@ -68,10 +62,8 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
 
     glm::dvec3 low, high;
     for (int k = 0; k < 3; ++k) {
-        const double a = shape[k] * double(from.boundsLow[k]);
-        const double b = shape[k] * double(from.boundsHigh[k]);
-        low[k] = std::min(a, b);
-        high[k] = std::max(a, b);
+        std::tie(low[k], high[k]) = std::minmax(
+            {shape[k] * double(from.boundsLow[k]), shape[k] * double(from.boundsHigh[k])});
         out.origin[k] = out.boundsLow[k] = float(low[k]);
         out.boundsHigh[k] = float(high[k]);
     }
@@ -80,35 +72,33 @@ BurnDomain shaped(const BurnDomain& from, const float given[3], std::pmr::memory
     // As fine as the bake: a flattened axis keeps its share of the units.
     const double fine = double(from.quantum) * std::cbrt(volume);
     const double quantum = std::max({extent / 65535, fine, double(out.linkMax) / kLongestLink});
-    out.quantum = float(quantum);
-    if (double(out.quantum) < quantum) out.quantum = std::nextafter(out.quantum, 1e30f);
+    out.quantum = floatAtLeast(quantum);
 
-    double areas = 0, before = 0;
+    double areas = 0, areasBefore = 0;
     for (uint32_t i = 0; i < from.texelCount(); ++i) {
         if (!from.real(i)) continue;
         const glm::dvec3 at = (places.at(i) - low) / double(out.quantum);
         uint16_t* const fields[3] = {&out.texels[i].x, &out.texels[i].y, &out.texels[i].z};
         for (int k = 0; k < 3; ++k)
             *fields[k] = uint16_t(std::clamp(std::floor(at[k] + 0.5), 0.0, 65535.0));
-        const glm::dvec3 rest = unpackNormal(from.normals[i]);
-        const glm::dvec3 normal = rest / shape;
-        const double grown = glm::length(normal) / std::max(glm::length(rest), 1e-12);
+        const glm::dvec3 before = normalOf(from.normals[i]), normal = before / shape;
+        const double grown = glm::length(normal) / std::max(glm::length(before), 1e-12);
         out.normals[i] = packNormal(glm::normalize(normal));
         // A slab that grows in area thins along its normal.
         out.areas[i] = float(double(from.areas[i]) * volume * grown);
         areas += double(out.areas[i]);
-        before += double(from.areas[i]);
+        areasBefore += double(from.areas[i]);
         if (from.thickness[i] != 0xFFFF)
             out.thickness[i] = uint16_t(
                 std::clamp(std::floor(double(from.thickness[i]) / grown + 0.5), 1.0, 65534.0));
     }
-    const double growth = before > 0 ? areas / before : 1;
+    const double growth = areasBefore > 0 ? areas / areasBefore : 1;
     out.texelSide = float(double(from.texelSide) * std::sqrt(growth));
     out.report.meshArea = from.report.meshArea * growth;
     out.report.texelArea = areas;
     for (RenderVertex& v : out.vertices) {
         for (int k = 0; k < 3; ++k) v.position[k] = float(shape[k] * double(v.position[k]));
-        v.normal = packNormal(glm::normalize(unpackNormal(v.normal) / shape));
+        v.normal = packNormal(glm::normalize(normalOf(v.normal) / shape));
     }
     if (shape.x * shape.y * shape.z < 0)  // faces go on turning outwards
         for (size_t i = 0; i + 2 < out.indices.size(); i += 3)

@@ -3,8 +3,10 @@
 
 #include "core/error.h"
 
+#include <bit>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 namespace fw::mesh {
 namespace {
@@ -29,8 +31,7 @@ uint64_t cellHash(int64_t x, int64_t y, int64_t z) {
 uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t>& pointOf,
               std::pmr::memory_resource* memory) {
     const uint32_t vertices = uint32_t(input.positions.size() / 3);
-    uint32_t buckets = 64;
-    while (buckets < vertices) buckets *= 2;
+    const uint32_t buckets = std::max(64u, std::bit_ceil(vertices));
     std::pmr::vector<uint32_t> head(buckets, kNone, memory);
     std::pmr::vector<uint32_t> next(memory), first(memory);  // per point; first = its vertex
     next.reserve(vertices);
@@ -38,23 +39,19 @@ uint32_t weld(const BakeInput& input, double distance, std::pmr::vector<uint32_t
     pointOf.assign(vertices, kNone);
     for (uint32_t v = 0; v < vertices; ++v) {
         const glm::dvec3 p = positionOf(input, v);
-        const glm::dvec3 cell =
-            glm::dvec3(std::floor(p.x / (2 * distance)), std::floor(p.y / (2 * distance)),
-                       std::floor(p.z / (2 * distance)));
+        const glm::dvec3 cell = glm::floor(p / (2 * distance));
+        const auto headAt = [&](int64_t dx, int64_t dy, int64_t dz) -> uint32_t& {
+            return head[cellHash(int64_t(cell.x) + dx, int64_t(cell.y) + dy, int64_t(cell.z) + dz) &
+                        (buckets - 1)];
+        };
         uint32_t found = kNone;  // the lowest point in reach, whatever the order of the hash
-        for (int d = 0; d < 27; ++d) {
-            const uint64_t h =
-                cellHash(int64_t(cell.x) + d % 3 - 1, int64_t(cell.y) + d / 3 % 3 - 1,
-                         int64_t(cell.z) + d / 9 - 1);
-            for (uint32_t q = head[h & (buckets - 1)]; q != kNone; q = next[q])
+        for (int d = 0; d < 27; ++d)
+            for (uint32_t q = headAt(d % 3 - 1, d / 3 % 3 - 1, d / 9 - 1); q != kNone; q = next[q])
                 if (q < found && glm::length(positionOf(input, first[q]) - p) < distance) found = q;
-        }
         if (found == kNone) {
             found = uint32_t(first.size());
-            const uint64_t h = cellHash(int64_t(cell.x), int64_t(cell.y), int64_t(cell.z));
             first.push_back(v);
-            next.push_back(head[h & (buckets - 1)]);
-            head[h & (buckets - 1)] = found;
+            next.push_back(std::exchange(headAt(0, 0, 0), found));
         }
         pointOf[v] = found;
     }
@@ -91,6 +88,13 @@ glm::dvec3 Faces::offset() const {
     const glm::dvec3 o = glm::inverse(squares + glm::dmat3(little)) * (guess * little - sum);
     const double length = glm::length(o);
     return length > kLongestOffset ? o * (kLongestOffset / length) : o;
+}
+
+Extent2 extentOf(const Surface& surface, std::span<const uint32_t> members) {
+    Extent2 extent;
+    for (const uint32_t i : members)
+        if (surface.triangles[i].chart != kNone) extent.add(surface.triangles[i]);
+    return extent;
 }
 
 RowSpan rowsOf(const Triangle& t, int height) {
@@ -184,10 +188,8 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
         const glm::dvec3 across =
             glm::cross(t.position[1] - t.position[0], t.position[2] - t.position[0]);
         t.area = 0.5 * glm::length(across);
-        const bool flat = t.point[0] == t.point[1] || t.point[1] == t.point[2] ||
-                          t.point[2] == t.point[0] ||
-                          t.area < 1e-16 * surface.extent * surface.extent;
-        if (flat) {
+        if (t.point[0] == t.point[1] || t.point[1] == t.point[2] || t.point[2] == t.point[0] ||
+            t.area < 1e-16 * surface.extent * surface.extent) {
             ++surface.degenerate;
             continue;
         }
@@ -208,13 +210,13 @@ Surface collectSurface(const BakeInput& input, double weldDistance,
 void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* memory) {
     auto& triangles = surface.triangles;
     surface.openEdges = surface.nonManifoldEdges = surface.seamEdges = surface.chartCount = 0;
-    for (Triangle& t : triangles)
-        for (uint32_t e = 0; e < 3; ++e) {
-            FW_ASSERT(t.point[e] < surface.pointCount, "point %u of %u", t.point[e],
-                      surface.pointCount);
-            t.neighbour[e] = kNone;
-            t.seam[e] = false;
-        }
+    for (Triangle& t : triangles) {
+        FW_ASSERT(std::max({t.point[0], t.point[1], t.point[2]}) < surface.pointCount,
+                  "points %u, %u, %u of %u", t.point[0], t.point[1], t.point[2],
+                  surface.pointCount);
+        std::fill_n(t.neighbour, 3, kNone);
+        std::fill_n(t.seam, 3, false);
+    }
     const std::pmr::vector<EdgeUse> uses = sortedUses(triangles, memory);
 
     std::pmr::vector<uint32_t> parent(triangles.size(), memory);
@@ -240,12 +242,12 @@ void pairEdges(Surface& surface, bool uvMeaningful, std::pmr::memory_resource* m
             }
             used[i] = used[best] = 1;
             const EdgeUse &a = uses[i], &b = uses[best];
-            Triangle &ta = triangles[a.triangle], &tb = triangles[b.triangle];
-            ta.neighbour[a.side] = b.triangle;
-            ta.neighbourEdge[a.side] = uint8_t(b.side);
-            tb.neighbour[b.side] = a.triangle;
-            tb.neighbourEdge[b.side] = uint8_t(a.side);
-            ta.seam[a.side] = tb.seam[b.side] = !bestFit.continuous;
+            for (const auto& [mine, other] : {std::pair(a, b), std::pair(b, a)}) {
+                Triangle& t = triangles[mine.triangle];
+                t.neighbour[mine.side] = other.triangle;
+                t.neighbourEdge[mine.side] = uint8_t(other.side);
+                t.seam[mine.side] = !bestFit.continuous;
+            }
             if (bestFit.continuous)
                 parent[rootOf(parent, a.triangle)] = rootOf(parent, b.triangle);
             else

@@ -4,6 +4,8 @@
 #include "mesh/bake.h"
 
 #include <algorithm>
+#include <cmath>
+#include <compare>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
@@ -43,11 +45,7 @@ struct Triangle {
 struct EdgeUse {
     uint32_t low, high, triangle, side;
     [[nodiscard]] bool sameEdge(const EdgeUse& o) const { return low == o.low && high == o.high; }
-    bool operator<(const EdgeUse& o) const {
-        if (low != o.low) return low < o.low;
-        if (high != o.high) return high < o.high;
-        return triangle != o.triangle ? triangle < o.triangle : side < o.side;
-    }
+    auto operator<=>(const EdgeUse&) const = default;
 };
 // Of Triangle or CoarseTriangle.
 template <class Triangles>
@@ -139,17 +137,27 @@ struct Extent2 {
     }
     [[nodiscard]] glm::dvec2 size() const { return high - low; }
 };
+// The box of those of the triangles `members` that have a chart.
+Extent2 extentOf(const Surface& surface, std::span<const uint32_t> members);
 
 inline double cross2(glm::dvec2 a, glm::dvec2 b) { return a.x * b.y - a.y * b.x; }
 inline double uvArea(const Triangle& t) {  // texels^2, signed
     return 0.5 * cross2(t.uv[1] - t.uv[0], t.uv[2] - t.uv[0]);
 }
+template <class T>
+T mixed(const T& a, const T& b, const T& c, glm::dvec3 weights) {
+    return a * weights.x + b * weights.y + c * weights.z;
+}
 inline glm::dvec3 positionAt(const Triangle& t, glm::dvec3 weights) {
-    return t.position[0] * weights.x + t.position[1] * weights.y + t.position[2] * weights.z;
+    return mixed(t.position[0], t.position[1], t.position[2], weights);
 }
 inline glm::dvec2 uvAt(const Triangle& t, glm::dvec3 weights) {
-    return t.uv[0] * weights.x + t.uv[1] * weights.y + t.uv[2] * weights.z;
+    return mixed(t.uv[0], t.uv[1], t.uv[2], weights);
 }
+inline glm::dvec3 centreOf(const Triangle& t) {
+    return (t.position[0] + t.position[1] + t.position[2]) / 3.0;
+}
+inline uint32_t roundUp8(double texels) { return (uint32_t(std::ceil(texels)) + 7) & ~7u; }
 // `otherwise` where `v` has no direction.
 inline glm::dvec3 unitOr(glm::dvec3 v, glm::dvec3 otherwise) {
     const double length = glm::length(v);
@@ -162,6 +170,15 @@ struct RowSpan {
 RowSpan rowSpan(const Triangle& t, int y, int width);
 // Rows likewise.
 RowSpan rowsOf(const Triangle& t, int height);
+// Calls visit(x, y) for the texels of an atlas that a triangle touches, row by row.
+template <class Visit>
+void eachTouched(const Triangle& t, uint32_t width, uint32_t height, Visit visit) {
+    const RowSpan rows = rowsOf(t, int(height));
+    for (int y = rows.first; y <= rows.last; ++y) {
+        const RowSpan span = rowSpan(t, y, int(width));
+        for (int x = span.first; x <= span.last; ++x) visit(x, y);
+    }
+}
 // Weights of a point of the atlas; false if the triangle has no area there.
 bool weightsAt(const Triangle& t, glm::dvec2 uv, glm::dvec3& weights);
 TexelShape texelShape(const Triangle& t);

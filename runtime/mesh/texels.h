@@ -8,30 +8,22 @@ namespace fw::mesh {
 constexpr double kLongestLink = 8000;  // units; below the front's limit of 8191
 
 struct TexelGrid {
-    explicit TexelGrid(std::pmr::memory_resource* memory)
-        : owner(memory),
-          chart(memory),
-          position(memory),
-          weights(memory),
-          area(memory),
-          flags(memory),
-          shapes(memory),
-          linkRecord(memory),
-          links(memory) {}
+    explicit TexelGrid(std::pmr::memory_resource* of) : memory(of) {}
 
+    std::pmr::memory_resource* memory;
     uint32_t width = 0, height = 0;
     double side = 0;  // m, nominal texel
 
-    std::pmr::vector<uint32_t> owner;       // triangle, or kNone
-    std::pmr::vector<uint32_t> chart;       // or kNone
-    std::pmr::vector<glm::vec3> position;   // m, from Surface::low
-    std::pmr::vector<glm::vec2> weights;    // of the owner's corners 0 and 1
-    std::pmr::vector<double> area;          // m^2
-    std::pmr::vector<uint16_t> flags;       // TexelFlag; only texels with kTexelReal count
-    std::pmr::vector<TexelShape> shapes;    // per triangle
-    std::pmr::vector<uint32_t> linkRecord;  // per texel: record in links, or kNone
-    std::pmr::vector<uint32_t> links;       // 8 per record, raster order
-    double linkMax = 0;                     // m, longest link of all, set by linkTexels
+    std::pmr::vector<uint32_t> owner{memory};       // triangle, or kNone
+    std::pmr::vector<uint32_t> chart{memory};       // or kNone
+    std::pmr::vector<glm::vec3> position{memory};   // m, from Surface::low
+    std::pmr::vector<glm::vec2> weights{memory};    // of the owner's corners 0 and 1
+    std::pmr::vector<double> area{memory};          // m^2
+    std::pmr::vector<uint16_t> flags{memory};       // TexelFlag; only texels with kTexelReal count
+    std::pmr::vector<TexelShape> shapes{memory};    // per triangle
+    std::pmr::vector<uint32_t> linkRecord{memory};  // per texel: record in links, or kNone
+    std::pmr::vector<uint32_t> links{memory};       // 8 per record, raster order
+    double linkMax = 0;                             // m, longest link of all, set by linkTexels
 
     [[nodiscard]] uint32_t count() const { return width * height; }
     [[nodiscard]] bool inside(int x, int y) const {
@@ -40,6 +32,21 @@ struct TexelGrid {
     [[nodiscard]] uint32_t at(int x, int y) const {
         FW_ASSERT(inside(x, y), "texel (%d, %d) of %u x %u", x, y, width, height);
         return uint32_t(y) * width + uint32_t(x);
+    }
+    [[nodiscard]] glm::ivec2 placeOf(uint32_t texel) const {
+        return {int(texel % width), int(texel / width)};
+    }
+    // The k-th texel around another in the image, or kNone.
+    [[nodiscard]] uint32_t inImage(uint32_t texel, size_t k) const {
+        const glm::ivec2 at = placeOf(texel) + glm::ivec2(kRingX[k], kRingY[k]);
+        return inside(at.x, at.y) ? this->at(at.x, at.y) : kNone;
+    }
+    // Calls visit(texel, place) for the texels of the image at most `reach` from a place.
+    template <class Visit>
+    void around(glm::ivec2 middle, int reach, Visit visit) const {
+        for (int y = middle.y - reach; y <= middle.y + reach; ++y)
+            for (int x = middle.x - reach; x <= middle.x + reach; ++x)
+                if (inside(x, y)) visit(at(x, y), glm::ivec2(x, y));
     }
     [[nodiscard]] bool real(uint32_t texel) const {
         FW_ASSERT(texel < flags.size(), "%u of %zu texels", texel, flags.size());
@@ -93,6 +100,15 @@ void buildDrawn(const BakeInput& input, const Surface& surface, BurnDomain& doma
 void buildTileBounds(BurnDomain& domain);
 // Links parts that share no edge but come near each other: a roof on its walls, a cart's wheel.
 void linkParts(BurnDomain& domain, std::pmr::memory_resource* memory);
-uint32_t packNormal(glm::dvec3 normal);  // signed 11:11:10; 1023, 1023, 511 are 1
+inline float floatAtLeast(double value) {
+    const float near = float(value);
+    return double(near) < value ? std::nextafter(near, 1e30f) : near;
+}
+// Signed 11:11:10; 1023, 1023, 511 are 1.
+uint32_t packNormal(glm::dvec3 normal);
+inline glm::dvec3 unpackNormal(uint32_t packed) {
+    return {double(int(packed << 21) >> 21) / 1023, double(int(packed << 10) >> 21) / 1023,
+            double(int(packed) >> 22) / 511};
+}
 
 }  // namespace fw::mesh

@@ -1,4 +1,4 @@
-// Tiles: their texels with link records, their texels that other tiles read, and those readers.
+// Tiles: their texels with link records, their texels that other tiles read, and those tiles.
 // Also the bounds that make queries fast.
 #include "mesh/texels.h"
 
@@ -7,8 +7,7 @@ namespace {
 
 struct Read {  // tile `to` has a record that names a texel of tile `of`
     uint32_t of, to;
-    bool operator<(const Read& o) const { return of != o.of ? of < o.of : to < o.to; }
-    bool operator==(const Read& o) const { return of == o.of && to == o.to; }
+    auto operator<=>(const Read&) const = default;
 };
 
 void setBit(uint32_t& low, uint32_t& high, uint32_t lane) {
@@ -57,15 +56,15 @@ void buildTiles(const TexelGrid& grid, BurnDomain& domain, std::pmr::memory_reso
 
 void buildTileBounds(BurnDomain& domain) {
     domain.tileBounds.assign(domain.tileCount(), TileBounds{});
-    for (uint32_t texel = 0; texel < domain.texelCount(); ++texel) {
-        if (!domain.real(texel)) continue;
-        TileBounds& bounds = domain.tileBounds[domain.tileOf(texel)];
-        const TexelPosition& p = domain.texels[texel];
-        const uint16_t at[3] = {p.x, p.y, p.z};
-        for (int k = 0; k < 3; ++k) {
-            bounds.low[k] = std::min(bounds.low[k], at[k]);
-            bounds.high[k] = std::max(bounds.high[k], at[k]);
-        }
+    for (uint32_t tile = 0; tile < domain.tileCount(); ++tile) {
+        TileBounds& bounds = domain.tileBounds[tile];
+        eachTexel(domain, tile, [&](uint32_t texel) {
+            const glm::ivec3 at = domain.texels[texel].units();
+            for (int k = 0; k < 3; ++k) {
+                bounds.low[k] = std::min(bounds.low[k], uint16_t(at[k]));
+                bounds.high[k] = std::max(bounds.high[k], uint16_t(at[k]));
+            }
+        });
     }
 }
 

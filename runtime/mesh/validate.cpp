@@ -28,6 +28,15 @@ void requireFinite(const char* array, std::span<const float> values, size_t widt
     }
 }
 
+// Elements of `width` values each.
+void requireCount(const char* array, size_t size, size_t width, const char* has) {
+    if (size == 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s is empty; a mesh needs at least %s.", array, has);
+    if (size % width != 0)
+        core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has %zu elements; it must be a multiple of %zu.",
+                   array, size, width);
+}
+
 void requireSize(const char* array, size_t size, size_t expected, const char* per) {
     if (size == 0 || size == expected) return;
     core::fail(FW_ERROR_INVALID_ARGUMENT, "%s has %zu elements; %s need %zu (or none).", array,
@@ -43,19 +52,8 @@ void requireRange(const char* name, double value, double low, double high) {
 }  // namespace
 
 void validate(const BakeInput& input) {
-    if (input.positions.empty())
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "positions is empty; a mesh needs at least 3 vertices.");
-    if (input.positions.size() % 3 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "positions has %zu elements; it must be a multiple of 3.",
-                   input.positions.size());
-    if (input.indices.empty())
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "indices is empty; a mesh needs at least 1 triangle.");
-    if (input.indices.size() % 3 != 0)
-        core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "indices has %zu elements; it must be a multiple of 3.", input.indices.size());
+    requireCount("positions", input.positions.size(), 3, "3 vertices");
+    requireCount("indices", input.indices.size(), 3, "1 triangle");
     const size_t vertices = input.positions.size() / 3;
     const size_t triangles = input.indices.size() / 3;
     if (vertices > kElementLimit || triangles > kElementLimit)

@@ -50,43 +50,6 @@ class Stopwatch {
 
 }  // namespace
 
-CpuBackend::State::State(std::pmr::memory_resource* memory_, uint32_t maxLights_)
-    : memory(memory_),
-      maxLights(maxLights_),
-      meshes(memory_),
-      objects(memory_),
-      tiles(memory_),
-      list(memory_),
-      listOut(memory_),
-      runList(memory_),
-      burnList(memory_),
-      hotList(memory_),
-      hotOut(memory_),
-      asks(memory_),
-      asked(memory_),
-      tileHeat(memory_),
-      tileFire(memory_),
-      results(memory_),
-      scratch(memory_),
-      burnTiles(memory_),
-      freeTiles(memory_),
-      readbacks(memory_) {}
-
-FrontArrays CpuBackend::State::planes(const CpuObject& object) const noexcept {
-    const mesh::BurnDomain& domain = *object.domain;
-    FrontArrays planes;
-    planes.state = object.state.data();
-    planes.texels = domain.texels.data();
-    planes.normals = domain.normals.data();
-    planes.slowness = object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
-    planes.links = domain.links.data();
-    planes.tiles = domain.tiles.data();
-    planes.materials = object.materials.data();
-    planes.width = domain.width;
-    planes.tilesX = domain.tilesX;
-    return planes;
-}
-
 void CpuBackend::State::touch(uint32_t worldTile, uint32_t bits) noexcept {
     FW_ASSERT(worldTile < tiles.size(), "world tile %u of %zu", worldTile, tiles.size());
     uint32_t& flag = tiles[worldTile].flag;
@@ -104,32 +67,32 @@ void CpuBackend::State::burning(uint32_t worldTile) noexcept {
 }
 
 void CpuBackend::State::requestToBurn(uint32_t worldTile) noexcept {
-    FW_ASSERT(worldTile < asked.size(), "world tile %u of %zu", worldTile, asked.size());
-    if (asked[worldTile] != 0) return;
-    FW_ASSERT(asks.size() < asks.capacity(), "%zu tiles ask", asks.size());
-    asked[worldTile] = 1;
-    asks.push_back({0, 0, 0, worldTile});
+    FW_ASSERT(worldTile < requested.size(), "world tile %u of %zu", worldTile, requested.size());
+    if (requested[worldTile] != 0) return;
+    FW_ASSERT(requests.size() < requests.capacity(), "%zu tiles request", requests.size());
+    requested[worldTile] = 1;
+    requests.push_back({0, 0, 0, worldTile});
 }
 
-void CpuBackend::State::grant(uint32_t maxTiles, uint32_t now) noexcept {
+void CpuBackend::State::allocateBurnBudget(uint32_t maxTiles, uint32_t now) noexcept {
     Stopwatch watch(*this, kTimerBurnBudget);
-    for (uvec4& ask : asks) {
-        asked[ask.w] = 0;
-        ask.y = tiles[ask.w].object;
-        ask.z = at(ask.y).localTileOf(ask.w);
-        ask.x = requestOrder(ask.y, ask.z, now);
+    for (uvec4& request : requests) {
+        requested[request.w] = 0;
+        request.y = tiles[request.w].object;
+        request.z = at(request.y).localTileOf(request.w);
+        request.x = requestOrder(request.y, request.z, now);
     }
-    std::sort(asks.begin(), asks.end(), requestPrecedes);
-    for (const uvec4& ask : asks) {
-        const CpuObject& object = at(ask.y);
+    std::sort(requests.begin(), requests.end(), requestPrecedes);
+    for (const uvec4& request : requests) {
+        const CpuObject& object = at(request.y);
         const bool limited = object.exchanges();
-        // A tile that the host lit meanwhile needs no grant, and counts.
-        if ((tiles[ask.w].flag & kTileBurning) == 0 &&
+        // A tile that the host lit meanwhile needs no allocation, and counts.
+        if ((tiles[request.w].flag & kTileBurning) == 0 &&
             remainingTiles(uint32_t(burnList.size()) + goneBurning, maxTiles) != 0 &&
             (!limited || remainingTiles(object.counters.burningTiles, object.remote.maxTiles) != 0))
-            burning(ask.w);
+            burning(request.w);
     }
-    asks.clear();
+    requests.clear();
 }
 
 void CpuBackend::State::touchDependents(const CpuObject& object, uint32_t local,
@@ -151,8 +114,7 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
     FW_ASSERT(event.texel < object.state.size(), "%u of %zu texels", event.texel,
               object.state.size());
     FW_ASSERT(event.tick < from.state.size(), "%u of %zu texels", event.tick, from.state.size());
-    uint32_t& state = object.state[event.texel];
-    const uint32_t before = state;
+    const uint32_t before = object.state[event.texel];
     uint32_t after = from.state[event.tick];
     if (isRequestPass || !carries(after, before)) return;
     const uint32_t worldTile = object.worldTileOf(event.texel);
@@ -166,27 +128,31 @@ void CpuBackend::State::carryTexel(const TexelEvent& event, uint32_t now) noexce
         // given the air for it.
         const uint64_t lost =
             uint64_t(int64_t(unpackHeat(had).fuel) - int64_t(has.fuel)) * m.energy;
-        ObjectCounters& c = object.counters;
-        const uint64_t energy = (uint64_t(c.energyHigh) << 32 | c.energyLow) + lost;
-        const uint64_t drawn = (uint64_t(c.drawnHigh) << 32 | c.drawnLow) + lost;
-        c.energyLow = uint32_t(energy);
-        c.energyHigh = uint32_t(energy >> 32);
-        c.drawnLow = uint32_t(drawn);
-        c.drawnHigh = uint32_t(drawn >> 32);
+        addWide(object.counters.energyLow, object.counters.energyHigh, lost);
+        addWide(object.counters.drawnLow, object.counters.drawnHigh, lost);
         object.heat[event.texel] = packed;
         hot(worldTile);
     }
     if (after == before) return;
-    state = after;
-    if (isSource(after) != isSource(before)) object.counters.ignited += isSource(after) ? 1u : ~0u;
-    if (isSource(after)) {
-        object.counters.lastIgnition = std::max(object.counters.lastIgnition, now + kStepTicks);
-        burning(worldTile);
-        object.counters.litBy = std::max(object.counters.litBy, from.counters.litBy);
-        object.counters.litTick = std::max(object.counters.litTick, from.counters.litTick);
-        object.counters.stopTick = std::max(object.counters.stopTick, from.counters.stopTick);
-    }
+    setState(object, worldTile, event.texel, after, now + kStepTicks);
+    if (isSource(after))
+        for (auto field :
+             {&ObjectCounters::litBy, &ObjectCounters::litTick, &ObjectCounters::stopTick})
+            object.counters.*field = std::max(object.counters.*field, from.counters.*field);
     changedTexel(object, event.texel, now);
+}
+
+bool CpuBackend::State::setState(CpuObject& object, uint32_t worldTile, uint32_t texel,
+                                 uint32_t after, uint32_t end) noexcept {
+    FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
+    const bool was = isSource(std::exchange(object.state[texel], after)), is = isSource(after);
+    FW_ASSERT(!was || is || object.counters.ignited > 0, "no texel of the object burns");
+    if (is != was) object.counters.ignited += is ? 1u : ~0u;
+    if (is) {
+        object.counters.lastIgnition = std::max(object.counters.lastIgnition, end);
+        burning(worldTile);
+    }
+    return is && !was;
 }
 
 void CpuBackend::State::changedTexel(const CpuObject& object, uint32_t texel,
@@ -247,10 +213,9 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
         }
         FW_ASSERT(first.texel < object.state.size(), "%u of %zu texels", first.texel,
                   object.state.size());
-        uint32_t& texel = object.state[first.texel];
-        const uint32_t before = texel;
+        const uint32_t before = object.state[first.texel];
         HeatTexel heated{};
-        bool byFlame = false;  // lit by heat; an ignition of the host needs no grant
+        bool byFlame = false;  // lit by heat; an ignition of the host is not limited
         const uint32_t now =
             afterEvents(object, first.texel, step.events, run, step.now, heated, byFlame);
         const uint32_t worldTile = object.worldTileOf(first.texel);
@@ -269,14 +234,8 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
             if (now != before || object.heat[first.texel] != had) hot(worldTile);
         }
         if (now == before) continue;
-        texel = now;
-        if (isSource(now) != isSource(before)) object.counters.ignited += isSource(now) ? 1u : ~0u;
-        if (isSource(now)) {
-            object.counters.lastIgnition =
-                std::max(object.counters.lastIgnition, step.now + kStepTicks);
-            burning(worldTile);
-            if (!isSource(before)) litFrom(object, kLitByHand);
-        }
+        if (setState(object, worldTile, first.texel, now, step.now + kStepTicks))
+            litFrom(object, kLitByHand);
         if (!object.published.empty()) {
             publishedEvent(object, first.texel, isSource(now));
             continue;
@@ -285,7 +244,7 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
     }
 }
 
-// As for its texels one by one. These are events of the host: none needs a grant to burn.
+// As for its texels one by one. Events of the host are not limited.
 void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent> run,
                                    const StepPlan& step) noexcept {
     const mesh::BurnDomain& domain = *object.domain;
@@ -323,20 +282,14 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
                 heated |= now != before || knownHeat != had;
             }
             if (now == before) continue;
-            object.state[texel] = now;
             changed |= 1ull << lane;
-            if (isSource(now) != isSource(before))
-                object.counters.ignited += isSource(now) ? 1u : ~0u;
-            burns |= isSource(now);
-            if (isSource(now) && !isSource(before)) litFrom(object, kLitByHand);
+            if (setState(object, worldTile, texel, now, step.now + kStepTicks))
+                litFrom(object, kLitByHand);
             if (!object.published.empty()) publishedEvent(object, texel, isSource(now));
         }
         if (heated) hot(worldTile);
         if (burns) burning(worldTile);
         if (changed == 0) continue;
-        if (burns)
-            object.counters.lastIgnition =
-                std::max(object.counters.lastIgnition, step.now + kStepTicks);
         if (!object.published.empty()) continue;
         tiles[worldTile].lastChange = step.now;
         touchDependents(object, local, changed);
@@ -430,8 +383,8 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
         Stopwatch watch(*this, kTimerArrival);
         FW_ASSERT(runList.size() <= results.size() && runList.size() * 64 <= scratch.size(),
                   "%zu tiles run, %zu results", runList.size(), results.size());
-        uint32_t known = kNoneTexel;  // object of knownPlanes
-        FrontArrays knownPlanes;
+        uint32_t known = kNoneTexel;  // object of `arrays`
+        FrontArrays arrays;
         uint32_t end = 0, floorTick = 0, base = 0;
         for (size_t i = 0; i < runList.size(); ++i) {
             const uint32_t worldTile = runList[i];
@@ -439,20 +392,21 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
                 known = tiles[worldTile].object;
                 const CpuObject& object = at(known);
                 const uint32_t shift = object.record.substepShift;
-                knownPlanes = planes(object);
+                arrays = FrontArrays(*object.domain, object.state.data(), object.slowness,
+                                     object.materials.data());
                 end = iterationEnd(step.now, iteration, step.substepShift, shift);
                 floorTick =
                     windowFloor(end - windowTicks(step.substepShift, shift), object.record.window);
                 base = object.record.worldTileBase;
             }
             results[i] =
-                mesh::runFrontTile(knownPlanes, worldTile - base, end, floorTick, &scratch[i * 64]);
+                mesh::runFrontTile(arrays, worldTile - base, end, floorTick, &scratch[i * 64]);
         }
     }
     if (capped) {
         for (size_t i = 0; i < runList.size(); ++i)
             if (results[i].lit != 0 && !mayBurn(runList[i])) requestToBurn(runList[i]);
-        grant(step.rules.maxTiles, step.now);
+        allocateBurnBudget(step.rules.maxTiles, step.now);
     }
     Stopwatch watch(*this, kTimerCommit);
     for (size_t i = 0; i < runList.size(); ++i) {
@@ -460,7 +414,7 @@ void CpuBackend::State::iterate(const StepPlan& step, uint32_t iteration) noexce
         const FrontTile& result = results[i];
         TileState& tile = tiles[worldTile];
         tile.wake = result.wake;
-        if (result.lit != 0 && !mayBurn(worldTile)) {  // no grant: unchanged, and due again
+        if (result.lit != 0 && !mayBurn(worldTile)) {  // not allocated: unchanged, and due again
             touch(worldTile, kTileTouched);
             continue;
         }
@@ -509,20 +463,14 @@ uint32_t CpuBackend::State::allocateTiles(uint32_t count) {
     };
     for (auto* entries : {&list, &listOut, &runList, &burnList, &hotList, &hotOut})
         reserve(*entries, total);
-    reserve(asks, total);
-    reserve(asked, total);
-    reserve(tileHeat, total);
-    reserve(tileFire, total);
+    reserve(requests, total);
     reserve(burnTiles, total);
-    reserve(results, total);
-    reserve(scratch, total * 64);
-    reserve(tiles, total);
-    results.resize(total);
-    scratch.resize(total * 64);
-    tiles.resize(total);
-    tileHeat.resize(total);
-    tileFire.resize(total);
-    asked.resize(total);
+    const auto each = [&](const auto& act) {
+        act(requested, total), act(tileHeat, total), act(tileFire, total), act(results, total);
+        act(scratch, total * 64), act(tiles, total);
+    };
+    each(reserve);
+    each([](auto& entries, size_t needed) { entries.resize(needed); });
     return uint32_t(first);
 }
 
@@ -587,7 +535,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         object->heat.resize(texels);
     }
     if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
-    object->sources.resize(mesh::sourceCells(domain));
+    object->sources.resize(mesh::sourceCells(s.exchangeTiles[init.mesh]));
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
     core::growTo(s.freeTiles, s.objects.size() + s.freeTiles.size() + 1);
     const uint32_t first = s.allocateTiles(domain.tileCount());
@@ -598,7 +546,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->record.tileCount = domain.tileCount();
     object->record.flags |= kObjectLive;
     object->live = true;
-    s.rest(*object, slot);
+    s.resetObject(*object, slot);
     if (!object->published.empty()) ++s.publishedObjects;
     s.counts.add(*object);
     s.countLists();
@@ -670,7 +618,7 @@ ReadbackStore& CpuBackend::State::reserveReadback(const FramePlan& plan) {
 void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     FW_ASSERT(step.substepShift < 32, "substep shift %u", step.substepShift);
     FW_ASSERT(!step.exchange || step.reduce, "an exchange needs the counts of a reduction");
-    FW_ASSERT(!isRequestPass && asks.empty(), "%zu tiles still ask", asks.size());
+    FW_ASSERT(!isRequestPass && requests.empty(), "%zu tiles still request", requests.size());
     if (step.remote) placeExchangeObject(*step.remote);
     if (step.shield) setOcclusionPush(*step.shield);
     capped = step.capped;
@@ -690,7 +638,7 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     if (step.heat) goneHot = 0;
     if (step.heat && !hotList.empty()) {
         Stopwatch watch(*this, kTimerHeat);
-        if (capped) requestHeat(step.now), grant(most, step.now);
+        if (capped) requestHeat(step.now), allocateBurnBudget(most, step.now);
         heatStep(step.now);
     }
     goneListed = 0;
@@ -729,22 +677,17 @@ void CpuBackend::State::answerProbes(std::span<const Probe> probes,
 
 void CpuBackend::State::copyBurnMaps(std::span<const uint32_t> slots,
                                      ReadbackStore& store) const noexcept {
-    size_t at = 0, heatAt = 0;
+    std::span ticks(store.mapTicks);
+    std::span heat(store.mapHeat);
     for (uint32_t slot : slots) {
         const CpuObject* object = find(slot);
         if (!object) continue;
-        const std::span ticks = std::span(store.mapTicks).subspan(at, object->state.size());
-        const std::span heat = std::span(store.mapHeat).subspan(heatAt, object->heat.size());
-        std::copy(object->state.begin(), object->state.end(), ticks.begin());
-        std::copy(object->heat.begin(), object->heat.end(), heat.begin());
         FW_ASSERT(store.maps.size() < store.maps.capacity(), "%zu burn maps", store.maps.size());
-        store.maps.push_back({slot, ticks, heat});
-        at += ticks.size();
-        heatAt += heat.size();
+        store.maps.push_back(
+            {slot, copyNext<uint32_t>(object->state, ticks), copyNext<uvec2>(object->heat, heat)});
     }
-    FW_ASSERT(at == store.mapTicks.size() && heatAt == store.mapHeat.size(),
-              "%zu of %zu texels, %zu of %zu with heat", at, store.mapTicks.size(), heatAt,
-              store.mapHeat.size());
+    FW_ASSERT(ticks.empty() && heat.empty(), "%zu texels and %zu with heat are left", ticks.size(),
+              heat.size());
 }
 
 void CpuBackend::State::finishReadback(const FramePlan& plan, ReadbackStore& store) noexcept {
@@ -827,14 +770,19 @@ std::span<const PassTime> CpuBackend::passTimes() {
 
 namespace {
 
+// Bytes of vectors by `sizeOf(vector)`.
+template <class SizeOf>
+uint64_t stateBytes(const CpuObject& object, SizeOf sizeOf) noexcept {
+    const auto bytes = [&](const auto&... of) {
+        return ((uint64_t(sizeOf(of)) * sizeof of[0]) + ...);
+    };
+    return bytes(object.state, object.slowness, object.published, object.heat);
+}
 uint64_t stateBytes(const CpuObject& object) noexcept {
-    return object.state.size() * sizeof(uint32_t) + object.slowness.size() * sizeof(uint16_t) +
-           object.published.size() * sizeof(float) + object.heat.size() * sizeof(uvec2);
+    return stateBytes(object, [](const auto& of) { return of.size(); });
 }
 uint64_t stateCapacity(const CpuObject& object) noexcept {
-    return object.state.capacity() * sizeof(uint32_t) +
-           object.slowness.capacity() * sizeof(uint16_t) +
-           object.published.capacity() * sizeof(float) + object.heat.capacity() * sizeof(uvec2);
+    return stateBytes(object, [](const auto& of) { return of.capacity(); });
 }
 uint64_t objectBytes(const CpuObject& object) noexcept {
     return sizeof(CpuObject) + object.sources.capacity() * sizeof(FireSource);

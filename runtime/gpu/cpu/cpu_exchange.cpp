@@ -204,9 +204,7 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     if (isRequestPass || !mayBurn(worldTile)) return false;
     litFrom(object, by);
     if (before == tick) return true;  // two flames lit it
-    object.state[texel] = tick;
-    object.addIgnitions(1, now);
-    burning(worldTile);
+    setState(object, worldTile, texel, tick, now);
     if (!object.heat.empty()) hot(worldTile);
     disturb(object, now);
     if (!object.published.empty()) {
@@ -471,8 +469,7 @@ uint32_t CpuBackend::State::nearestLane(const CpuObject& object, uint32_t tile, 
     for (uint32_t lane = 0; lane < mesh::kTileLanes; ++lane) {
         const uint32_t texel = texels[lane];
         if (object.state[texel] == kInert) continue;
-        const mesh::TexelPosition& p = domain.texels[texel];
-        const uint32_t beside = besidePlace(object.remote, ivec3(p.x, p.y, p.z), at, axis);
+        const uint32_t beside = besidePlace(object.remote, domain.texels[texel].units(), at, axis);
         if (beside < nearest) {
             nearest = beside;
             found = lane;

@@ -132,9 +132,7 @@ void CpuBackend::State::heatTile(uint32_t worldTile, uint32_t turn, uint32_t now
         tile.flag &= ~(kTileHot | kTileWarm);
     }
     tileFire[worldTile] = watts;
-    energy += uint64_t(object.counters.energyHigh) << 32 | object.counters.energyLow;
-    object.counters.energyLow = uint32_t(energy);
-    object.counters.energyHigh = uint32_t(energy >> 32);
+    addWide(object.counters.energyLow, object.counters.energyHigh, energy);
     if (changed == 0) return;
     FW_ASSERT(object.counters.ignited + lit >= gone, "%u ignited, %u more, %u gone",
               object.counters.ignited, lit, gone);

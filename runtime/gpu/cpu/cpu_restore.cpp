@@ -24,37 +24,30 @@ void CpuBackend::State::reserveImages(ReadbackStore& store, std::span<const uint
 
 void CpuBackend::State::collectImages(ReadbackStore& store,
                                       std::span<const uint32_t> slots) const noexcept {
-    size_t texel = 0, heated = 0, tile = 0;
+    const std::span<const TileState> allTiles(tiles);
+    const std::span<const TileHeat> allHeat(tileHeat);
+    std::span ticks(store.imageTicks);
+    std::span heat(store.imageHeat);
+    std::span imageTiles(store.imageTiles);
+    std::span imageHeat(store.imageTileHeat);
     for (const uint32_t slot : slots) {
         const CpuObject& object = at(slot);
-        const auto first = std::ptrdiff_t(object.record.worldTileBase);
-        const size_t count = object.record.tileCount;
-        std::copy(object.state.begin(), object.state.end(),
-                  store.imageTicks.begin() + std::ptrdiff_t(texel));
-        std::copy(object.heat.begin(), object.heat.end(),
-                  store.imageHeat.begin() + std::ptrdiff_t(heated));
-        std::copy_n(tiles.begin() + first, count, store.imageTiles.begin() + std::ptrdiff_t(tile));
-        std::copy_n(tileHeat.begin() + first, count,
-                    store.imageTileHeat.begin() + std::ptrdiff_t(tile));
+        const size_t first = object.record.worldTileBase, count = object.record.tileCount;
         ObjectImage image;
         image.object = slot;
-        image.ticks = std::span(store.imageTicks).subspan(texel, object.state.size());
-        image.heat = std::span(store.imageHeat).subspan(heated, object.heat.size());
-        image.tiles = std::span(store.imageTiles).subspan(tile, count);
-        image.tileHeat = std::span(store.imageTileHeat).subspan(tile, count);
+        image.ticks = copyNext<uint32_t>(object.state, ticks);
+        image.heat = copyNext<uvec2>(object.heat, heat);
+        image.tiles = copyNext<TileState>(allTiles.subspan(first, count), imageTiles);
+        image.tileHeat = copyNext<TileHeat>(allHeat.subspan(first, count), imageHeat);
         image.counters = object.counters;
         FW_ASSERT(store.images.size() < store.images.capacity(), "%zu images", store.images.size());
         store.images.push_back(image);
-        texel += object.state.size();
-        heated += object.heat.size();
-        tile += count;
     }
 }
 
-void CpuBackend::State::rest(CpuObject& object, uint32_t slot) noexcept {
+void CpuBackend::State::resetObject(CpuObject& object, uint32_t slot) noexcept {
     const mesh::BurnDomain& domain = *object.domain;
-    const uint16_t* slow =
-        object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
+    const std::span<const uint16_t> slow = object.slownessOf();
     for (uint32_t i = 0; i < object.state.size(); ++i) {
         const uint32_t flags = domain.texels[i].materialFlags;
         const bool burns = canTexelBurn(flags, slow[i], object.materials[flags & 7].flags);
@@ -90,7 +83,7 @@ void CpuBackend::restore(std::span<const RestoredObject> restored, uint32_t tick
     s.shield = {};
     for (uint32_t slot = 0; slot < s.objects.size(); ++slot) {
         if (!s.objects[slot]) continue;
-        s.rest(*s.objects[slot], slot);
+        s.resetObject(*s.objects[slot], slot);
         s.objects[slot]->remote = {};
     }
     for (const RestoredObject& one : restored) {

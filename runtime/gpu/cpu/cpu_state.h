@@ -50,7 +50,27 @@ struct CpuObject {
         counters.ignited += texels;
         counters.lastIgnition = std::max(counters.lastIgnition, tick);
     }
+    [[nodiscard]] std::span<const uint16_t> slownessOf() const noexcept {
+        return slowness.empty() ? std::span<const uint16_t>(domain->slowness) : slowness;
+    }
 };
+
+// Adds to a sum of two words.
+inline void addWide(uint32_t& low, uint32_t& high, uint64_t more) noexcept {
+    const uint64_t sum = (uint64_t(high) << 32 | low) + more;
+    low = uint32_t(sum);
+    high = uint32_t(sum >> 32);
+}
+
+// Copies to the front of `to`, and drops that part of it. Returns the copy.
+template <class T>
+std::span<T> copyNext(std::span<const T> from, std::span<T>& to) noexcept {
+    FW_ASSERT(from.size() <= to.size(), "%zu of %zu entries", from.size(), to.size());
+    const std::span<T> copy = to.first(from.size());
+    std::copy(from.begin(), from.end(), copy.begin());
+    to = to.subspan(from.size());
+    return copy;
+}
 
 // cpu_heat.cpp. Needs the states; makes those of wet texels wet.
 void createHeat(CpuObject& object);
@@ -66,34 +86,22 @@ struct CpuField {
 };
 
 struct ReadbackStore {
-    explicit ReadbackStore(std::pmr::memory_resource* memory)
-        : objects(memory),
-          answers(memory),
-          mapTicks(memory),
-          mapHeat(memory),
-          maps(memory),
-          imageTicks(memory),
-          imageHeat(memory),
-          imageTiles(memory),
-          imageTileHeat(memory),
-          images(memory),
-          lights(memory),
-          fields(memory),
-          rooms(memory) {}
+    explicit ReadbackStore(std::pmr::memory_resource* of) : memory(of) {}
+    std::pmr::memory_resource* memory;
     Readback readback;
-    std::pmr::vector<ObjectCounters> objects;
-    std::pmr::vector<ProbeAnswer> answers;
-    std::pmr::vector<uint32_t> mapTicks;
-    std::pmr::vector<uvec2> mapHeat;
-    std::pmr::vector<BurnMap> maps;
-    std::pmr::vector<uint32_t> imageTicks;
-    std::pmr::vector<uvec2> imageHeat;
-    std::pmr::vector<TileState> imageTiles;
-    std::pmr::vector<TileHeat> imageTileHeat;
-    std::pmr::vector<ObjectImage> images;
-    std::pmr::vector<BurnLight> lights;
-    std::pmr::vector<FieldCounters> fields;
-    std::pmr::vector<RoomAir> rooms;
+    std::pmr::vector<ObjectCounters> objects{memory};
+    std::pmr::vector<ProbeAnswer> answers{memory};
+    std::pmr::vector<uint32_t> mapTicks{memory};
+    std::pmr::vector<uvec2> mapHeat{memory};
+    std::pmr::vector<BurnMap> maps{memory};
+    std::pmr::vector<uint32_t> imageTicks{memory};
+    std::pmr::vector<uvec2> imageHeat{memory};
+    std::pmr::vector<TileState> imageTiles{memory};
+    std::pmr::vector<TileHeat> imageTileHeat{memory};
+    std::pmr::vector<ObjectImage> images{memory};
+    std::pmr::vector<BurnLight> lights{memory};
+    std::pmr::vector<FieldCounters> fields{memory};
+    std::pmr::vector<RoomAir> rooms{memory};
 };
 
 enum Timer : uint32_t {
@@ -122,9 +130,9 @@ struct CpuCounts {
 };
 
 struct CpuBackend::State {
-    State(std::pmr::memory_resource* memory_, uint32_t maxLights_);
+    State(std::pmr::memory_resource* memory_, uint32_t maxLights_)
+        : memory(memory_), maxLights(maxLights_) {}
 
-    FrontArrays planes(const CpuObject& object) const noexcept;
     // Null: the slot is empty, or there is none of this number.
     [[nodiscard]] CpuObject* find(uint32_t slot) const noexcept {
         return slot < objects.size() ? objects[slot].get() : nullptr;
@@ -160,7 +168,7 @@ struct CpuBackend::State {
         return !capped || (tiles[worldTile].flag & kTileBurning) != 0;
     }
     void requestToBurn(uint32_t worldTile) noexcept;
-    void grant(uint32_t maxTiles, uint32_t now) noexcept;
+    void allocateBurnBudget(uint32_t maxTiles, uint32_t now) noexcept;
     template <class Light>
     void requestThenBurn(uint32_t maxTiles, uint32_t now, const Light& light) noexcept;
     // Of objects with heat: the tile's temperature, water or flux changes from now on.
@@ -205,6 +213,9 @@ struct CpuBackend::State {
                                      uint32_t& units) const noexcept;
     void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
+    // Writes a texel's state and counts it. True: the texel is a source now, and was none.
+    bool setState(CpuObject& object, uint32_t worldTile, uint32_t texel, uint32_t after,
+                  uint32_t end) noexcept;
     void changedTexel(const CpuObject& object, uint32_t texel, uint32_t now) noexcept;
     void reduce(uint32_t now) noexcept;  // cpu_reduce.cpp
     [[nodiscard]] BurnTile burnTileOf(uint32_t worldTile, uint32_t now, bool nominal,
@@ -260,35 +271,37 @@ struct CpuBackend::State {
     // cpu_restore.cpp
     void reserveImages(ReadbackStore& store, std::span<const uint32_t> slots) const;  // throws
     void collectImages(ReadbackStore& store, std::span<const uint32_t> slots) const noexcept;
-    void rest(CpuObject& object, uint32_t slot) noexcept;  // back to its state after creation
+    void resetObject(CpuObject& object, uint32_t slot) noexcept;  // to its state after creation
     // cpu_field.cpp
     void stepFields(const FieldUpdate& update) noexcept;
     void countFields(std::span<FieldCounters> out) const noexcept;
 
     std::pmr::memory_resource* memory;
     uint32_t maxLights;
-    std::pmr::vector<const mesh::BurnDomain*> meshes;
-    std::pmr::vector<core::Owned<CpuObject>> objects;
+    std::pmr::vector<const mesh::BurnDomain*> meshes{memory};
+    std::pmr::vector<core::Owned<CpuObject>> objects{memory};
     std::pmr::vector<core::Owned<CpuField>> fields{memory};
     // By world tile. A tile is in a list at most once, so all lists have room for all tiles.
-    std::pmr::vector<TileState> tiles;
-    std::pmr::vector<uint32_t> list, listOut, runList, burnList, hotList, hotOut;
-    std::pmr::vector<uvec4> asks;     // of requestToBurn: order, object, local tile, world tile
-    std::pmr::vector<uint8_t> asked;  // by world tile: `asks` holds it
-    std::pmr::vector<TileHeat> tileHeat;
-    std::pmr::vector<float> tileFire;     // W in the last heat step
-    std::pmr::vector<FrontTile> results;  // per due tile
-    std::pmr::vector<uint32_t> scratch;   // 64 words per due tile
-    std::pmr::vector<BurnTile> burnTiles;
+    std::pmr::vector<TileState> tiles{memory};
+    std::pmr::vector<uint32_t> list{memory}, listOut{memory}, runList{memory};
+    std::pmr::vector<uint32_t> burnList{memory}, hotList{memory}, hotOut{memory};
+    std::pmr::vector<uvec4> requests{
+        memory};  // of requestToBurn: order, object, local tile, world tile
+    std::pmr::vector<uint8_t> requested{memory};  // by world tile: `requests` holds it
+    std::pmr::vector<TileHeat> tileHeat{memory};
+    std::pmr::vector<float> tileFire{memory};     // W in the last heat step
+    std::pmr::vector<FrontTile> results{memory};  // per due tile
+    std::pmr::vector<uint32_t> scratch{memory};   // 64 words per due tile
+    std::pmr::vector<BurnTile> burnTiles{memory};
     struct Range {
         uint32_t first = 0, count = 0;
     };
-    std::pmr::vector<Range> freeTiles;          // by first; room for objects + 1
-    std::pmr::vector<ReadbackStore> readbacks;  // ring: [head, head + waiting)
+    std::pmr::vector<Range> freeTiles{memory};          // by first; room for objects + 1
+    std::pmr::vector<ReadbackStore> readbacks{memory};  // ring: [head, head + waiting)
     size_t head = 0, waiting = 0;
     uint32_t switches = 0;
     bool capped = false;         // of the step
-    bool isRequestPass = false;  // tiles that would be lit ask to burn; nothing else happens
+    bool isRequestPass = false;  // tiles that would be lit are requested, and none is lit
     uint32_t random = 1;         // of the shuffle switch
     uint64_t runTiles = 0;
     uint32_t publishedObjects = 0;
@@ -329,7 +342,7 @@ void CpuBackend::State::requestThenBurn(uint32_t maxTiles, uint32_t now,
         isRequestPass = true;
         light();
         isRequestPass = false;
-        grant(maxTiles, now);
+        allocateBurnBudget(maxTiles, now);
     }
     light();
 }

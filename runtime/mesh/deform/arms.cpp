@@ -105,10 +105,7 @@ class Cells {
 
  private:
     [[nodiscard]] glm::ivec3 cell(vec3 p) const {
-        const auto one = [&](float x) {
-            return int(std::clamp(std::floor(x / side_), -1.0e9f, 1.0e9f));
-        };
-        return {one(p.x), one(p.y), one(p.z)};
+        return glm::ivec3(glm::clamp(glm::floor(p / side_), -1.0e9f, 1.0e9f));
     }
     [[nodiscard]] uint32_t bucket(glm::ivec3 c) const {
         const uint32_t h =
@@ -136,12 +133,12 @@ void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
     model.span = float(std::max(kSpanShare * axes.wide[1], 2 * apart));
     const Cells cells(nodes, kAside * model.span, memory);
     const auto facing = [&](const DeformParticle& node) {
-        const gpu::DeformEmbedding& coat = model.embeddings[node.vertex];
-        return vec3(coat.faceX, coat.faceY, coat.faceZ);
+        const gpu::DeformEmbedding& own = model.embeddings[node.vertex];
+        return vec3(own.faceX, own.faceY, own.faceZ);
     };
-    for (uint32_t way = 0; way < gpu::kBendSets; ++way) {
-        const vec3 along = axes.along[way & 1] * (way < 2 ? model.span : kShorter * model.span);
-        const uint32_t behind = 2 * way, ahead = behind + 1;
+    for (uint32_t set = 0; set < gpu::kBendSets; ++set) {
+        const vec3 along = axes.along[set & 1] * (set < 2 ? model.span : kShorter * model.span);
+        const uint32_t behind = 2 * set, ahead = behind + 1;
         for (uint32_t i = 0; i < nodes.size(); ++i) {
             DeformParticle& node = nodes[i];
             const vec3 sought = placeOf(node) + along;
@@ -170,9 +167,9 @@ void findBends(DeformModel& model, std::pmr::memory_resource* memory) {
                                  placeOf(nodes[model.nodeOf[node.arms[ahead]]])) *
                                 0.5f;
             const vec3 normal = facing(node), off = middle - placeOf(node);
-            node.bendRise[way] = gpu::dot(off, normal);
-            if (gpu::length(off - normal * node.bendRise[way]) < kEven * model.span)
-                node.flags |= gpu::kParticleBendsEven << way;
+            node.bendRise[set] = gpu::dot(off, normal);
+            if (gpu::length(off - normal * node.bendRise[set]) < kEven * model.span)
+                node.flags |= gpu::kParticleBendsEven << set;
         }
     }
 }

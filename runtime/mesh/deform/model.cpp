@@ -8,6 +8,9 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <tuple>
+#include <utility>
 
 namespace fw::mesh {
 namespace {
@@ -22,9 +25,8 @@ constexpr double kNoWall = 1e30;
 constexpr size_t kMostSteps = 256;  // triangles around one node that are read
 constexpr double kThickest = 0.25;  // m: walls farther apart never burn through together
 
-glm::dvec3 placeOf(const RenderVertex& v) {
-    return {double(v.position[0]), double(v.position[1]), double(v.position[2])};
-}
+glm::dvec3 placeOf(const RenderVertex& v) { return glm::dvec3(v.place()); }
+glm::dvec3 placeOf(const DeformParticle& p) { return glm::dvec3(glm::vec3(p.x, p.y, p.z)); }
 
 // A vertex's place on Morton's curve through the mesh's bounds.
 uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
@@ -44,24 +46,20 @@ uint32_t alongCurve(const BurnDomain& domain, uint32_t vertex) {
 void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resource* memory) {
     const auto count = uint32_t(domain.vertices.size());
     std::pmr::vector<uint32_t> order(count, memory);
-    for (uint32_t i = 0; i < count; ++i) order[i] = i;
+    std::iota(order.begin(), order.end(), 0u);
     const auto key = [&](uint32_t i) {
-        std::array<float, 3> p{};
-        for (size_t k = 0; k < 3; ++k) p[k] = domain.vertices[i].position[k] + 0.0f;  // no -0
-        return p;
+        const glm::vec3 p = domain.vertices[i].place() + 0.0f;  // no -0
+        return std::tuple(p.x, p.y, p.z);
     };
-    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        const auto p = key(a), q = key(b);
-        return p != q ? p < q : a < b;
-    });
+    std::sort(order.begin(), order.end(),
+              [&](uint32_t a, uint32_t b) { return std::pair(key(a), a) < std::pair(key(b), b); });
     std::pmr::vector<uint32_t> keeper(count, memory);
     for (uint32_t i = 0; i < count; ++i)
         keeper[order[i]] =
             i && key(order[i]) == key(order[i - 1]) ? keeper[order[i - 1]] : order[i];
     // Neighbours are near each other in memory too.
     std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
-        const uint32_t x = alongCurve(domain, a), y = alongCurve(domain, b);
-        return x != y ? x < y : a < b;
+        return std::pair(alongCurve(domain, a), a) < std::pair(alongCurve(domain, b), b);
     });
     model.nodeOf.resize(count);
     for (const uint32_t i : order) {
@@ -147,7 +145,7 @@ class Builder {
         }
         for (uint32_t i = 0; i < model_.nodes.size(); ++i) farther(i);
         lengths();
-        for (uint32_t i = 0; i < domain_.vertices.size(); ++i) coat(i);
+        for (uint32_t i = 0; i < domain_.vertices.size(); ++i) embed(i);
     }
 
  private:
@@ -155,7 +153,7 @@ class Builder {
         return domain_.indices[size_t(triangle) * 3 + corner % 3];
     }
     [[nodiscard]] glm::dvec3 cornerPlace(uint32_t triangle, uint32_t corner) const {
-        return placeOf(domain_.vertices[vertexAt(triangle, corner)]);
+        return placeOf(domain_.cornerOf(triangle, corner % 3));
     }
     [[nodiscard]] uint32_t keeperAt(uint32_t triangle, uint32_t corner) const {
         return model_.nodes[model_.nodeOf[vertexAt(triangle, corner)]].vertex;
@@ -234,8 +232,7 @@ class Builder {
         const double stretch = std::max(glm::length(out), 1e-6);
         node.limit = float(std::min(double(node.limit), kDepthShare * thin / stretch));
         if (thin > kThickest || node.texels[0] == kNone) return;
-        const glm::dvec3 behind =
-            glm::dvec3(double(node.x), double(node.y), double(node.z)) + out / stretch * thin;
+        const glm::dvec3 behind = placeOf(node) + out / stretch * thin;
         const float point[3] = {float(behind.x), float(behind.y), float(behind.z)};
         const float reach = float(0.5 * thin) + domain_.texelSide;
         const uint32_t texel = nearestTexel(domain_, point, reach);
@@ -253,19 +250,25 @@ class Builder {
             steps_.push_back(step);
     }
 
+    // Puts the steps' longest walk into a ring; a closed one may end with its first entry, for
+    // which `repeats` slots stay free. Returns whether the walk closes, and its entries.
+    std::pair<bool, size_t> fillRing(uint32_t (&ring)[kDeformRing], size_t repeats) {
+        const bool closes = walk(steps_, walk_, best_);
+        const size_t all = best_.size();
+        const size_t kept = std::min<size_t>(all, kDeformRing - (closes ? repeats : 0));
+        for (size_t i = 0; i < kept; ++i) ring[i] = best_[i * all / kept];
+        // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
+        for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
+            ring[i] = closes ? ring[0] : ring[kept - 1];
+        return {closes, kept};
+    }
+
     // Neighbours in their order around the node.
     void neighbours(uint32_t number) {
         DeformParticle& node = model_.nodes[number];
         steps_.clear();
-        for (const uint32_t corner : corners_.of(number)) {
-            addStep(corner, node.vertex);
-        }
-        const bool closes = walk(steps_, walk_, best_);
-        const size_t all = best_.size(), kept = std::min<size_t>(all, kDeformRing);
-        for (size_t i = 0; i < kept; ++i) node.ring[i] = best_[i * all / kept];
-        // Repeats the last one: loops over eight neighbours see no triangle between equal ones.
-        for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
-            node.ring[i] = closes ? node.ring[0] : node.ring[kept - 1];
+        for (const uint32_t corner : corners_.of(number)) addStep(corner, node.vertex);
+        const auto [closes, kept] = fillRing(node.ring, 0);
         node.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
                                                                  << gpu::kParticleRingShift;
     }
@@ -290,10 +293,7 @@ class Builder {
     }
 
     [[nodiscard]] float restLength(const DeformParticle& node, uint32_t vertex) const {
-        const DeformParticle& other = model_.nodes[model_.nodeOf[vertex]];
-        const glm::dvec3 d(double(other.x) - double(node.x), double(other.y) - double(node.y),
-                           double(other.z) - double(node.z));
-        return float(glm::length(d));
+        return float(glm::length(placeOf(model_.nodes[model_.nodeOf[vertex]]) - placeOf(node)));
     }
     // A link that only one end lists gets no length: forces need both ends.
     void lengths() {
@@ -338,7 +338,7 @@ class Builder {
     }
 
     // A drawn normal turns with the triangles that share it.
-    void coat(uint32_t vertex) {
+    void embed(uint32_t vertex) {
         const RenderVertex& v = domain_.vertices[vertex];
         const uint32_t node = model_.nodeOf[vertex];
         DeformEmbedding made{};
@@ -346,17 +346,11 @@ class Builder {
         made.normal = v.normal;
         steps_.clear();
         glm::dvec3 face(0);
-        for (const uint32_t corner : corners_.of(node)) {
-            if (domain_.vertices[domain_.indices[corner]].normal != v.normal) continue;
-            addStep(corner, made.node);
-        }
-        const bool closes = walk(steps_, walk_, best_);
-        const size_t all = best_.size();
-        const size_t kept = std::min<size_t>(all, kDeformRing - (closes ? 1 : 0));
-        for (size_t i = 0; i < kDeformRing; ++i) made.ring[i] = made.node;
-        for (size_t i = 0; i < kept; ++i) made.ring[i] = best_[i * all / kept];
-        for (size_t i = kept; i < kDeformRing && kept > 0; ++i)
-            made.ring[i] = closes ? made.ring[0] : made.ring[kept - 1];
+        for (const uint32_t corner : corners_.of(node))
+            if (domain_.vertices[domain_.indices[corner]].normal == v.normal)
+                addStep(corner, made.node);
+        std::fill_n(made.ring, kDeformRing, made.node);
+        fillRing(made.ring, 1);
         const glm::dvec3 at = placeOf(v);
         for (const uint32_t other : made.ring) {
             const glm::dvec3 edge = placeOf(domain_.vertices[other]) - at;
@@ -391,19 +385,18 @@ void makeRuns(DeformModel& model, std::pmr::memory_resource* memory) {
         return std::max(((node.flags >> gpu::kParticleRingShift & 15u) + 1) / gpu::kLinksPerPass,
                         1u);
     };
-    std::pmr::vector<uint32_t> moved(count, memory);
+    std::pmr::vector<uint32_t> order(count, memory), moved(count, memory);
+    std::iota(order.begin(), order.end(), 0u);
+    std::sort(order.begin(), order.end(), [&](uint32_t a, uint32_t b) {
+        return std::tuple(a / gpu::kDeformGroup, turnsOf(model.nodes[a]), a) <
+               std::tuple(b / gpu::kDeformGroup, turnsOf(model.nodes[b]), b);
+    });
     std::pmr::vector<DeformParticle> sorted(memory);
     sorted.reserve(count);
-    for (size_t first = 0; first < count; first += gpu::kDeformGroup) {
-        const size_t last = std::min<size_t>(first + gpu::kDeformGroup, count);
-        for (uint32_t turns = 0; turns <= gpu::kDeformLinkPasses; ++turns)
-            for (size_t i = first; i < last; ++i) {
-                if (turnsOf(model.nodes[i]) != turns) continue;
-                moved[i] = uint32_t(sorted.size());
-                sorted.push_back(model.nodes[i]);
-            }
+    for (const uint32_t i : order) {
+        moved[i] = uint32_t(sorted.size());
+        sorted.push_back(model.nodes[i]);
     }
-    FW_ASSERT(sorted.size() == count, "%zu of %zu nodes", sorted.size(), count);
     model.nodes.swap(sorted);
     for (uint32_t& node : model.nodeOf) node = moved[node];
     for (size_t first = 0; first < count; first += gpu::kDeformRun) {
@@ -448,11 +441,11 @@ gpu::DeviceParticle deviceNode(const DeformModel& model, uint32_t number) noexce
         made.near_[i] = {linked(near[0]), linked(near[1]), node.ringLength[i], 0};
         made.far_[i] = {linked(far[0]), linked(far[1]), node.crossLength[i], 0};
     }
-    for (uint32_t way = 0; way < gpu::kBendSets; ++way) {
-        const uint32_t* arms = node.arms + 2 * way;
-        const float* lengths = node.bendLength + 2 * way;
-        made.arms[way] = {linked(arms[0]), linked(arms[1]),
-                          glm::packHalf2x16({lengths[0], lengths[1]}), node.bendRise[way]};
+    for (uint32_t set = 0; set < gpu::kBendSets; ++set) {
+        const uint32_t* arms = node.arms + 2 * set;
+        const float* lengths = node.bendLength + 2 * set;
+        made.arms[set] = {linked(arms[0]), linked(arms[1]),
+                          glm::packHalf2x16({lengths[0], lengths[1]}), node.bendRise[set]};
     }
     std::copy(std::begin(node.texels), std::end(node.texels), made.texels);
     made.x = node.x;

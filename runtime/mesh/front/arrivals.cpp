@@ -63,12 +63,12 @@ void nextRound(Arrivals& a) noexcept {
     if (!a.whole) a.end = std::max(a.end + a.stride, soonest);
 }
 
-// Touches a tile and the readers of its changed texels.
+// Touches a tile and the dependents of its changed texels.
 void touchDependents(Arrivals& a, uint32_t tile, uint64_t changed) noexcept {
-    const auto touched = [&](uint32_t reader) { touch(a, reader, kTouched); };
+    const auto touched = [&](uint32_t dependent) { touch(a, dependent, kTouched); };
     touched(tile);
     forEachTileBeside(*a.domain, tile, changed, touched);
-    for (const uint32_t reader : seamDependents(*a.domain, tile, changed)) touched(reader);
+    for (const uint32_t other : seamDependents(*a.domain, tile, changed)) touched(other);
 }
 
 // Lights the texels that the fire of these lanes' texels reaches over gaps.
@@ -80,11 +80,11 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
         const PartLink link = readPartLink(d, tile, block, word);
         const uint32_t t = a.ticks[link.from], to = link.to;
         if ((lanes >> link.lane & 1) == 0 || !gpu::isSource(t)) continue;
-        const PartPath way = partPath(d, a.materials, link);
-        if (way.delay >= gpu::kLiveEnd - t) continue;
-        const uint32_t arrives = std::max(gpu::partArrives(t, way.delay), a.now);
+        const PartPath path = partPath(d, a.materials, link);
+        if (path.delay >= gpu::kLiveEnd - t) continue;
+        const uint32_t arrives = std::max(gpu::partArrives(t, path.delay), a.now);
         const uint32_t was = a.ticks[to];
-        if (!gpu::flames(t, arrives, way.left->flameTicks) ||
+        if (!gpu::flames(t, arrives, path.left->flameTicks) ||
             !(gpu::isReceptive(was) || (gpu::isSource(was) && was > a.now && was > arrives)))
             continue;
         a.ticks[to] = arrives;
@@ -96,20 +96,11 @@ void crossGaps(Arrivals& a, uint32_t tile, uint64_t lanes) noexcept {
 }
 
 void runTile(Arrivals& a, uint32_t tile) noexcept {
-    FrontArrays planes;
-    planes.state = a.ticks.data();
-    planes.texels = a.domain->texels.data();
-    planes.normals = a.domain->normals.data();
-    planes.slowness = a.slowness.empty() ? a.domain->slowness.data() : a.slowness.data();
-    planes.links = a.domain->links.data();
-    planes.tiles = a.domain->tiles.data();
-    planes.materials = a.materials.data();
-    planes.width = a.domain->width;
-    planes.tilesX = a.domain->tilesX;
+    const FrontArrays arrays(*a.domain, a.ticks.data(), a.slowness, a.materials.data());
     FW_ASSERT(a.end >= a.stride, "round %u to %u", a.end, a.stride);
     uint32_t scratch[kTileLanes];
     const uint32_t floorTick = gpu::windowFloor(a.end - a.stride, a.window);
-    const FrontTile result = runFrontTile(planes, tile, a.end, floorTick, scratch);
+    const FrontTile result = runFrontTile(arrays, tile, a.end, floorTick, scratch);
     a.wake[tile] = result.wake;
     if (result.changed == 0) {
         if (result.wake != kNever) touch(a, tile, 0);

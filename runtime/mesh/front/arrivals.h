@@ -19,17 +19,17 @@ struct ArrivalInput {                    // of one object
 };
 
 struct Arrivals {
-    explicit Arrivals(std::pmr::memory_resource* memory)
-        : ticks(memory), wake(memory), flags(memory), list(memory), due(memory) {}
+    explicit Arrivals(std::pmr::memory_resource* of) : memory(of) {}
 
+    std::pmr::memory_resource* memory;
     const BurnDomain* domain = nullptr;
     std::span<const uint16_t> slowness;
     std::array<gpu::BurnMaterial, gpu::kMaterialsPerObject> materials{};
-    std::pmr::vector<uint32_t> ticks;  // per texel, as its state: past and future ignitions
+    std::pmr::vector<uint32_t> ticks{memory};  // per texel, as its state: past and future ignitions
     // Per tile: as TileState::wake, and whether `list` holds it.
-    std::pmr::vector<uint32_t> wake;
-    std::pmr::vector<uint8_t> flags;
-    std::pmr::vector<uint32_t> list, due;  // tiles; `due`: of this round, run up to `next`
+    std::pmr::vector<uint32_t> wake{memory};
+    std::pmr::vector<uint8_t> flags{memory};
+    std::pmr::vector<uint32_t> list{memory}, due{memory};  // tiles; `due`: of this round, run up to `next`
     size_t next = 0;
     uint32_t window = 0, stride = 0;  // ticks
     uint32_t now = 0;                 // first tick of the forecast

@@ -39,47 +39,45 @@ uint32_t chosenOfRow(const uint32_t* row, uint32_t width, uint32_t rim,
 
 }  // namespace
 
-FrontTile runFrontTile(const FrontArrays& planes, uint32_t tile, uint32_t windowEnd,
+FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept {
     FrontTile out;
-    const int width = int(planes.width);
+    const int width = int(arrays.width);
     int offsets[8];
     for (int k = 0; k < 8; ++k) offsets[k] = kFrontRingX[k] + kFrontRingY[k] * width;
-    const TileStatic& statics = planes.tiles[tile];
-    const uint64_t rimMask = uint64_t(statics.rimMaskHigh) << 32 | statics.rimMaskLow;
+    const TileStatic& statics = arrays.tiles[tile];
+    const uint64_t rimMask = statics.rimMask();
     const uint32_t corner =
-        (tile / planes.tilesX) * 8u * planes.width + (tile % planes.tilesX) * 8u;
+        (tile / arrays.tilesX) * 8u * arrays.width + (tile % arrays.tilesX) * 8u;
 
     uint64_t chosen = 0;
     for (uint32_t row = 0; row < 8; ++row)
-        chosen |= uint64_t(chosenOfRow(planes.state + corner + row * planes.width, planes.width,
+        chosen |= uint64_t(chosenOfRow(arrays.state + corner + row * arrays.width, arrays.width,
                                        uint32_t(rimMask >> row * 8) & 0xFFu, floorTick))
                   << row * 8;
     FrontDrive prep{};  // kept while normal, slowness and material stay
     uint64_t prepKey = ~0ull;
     for (; chosen != 0; chosen &= chosen - 1) {
         const auto lane = uint32_t(std::countr_zero(chosen));
-        const uint32_t texel = corner + (lane >> 3) * planes.width + (lane & 7);
-        const uint32_t t = planes.state[texel];
+        const uint32_t texel = corner + (lane >> 3) * arrays.width + (lane & 7);
+        const uint32_t t = arrays.state[texel];
         FrontRing ring;
         uint32_t other[8];
         uint32_t present = 0xFF;
         if (rimMask >> lane & 1) {
-            const uint64_t below = rimMask & ((1ull << lane) - 1);
-            const uint32_t* links =
-                planes.links + size_t(statics.rimBase + uint32_t(std::popcount(below))) * 8;
+            const uint32_t* links = arrays.links + size_t(statics.recordOf(lane)) * 8;
             present = 0;
             for (uint32_t k = 0; k < 8; ++k) {
                 other[k] = links[k];
                 ring.tick[k] = kInert;
                 if (other[k] == kNoneTexel) continue;
                 present |= 1u << k;
-                ring.tick[k] = planes.state[other[k]];
+                ring.tick[k] = arrays.state[other[k]];
             }
         } else {
             for (int k = 0; k < 8; ++k) {
                 other[k] = uint32_t(int(texel) + offsets[k]);
-                ring.tick[k] = planes.state[other[k]];
+                ring.tick[k] = arrays.state[other[k]];
             }
         }
         uint32_t pending = kNever;
@@ -88,25 +86,24 @@ FrontTile runFrontTile(const FrontArrays& planes, uint32_t tile, uint32_t window
         uint32_t decided = t;
         uint32_t late = 0;
         if (counts != 0) {
-            const TexelPosition& me = planes.texels[texel];
+            const TexelPosition& me = arrays.texels[texel];
             for (uint32_t k = 0; k < 8; ++k) {
                 if ((counts >> k & 1) == 0) continue;
-                const TexelPosition& they = planes.texels[other[k]];
-                ring.link[k] = ivec3(int(me.x) - int(they.x), int(me.y) - int(they.y),
-                                     int(me.z) - int(they.z));
-                ring.burn[k] = planes.materials[they.materialFlags & 7u].burnTicks;
+                const TexelPosition& they = arrays.texels[other[k]];
+                ring.link[k] = me.units() - they.units();
+                ring.burn[k] = arrays.materials[they.materialFlags & 7u].burnTicks;
             }
             const uint32_t material = me.materialFlags & 7u;
-            const uint32_t slow = planes.slowness[texel];
-            const uint32_t normal = planes.normals[texel];
+            const uint32_t slow = arrays.slowness[texel];
+            const uint32_t normal = arrays.normals[texel];
             const uint64_t key = uint64_t(normal) << 19 | slow << 3 | material;
             if (key != prepKey) {
-                prep = prepareFront(decodeNormal(normal), slow, planes.materials[material]);
+                prep = prepareFront(decodeNormal(normal), slow, arrays.materials[material]);
                 prepKey = key;
             }
             uint32_t soonest = kNever;
             const uint32_t candidate =
-                frontArrival(ring, counts, prep, planes.materials[material].windowMax, windowEnd,
+                frontArrival(ring, counts, prep, arrays.materials[material].windowMax, windowEnd,
                              floorTick, texel, false, pending, soonest);
             decided = decideTick(t, candidate, windowEnd, floorTick, pending, late);
         }

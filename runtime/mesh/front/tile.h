@@ -7,6 +7,22 @@
 namespace fw::mesh {
 
 struct FrontArrays {  // of one object
+    FrontArrays() = default;
+    // own: the object's slowness per texel; empty: the mesh's.
+    FrontArrays(const BurnDomain& domain, const uint32_t* state_, std::span<const uint16_t> own,
+                const gpu::BurnMaterial* materials_) noexcept
+        : state(state_),
+          texels(domain.texels.data()),
+          normals(domain.normals.data()),
+          slowness(own.empty() ? domain.slowness.data() : own.data()),
+          links(domain.links.data()),
+          tiles(domain.tiles.data()),
+          materials(materials_),
+          width(domain.width),
+          tilesX(domain.tilesX) {
+        FW_ASSERT(own.empty() || own.size() == domain.texelCount(), "%zu of %u texels", own.size(),
+                  domain.texelCount());
+    }
     const uint32_t* state = nullptr;
     const TexelPosition* texels = nullptr;
     const uint32_t* normals = nullptr;
@@ -25,7 +41,7 @@ struct FrontTile {         // result of a tile's run
 };
 
 // `scratch`: 64 words, written for the lanes of `changed`.
-FrontTile runFrontTile(const FrontArrays& planes, uint32_t tile, uint32_t windowEnd,
+FrontTile runFrontTile(const FrontArrays& arrays, uint32_t tile, uint32_t windowEnd,
                        uint32_t floorTick, uint32_t* scratch) noexcept;
 
 // Calls visit(tile) for each neighbour on the grid that reads a changed texel of the tile (`mask`:
@@ -50,8 +66,7 @@ inline std::span<const uint32_t> seamDependents(const BurnDomain& domain, uint32
                                                 uint64_t mask) noexcept {
     FW_ASSERT(tile < domain.tiles.size(), "%u of %zu tiles", tile, domain.tiles.size());
     const TileStatic& statics = domain.tiles[tile];
-    const uint64_t seam = uint64_t(statics.seamMaskHigh) << 32 | statics.seamMaskLow;
-    if ((seam & mask) == 0) return {};
+    if ((statics.seamMask() & mask) == 0) return {};
     FW_ASSERT(statics.dependentStart + statics.dependentCount <= domain.readers.size(),
               "%u readers", statics.dependentCount);
     return {domain.readers.data() + statics.dependentStart, statics.dependentCount};

@@ -97,13 +97,10 @@ CoarseMesh coarseMesh(const Surface& surface, double longest, uint32_t most,
         const uint32_t levels = fitted(splits, sides[q]);
         const uint32_t m = gpu::refineInterior(levels), n = 1u << m;
         const uint32_t firstInner = uint32_t(fine.points.size());
-        for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
-            for (uint32_t c1 = 1; c1 + c2 < n; ++c1) {
-                const glm::dvec3 w = glm::dvec3(n - c1 - c2, c1, c2) / double(n);
-                fine.points.push_back(base.points[t.point[0]] * w.x +
-                                      base.points[t.point[1]] * w.y +
-                                      base.points[t.point[2]] * w.z);
-            }
+        eachInner(n, [&](uint32_t, glm::dvec3 w) {
+            fine.points.push_back(mixed(base.points[t.point[0]], base.points[t.point[1]],
+                                        base.points[t.point[2]], w));
+        });
         const auto pointOf = [&](uint32_t code) {
             if ((code & gpu::kRefineOnSide) == 0)
                 return firstInner + gpu::refineInnerPoint(code >> 6, code & 63, n);

@@ -18,6 +18,15 @@ struct CoarseMesh {
     std::pmr::vector<CoarseTriangle> triangles;
 };
 
+// Calls visit(number, weights) for the points of a triangle's lattice of n steps a side that lie
+// inside it.
+template <class Visit>
+void eachInner(uint32_t n, Visit visit) {
+    for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
+        for (uint32_t c1 = 1; c1 + c2 < n; ++c1)
+            visit(gpu::refineInnerPoint(c1, c2, n), glm::dvec3(n - c1 - c2, c1, c2) / double(n));
+}
+
 // The drawn triangles of a domain as a surface again: welded, charts found. Triangle::source is the
 // domain's, uv in texels.
 Surface surfaceOf(const BurnDomain& domain, std::pmr::memory_resource* memory);

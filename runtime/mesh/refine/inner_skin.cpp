@@ -42,15 +42,13 @@ std::pmr::vector<glm::vec3> innerSkin(const BurnDomain& domain, float wall,
     const RefineModel model = bakeRefine(domain, options, memory);
     if (model.openEdges > 0 || !hasInside(domain, model)) return places;
     places.reserve(domain.vertices.size());
-    for (const RenderVertex& v : domain.vertices)
-        places.emplace_back(v.position[0], v.position[1], v.position[2]);
+    for (const RenderVertex& v : domain.vertices) places.push_back(v.place());
     for (const gpu::RefineTriangle& t : model.triangles)
         for (size_t k = 0; k < 3; ++k) {
             // The welded point of this corner.
             FW_ASSERT(size_t{t.source} * 3 + k < domain.indices.size(), "triangle %u", t.source);
             const uint32_t vertex = domain.indices[size_t{t.source} * 3 + k];
-            const RenderVertex& v = domain.vertices[vertex];
-            const glm::vec3 rest(v.position[0], v.position[1], v.position[2]);
+            const glm::vec3 rest = domain.vertices[vertex].place();
             const gpu::RefineSlot* nearest = nullptr;
             for (const uint32_t corner : t.corner) {
                 const gpu::RefineSlot& slot = model.slots[model.draws[corner].slot];

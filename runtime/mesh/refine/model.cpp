@@ -176,14 +176,11 @@ void makeDraws(const Surface& surface, const CoarseMesh& coarse, const BurnDomai
                     drawAt(edge.slot + k - 1, source, low * (1 - f) + high * f);
             }
         }
-        const uint32_t n = 1u << gpu::refineInteriorDepth(t.flags);
-        for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
-            for (uint32_t c1 = 1; c1 + c2 < n; ++c1) {
-                const glm::dvec3 w = glm::dvec3(n - c1 - c2, c1, c2) / double(n);
-                const uint32_t slot = t.slot + gpu::refineInnerPoint(c1, c2, n);
-                model.draws[slot] =
-                    drawAt(slot, source, c.weight[0] * w.x + c.weight[1] * w.y + c.weight[2] * w.z);
-            }
+        eachInner(1u << gpu::refineInteriorDepth(t.flags), [&](uint32_t number, glm::dvec3 w) {
+            const uint32_t slot = t.slot + number;
+            model.draws[slot] =
+                drawAt(slot, source, mixed(c.weight[0], c.weight[1], c.weight[2], w));
+        });
     }
 }
 
@@ -207,7 +204,7 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
         coarseMesh(surface, double(options.splitTexels) * texel, options.maxTriangles, memory);
     const auto materialOf = [&](const CoarseTriangle& t) {
         const uint32_t source = surface.triangles[t.source].source;
-        return domain.vertices[domain.indices[size_t(source) * 3]].material;
+        return domain.cornerOf(source, 0).material;
     };
     // Draws go by material.
     std::pmr::vector<CoarseTriangle> sorted(memory);
@@ -240,11 +237,7 @@ RefineModel bakeRefine(const BurnDomain& domain, const RefineOptions& options,
 RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& model, uint32_t draw) {
     FW_ASSERT(draw < model.draws.size(), "%u of %zu draw vertices", draw, model.draws.size());
     const gpu::RefineDraw& d = model.draws[draw];
-    FW_ASSERT(size_t(d.triangle) * 3 + 2 < domain.indices.size(), "triangle %u", d.triangle);
     FW_ASSERT(d.slot < model.slots.size(), "%u of %zu slots", d.slot, model.slots.size());
-    const RenderVertex* corner[3];
-    for (uint32_t k = 0; k < 3; ++k)
-        corner[k] = &domain.vertices[domain.indices[size_t(d.triangle) * 3 + k]];
     const float w[3] = {1 - d.weight1 - d.weight2, d.weight1, d.weight2};
     const gpu::RefineSlot& slot = model.slots[d.slot];
     RenderVertex v;
@@ -253,25 +246,22 @@ RenderVertex refineRenderVertex(const BurnDomain& domain, const RefineModel& mod
     v.position[2] = slot.z;
     glm::dvec3 normal(0);
     glm::dvec4 tint(0);
-    for (int k = 0; k < 3; ++k) {
-        const RenderVertex& c = *corner[k];
+    for (size_t k = 0; k < 3; ++k) {
+        const RenderVertex& c = domain.cornerOf(d.triangle, k);
         for (int i = 0; i < 2; ++i) {
             v.atlasUv[i] += w[k] * c.atlasUv[i];
             v.textureUv[i] += w[k] * c.textureUv[i];
             v.detail[i] += w[k] * c.detail[i];
         }
-        const int packed = int(c.normal);
-        normal += double(w[k]) * glm::dvec3(double(int(c.normal << 21) >> 21) / 1023,
-                                            double(int(c.normal << 10) >> 21) / 1023,
-                                            double(packed >> 22) / 511);
+        normal += double(w[k]) * unpackNormal(c.normal);
         for (int i = 0; i < 4; ++i) tint[i] += double(w[k]) * double(c.tint >> (8 * i) & 255);
     }
     const double length = glm::length(normal);
-    v.normal = length > 1e-9 ? packNormal(normal / length) : corner[0]->normal;
+    v.normal = length > 1e-9 ? packNormal(normal / length) : domain.cornerOf(d.triangle, 0).normal;
     v.tint = 0;
     for (int i = 0; i < 4; ++i)
         v.tint |= uint32_t(std::clamp(tint[i] + 0.5, 0.0, 255.0)) << (8 * i);
-    v.material = corner[0]->material;
+    v.material = domain.cornerOf(d.triangle, 0).material;
     return v;
 }
 

@@ -21,33 +21,26 @@ struct RefineOptions {
 };
 
 struct RefineModel {
-    explicit RefineModel(std::pmr::memory_resource* memory)
-        : triangles(memory),
-          edges(memory),
-          ownerStart(memory),
-          owners(memory),
-          slots(memory),
-          draws(memory),
-          tileStart(memory),
-          tileItems(memory) {}
+    explicit RefineModel(std::pmr::memory_resource* of) : memory(of) {}
 
+    std::pmr::memory_resource* memory;
     uint32_t cornerCount = 0;  // the first slots, in order of the welded points
     uint32_t openEdges = 0, nonManifoldEdges = 0;
     uint32_t farSlots = 0;      // slots without a texel of their chart near: they use the nearest
     uint32_t textureWidth = 0;  // texels of the burn domain per row
     uint32_t tileCount = 0;
 
-    std::pmr::vector<gpu::RefineTriangle> triangles;
-    std::pmr::vector<gpu::RefineEdge> edges;
-    std::pmr::vector<uint32_t> ownerStart;  // edges + 1
-    std::pmr::vector<uint32_t> owners;      // triangle << 2 | side
-    std::pmr::vector<gpu::RefineSlot> slots;
+    std::pmr::vector<gpu::RefineTriangle> triangles{memory};
+    std::pmr::vector<gpu::RefineEdge> edges{memory};
+    std::pmr::vector<uint32_t> ownerStart{memory};  // edges + 1
+    std::pmr::vector<uint32_t> owners{memory};      // triangle << 2 | side
+    std::pmr::vector<gpu::RefineSlot> slots{memory};
     // The first slots.size() are the slots with their canonical owner's attributes, in order; then
     // one per further chart, or set of attributes, that meets there.
-    std::pmr::vector<gpu::RefineDraw> draws;
+    std::pmr::vector<gpu::RefineDraw> draws{memory};
     // The items that a tile's heat warms: edges (by number) inside it or within 1.5 cells of its
     // texels, and interiors (edges.size() + triangle) that it touches.
-    std::pmr::vector<uint32_t> tileStart, tileItems;  // tiles + 1
+    std::pmr::vector<uint32_t> tileStart{memory}, tileItems{memory};  // tiles + 1
 
     // Triangles with every edge and interior at its deepest.
     [[nodiscard]] uint64_t fullCount() const noexcept;

@@ -118,21 +118,17 @@ class Offsets {
     // A flat interior recedes along its normal, and within its plane as the corners do.
     void interior(uint32_t i) {
         const gpu::RefineTriangle& t = model_.triangles[i];
-        const uint32_t n = 1u << gpu::refineInteriorDepth(t.flags);
         const uint32_t* p = coarse_.triangles[i].point;
         const glm::dvec3 up = normal(i);
         const bool curved = smooth(t.edge[0]) && smooth(t.edge[1]) && smooth(t.edge[2]);
-        for (uint32_t c2 = 1; c2 + 1 < n; ++c2)
-            for (uint32_t c1 = 1; c1 + c2 < n; ++c1) {
-                const glm::dvec3 w = glm::dvec3(n - c1 - c2, c1, c2) / double(n);
-                const glm::dvec3 mixed =
-                    offset_[p[0]] * w.x + offset_[p[1]] * w.y + offset_[p[2]] * w.z;
-                put(t.slot + gpu::refineInnerPoint(c1, c2, n),
-                    coarse_.points[p[0]] * w.x + coarse_.points[p[1]] * w.y +
-                        coarse_.points[p[2]] * w.z,
-                    curved ? mixed : mixed - up * (glm::dot(mixed, up) + 1),
-                    reach_[p[0]] * w.x + reach_[p[1]] * w.y + reach_[p[2]] * w.z);
-            }
+        const auto within = [&](const auto& of, glm::dvec3 w) {
+            return mixed(of[p[0]], of[p[1]], of[p[2]], w);
+        };
+        eachInner(1u << gpu::refineInteriorDepth(t.flags), [&](uint32_t number, glm::dvec3 w) {
+            const glm::dvec3 o = within(offset_, w);
+            put(t.slot + number, within(coarse_.points, w),
+                curved ? o : o - up * (glm::dot(o, up) + 1), within(reach_, w));
+        });
     }
 
     const Surface& surface_;

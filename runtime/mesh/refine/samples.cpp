@@ -39,7 +39,7 @@ glm::dvec2 uvOf(const BurnDomain& domain, const gpu::RefineDraw& d) {
     const double w[3] = {1 - double(d.weight1) - double(d.weight2), double(d.weight1),
                          double(d.weight2)};
     for (uint32_t k = 0; k < 3; ++k) {
-        const RenderVertex& v = domain.vertices[domain.indices[size_t(d.triangle) * 3 + k]];
+        const RenderVertex& v = domain.cornerOf(d.triangle, k);
         uv += w[k] * glm::dvec2(v.atlasUv[0], v.atlasUv[1]);
     }
     return uv;
@@ -90,8 +90,7 @@ void sample(const BurnDomain& domain, const Charts& charts, uint32_t slotIndex,
         texel = low * domain.width + left;
         slot.weights = 255u << (8 * (u - left + 2 * (v - low)));
     }
-    const uint32_t material =
-        domain.vertices[domain.indices[size_t(draw.triangle) * 3]].material & 255u;
+    const uint32_t material = domain.cornerOf(draw.triangle, 0).material & 255u;
     slot.texel = (texel & 0xFFFFFFu) | material << 24;
 }
 
