@@ -1,6 +1,7 @@
 #include "net/server.h"
 
 #include "components/burnable_mesh.h"
+#include "host_limits.h"
 
 #include <algorithm>
 
@@ -54,8 +55,8 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
 }
 
 FwPeerId Server::addPeer() {
-    if (peers_.live() >= kMaxPeers)
-        core::refuse("%u peers are there; the limit is %u.", peers_.live(), kMaxPeers);
+    if (peers_.live() >= limits::kPeers)
+        core::refuse("%u peers are there; the limit is %u.", peers_.live(), limits::kPeers);
     const FwPeerId id = peers_.create(memory_);
     peers_.get(id).packets = kMaxPackets;
     peers_.get(id).captures = kCapturesAtOnce;

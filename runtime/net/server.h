@@ -31,7 +31,6 @@ class Server {
     void fillState(world::World& world, FwPeerId peer, FwNetState& state);
 
  private:
-    static constexpr uint32_t kMaxPeers = 256;
     struct Given {  // a state or tiles that a peer was sent
         uint32_t id = 0, record = 0;
         bool whole = false;  // every piece was sent at least once
