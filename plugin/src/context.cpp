@@ -32,6 +32,18 @@ void freeContext(FwContext* context) noexcept {
     std::pmr::polymorphic_allocator<>(&last).delete_object(context);
 }
 
+// True: the cooked bytes are in `buffer`. *size: room in it, then what there is; a buffer that is
+// too small is refused.
+bool giveCooked(std::span<const std::byte> bytes, const char* what, void* buffer, uint64_t& size) {
+    const bool fits = buffer && size >= bytes.size();
+    if (buffer && !fits)
+        core::refuse("*size is %llu and the cooked %s has %zu bytes.",
+                     static_cast<unsigned long long>(size), what, bytes.size());
+    if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
+    size = bytes.size();
+    return fits;
+}
+
 void destroyWorlds(FwContext* context) noexcept {
     for (;;) {
         FwWorld* world = nullptr;
@@ -172,19 +184,17 @@ FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* given, void* bu
             if (!c.cooked.empty() && c.cookedKey == key) bytes.swap(c.cooked);
         }
         if (bytes.empty()) bytes = world::cook(def, &c.memory);
-        const uint64_t needed = bytes.size();
-        const bool fits = buffer && *size >= needed;
-        if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
-        if (!fits) {  // the caller calls again with a larger buffer
+        const auto keep = [&] {  // the caller calls again with a larger buffer
             const std::lock_guard lock(c.mutex);
             c.cooked.swap(bytes);
             c.cookedKey = key;
+        };
+        try {
+            if (!giveCooked(bytes, "mesh", buffer, *size)) keep();
+        } catch (...) {
+            keep();
+            throw;
         }
-        if (buffer && !fits)
-            core::refuse("*size is %llu and the cooked mesh has %llu bytes.",
-                         static_cast<unsigned long long>(*size),
-                         static_cast<unsigned long long>(needed));
-        *size = needed;
     };
     return onContext(__func__, context, cookMesh, unit);
 }
@@ -196,13 +206,7 @@ FwResult FW_CALL fwCookFireProfile(FwContext* context, const FwFireProfileDef* g
         checkPointer(size, "size");
         const auto profile = core::Owned<volume::Profile>::make(&c.memory);
         components::readFireProfile(def, &c.memory, *profile);
-        const std::pmr::vector<std::byte> bytes = volume::cookProfile(*profile, &c.memory);
-        const bool fits = buffer && *size >= bytes.size();
-        if (buffer && !fits)
-            core::refuse("*size is %llu and the cooked fire profile has %zu bytes.",
-                         static_cast<unsigned long long>(*size), bytes.size());
-        if (fits) std::memcpy(buffer, bytes.data(), bytes.size());
-        *size = bytes.size();
+        (void)giveCooked(volume::cookProfile(*profile, &c.memory), "fire profile", buffer, *size);
     });
 }
 

@@ -11,10 +11,36 @@ using edge::onWorld;
 
 namespace {
 
-template <class Id>
-Id idOf(const FwObjectRef& object) noexcept {
-    return {object.index1, object.generation};
+template <auto kDestroy>
+void destroyBy(world::World& w, const FwObjectRef& object) {
+    const auto destroy = []<class System, class Id>(world::World& from, void (System::*)(Id),
+                                                    const FwObjectRef& gone) {
+        (edge::systemOf<System>(from).*kDestroy)(Id{gone.index1, gone.generation});
+    };
+    destroy(w, kDestroy, object);
 }
+
+struct Kind {
+    uint32_t kind;
+    void (*destroy)(world::World& w, const FwObjectRef& object);
+};
+constexpr Kind kKinds[] = {
+    {FW_OBJECT_MATERIAL, &destroyBy<&world::Scene::destroyMaterial>},
+    {FW_OBJECT_IMAGE, &destroyBy<&world::Scene::destroyImage>},
+    {FW_OBJECT_MESH, &destroyBy<&world::Scene::destroyMesh>},
+    {FW_OBJECT_BURNABLE_MESH, &destroyBy<&world::World::destroyBurnableMesh>},
+    {FW_OBJECT_HEAT_OCCLUDER, &destroyBy<&world::ExchangeSystem::removeHeatOccluder>},
+    {FW_OBJECT_VOLUMETRIC_FIRE, &destroyBy<&world::FlameSystem::destroy>},
+    {FW_OBJECT_FIRE_PROFILE, &destroyBy<&world::FlameSystem::destroyProfile>},
+    {FW_OBJECT_FIRE_COLLIDER, &destroyBy<&world::FlameSystem::removeCollider>},
+    {FW_OBJECT_FIRE_EMITTER, &destroyBy<&world::EmitterSystem::destroy>},
+    {FW_OBJECT_FLIPBOOK, &destroyBy<&world::FlameSystem::destroyFlipbook>},
+    {FW_OBJECT_PARTICLE_FIELD, &destroyBy<&world::FieldSystem::destroy>},
+    {FW_OBJECT_WIND_ZONE, &destroyBy<&world::WindSystem::destroyZone>},
+    {FW_OBJECT_ROOM, &destroyBy<&world::RoomSystem::destroy>},
+    {FW_OBJECT_BURN, &destroyBy<&world::BurnSystem::destroyBurn>},
+};
+static_assert(std::size(kKinds) == FW_OBJECT_KIND_COUNT - 1);
 
 void checkRef(const FwObjectRef& object) {
     if (object.kind < 1 || object.kind >= FW_OBJECT_KIND_COUNT)
@@ -29,51 +55,12 @@ void checkRef(const FwObjectRef& object) {
 // False: the object is still in use, and nothing changed.
 bool destroyNow(world::World& w, const FwObjectRef& object) {
     try {
-        switch (object.kind) {
-            case FW_OBJECT_MATERIAL:
-                w.scene().destroyMaterial(idOf<FwMaterialId>(object));
-                break;
-            case FW_OBJECT_IMAGE:
-                if (w.scene().showsImage(idOf<FwImageId>(object))) return false;
-                w.scene().destroyImage(idOf<FwImageId>(object));
-                break;
-            case FW_OBJECT_MESH:
-                w.scene().destroyMesh(idOf<FwMeshId>(object));
-                break;
-            case FW_OBJECT_BURNABLE_MESH:
-                w.destroyBurnableMesh(idOf<FwBurnableMeshId>(object));
-                break;
-            case FW_OBJECT_HEAT_OCCLUDER:
-                w.exchange().removeHeatOccluder(idOf<FwHeatOccluderId>(object));
-                break;
-            case FW_OBJECT_VOLUMETRIC_FIRE:
-                w.flames().destroy(idOf<FwVolumetricFireId>(object));
-                break;
-            case FW_OBJECT_FIRE_PROFILE:
-                w.flames().destroyProfile(idOf<FwFireProfileId>(object));
-                break;
-            case FW_OBJECT_FIRE_COLLIDER:
-                w.flames().removeCollider(idOf<FwFireColliderId>(object));
-                break;
-            case FW_OBJECT_FIRE_EMITTER:
-                w.emitters().destroy(idOf<FwFireEmitterId>(object));
-                break;
-            case FW_OBJECT_FLIPBOOK:
-                w.flames().destroyFlipbook(idOf<FwFlipbookId>(object));
-                break;
-            case FW_OBJECT_PARTICLE_FIELD:
-                w.fields().destroy(idOf<FwParticleFieldId>(object));
-                break;
-            case FW_OBJECT_WIND_ZONE:
-                w.wind().destroyZone(idOf<FwWindZoneId>(object));
-                break;
-            case FW_OBJECT_ROOM:
-                w.rooms().destroy(idOf<FwRoomId>(object));
-                break;
-            default:
-                w.burn().destroyBurn(idOf<FwBurnId>(object));
-                break;
-        }
+        if (object.kind == FW_OBJECT_IMAGE &&
+            w.scene().showsImage({object.index1, object.generation}))
+            return false;
+        std::find_if(std::begin(kKinds), std::end(kKinds), [&](const Kind& one) {
+            return one.kind == object.kind;
+        })->destroy(w, object);
     } catch (const core::Error& error) {
         if (error.result == FW_ERROR_INVALID_ARGUMENT) return false;
         throw;

@@ -7,16 +7,18 @@ using edge::onWorld;
 
 namespace {
 
-void mustBeFree(const FwWorld& world) {
-    if (world.server || world.client)
-        core::refuse("The world is a %s already; fwNet_Leave ends that.",
-                     world.server ? "server's" : "client's");
-}
-
-FwNetDef netDef(const FwNetDef* given) {
-    const FwNetDef def = edge::readDef(given);
-    net::checkNetDef(def);
-    return def;
+// Makes the world a server's or a client's.
+template <class Side>
+FwResult share(const char* function, FwWorld* world, const FwNetDef* given,
+               std::optional<Side> FwWorld::*side) {
+    return onWorld(function, world, [&](world::World& w) {
+        const FwNetDef def = edge::readDef(given);
+        net::checkNetDef(def);
+        if (world->server || world->client)
+            core::refuse("The world is a %s already; fwNet_Leave ends that.",
+                         world->server ? "server's" : "client's");
+        (world->*side).emplace(def, w, &world->context->memory);
+    });
 }
 
 net::Server& serverOf(FwWorld& world) {
@@ -34,19 +36,11 @@ void mustBeShared(const FwWorld& world) {
 extern "C" {
 
 FwResult FW_CALL fwNet_Serve(FwWorld* world, const FwNetDef* given) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const FwNetDef def = netDef(given);
-        mustBeFree(*world);
-        world->server.emplace(def, w, &world->context->memory);
-    });
+    return share(__func__, world, given, &FwWorld::server);
 }
 
 FwResult FW_CALL fwNet_Join(FwWorld* world, const FwNetDef* given) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const FwNetDef def = netDef(given);
-        mustBeFree(*world);
-        world->client.emplace(def, w, &world->context->memory);
-    });
+    return share(__func__, world, given, &FwWorld::client);
 }
 
 FwResult FW_CALL fwNet_Leave(FwWorld* world) {

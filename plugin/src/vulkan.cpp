@@ -200,16 +200,11 @@ void checkHost(const FwVulkanHost& host) {
 }
 
 void checkScissor(const VkRect2D& scissor) {
-    const auto check = [](int32_t offset, uint32_t extent, const char* axis, const char* size) {
-        if (offset < 0 || offset > 32768)
-            core::refuse("FwVulkanFrame::scissor.offset.%s is %d; the limits are [0, 32768].", axis,
-                         offset);
-        if (extent > 32768)
-            core::refuse("FwVulkanFrame::scissor.extent.%s is %u; the limits are [0, 32768].", size,
-                         extent);
-    };
-    check(scissor.offset.x, scissor.extent.width, "x", "width");
-    check(scissor.offset.y, scissor.extent.height, "y", "height");
+    using components::checkValue, components::checkWhole;
+    checkValue(float(scissor.offset.x), "FwVulkanFrame::scissor.offset.x", 0, 32768);
+    checkValue(float(scissor.offset.y), "FwVulkanFrame::scissor.offset.y", 0, 32768);
+    checkWhole(scissor.extent.width, "FwVulkanFrame::scissor.extent.width", 0, 32768);
+    checkWhole(scissor.extent.height, "FwVulkanFrame::scissor.extent.height", 0, 32768);
     if ((scissor.extent.width == 0) != (scissor.extent.height == 0))
         core::refuse(
             "FwVulkanFrame::scissor.extent is %u x %u; both are 0 (no scissor) or neither. "
@@ -218,25 +213,18 @@ void checkScissor(const VkRect2D& scissor) {
 }
 
 FwVulkanFrame checkedFrame(const FwVulkanFrame* given) {
+    using components::checkWhole;
     const FwVulkanFrame frame = readDef(given);
-    constexpr uint32_t kKnown = FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING;
-    if (frame.flags & ~kKnown)
-        core::refuse("FwVulkanFrame::flags is 0x%x; the known flags are 0x%x.", frame.flags,
-                     kKnown);
+    components::checkFlags(frame.flags, "FwVulkanFrame::flags",
+                           FW_FRAME_SECONDARY | FW_FRAME_SLOT_PACING);
     checkPointer(frame.commandBuffer, "FwVulkanFrame::commandBuffer");
-    if (frame.reserved != 0)
-        core::refuse("FwVulkanFrame::reserved is %u; it is zero.", frame.reserved);
+    checkWhole(frame.reserved, "FwVulkanFrame::reserved", 0, 0);
+    checkWhole(frame.reserved1, "FwVulkanFrame::reserved1", 0, 0);
     checkScissor(frame.scissor);
-    if (!(frame.transparency >= 0.0f && frame.transparency <= 1.0f))
-        core::refuse("FwVulkanFrame::transparency is %g; the limits are [0, 1].",
-                     double(frame.transparency));
-    if (frame.reserved1 != 0)
-        core::refuse("FwVulkanFrame::reserved1 is %u; it is zero.", frame.reserved1);
+    components::checkValue(frame.transparency, "FwVulkanFrame::transparency", 0.0f, 1.0f);
     if (frame.frameIndex == 0) core::refuse("FwVulkanFrame::frameIndex is 0; it starts at 1.");
     if (frame.flags & FW_FRAME_SLOT_PACING) {
-        if (frame.framesInFlight == 0 || frame.framesInFlight > 16)
-            core::refuse("FwVulkanFrame::framesInFlight is %u; the limits are [1, 16].",
-                         frame.framesInFlight);
+        checkWhole(frame.framesInFlight, "FwVulkanFrame::framesInFlight", 1, 16);
         if (frame.frameSlot >= frame.framesInFlight)
             core::refuse(
                 "FwVulkanFrame::frameSlot is %u and framesInFlight is %u; the slot is "
@@ -294,8 +282,9 @@ std::span<FwView> checkedViews(const FwWorld& world, const FwView* given, uint32
     return std::span(out).first(count);
 }
 
-FwResult recordOutside(FwWorld& world, world::World& w, gpu::vk::VkBackend& backend,
-                       const FwVulkanFrame& frame, std::span<const FwView> views) {
+FwResult recordOutside(FwWorld& world, gpu::vk::VkBackend& backend, const FwVulkanFrame& frame,
+                       std::span<const FwView> views) {
+    world::World& w = *world.world;
     w.checkFrame(frame.frameIndex, frame.deltaTime);
     recordFrameUse(world, frame);
     destroyDoomed(world);
@@ -309,6 +298,17 @@ FwResult recordOutside(FwWorld& world, world::World& w, gpu::vk::VkBackend& back
     backend.endOutside();
     publish(world);
     return FW_OK;
+}
+
+// Runs body(backend, frame) of a call that records a frame of the host's.
+template <class Body>
+FwResult recordFrame(const char* function, FwWorld* world, const FwVulkanFrame* given,
+                     const Body& body) noexcept {
+    return onWorld(function, world, [&](world::World& w) {
+        const Stopwatch time(w);
+        gpu::vk::VkBackend& backend = hostBackendOf(*world);
+        return body(backend, checkedFrame(given));
+    });
 }
 
 const char* encodingName(uint32_t encoding) noexcept {
@@ -524,34 +524,25 @@ void FW_CALL fwContext_NotifyDeviceLost(FwContext* context) {
 
 FwResult FW_CALL fwWorld_RecordOutside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                        const FwView* givenView) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
-        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+    return edge::recordFrame(__func__, world, givenFrame, [&](auto& backend, const auto& frame) {
         const FwView view = edge::checkedView(*world, givenView);
-        return edge::recordOutside(*world, w, backend, frame, {&view, 1});
+        return edge::recordOutside(*world, backend, frame, {&view, 1});
     });
 }
 
 FwResult FW_CALL fwWorld_RecordOutsideViews(FwWorld* world, const FwVulkanFrame* givenFrame,
                                             const FwView* givenViews, uint32_t viewCount) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
-        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+    return edge::recordFrame(__func__, world, givenFrame, [&](auto& backend, const auto& frame) {
         std::array<FwView, FW_MAX_VIEWS> views;
         const std::span<FwView> checked = edge::checkedViews(*world, givenViews, viewCount, views);
-        return edge::recordOutside(*world, w, backend, frame, checked);
+        return edge::recordOutside(*world, backend, frame, checked);
     });
 }
 
 FwResult FW_CALL fwWorld_RecordInside(FwWorld* world, const FwVulkanFrame* givenFrame,
                                       FwTargetId target, const FwView* givenView,
                                       const VkViewport* viewport) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
-        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+    return edge::recordFrame(__func__, world, givenFrame, [&](auto& backend, const auto& frame) {
         const FwView view = edge::checkedView(*world, givenView);
         if (!edge::checkViewport(viewport)) return FW_OK;
         edge::recordFrameUse(*world, frame);
@@ -573,10 +564,7 @@ FwResult FW_CALL fwWorld_SetVertexBuffer(FwWorld* world, FwBurnableMeshId id,
 FwResult FW_CALL fwWorld_RecordComposite(FwWorld* world, const FwVulkanFrame* givenFrame,
                                          FwTargetId target, const FwView* givenView,
                                          const FwVulkanComposite* givenImages) {
-    return onWorld(__func__, world, [&](world::World& w) {
-        const edge::Stopwatch time(w);
-        gpu::vk::VkBackend& backend = edge::hostBackendOf(*world);
-        const FwVulkanFrame frame = edge::checkedFrame(givenFrame);
+    return edge::recordFrame(__func__, world, givenFrame, [&](auto& backend, const auto& frame) {
         const FwView view = edge::checkedView(*world, givenView);
         const FwVulkanComposite images = edge::readDef(givenImages);
         if (images.flags & ~uint32_t(FW_COMPOSITE_KEEP))

@@ -164,7 +164,6 @@ void FireFlames::settle(VolumetricFire& fire, const FireAir& air) noexcept {
     for (FireFlame& f : next_) {
         if (f.fire != &fire) continue;
         if (f.split != fire.split) {
-            f.leaving = true;
             f.flame.def.power = 0;
             f.flame.def.position += volume::vecOf(fire.position) - f.stood;
             f.stood = volume::vecOf(fire.position);

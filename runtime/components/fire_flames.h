@@ -19,7 +19,6 @@ struct FireFlame {
     uint32_t part = 0, split = 0;  // of its fire
     uint32_t trackVersion = 0;
     uint32_t key = 0;       // unique
-    bool leaving = false;   // its fire has other flames now
     gpu::vec3 stood{0.0f};  // m, world: place of its fire at the last `place`
 };
 

@@ -1,6 +1,7 @@
 #include "components/lights.h"
 
 #include "core/assert.h"
+#include "host_limits.h"
 
 #include <algorithm>
 #include <array>
@@ -74,10 +75,10 @@ double flickerPhase(uint32_t id) noexcept {
 
 uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t> kept,
                       uint32_t most, std::span<FwLight> out, std::pmr::vector<uint8_t>& taken) {
-    most = std::min({most, kMostLights, uint32_t(out.size())});
+    most = std::min({most, limits::kLights, uint32_t(out.size())});
     taken.assign(sources.size(), 0);
     uint32_t count = 0;
-    std::array<const FwLight*, kMostLights> chosen;
+    std::array<const FwLight*, limits::kLights> chosen;
     // One by one: a source beside a chosen one scores less, or one corner would take all lights.
     while (count < most && count < sources.size()) {
         size_t best = sources.size();

@@ -10,7 +10,6 @@
 
 namespace fw::components {
 
-constexpr uint32_t kMostLights = 64;
 constexpr float kLightShare = 0.3f;         // radiated share of a fire's power
 constexpr float kSphere = 12.56637f;        // sr
 constexpr double kFlickerStep = 0.07 * 60;  // 1/s, fastest change of a steady fire's light
@@ -23,7 +22,7 @@ double flickerPhase(uint32_t id) noexcept;
 
 // Chooses at most `most` of `sources`, which take over the intensity and power of the others.
 // `out`: strongest first. Ids in `kept` count 1.6 times, so that two flickering lights do not
-// alternate. Returns the count. `out` holds `most`, at most kMostLights. `taken` is scratch.
+// alternate. Returns the count. `out` holds `most`, at most limits::kLights. `taken` is scratch.
 uint32_t gatherLights(std::span<const FwLight> sources, std::span<const uint32_t> kept,
                       uint32_t most, std::span<FwLight> out, std::pmr::vector<uint8_t>& taken);
 

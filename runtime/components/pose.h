@@ -2,6 +2,7 @@
 // entry; and the checks of other numbers of a def.
 #pragma once
 #include "flamewright/flamewright.h"
+#include "host_limits.h"
 
 namespace fw::components {
 
@@ -24,7 +25,7 @@ struct Pose {
     }
 };
 
-constexpr float kMaxStretch = 16;  // longest axis over shortest
+constexpr float kMaxStretch = float(limits::kStretch);  // longest axis over shortest
 
 // Throws core::Error naming `field`, the value and the limit unless every value is finite, the
 // last row is 0 0 0 1, and the upper 3x3 is a rotation times a scale per axis, without shear
@@ -38,7 +39,7 @@ void toObject(const Pose& pose, const float point[3], float (&out)[3]) noexcept;
 // A direction: rotated only.
 void directionToObject(const Pose& pose, const float vector[3], float (&out)[3]) noexcept;
 
-constexpr float kMaxPower = 1e5f;  // kW, of a fire
+constexpr float kMaxPower = float(limits::kFirePower);  // kW, of a fire
 
 // Throws unless all `count` values are finite and within [low, high]: "field[i] is v; ...".
 void checkValues(const float* values, unsigned count, const char* field, float low, float high);

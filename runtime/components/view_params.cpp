@@ -3,6 +3,7 @@
 #include "components/view_params.h"
 
 #include "core/assert.h"
+#include "volume/curve.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,14 +14,8 @@ using glm::vec3;
 using gpu::vec4;
 
 gpu::ViewParams makeViewParams(const FwView& view, const ViewInputs& inputs) noexcept {
-    const auto load = [](const float m[16]) {
-        glm::mat4 out;
-        for (int c = 0; c < 4; ++c) {
-            for (int r = 0; r < 4; ++r) out[c][r] = m[4 * c + r];
-        }
-        return out;
-    };
-    const glm::mat4 toView = load(view.view), projection = load(view.projection);
+    const glm::mat4 toView = volume::matrixOf(view.view),
+                    projection = volume::matrixOf(view.projection);
     const glm::mat3 rotation(toView);  // rigid: the inverse is the transpose
     const vec3 eye = -(glm::transpose(rotation) * vec3(toView[3]));
     const glm::mat4 clip = projection * glm::mat4(rotation);

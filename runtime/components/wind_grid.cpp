@@ -3,6 +3,7 @@
 #include "components/pose.h"
 #include "core/assert.h"
 #include "core/error.h"
+#include "host_limits.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,14 +27,15 @@ WindGridShape makeWindGridShape(const FwWindGridDef& def) {
         core::refuse("FwWindGridDef::blend is %u; the limit is %u.", def.blend,
                      FW_WIND_BLEND_COUNT - 1);
     for (uint32_t i = 0; i < 3; ++i)
-        if (def.counts[i] < 2 || def.counts[i] > kMaxGridSide)
+        if (def.counts[i] < 2 || def.counts[i] > limits::kWindGridSide)
             core::refuse("FwWindGridDef::counts[%u] is %u; the limits are [2, %u].", i,
-                         def.counts[i], kMaxGridSide);
+                         def.counts[i], limits::kWindGridSide);
     shape.blend = def.blend;
     std::copy_n(def.counts, 3, shape.counts.begin());
-    if (shape.points() > kMaxGridPoints)
+    if (shape.points() > limits::kWindGridPoints)
         core::refuse("FwWindGridDef::counts makes %u x %u x %u = %u points; the limit is %u.",
-                     def.counts[0], def.counts[1], def.counts[2], shape.points(), kMaxGridPoints);
+                     def.counts[0], def.counts[1], def.counts[2], shape.points(),
+                     limits::kWindGridPoints);
     checkLengths(def.origin, 3, "FwWindGridDef::origin", -kFarthestGrid, kFarthestGrid);
     checkLength(def.cellSize, "FwWindGridDef::cellSize", kMinGridCell, kMaxGridCell);
     checkLength(def.fade, "FwWindGridDef::fade", 0.0f, kMaxGridFade);
@@ -70,9 +72,9 @@ bool plausible(const WindGridShape& shape) noexcept {
                 shape.fade <= millimetres(kMaxGridFade);
     const int64_t far = millimetres(kFarthestGrid);
     for (size_t i = 0; i < 3; ++i)
-        fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= kMaxGridSide &&
+        fine = fine && shape.counts[i] >= 2 && shape.counts[i] <= limits::kWindGridSide &&
                shape.origin[i] >= -far && shape.origin[i] <= far;
-    return fine && shape.points() <= kMaxGridPoints;
+    return fine && shape.points() <= limits::kWindGridPoints;
 }
 
 fire::WindVector windOnGrid(const WindGrid& grid, const fire::WindVector& wind,

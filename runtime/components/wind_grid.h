@@ -8,8 +8,6 @@
 
 namespace fw::components {
 
-constexpr uint32_t kMaxGridPoints = 32768, kMaxGridSide = 64;
-
 struct WindGridShape;
 // Whether makeWindGridShape may have made it.
 [[nodiscard]] bool plausible(const WindGridShape& shape) noexcept;

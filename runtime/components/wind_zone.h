@@ -8,8 +8,6 @@
 
 namespace fw::components {
 
-constexpr uint32_t kMaxWindZones = 64;
-
 struct WindPlace {  // mm, world
     int64_t x = 0, y = 0, z = 0;
 };

@@ -118,4 +118,22 @@ class Reader {
     size_t at_ = 0;
 };
 
+// Heads of cooked files: u32 magic, u32 version, then what the kind of file has.
+inline void checkHead(std::span<const std::byte> bytes, const char* name, size_t headBytes,
+                      uint32_t magic, uint32_t version) {
+    if (bytes.size() < headBytes)
+        failData("the %s has %zu bytes; its header alone has %zu.", name, bytes.size(), headBytes);
+    if (wordAt(bytes, 0) != magic)
+        failData("the %s begins with 0x%08x; it must begin with 0x%08x.", name, wordAt(bytes, 0),
+                 magic);
+    if (wordAt(bytes, 4) != version)
+        fail(FW_ERROR_VERSION, "the %s has version %u; this library reads version %u.", name,
+             wordAt(bytes, 4), version);
+}
+inline void checkSum(const char* name, uint64_t sum, uint64_t found) {
+    if (sum != found)
+        failData("the %s's checksum is 0x%016llx; its content has 0x%016llx.", name,
+                 static_cast<unsigned long long>(sum), static_cast<unsigned long long>(found));
+}
+
 }  // namespace fw::core

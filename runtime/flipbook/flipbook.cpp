@@ -13,20 +13,26 @@ namespace {
 
 constexpr uint32_t kMagic = 0x4B425746;  // "FWBK"
 constexpr uint32_t kVersion = 1;
-constexpr size_t kSumEnd = 16, kHeaderBytes = kSumEnd + 40;
+constexpr size_t kSumAt = 8, kSumEnd = 16, kHeaderBytes = kSumEnd + 40;
 
-using core::wordAt;
-
-float floatAt(std::span<const std::byte> bytes, size_t at) {
-    const uint32_t word = wordAt(bytes, at);
-    float value = 0;
-    std::memcpy(&value, &word, 4);
-    return value;
+// The numbers of a head behind its checksum, in their order.
+template <class Stream, class F>
+void visitFacts(Stream& stream, F& f) {
+    auto kind = uint32_t(f.kind), unused = 0u;
+    const auto visit = [&](auto&... numbers) { (stream.number(numbers), ...); };
+    visit(kind, f.loops, f.width, f.height, f.frames, f.motionWidth, f.motionHeight, f.maxMotion,
+          f.seconds, unused);
+    if constexpr (Stream::kReads) f.kind = Kind(kind);
+    if (unused != 0) core::failData("the flipbook's reserved word is %u; it is zero.", unused);
+}
+template <class Stream, class R>
+void visitRect(Stream& stream, R& r) {
+    stream.number(r.left), stream.number(r.low), stream.number(r.right), stream.number(r.high);
 }
 
 void check(const char* name, double value, double low, double high) {
     if (!(value >= low && value <= high))
-        core::failData("the book's %s is %g; it must lie in [%g, %g].", name, value, low, high);
+        core::failData("the flipbook's %s is %g; it must lie in [%g, %g].", name, value, low, high);
 }
 
 struct Sizes {
@@ -76,80 +82,51 @@ std::pmr::vector<std::byte> cookFlipbook(const Flipbook& book, std::pmr::memory_
     if (book.texels.size() != sizes.texels || book.motion.size() != sizes.motion ||
         book.rects.size() != f.frames)
         core::failData(
-            "the book has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
+            "the flipbook has %zu, %zu and %zu bytes of texels, motion and rects; it needs %zu, "
             "%zu and %zu.",
             book.texels.size(), book.motion.size(), book.rects.size() * sizeof(Rect), sizes.texels,
             sizes.motion, f.frames * sizeof(Rect));
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion);
-    const auto put = [&](uint64_t value, uint32_t bytes) {
-        for (uint32_t k = 0; k < bytes; ++k) out.push_back(std::byte(value >> (8 * k)));
-    };
-    const auto putFloat = [&](float value) {
-        uint32_t word = 0;
-        std::memcpy(&word, &value, 4);
-        put(word, 4);
-    };
-    put(kMagic, 4), put(kVersion, 4), put(0, 8);
-    for (const uint32_t word :
-         {uint32_t(f.kind), f.loops, f.width, f.height, f.frames, f.motionWidth, f.motionHeight})
-        put(word, 4);
-    putFloat(f.maxMotion), putFloat(f.seconds), put(0, 4);
-    for (const Rect& r : book.rects) put(r.left, 2), put(r.low, 2), put(r.right, 2), put(r.high, 2);
-    for (const uint8_t byte : book.texels) out.push_back(std::byte(byte));
-    for (const uint8_t byte : book.motion) out.push_back(std::byte(byte));
-    const uint64_t sum = core::hashBytes(std::span(out).subspan(kSumEnd));
-    for (uint32_t k = 0; k < 8; ++k) out[8 + k] = std::byte(sum >> (8 * k));
+    core::Writer writer(out);
+    writer.number(kMagic), writer.number(kVersion), writer.number(uint64_t(0));
+    visitFacts(writer, f);
+    for (const Rect& rect : book.rects) visitRect(writer, rect);
+    for (const std::span<const uint8_t> plane : {std::span(book.texels), std::span(book.motion)})
+        for (const uint8_t byte : plane) out.push_back(std::byte(byte));
+    writer.numberAt(kSumAt, core::hashBytes(std::span(out).subspan(kSumEnd)));
     return out;
 }
 
 void readFlipbook(std::span<const std::byte> bytes, Flipbook& book) {
-    if (bytes.size() < kHeaderBytes)
-        core::failData("the .fwbook has %zu bytes; its header alone has %zu.", bytes.size(),
-                       kHeaderBytes);
-    if (wordAt(bytes, 0) != kMagic)
-        core::failData("the .fwbook begins with 0x%08x; it must begin with 0x%08x.",
-                       wordAt(bytes, 0), kMagic);
-    if (wordAt(bytes, 4) != kVersion)
-        core::fail(FW_ERROR_VERSION, "the .fwbook has version %u; this library reads version %u.",
-                   wordAt(bytes, 4), kVersion);
-    Facts f;
-    f.kind = Kind(wordAt(bytes, 16));
-    f.loops = wordAt(bytes, 20);
-    f.width = wordAt(bytes, 24), f.height = wordAt(bytes, 28);
-    f.frames = wordAt(bytes, 32);
-    f.motionWidth = wordAt(bytes, 36), f.motionHeight = wordAt(bytes, 40);
-    f.maxMotion = floatAt(bytes, 44), f.seconds = floatAt(bytes, 48);
+    core::checkHead(bytes, ".fwbook", kHeaderBytes, kMagic, kVersion);
+    core::Reader reader(bytes.subspan(kSumAt), ".fwbook");
+    Flipbook made(book.texels.get_allocator().resource());
+    Facts& f = made.facts;
+    uint64_t sum = 0;
+    reader.number(sum);
+    visitFacts(reader, f);
     checkFacts(f);
-    if (wordAt(bytes, 52) != 0)
-        core::failData("the book's reserved word is %u; it is zero.", wordAt(bytes, 52));
     const Sizes sizes = sizesOf(f);
     const size_t expected = kHeaderBytes + f.frames * sizeof(Rect) + sizes.texels + sizes.motion;
     if (bytes.size() != expected)
         core::failData("the .fwbook has %zu bytes; %u frames of %u x %u need %zu.", bytes.size(),
                        f.frames, f.width, f.height, expected);
-    const uint64_t sum = wordAt(bytes, 8) | uint64_t(wordAt(bytes, 12)) << 32;
-    const uint64_t found = core::hashBytes(bytes.subspan(kSumEnd));
-    if (sum != found)
-        core::failData("the .fwbook's checksum is 0x%016llx; its content has 0x%016llx.",
-                       static_cast<unsigned long long>(sum),
-                       static_cast<unsigned long long>(found));
-    Flipbook made(book.texels.get_allocator().resource());
-    made.facts = f;
+    core::checkSum(".fwbook", sum, core::hashBytes(bytes.subspan(kSumEnd)));
     made.rects.resize(f.frames);
-    made.texels.resize(sizes.texels);
-    made.motion.resize(sizes.motion);
-    size_t at = kHeaderBytes;
-    for (uint32_t i = 0; i < f.frames; ++i, at += sizeof(Rect)) {
-        const uint32_t low = wordAt(bytes, at), high = wordAt(bytes, at + 4);
-        const Rect r{uint16_t(low), uint16_t(low >> 16), uint16_t(high), uint16_t(high >> 16)};
+    for (Rect& r : made.rects) {
+        visitRect(reader, r);
         if (r.left > r.right || r.right > f.width || r.low > r.high || r.high > f.height)
-            core::failData("the book's rect %u is [%u, %u) x [%u, %u); a frame has %u x %u texels.",
-                           i, r.left, r.right, r.low, r.high, f.width, f.height);
-        made.rects[i] = r;
+            core::failData(
+                "the flipbook's rect %zu is [%u, %u) x [%u, %u); a frame has %u x %u texels.",
+                size_t(&r - made.rects.data()), r.left, r.right, r.low, r.high, f.width, f.height);
     }
-    std::memcpy(made.texels.data(), bytes.data() + at, sizes.texels);
-    std::memcpy(made.motion.data(), bytes.data() + at + sizes.texels, sizes.motion);
+    const auto take = [&](size_t size, std::pmr::vector<uint8_t>& plane) {
+        const auto* from = reinterpret_cast<const uint8_t*>(reader.take(size).data());
+        plane.assign(from, from + size);
+    };
+    take(sizes.texels, made.texels);
+    take(sizes.motion, made.motion);
     book = std::move(made);
 }
 

@@ -1,6 +1,7 @@
 // A flipbook: side views of fire, smoke or sparks for particles and distant fires, with the motion
 // between frames; its file (.fwbook) and reader. editor/tools bakes flipbooks.
 #pragma once
+#include "host_limits.h"
 #include "shared/flipbook.h"
 
 #include <cstddef>
@@ -14,7 +15,8 @@ namespace fw::flipbook {
 using gpu::vec2;
 using gpu::vec4;
 
-constexpr uint32_t kMinSide = 8, kMaxSide = 512, kMaxFrames = 256;
+constexpr uint32_t kMinSide = 8, kMaxSide = limits::kFlipbookSide,
+                   kMaxFrames = limits::kFlipbookFrames;
 
 enum class Kind : uint32_t { Fire, Smoke, Spark };
 constexpr uint32_t kKinds = 3;

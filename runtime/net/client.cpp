@@ -42,7 +42,7 @@ void Client::read(std::span<const std::byte> packet) {
     try {
         readPacket(packet);
     } catch (const core::Error&) {
-        ++traffic_.refused;
+        ++link_.refused;
         throw;
     }
 }
@@ -58,18 +58,13 @@ void Client::readPacket(std::span<const std::byte> packet) {
             "session 0x%08X.",
             head.client, head.session, def_.token, session_);
     const bool early = session_ == 0 && head.kind != PacketKind::welcome;  // that one comes again
-    if (!early && !came_.isNew(head.sequence) && silent_ > kMaxSilent && head.sequence > 0)
-        came_.restartAt(head.sequence);
-    if (early || !came_.isNew(head.sequence)) {
-        ++traffic_.ignored;
-        return;
-    }
-    const bool newest = came_.isNewest(head.sequence);
+    if (early) ++link_.ignored;
+    if (early || !link_.isFresh(head.sequence)) return;
+    const bool newest = link_.came.isNewest(head.sequence);
     if (head.kind == PacketKind::welcome) {
         uint64_t identity = 0;
         reader.number(identity);
-        if (reader.left() != 0)
-            core::failData("%zu bytes follow a welcome in the packet.", reader.left());
+        endPacket(reader, "a welcome");
         session_ = head.session;
         theirs_ = identity;
         welcome_ = true;
@@ -80,10 +75,7 @@ void Client::readPacket(std::span<const std::byte> packet) {
     } else {
         core::failData("The packet is of kind %u, which a client sends.", uint32_t(head.kind));
     }
-    (void)came_.take(head.sequence);
-    silent_ = 0;
-    traffic_.bytesIn += packet.size();
-    ++traffic_.packetsIn;
+    link_.accept(head.sequence, packet.size());
 }
 
 // Newer packets say no less than older ones did; where they keep doing so, an older one was wrong.
@@ -103,14 +95,13 @@ void Client::checkProgress(const Reached& mark) {
 }
 
 void Client::readStream(core::Reader& reader, bool newest) {
-    uint32_t outdated = 0, first = 0;
-    Reached mark;
-    uint16_t count = 0, flags = 0;
-    reader.number(outdated), reader.number(mark.step), reader.number(mark.records);
-    reader.number(first), reader.number(count), reader.number(flags);
-    if (mark.step > world::Clock::kLastTick / gpu::kStepTicks || flags > kStreamFlags)
+    StreamHead head;
+    visitStreamHead(reader, head);
+    const uint32_t outdated = head.outdated;
+    const Reached mark{head.step, head.records};
+    if (mark.step > world::Clock::kLastTick / gpu::kStepTicks || head.flags > kStreamFlags)
         core::failData("The packet is of step %u and has flags 0x%04X.", mark.step,
-                       uint32_t(flags));
+                       uint32_t(head.flags));
     const bool counts = loads_ > 0 && (outdated == 0 || outdated == loaded_);
     const uint32_t before = received_;
     // All of it is looked at before any of it counts.
@@ -118,9 +109,9 @@ void Client::readStream(core::Reader& reader, bool newest) {
     for (const bool keeps : {false, true}) {
         if (keeps && newest && counts && outdated == 0) checkProgress(mark);
         core::Reader records(rest, "packet");
-        uint64_t at = first;
+        uint64_t at = head.first;
         uint32_t step = 0;
-        for (uint32_t i = 0; i < count; ++i) {
+        for (uint32_t i = 0; i < head.count; ++i) {
             uint16_t size = 0;
             records.number(size);
             const std::span<const std::byte> bytes = records.take(size);
@@ -145,12 +136,11 @@ void Client::readStream(core::Reader& reader, bool newest) {
                     record_.step, step, mark.step);
             step = record_.step;
         }
-        if (records.left() != 0)
-            core::failData("%zu bytes follow the records of the packet.", records.left());
+        endPacket(records, "the records");
     }
     countReceived(before);
     if (!counts) return;
-    if (newest) overloaded_ = (flags & kStreamOverloaded) != 0;
+    if (newest) overloaded_ = (head.flags & kStreamOverloaded) != 0;
     // Until the state is there the world burns on without the changes that are left out.
     if (outdated != 0 && requested_ != Request::state) ask(Request::state);
     // Messages from before the state was saved may be of another past.
@@ -192,24 +182,21 @@ void Client::countReceived(uint32_t from) noexcept {
         received_ = std::max(received_, at->first + at->second.count);
 }
 
-// The records that wait behind a gap, so that they are not sent again: gaps and runs, in turn.
-void Client::writeRuns(core::Writer& writer) {
-    const size_t countAt = writer.bytes().size();
-    uint16_t count = 0;
-    writer.number(count);
+// The records that wait behind a gap, so that they are not sent again.
+RecordRuns Client::runs() const noexcept {
+    RecordRuns runs;
     uint32_t end = received_;
-    for (auto at = waiting_.upper_bound(received_); at != waiting_.end() && count < kMaxRuns;) {
+    for (auto at = waiting_.upper_bound(received_);
+         at != waiting_.end() && runs.count < kMaxRuns;) {
         const uint32_t first = at->first;
         uint32_t last = first + at->second.count;
         for (++at; at != waiting_.end() && at->first <= last; ++at)
             last = std::max(last, at->first + at->second.count);
         if (first - end > 0xFFFF || last - first > 0xFFFF) break;
-        writer.number(uint16_t(first - end));
-        writer.number(uint16_t(last - first));
+        runs.list[runs.count++] = {first, last};
         end = last;
-        ++count;
     }
-    writer.numberAt(countAt, count);
+    return runs;
 }
 
 // The record to be done next, or the run of skipped ones that it is in; next_ < received_.
@@ -457,7 +444,7 @@ void Client::takeTurn(world::World& world, FwNetAction& turn) {
 }
 
 void Client::update(world::World& world, float seconds) {
-    silent_ += double(seconds);
+    link_.silent += double(seconds);
     retryIn_ = std::max(retryIn_ - double(seconds), 0.0);
     stuck_ += double(seconds);
     asking_ += double(seconds);
@@ -465,7 +452,7 @@ void Client::update(world::World& world, float seconds) {
     const bool takes = state_.state().id != 0 && !state_.whole();
     if (requested_ == Request::state && takes && stuck_ > kStuckAfter) forgetState();
     // A welcome of a session that nobody is in has no packets after it.
-    if (joined_ && loads_ == 0 && silent_ > kMaxSilent) joined_ = false;
+    if (joined_ && loads_ == 0 && link_.silent > kMaxSilent) joined_ = false;
     if (requested_ == Request::tiles && asking_ > kTilesPatience) ask(Request::state);
     untilDue_ -= double(seconds);
     if (untilDue_ <= 1e-4) {
@@ -505,27 +492,25 @@ bool Client::write(world::World& world, std::span<std::byte> room, uint32_t& siz
                             : due_   ? PacketKind::status
                                      : PacketKind::tiles;
     (due_ ? due_ : tilesDue_) = false;
-    core::Writer writer = beginPacket(packet_, {kind, joined_ ? session_ : 0, def_.token, ++sent_});
+    core::Writer writer =
+        beginPacket(packet_, {kind, joined_ ? session_ : 0, def_.token, ++link_.sent});
     if (kind == PacketKind::status) {
-        writer.number(uint16_t(retryIn_ <= 0 ? requested_ : Request::nothing));
-        writer.number(loaded_);
-        writer.number(received_);
-        writer.number(uint32_t(world.tick() / gpu::kStepTicks));
-        writer.number(came_.newest());
-        writer.number(state_.state().id);
-        writer.number(state_.base());
-        writer.number(state_.came());
-        writeRuns(writer);
+        const Request request = retryIn_ <= 0 ? requested_ : Request::nothing;
+        Status status{uint16_t(request),
+                      loaded_,
+                      received_,
+                      uint32_t(world.tick() / gpu::kStepTicks),
+                      link_.came.newest(),
+                      state_.state().id,
+                      state_.base(),
+                      state_.came(),
+                      runs()};
+        visitStatus(writer, status);
     } else if (kind == PacketKind::tiles) {
-        writer.number(ownNumber_);
-        writer.number(wrongSlot_);
+        visitNumbers(writer, ownNumber_, wrongSlot_);
         for (const uint32_t hash : ownBlocks_) writer.number(hash);
     }
-    sealPacket(packet_);
-    std::copy(packet_.begin(), packet_.end(), room.begin());
-    size = uint32_t(packet_.size());
-    traffic_.bytesOut += size;
-    ++traffic_.packetsOut;
+    size = link_.send(packet_, room);
     return true;
 }
 
@@ -538,10 +523,10 @@ void Client::fillState(world::World& world, FwNetState& state) const {
     state.step = world.tick() / gpu::kStepTicks;
     state.newestKnownStep = heard_;
     state.behind = float(std::max(double(heard_) / 32 - world.persistence().seconds(), 0.0));
-    state.silent = float(silent_);
+    state.silent = float(link_.silent);
     state.records = uint32_t(waiting_.size());
     state.peers = joined_ ? 1 : 0;
-    addTraffic(traffic_, state);
+    link_.addTo(state);
     state.states = loads_;
     state.hashes = compared_;
     state.desyncs = desyncs_;

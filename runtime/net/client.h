@@ -42,7 +42,7 @@ class Client {
     void checkProgress(const Reached& mark);
     void keep(uint32_t record, std::span<const std::byte> bytes);
     void countReceived(uint32_t from) noexcept;
-    void writeRuns(core::Writer& writer);
+    [[nodiscard]] RecordRuns runs() const noexcept;
     [[nodiscard]] const Waiting& front(uint32_t& end) const noexcept;
     void advance(uint32_t record) noexcept;
     void load(world::World& world);
@@ -61,8 +61,8 @@ class Client {
     FwNetDef def_;
     std::pmr::memory_resource* memory_;
     world::Recording& recording_;
-    uint32_t session_ = 0, sent_ = 0;
-    SequenceWindow came_;
+    uint32_t session_ = 0;
+    Link link_;
     bool welcome_ = false;  // the server sent the identity of its world
     bool refused_ = false;  // and it is another one
     bool joined_ = false;   // it is this one
@@ -94,12 +94,10 @@ class Client {
     uint32_t heard_ = 0;    // the last step that the server reported
     double owed_ = 0;       // s that the world is to be moved on
     double untilDue_ = 0;   // s
-    double silent_ = 0;     // s
     bool due_ = true;
     std::pmr::vector<world::ObjectHash> theirHashes_, ourHashes_;
     uint64_t compared_ = 0;
     uint32_t desyncs_ = 0;
-    Traffic traffic_;
     std::pmr::vector<std::byte> packet_;  // scratch
     Record record_;                       // scratch
 };

@@ -2,6 +2,8 @@
 
 #include "core/hash.h"
 
+#include <algorithm>
+
 namespace fw::net {
 namespace {
 
@@ -20,13 +22,8 @@ uint32_t sumOf(std::span<const std::byte> packet) noexcept {
 core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& head) {
     out.clear();
     core::Writer writer(out);
-    writer.number(kMagic);
-    writer.number(uint16_t(kPacketVersion));
-    writer.number(uint16_t(head.kind));
-    writer.number(uint32_t(0));
-    writer.number(head.session);
-    writer.number(head.client);
-    writer.number(head.sequence);
+    visitNumbers(writer, kMagic, uint16_t(kPacketVersion), uint16_t(head.kind), uint32_t(0),
+                 head.session, head.client, head.sequence);
     return writer;
 }
 
@@ -42,8 +39,7 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
     uint32_t magic = 0, sum = 0;
     uint16_t version = 0, kind = 0;
     PacketHead head;
-    reader.number(magic), reader.number(version), reader.number(kind), reader.number(sum);
-    reader.number(head.session), reader.number(head.client), reader.number(head.sequence);
+    visitNumbers(reader, magic, version, kind, sum, head.session, head.client, head.sequence);
     if (magic != kMagic)
         core::failData("The packet begins with 0x%08X; 0x%08X (\"FWNP\") is expected.", magic,
                        kMagic);
@@ -62,13 +58,42 @@ PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader) {
     return head;
 }
 
-void addTraffic(const Traffic& traffic, FwNetState& state) noexcept {
-    state.bytesOut += traffic.bytesOut;
-    state.bytesIn += traffic.bytesIn;
-    state.packetsOut += traffic.packetsOut;
-    state.packetsIn += traffic.packetsIn;
-    state.packetsIgnored += traffic.ignored;
-    state.packetsRefused += traffic.refused;
+void endPacket(const core::Reader& reader, const char* body) {
+    if (reader.left() != 0)
+        core::failData("%zu bytes follow %s of the packet.", reader.left(), body);
+}
+
+bool Link::isFresh(uint32_t sequence) noexcept {
+    if (!came.isNew(sequence) && silent > kMaxSilent && sequence > 0) came.restartAt(sequence);
+    if (came.isNew(sequence)) return true;
+    ++ignored;
+    return false;
+}
+
+void Link::accept(uint32_t sequence, size_t bytes) noexcept {
+    (void)came.take(sequence);
+    silent = 0;
+    bytesIn += bytes;
+    ++packetsIn;
+}
+
+uint32_t Link::send(std::span<std::byte> packet, std::span<std::byte> room) noexcept {
+    FW_ASSERT(packet.size() >= kPacketHead && packet.size() <= room.size(), "%zu of %zu bytes",
+              packet.size(), room.size());
+    sealPacket(packet);
+    std::copy(packet.begin(), packet.end(), room.begin());
+    bytesOut += packet.size();
+    ++packetsOut;
+    return uint32_t(packet.size());
+}
+
+void Link::addTo(FwNetState& state) const noexcept {
+    state.bytesOut += bytesOut;
+    state.bytesIn += bytesIn;
+    state.packetsOut += packetsOut;
+    state.packetsIn += packetsIn;
+    state.packetsIgnored += ignored;
+    state.packetsRefused += refused;
 }
 
 }  // namespace fw::net

@@ -39,6 +39,14 @@ core::Writer beginPacket(std::pmr::vector<std::byte>& out, const PacketHead& hea
 void sealPacket(std::span<std::byte> packet) noexcept;
 // Throws unless it is a packet; the reader is then behind the head.
 PacketHead openPacket(std::span<const std::byte> packet, core::Reader& reader);
+// Throws unless all of the packet is read. `body`: what ends here.
+void endPacket(const core::Reader& reader, const char* body);
+
+// Visits numbers in the order of the packet: a Writer writes them, a Reader reads them.
+template <class Stream, class... Number>
+void visitNumbers(Stream& stream, Number&&... numbers) {
+    (stream.number(numbers), ...);
+}
 
 // s without an accepted packet: a packet that seems old then restarts the sequence, since its
 // newest number may have been wrong.
@@ -77,11 +85,22 @@ class SequenceWindow {
     uint64_t seen_ = 0;  // bit i: newest_ - i
 };
 
-struct Traffic {  // one way and the other
+// One side's end of the way to the other side: sequences and traffic.
+struct Link {
+    uint32_t sent = 0;  // sequence of the last packet to the other side
+    SequenceWindow came;
+    double silent = 0;  // s since a packet was accepted
     uint64_t bytesOut = 0, bytesIn = 0, packetsOut = 0, packetsIn = 0;
     uint64_t ignored = 0;  // that came again, much too late, or faster than a peer may send
     uint64_t refused = 0;  // damaged, or with an impossible number
+
+    // False: it came again, or much too late; it is counted as ignored.
+    bool isFresh(uint32_t sequence) noexcept;
+    // Counts a packet whose content was used.
+    void accept(uint32_t sequence, size_t bytes) noexcept;
+    // Seals a complete packet and copies it to `room`; returns its size.
+    uint32_t send(std::span<std::byte> packet, std::span<std::byte> room) noexcept;
+    void addTo(FwNetState& state) const noexcept;
 };
-void addTraffic(const Traffic& traffic, FwNetState& state) noexcept;
 
 }  // namespace fw::net

@@ -4,31 +4,35 @@
 
 namespace fw::net {
 
+uint32_t RecordRuns::pastRun(uint32_t record) const noexcept {
+    FW_ASSERT(count <= list.size(), "%u runs", uint32_t(count));
+    const auto end = list.begin() + count;
+    const auto run =
+        std::find_if(list.begin(), end, [&](const RecordRun& one) { return record < one.end; });
+    return run != end && run->first <= record ? run->end : record;
+}
+
 void writeRecord(const Record& record, std::pmr::vector<std::byte>& out) {
     core::Writer writer(out);
     const bool isCommand = record.kind == RecordKind::command;
     const auto command = uint32_t(isCommand ? record.command.index() : 0);
-    writer.number(uint16_t(uint32_t(record.kind) | command << 8));
-    writer.number(record.step);
+    visitNumbers(writer, uint16_t(uint32_t(record.kind) | command << 8), record.step);
     if (isCommand) {
         world::writeCommand(record.command, out);
     } else if (record.kind == RecordKind::hashes) {
-        writer.number(record.tick);
-        writer.number(record.first);
-        writer.number(record.stride);
+        visitNumbers(writer, record.tick, record.first, record.stride);
         for (uint32_t i = 0; i < record.hashCount; ++i) writer.number(record.hashes[i]);
-    } else if (record.kind == RecordKind::capture || record.kind == RecordKind::skipped) {
-        writer.number(record.tick);
-    } else {
+    } else if (record.kind == RecordKind::message) {
         out.insert(out.end(), record.message.begin(), record.message.end());
+    } else {
+        writer.number(record.tick);
     }
 }
 
 void readRecord(std::span<const std::byte> bytes, Record& record) {
     core::Reader reader(bytes, "packet");
     uint16_t head = 0;
-    reader.number(head);
-    reader.number(record.step);
+    visitNumbers(reader, head, record.step);
     const uint32_t kind = head & 0xFF, command = head >> 8;
     const bool isCommand = kind == uint32_t(RecordKind::command);
     if (kind >= uint32_t(RecordKind::count) || (!isCommand && command != 0))
@@ -37,27 +41,24 @@ void readRecord(std::span<const std::byte> bytes, Record& record) {
     if (isCommand) {
         world::readCommand(command, reader.take(reader.left()), record.command);
     } else if (record.kind == RecordKind::hashes) {
-        reader.number(record.tick);
-        reader.number(record.first);
-        reader.number(record.stride);
-        const size_t count = reader.left() / sizeof(uint64_t);
-        if (count > record.hashes.size() || record.stride == 0)
-            core::failData("The packet has %zu hashes of every %u objects.", count, record.stride);
-        record.hashCount = uint32_t(count);
-        for (size_t i = 0; i < count; ++i) reader.number(record.hashes[i]);
-    } else if (record.kind == RecordKind::capture || record.kind == RecordKind::skipped) {
-        reader.number(record.tick);
-        if (record.tick == 0 || record.tick > 0xFFFFFFFFu)
-            core::failData("The packet has a record of kind %u and number %llu.", kind,
-                           static_cast<unsigned long long>(record.tick));
-    } else {
+        visitNumbers(reader, record.tick, record.first, record.stride);
+        record.hashCount = uint32_t(reader.left() / sizeof(uint64_t));
+        if (record.hashCount > record.hashes.size() || record.stride == 0)
+            core::failData("The packet has %u hashes of every %u objects.", record.hashCount,
+                           record.stride);
+        for (uint32_t i = 0; i < record.hashCount; ++i) reader.number(record.hashes[i]);
+    } else if (record.kind == RecordKind::message) {
         if (reader.left() > kMaxMessage)
             core::failData("The packet has a message of %zu bytes; the limit is %u.", reader.left(),
                            kMaxMessage);
         record.message = reader.take(reader.left());
+    } else {
+        reader.number(record.tick);
+        if (record.tick == 0 || record.tick > 0xFFFFFFFFu)
+            core::failData("The packet has a record of kind %u and number %llu.", kind,
+                           static_cast<unsigned long long>(record.tick));
     }
-    if (reader.left() != 0)
-        core::failData("%zu bytes follow a record of the packet.", reader.left());
+    endPacket(reader, "a record");
 }
 
 uint32_t RecordLog::recordBeforeLast(size_t most) const noexcept {

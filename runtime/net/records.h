@@ -2,7 +2,7 @@
 // host, and the places of saved states, each with the step before which it belongs. A client that
 // gets a whole state instead is sent runs of records as skipped, but every message.
 #pragma once
-#include "core/stream.h"
+#include "net/packet.h"
 #include "world/recording.h"
 
 #include <array>
@@ -20,11 +20,62 @@ static_assert(kMaxMessage == sizeof FwNetAction::message);
 constexpr uint16_t kStreamOverloaded = 1;
 constexpr uint16_t kStreamFlags = kStreamOverloaded;  // all of them
 
+struct StreamHead {         // of a packet of records
+    uint32_t outdated = 0;  // the client's state, if the records do not go on from it; or 0
+    uint32_t step = 0;      // of the server's world
+    uint32_t records = 0;   // before that step
+    uint32_t first = 0;     // number of the packet's first record
+    uint16_t count = 0, flags = 0;
+};
+template <class Stream, class Head>
+void visitStreamHead(Stream& stream, Head& head) {
+    visitNumbers(stream, head.outdated, head.step, head.records, head.first, head.count,
+                 head.flags);
+}
+
 // Runs of records that a client has behind a gap, at most so many in a status.
 constexpr size_t kMaxRuns = 64;
 struct RecordRun {
     uint32_t first = 0, end = 0;
 };
+struct RecordRuns {
+    std::array<RecordRun, kMaxRuns> list;
+    uint16_t count = 0;
+    // The record, or the first behind the run that it is in.
+    [[nodiscard]] uint32_t pastRun(uint32_t record) const noexcept;
+};
+
+struct Status {             // of a client
+    uint16_t request = 0;   // Request
+    uint32_t loaded = 0;    // id of the state that it loaded last; 0: none
+    uint32_t next = 0;      // it has all records before this one
+    uint32_t step = 0;      // of its world
+    uint32_t answered = 0;  // sequence of the newest packet that it has
+    // The part of a state that the client has: the id, all pieces before `base`, and those of
+    // the bits behind it.
+    uint32_t state = 0, base = 0;
+    uint64_t came = 0;
+    RecordRuns runs;  // of records that it has behind `next`
+};
+// Runs are gaps and lengths of 16 bits. A Reader throws where they can be none.
+template <class Stream, class S>
+void visitStatus(Stream& stream, S& s) {
+    visitNumbers(stream, s.request, s.loaded, s.next, s.step, s.answered, s.state, s.base, s.came,
+                 s.runs.count);
+    if (s.runs.count > kMaxRuns)
+        core::failData("The packet's status has %u runs of records.", uint32_t(s.runs.count));
+    uint32_t at = s.next;
+    for (uint16_t i = 0; i < s.runs.count; ++i) {
+        auto& run = s.runs.list[i];
+        auto gap = uint16_t(run.first - at), length = uint16_t(run.end - run.first);
+        visitNumbers(stream, gap, length);
+        if (gap == 0 || length == 0 || uint64_t(at) + gap + length > 0xFFFFFFFFu)
+            core::failData("The packet's status has a run of %u records, %u behind record %u.",
+                           uint32_t(length), uint32_t(gap), at);
+        run = {at + gap, at + gap + length};
+        at = run.end;
+    }
+}
 
 enum class RecordKind : uint8_t {
     command,

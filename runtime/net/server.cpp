@@ -1,6 +1,7 @@
 #include "net/server.h"
 
 #include "components/burnable_mesh.h"
+#include "host_limits.h"
 
 #include <algorithm>
 
@@ -30,16 +31,12 @@ constexpr double kPacketsPerSecond = 512, kMaxPackets = 8192;  // from one peer
 }  // namespace
 
 void checkNetDef(const FwNetDef& def) {
-    using components::checkValue;
-    const auto check = [](uint32_t value, const char* name, uint32_t low, uint32_t high) {
-        if (value < low || value > high)
-            core::refuse("FwNetDef::%s is %u; the limits are [%u, %u].", name, value, low, high);
-    };
-    check(def.flags, "flags", 0, 0);
-    check(def.reserved, "reserved", 0, 0);
-    check(def.token, "token", 1, 0xFFFFFFFFu);
-    check(def.packetBytes, "packetBytes", kMinPacket, kMaxPacket);
-    check(def.bytesPerSecond, "bytesPerSecond", 4000, 100000000);
+    using components::checkValue, components::checkWhole;
+    checkWhole(def.flags, "FwNetDef::flags", 0, 0);
+    checkWhole(def.reserved, "FwNetDef::reserved", 0, 0);
+    checkWhole(def.token, "FwNetDef::token", 1, 0xFFFFFFFFu);
+    checkWhole(def.packetBytes, "FwNetDef::packetBytes", kMinPacket, kMaxPacket);
+    checkWhole(def.bytesPerSecond, "FwNetDef::bytesPerSecond", 4000, 100000000);
     checkValue(def.delay, "FwNetDef::delay", 0.0f, 10.0f);
     checkValue(def.interval, "FwNetDef::interval", 1.0f / 64, 1.0f);
 }
@@ -58,8 +55,8 @@ Server::Server(const FwNetDef& def, world::World& world, std::pmr::memory_resour
 }
 
 FwPeerId Server::addPeer() {
-    if (peers_.live() >= kMaxPeers)
-        core::refuse("%u peers are there; the limit is %u.", peers_.live(), kMaxPeers);
+    if (peers_.live() >= limits::kPeers)
+        core::refuse("%u peers are there; the limit is %u.", peers_.live(), limits::kPeers);
     const FwPeerId id = peers_.create(memory_);
     peers_.get(id).packets = kMaxPackets;
     peers_.get(id).captures = kCapturesAtOnce;
@@ -99,21 +96,21 @@ void Server::endCapture() noexcept {
     });
 }
 
-// Messages from this record on may still be needed.
-uint32_t Server::messagesFrom() noexcept {
+// Records from this one on may still be needed, or messages alone.
+uint32_t Server::neededFrom(bool messagesAlone) noexcept {
     uint32_t from = log_.end();
     eachPeer([&](const Peer& peer, uint32_t) {
-        if (ruleOf(peer.phase).hasState) from = std::min(from, peer.acknowledged);
+        if (ruleOf(peer.phase).hasState && (messagesAlone || !peer.skips))
+            from = std::min(from, peer.acknowledged);
         if (ruleOf(peer.phase).takes) from = std::min(from, peer.head.record);
     });
     for (const Capture& capture : captures_) from = std::min(from, capture.head.record);
-    if (captureRequested_) from = std::min(from, recorded_.record);
-    return from;
+    return captureRequested_ ? std::min(from, recorded_.record) : from;
 }
 
 void Server::dropLog(uint32_t record) noexcept {
     try {
-        log_.dropBefore(record, messagesFrom());
+        log_.dropBefore(record, neededFrom(true));
     } catch (...) {
         eachPeer([](Peer& peer, uint32_t) {
             if (ruleOf(peer.phase).hasState) ++peer.messagesLost;
@@ -214,14 +211,7 @@ void Server::sendMessage(world::World& world, std::span<const std::byte> message
 // Drops the records that nobody needs any more. Where too many wait, those go as well, and the
 // peers that have not got them need a state.
 void Server::trim(const world::World& world) noexcept {
-    uint32_t needed = log_.end();
-    eachPeer([&](const Peer& peer, uint32_t) {
-        if (ruleOf(peer.phase).hasState && !peer.skips)
-            needed = std::min(needed, peer.acknowledged);
-        if (ruleOf(peer.phase).takes) needed = std::min(needed, peer.head.record);
-    });
-    for (const Capture& capture : captures_) needed = std::min(needed, capture.head.record);
-    if (captureRequested_) needed = std::min(needed, recorded_.record);
+    uint32_t needed = neededFrom(false);
     if (log_.bytes() > kMaxLog) needed = std::max(needed, log_.recordBeforeLast(kMaxLog / 2));
     dropLog(std::max(needed, log_.begin()));
     eachPeer([&](Peer& peer, uint32_t) {
@@ -229,7 +219,7 @@ void Server::trim(const world::World& world) noexcept {
         fall(peer);
         ++peer.resyncs;
     });
-    log_.dropMessagesBefore(messagesFrom());
+    log_.dropMessagesBefore(neededFrom(true));
     while (log_.keptBytes() > kMaxKept) {
         const uint32_t lost = log_.dropOldestMessage();
         eachPeer([&](Peer& peer, uint32_t name) {
@@ -239,7 +229,7 @@ void Server::trim(const world::World& world) noexcept {
                                   "Peer %u has not answered for %.1f s: of messages that wait, the "
                                   "server keeps %zu bytes, and this peer misses the others. Remove "
                                   "it, or send it what it missed in another way.",
-                                  name, peer.silent, kMaxKept);
+                                  name, peer.link.silent, kMaxKept);
         });
     }
 }
@@ -257,7 +247,7 @@ void Server::watchBacklog(const world::World& world, Peer& peer, uint32_t name) 
     if (!peer.skips && backlog < behind / 2) peer.overloaded = false;
     if (!ruleOf(peer.phase).hasState || peer.skips || backlog < behind) return;
     const size_t bytes = log_.bytesFrom(peer.acknowledged);
-    const bool silent = peer.silent > behind;
+    const bool silent = peer.link.silent > behind;
     if (!peer.overloaded && !silent) {
         peer.overloaded = true;
         if (now_ - peer.reportedAt < kReportEvery) return;
@@ -409,7 +399,7 @@ void Server::update(world::World& world, float seconds) {
         peer.packets = std::min(peer.packets + passed * kPacketsPerSecond, kMaxPackets);
         peer.captures = std::min(peer.captures + passed / kCaptureEvery, kCapturesAtOnce);
         if (peer.token == 0) return;
-        peer.silent += passed;
+        peer.link.silent += passed;
         peer.budget = std::min(peer.budget + passed * def_.bytesPerSecond, maxBudget());
         watchBacklog(world, peer, name);
         peer.untilDue -= passed;
@@ -424,8 +414,8 @@ void Server::update(world::World& world, float seconds) {
 }
 
 PacketHead Server::headOf(Peer& peer, PacketKind kind) noexcept {
-    peer.trip.sent(++peer.sent, now_);
-    return {kind, def_.token, peer.token, peer.sent};
+    peer.trip.sent(++peer.link.sent, now_);
+    return {kind, def_.token, peer.token, peer.link.sent};
 }
 
 // Of a peer that fell, records behind its next state come with that.
@@ -435,20 +425,12 @@ uint32_t Server::streamEnd(const Peer& peer) const noexcept {
     return captureRequested_ ? recorded_.record : log_.end();
 }
 
-// The record, or the first behind the run that the peer has it in.
-uint32_t Server::pastRun(const Peer& peer, uint32_t record) noexcept {
-    const auto end = peer.runs.begin() + peer.runCount;
-    const auto run = std::find_if(peer.runs.begin(), end,
-                                  [&](const RecordRun& one) { return record < one.end; });
-    return run != end && run->first <= record ? run->end : record;
-}
-
 // The first of a turn says how far the server is, even without a record.
 bool Server::writeStream(Peer& peer, bool pieceDue) {
     const PeerRule& rule = ruleOf(peer.phase);
     const uint32_t end = streamEnd(peer);
     const uint32_t skipsBefore = peer.skips ? end : 0;
-    peer.cursor = pastRun(peer, peer.cursor);
+    peer.cursor = peer.runs.pastRun(peer.cursor);
     const bool records =
         rule.hasState && peer.budget > 0 && peer.cursor < end && !(pieceDue && peer.pieceNext);
     if (!peer.due && !records) return false;
@@ -456,19 +438,16 @@ bool Server::writeStream(Peer& peer, bool pieceDue) {
         return false;  // of the next turn
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::stream));
     const bool outdated = rule.hasState && rule.shown != FW_NET_FOLLOWING;
-    writer.number(outdated ? peer.loaded : 0);
-    writer.number(step_);
-    writer.number(stepEnd_);
-    writer.number(rule.hasState ? peer.cursor : 0);
-    const size_t countAt = packet_.size();
-    uint16_t count = 0;
-    writer.number(count);
-    writer.number(uint16_t(peer.overloaded ? kStreamOverloaded : 0));
+    StreamHead head{
+        outdated ? peer.loaded : 0,      step_, stepEnd_,
+        rule.hasState ? peer.cursor : 0, 0,     uint16_t(peer.overloaded ? kStreamOverloaded : 0)};
+    visitStreamHead(writer, head);
+    const size_t countAt = packet_.size() - 2 * sizeof(uint16_t);
     if (records && peer.cursor == peer.acknowledged) {
         peer.resendAt = now_ + peer.trip.timeout();
         peer.resentAt = now_;
     }
-    while (records && peer.cursor < end && pastRun(peer, peer.cursor) == peer.cursor) {
+    while (records && peer.cursor < end && peer.runs.pastRun(peer.cursor) == peer.cursor) {
         const RecordLog::Entry entry = log_.entryAt(peer.cursor, skipsBefore);
         const bool skips = entry.bytes.empty();
         const size_t size = skips ? kSkipBytes : entry.bytes.size();
@@ -484,13 +463,13 @@ bool Server::writeStream(Peer& peer, bool pieceDue) {
             packet_.insert(packet_.end(), entry.bytes.begin(), entry.bytes.end());
             ++peer.cursor;
         }
-        ++count;
+        ++head.count;
     }
-    writer.numberAt(countAt, count);
+    writer.numberAt(countAt, head.count);
     peer.sentEnd = std::max(peer.sentEnd, peer.cursor);
-    if (count > 0) {
+    if (head.count > 0) {
         peer.pieceNext = true;
-        peer.sentIn = peer.sent;
+        peer.sentIn = peer.link.sent;
     }
     peer.due = false;
     return true;
@@ -504,7 +483,7 @@ bool Server::writePiece(Peer& peer, uint32_t piece) {
     core::Writer writer = beginPacket(packet_, headOf(peer, PacketKind::chunk));
     const auto each = uint16_t(def_.packetBytes - kPacketHead - kChunkHead);
     writeChunk(writer, {peer.head, piece, each}, tiles ? peer.tiles : capture->bytes);
-    peer.chunks.sent(piece, now_, peer.sent);
+    peer.chunks.sent(piece, now_, peer.link.sent);
     for (Given& given : peer.given)
         if (given.id == peer.head.id) given.whole |= peer.chunks.allSent();
     peer.pieceNext = false;
@@ -530,26 +509,22 @@ bool Server::write(FwPeerId to, std::span<std::byte> room, uint32_t& size) {
         if (!writeStream(peer, piece != peer.chunks.count()) && !writePiece(peer, piece))
             return false;
     }
-    sealPacket(packet_);
-    std::copy(packet_.begin(), packet_.end(), room.begin());
-    size = uint32_t(packet_.size());
+    size = peer.link.send(packet_, room);
     peer.budget -= double(size);
-    peer.traffic.bytesOut += size;
-    ++peer.traffic.packetsOut;
     return true;
 }
 
 void Server::read(world::World& world, FwPeerId from, std::span<const std::byte> packet) {
     Peer& peer = peers_.get(from);
     if (peer.packets < 1) {
-        ++peer.traffic.ignored;
+        ++peer.link.ignored;
         return;
     }
     peer.packets -= 1;
     try {
         readPacket(world, peer, from.index1, packet);
     } catch (const core::Error& error) {
-        const uint64_t refused = ++peer.traffic.refused;
+        const uint64_t refused = ++peer.link.refused;
         if ((refused & (refused - 1)) == 0)  // the 1st, 2nd, 4th, 8th...
             world.log().write(FW_LOG_WARNING, "Packet %llu of peer %u is refused: %s",
                               static_cast<unsigned long long>(refused), from.index1, error.message);
@@ -568,12 +543,7 @@ void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
             "The packet is of a client with token 0x%08X; peer %u has 0x%08X. Remove the "
             "peer if another one came in its place.",
             head.client, name, peer.token);
-    if (!peer.came.isNew(head.sequence) && peer.silent > kMaxSilent && head.sequence > 0)
-        peer.came.restartAt(head.sequence);
-    if (!peer.came.isNew(head.sequence)) {
-        ++peer.traffic.ignored;
-        return;
-    }
+    if (!peer.link.isFresh(head.sequence)) return;
     if (head.kind == PacketKind::hello) {
         if (reader.left() != 0 || head.session != 0)
             core::failData("The packet greets with %zu bytes in session 0x%08X.", reader.left(),
@@ -590,12 +560,9 @@ void Server::readPacket(world::World& world, Peer& peer, uint32_t name,
     } else if (head.kind == PacketKind::tiles) {
         readTiles(world, peer, reader);
     } else {
-        readStatus(world, peer, reader, peer.came.isNewest(head.sequence));
+        readStatus(world, peer, reader, peer.link.came.isNewest(head.sequence));
     }
-    (void)peer.came.take(head.sequence);
-    peer.silent = 0;
-    peer.traffic.bytesIn += packet.size();
-    ++peer.traffic.packetsIn;
+    peer.link.accept(head.sequence, packet.size());
 }
 
 const Server::Given* Server::givenOf(const Peer& peer, uint32_t id) noexcept {
@@ -618,7 +585,7 @@ void Server::checkStatus(const Peer& peer, const Status& status, bool newest) co
                            name, value, low, high);
     };
     check("request", status.request, 0, uint32_t(Request::count) - 1);
-    check("newest packet", status.answered, 0, peer.sent);
+    check("newest packet", status.answered, 0, peer.link.sent);
     uint32_t newestGiven = 0;
     for (const Given& given : peer.given) newestGiven = std::max(newestGiven, given.id);
     check("a state of number", status.state, 0, newestGiven);
@@ -644,8 +611,8 @@ void Server::checkStatus(const Peer& peer, const Status& status, bool newest) co
     }
     if (status.loaded == 0) high = 0;
     check("the next record", status.next, low, high);
-    if (status.runCount > 0)
-        check("records up to", status.runs[status.runCount - 1u].end, 0,
+    if (status.runs.count > 0)
+        check("records up to", status.runs.list[status.runs.count - 1u].end, 0,
               status.loaded == 0 ? 0 : high);
     // A client goes no further than the server said, unless the server's world went back. One that
     // asks for a state may have gone wrong in this as well.
@@ -658,30 +625,10 @@ void Server::checkStatus(const Peer& peer, const Status& status, bool newest) co
                        uint32_t(status.request), ruleOf(peer.phase).name);
 }
 
-Server::Status Server::statusOf(core::Reader& reader) {
-    Status status;
-    reader.number(status.request), reader.number(status.loaded), reader.number(status.next);
-    reader.number(status.step), reader.number(status.answered);
-    reader.number(status.state), reader.number(status.base), reader.number(status.came);
-    reader.number(status.runCount);
-    if (status.runCount > kMaxRuns || reader.left() != status.runCount * 2 * sizeof(uint16_t))
-        core::failData("The packet's status has %u runs of records in %zu bytes.",
-                       uint32_t(status.runCount), reader.left());
-    uint32_t at = status.next;
-    for (uint16_t i = 0; i < status.runCount; ++i) {
-        uint16_t gap = 0, count = 0;
-        reader.number(gap), reader.number(count);
-        if (gap == 0 || count == 0 || uint64_t(at) + gap + count > 0xFFFFFFFFu)
-            core::failData("The packet's status has a run of %u records, %u behind record %u.",
-                           uint32_t(count), uint32_t(gap), at);
-        status.runs[i] = {at + gap, at + gap + count};
-        at = status.runs[i].end;
-    }
-    return status;
-}
-
 void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, bool newest) {
-    const Status status = statusOf(reader);
+    Status status;
+    visitStatus(reader, status);
+    endPacket(reader, "a status");
     drain(world);
     checkStatus(peer, status, newest);
     peer.trip.answered(status.answered, now_);
@@ -704,7 +651,6 @@ void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, b
         peer.resendAt = now_ + peer.trip.timeout();
     }
     peer.runs = status.runs;
-    peer.runCount = status.runCount;
     if (peer.sentIn < settled) peer.cursor = peer.acknowledged;
     peer.step = status.step;
     // It has forgotten what it had of the state, and begins again.
@@ -717,15 +663,14 @@ void Server::readStatus(world::World& world, Peer& peer, core::Reader& reader, b
 // It has a save of its own of the tick that the capture is of.
 void Server::readTiles(world::World& world, Peer& peer, core::Reader& reader) {
     uint32_t number = 0, slot = 0;
-    reader.number(number), reader.number(slot);
+    visitNumbers(reader, number, slot);
     std::array<uint32_t, world::kMaxBlocks> hashes{};
     const size_t count = reader.left() / sizeof(uint32_t);
     if (count > hashes.size())
         core::failData("The packet has hashes of %zu blocks; the limit is %zu.", count,
                        hashes.size());
     for (size_t i = 0; i < count; ++i) reader.number(hashes[i]);
-    if (reader.left() != 0)
-        core::failData("%zu bytes follow the hashes in the packet.", reader.left());
+    endPacket(reader, "the hashes");
     if (number == 0 || number > captureCount_)
         core::failData("The packet has hashes of state %u; there were %u.", number, captureCount_);
     if (!ruleOf(peer.phase).hasState)
@@ -755,7 +700,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
     state.changeRate = float(changeRate_);
     const auto add = [&](const Peer& peer) {
         ++state.peers;
-        addTraffic(peer.traffic, state);
+        peer.link.addTo(state);
         state.states += peer.states;
         state.resyncs += peer.resyncs;
         state.messagesLost += peer.messagesLost;
@@ -770,7 +715,7 @@ void Server::fillState(world::World& world, FwPeerId id, FwNetState& state) {
         state.phase = ruleOf(peer.phase).shown;
         state.newestKnownStep = peer.step;
         state.behind = float(double(state.step - std::min<uint64_t>(state.step, peer.step)) / 32);
-        state.silent = float(peer.silent);
+        state.silent = float(peer.link.silent);
         state.roundTrip = float(peer.trip.seconds());
         return;
     }

@@ -31,30 +31,15 @@ class Server {
     void fillState(world::World& world, FwPeerId peer, FwNetState& state);
 
  private:
-    static constexpr uint32_t kMaxPeers = 256;
     struct Given {  // a state or tiles that a peer was sent
         uint32_t id = 0, record = 0;
         bool whole = false;  // every piece was sent at least once
-    };
-    struct Status {
-        uint16_t request = 0;
-        uint32_t loaded = 0;    // id of the state that it loaded last; 0: none
-        uint32_t next = 0;      // it has all records before this one
-        uint32_t step = 0;      // of its world
-        uint32_t answered = 0;  // sequence of the newest packet that it has
-        // The part of a state that the client has: the id, all pieces before `base`, and those of
-        // the bits behind it.
-        uint32_t state = 0, base = 0;
-        uint64_t came = 0;
-        std::array<RecordRun, kMaxRuns> runs;  // of records that it has behind `next`
-        uint16_t runCount = 0;
     };
     struct Peer {
         explicit Peer(std::pmr::memory_resource* memory) : tiles(memory) {}
         uint32_t token = 0;  // its own; 0: it has not spoken
         PeerPhase phase = PeerPhase::calling;
-        SequenceWindow came;
-        uint32_t sent = 0;       // sequence of the last packet to it
+        Link link;
         bool welcome = false;    // it is due one
         bool due = false;        // packets, in this turn
         bool skips = false;      // it fell: of records before its next state it gets messages alone
@@ -67,8 +52,7 @@ class Server {
         uint64_t messagesLost = 0;
         // Records: acknowledged <= cursor <= sentEnd, the end of those that were ever sent to it.
         uint32_t acknowledged = 0, cursor = 0, sentEnd = 0;
-        std::array<RecordRun, kMaxRuns> runs;  // of records that it has behind these
-        uint32_t runCount = 0;
+        RecordRuns runs;      // of records that it has behind these
         uint32_t sentIn = 0;  // number of the last packet with records
         double resendAt = 0;  // s: then records without an answer count as lost
         double resentAt = 0;  // s
@@ -76,7 +60,6 @@ class Server {
         uint32_t step = 0;         // that it has come to
         double budget = 0;         // bytes
         double untilDue = 0;       // s
-        double silent = 0;         // s
         double packets = 0;        // that it may send at once
         uint32_t requestedAt = 0;  // the state that it waits for is not before this record
         uint32_t capture = 0;      // number of the capture that it takes or compares with
@@ -87,7 +70,6 @@ class Server {
         ChunkSender chunks;        // of the state or of its tiles
         StateHead head;
         std::pmr::vector<std::byte> tiles;
-        Traffic traffic;
     };
     struct Capture {
         StateHead head;
@@ -103,7 +85,7 @@ class Server {
     }
     void drain(world::World& world);
     void push(const Record& record);
-    [[nodiscard]] uint32_t messagesFrom() noexcept;
+    [[nodiscard]] uint32_t neededFrom(bool messagesAlone) noexcept;
     void dropLog(uint32_t record) noexcept;
     void discardAll() noexcept;
     void trim(const world::World& world) noexcept;
@@ -122,7 +104,6 @@ class Server {
     [[nodiscard]] bool hasSpareRate(const Peer& peer) const noexcept;
     [[nodiscard]] PacketHead headOf(Peer& peer, PacketKind kind) noexcept;
     [[nodiscard]] uint32_t streamEnd(const Peer& peer) const noexcept;
-    [[nodiscard]] static uint32_t pastRun(const Peer& peer, uint32_t record) noexcept;
     bool writeStream(Peer& peer, bool pieceDue);
     bool writePiece(Peer& peer, uint32_t piece);
     void readPacket(world::World& world, Peer& peer, uint32_t name,
@@ -130,7 +111,6 @@ class Server {
     [[nodiscard]] static const Given* givenOf(const Peer& peer, uint32_t id) noexcept;
     [[nodiscard]] static PeerEvent eventOf(uint16_t request) noexcept;
     void checkStatus(const Peer& peer, const Status& status, bool newest) const;
-    [[nodiscard]] static Status statusOf(core::Reader& reader);
     void readStatus(world::World& world, Peer& peer, core::Reader& reader, bool newest);
     void readTiles(world::World& world, Peer& peer, core::Reader& reader);
 

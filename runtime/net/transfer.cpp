@@ -11,12 +11,8 @@ constexpr double kNeverSent = -1e9;
 // A head's fields, written or read: the order is that of the packet.
 template <class Stream, class Head>
 void eachOf(Stream& stream, Head& head) {
-    stream.number(head.state.id);
-    stream.number(head.state.step);
-    stream.number(head.state.record);
-    stream.number(head.state.size);
-    stream.number(head.index);
-    stream.number(head.bytes);
+    visitNumbers(stream, head.state.id, head.state.step, head.state.record, head.state.size,
+                 head.index, head.bytes);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // A state on its way, piece by piece: what is lost is sent again, what comes twice is known.
 #pragma once
-#include "core/stream.h"
+#include "net/packet.h"
 
 #include <array>
 #include <cstdint>

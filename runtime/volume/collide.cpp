@@ -17,15 +17,8 @@ constexpr float kBelow = 0.1f;        // m below ground that still counts as on 
 constexpr float kSkin = 1e-3f;        // m by which a ray may graze a shape
 constexpr uint32_t kMaxFeeler = 48u;  // samples along a ray
 
-vec3 normalOr(vec3 v, vec3 fallback) noexcept {
-    const float l = glm::length(v);
-    return l > 1e-9f && std::isfinite(l) ? v / l : fallback;
-}
-
-vec3 turned(vec4 q, vec3 v) noexcept {
-    const vec3 u(q);
-    return v + 2.0f * glm::cross(u, glm::cross(u, v) + q.w * v);
-}
+constexpr vec3 kUp(0, 1, 0);
+vec3 normalOr(vec3 v) noexcept { return unitOr(v, kUp, 1e-9f); }
 
 Surface ofBox(const Collider& c, vec3 point) noexcept {
     const vec4 back(-vec3(c.rotation), c.rotation.w);
@@ -35,7 +28,7 @@ Surface ofBox(const Collider& c, vec3 point) noexcept {
     const float deepest = std::max({q.x, q.y, q.z});
     if (deepest > 0.0f) {
         const vec3 out = glm::max(q, vec3(0.0f));
-        return {glm::length(out), turned(c.rotation, normalOr(out * sign, vec3(0, 1, 0)))};
+        return {glm::length(out), turned(c.rotation, normalOr(out * sign))};
     }
     const int axis = q.x >= q.y && q.x >= q.z ? 0 : q.y >= q.z ? 1 : 2;
     vec3 normal(0.0f);
@@ -71,19 +64,24 @@ Slope slopeOf(const Collider& c, float x, float z) noexcept {
 Surface ofHeights(const Collider& c, vec3 point) noexcept {
     const Slope slope = slopeOf(c, point.x, point.z);
     if (!slope.within) return {};
-    const vec3 normal = normalOr(vec3(-slope.dx, 1.0f, -slope.dz), vec3(0, 1, 0));
+    const vec3 normal = normalOr(vec3(-slope.dx, 1.0f, -slope.dz));
     const float distance = (point.y - c.place.y - slope.height) * normal.y;
     if (!std::isfinite(distance)) return {};
     return {distance, normal};
 }
 
+float square(vec3 v) noexcept { return glm::dot(v, v); }
+
+// The place along a line segment that is nearest to a point, [0, 1].
+float nearestPart(vec3 a, vec3 b, vec3 point) noexcept {
+    const vec3 along = b - a;
+    const float l2 = square(along);
+    return l2 > 0.0f ? std::clamp(glm::dot(point - a, along) / l2, 0.0f, 1.0f) : 0.0f;
+}
+
 // Squared distance from a point to a line segment.
 float awayFrom(vec3 a, vec3 b, vec3 point) noexcept {
-    const vec3 along = b - a, to = point - a;
-    const float l2 = glm::dot(along, along);
-    const vec3 off =
-        to - (l2 > 0.0f ? std::clamp(glm::dot(to, along) / l2, 0.0f, 1.0f) : 0.0f) * along;
-    return glm::dot(off, off);
+    return square((point - a) - nearestPart(a, b, point) * (b - a));
 }
 
 // Squared distance between two segments.
@@ -91,13 +89,12 @@ float awayFrom(vec3 a, vec3 b, vec3 c, vec3 d) noexcept {
     const vec3 u = b - a, v = d - c, w = a - c;
     const float uu = glm::dot(u, u), uv = glm::dot(u, v), vv = glm::dot(v, v);
     const float uw = glm::dot(u, w), vw = glm::dot(v, w), skew = uu * vv - uv * uv;
-    float least = std::min(std::min(awayFrom(c, d, a), awayFrom(c, d, b)),
-                           std::min(awayFrom(a, b, c), awayFrom(a, b, d)));
+    float least =
+        std::min({awayFrom(c, d, a), awayFrom(c, d, b), awayFrom(a, b, c), awayFrom(a, b, d)});
     if (skew > 1e-12f) {
         const float s = (uv * vw - vv * uw) / skew, t = (uu * vw - uv * uw) / skew;
         if (s > 0.0f && s < 1.0f && t > 0.0f && t < 1.0f) {
-            const vec3 off = w + s * u - t * v;
-            least = std::min(least, glm::dot(off, off));
+            least = std::min(least, square(w + s * u - t * v));
         }
     }
     return least;
@@ -163,22 +160,17 @@ bool shades(const Collider& c, vec3 source, vec3 point) noexcept {
 
 Surface surfaceOf(const Collider& c, vec3 point) noexcept {
     switch (c.kind) {
-        case ColliderKind::Sphere: {
-            const vec3 out = point - c.place;
-            return {glm::length(out) - c.radius, normalOr(out, vec3(0, 1, 0))};
-        }
+        case ColliderKind::Sphere:
         case ColliderKind::Capsule: {
-            const vec3 axis = c.extent - c.place;
-            const float l2 = glm::dot(axis, axis);
-            const float t =
-                l2 > 0.0f ? std::clamp(glm::dot(point - c.place, axis) / l2, 0.0f, 1.0f) : 0.0f;
-            const vec3 out = point - (c.place + t * axis);
-            return {glm::length(out) - c.radius, normalOr(out, vec3(0, 1, 0))};
+            const bool sphere = c.kind == ColliderKind::Sphere;
+            const float part = sphere ? 0.0f : nearestPart(c.place, c.extent, point);
+            const vec3 out = point - (sphere ? c.place : c.place + part * (c.extent - c.place));
+            return {glm::length(out) - c.radius, normalOr(out)};
         }
         case ColliderKind::Box:
             return ofBox(c, point);
         case ColliderKind::Plane: {
-            const vec3 n = normalOr(c.extent, vec3(0, 1, 0));
+            const vec3 n = normalOr(c.extent);
             return {glm::dot(point - c.place, n), n};
         }
         case ColliderKind::HeightField:
@@ -190,7 +182,7 @@ Surface surfaceOf(const Collider& c, vec3 point) noexcept {
             const float d = c.distance(c.user, p, n);
             const vec3 normal(n[0], n[1], n[2]);
             if (!std::isfinite(d) || !std::isfinite(n[0] + n[1] + n[2])) return {};
-            return {d, normalOr(normal, vec3(0, 1, 0))};
+            return {d, normalOr(normal)};
         }
         case ColliderKind::Depth:
             return c.picture ? surfaceOf(*c.picture, c.radius, point) : Surface{};
@@ -214,36 +206,34 @@ Surface nearestSurface(std::span<const Collider> colliders, vec3 point) noexcept
 }
 
 void checkCollider(const Collider& c) {
-    const auto finite = [](vec3 v) {
-        return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-    };
-    if (uint32_t(c.kind) > uint32_t(ColliderKind::Depth))
+    using enum ColliderKind;
+    if (c.kind > Depth)
         core::refuse("kind of the collider is %u; the last one is %u.", uint32_t(c.kind),
-                     uint32_t(ColliderKind::Depth));
-    if (!finite(c.place) || !finite(c.extent))
-        core::refuse(
-            "place and extent of the collider are (%g, %g, %g) and (%g, %g, %g); they must "
-            "be finite.",
-            double(c.place.x), double(c.place.y), double(c.place.z), double(c.extent.x),
-            double(c.extent.y), double(c.extent.z));
-    const bool round = c.kind == ColliderKind::Sphere || c.kind == ColliderKind::Capsule ||
-                       c.kind == ColliderKind::HeightField || c.kind == ColliderKind::Depth;
+                     uint32_t(Depth));
+    const auto check = [](const char* name, vec3 v, bool good, const char* rule) {
+        if (!good)
+            core::refuse("%s is (%g, %g, %g); %s.", name, double(v.x), double(v.y), double(v.z),
+                         rule);
+    };
+    const auto isFinite = [](vec3 v) { return std::isfinite(glm::dot(v, vec3(1.0f))); };
+    check("place of the collider", c.place, isFinite(c.place), "it must be finite");
+    check("extent of the collider", c.extent, isFinite(c.extent), "it must be finite");
+    const bool round = c.kind != Box && c.kind != Plane && c.kind != Callback;
     if (round && !(c.radius > 0.0f && c.radius < 1e6f))
         core::refuse("radius of the collider is %g m; it must lie in (0, 1e6).", double(c.radius));
-    if (c.kind == ColliderKind::Plane && !(glm::length(c.extent) > 1e-6f))
-        core::refuse("normal of the plane is (%g, %g, %g); it must not be zero.",
-                     double(c.extent.x), double(c.extent.y), double(c.extent.z));
+    check("normal of the plane", c.extent, c.kind != Plane || glm::length(c.extent) > 1e-6f,
+          "it must not be zero");
     const float turn = glm::dot(c.rotation, c.rotation);
-    if (c.kind == ColliderKind::Box && !(std::abs(turn - 1.0f) < 1e-2f))
+    if (c.kind == Box && !(std::abs(turn - 1.0f) < 1e-2f))
         core::refuse("rotation of the box has the squared length %g; a unit quaternion has 1.",
                      double(turn));
-    if (c.kind == ColliderKind::Box && !(std::min({c.extent.x, c.extent.y, c.extent.z}) > 0.0f))
-        core::refuse("half sides of the box are (%g, %g, %g) m; each must be above 0.",
-                     double(c.extent.x), double(c.extent.y), double(c.extent.z));
-    if (c.kind == ColliderKind::HeightField && (!c.heights || c.columns < 2 || c.rows < 2))
+    check("half size of the box", c.extent,
+          c.kind != Box || std::min({c.extent.x, c.extent.y, c.extent.z}) > 0.0f,
+          "each side must be above 0 m");
+    if (c.kind == HeightField && (!c.heights || c.columns < 2 || c.rows < 2))
         core::refuse("the height field has %u x %u heights%s; it needs at least 2 x 2.", c.columns,
                      c.rows, c.heights ? "" : " at a null pointer");
-    if (c.kind == ColliderKind::Callback && !c.distance)
+    if (c.kind == Callback && !c.distance)
         core::refuse("distance of the callback collider is null; it must be a function.");
 }
 
@@ -261,7 +251,7 @@ void flattenNodes(std::span<const Collider> colliders, std::span<gpu::FlameNode>
         if (squeeze <= 0.0f) continue;
         const float widen = std::min(1.0f / std::sqrt(1.0f - squeeze), kMaxWiden);
         FW_ASSERT(squeeze < 1.0f, "squeeze %g", double(squeeze));
-        node.squeeze = vec4(normalOr(across, vec3(0, 1, 0)), squeeze);
+        node.squeeze = vec4(normalOr(across), squeeze);
         node.side.w = widen;
         node.centre.w = radius * widen;
     }

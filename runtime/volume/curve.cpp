@@ -13,11 +13,6 @@ constexpr float kTiny = 1e-6f;           // m
 constexpr float kPlaneMargin = 0.9f;     // of the radius at which two bisector planes meet
 constexpr float kSteepestRadius = 1.0f;  // m per m along: a clamped radius does not jump
 
-vec3 unitOr(vec3 v, vec3 fallback) noexcept {
-    const float l = glm::length(v);
-    return l > kTiny && std::isfinite(l) ? v / l : fallback;
-}
-
 vec3 anyNormalTo(vec3 t) noexcept {
     const vec3 axis = std::abs(t.x) < 0.8f ? vec3(1.0f, 0.0f, 0.0f) : vec3(0.0f, 0.0f, 1.0f);
     return glm::normalize(axis - t * glm::dot(axis, t));

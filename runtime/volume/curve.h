@@ -4,7 +4,10 @@
 #pragma once
 #include "shared/volume.h"
 
+#include <glm/mat4x4.hpp>
+
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -15,6 +18,21 @@ using gpu::vec2;
 using gpu::vec3;
 using gpu::vec4;
 
+// v / |v|; for a vector without a direction the other one.
+inline vec3 unitOr(vec3 v, vec3 fallback, float least = 1e-6f) noexcept {
+    const float l = glm::length(v);
+    return l > least && std::isfinite(l) ? v / l : fallback;
+}
+// A vector turned by a unit quaternion xyzw.
+inline vec3 turned(vec4 q, vec3 v) noexcept {
+    const vec3 u(q);
+    return v + 2.0f * glm::cross(u, glm::cross(u, v) + q.w * v);
+}
+inline glm::mat4 matrixOf(const float m[16]) noexcept {
+    glm::mat4 out;
+    for (int i = 0; i < 16; ++i) out[i / 4][i % 4] = m[i];
+    return out;
+}
 inline vec3 vecOf(const float v[3]) noexcept { return {v[0], v[1], v[2]}; }
 
 constexpr uint32_t kMaxControlPoints = 32;

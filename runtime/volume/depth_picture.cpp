@@ -29,13 +29,6 @@ constexpr int kShelfSteps = 12, kShelfCloser = 4;
 constexpr float kShelfLevel = 0.5f;   // least upward part of a shelf's normal
 constexpr float kShelfInside = 0.7f;  // of its thickness: gas below that leaves downwards
 
-glm::mat4 matrixOf(const float m[16]) noexcept {
-    glm::mat4 out;
-    for (int c = 0; c < 4; ++c)
-        for (int r = 0; r < 4; ++r) out[c][r] = m[4 * c + r];
-    return out;
-}
-
 bool finite(const glm::mat4& m) noexcept {
     for (int c = 0; c < 4; ++c)
         for (int r = 0; r < 4; ++r)

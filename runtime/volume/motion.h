@@ -15,7 +15,7 @@ constexpr uint32_t kMotionPieces = 14;        // control points above the base
 constexpr uint32_t kMotionParticles = 24;
 constexpr uint32_t kPulseParts = 16;  // of a puff, for the mean of contact
 constexpr float kTeleport = 100.0f;   // m/s; a base that moves faster is a teleport
-constexpr float kAmbientKelvin = 293.0f, kFlameKelvin = 1300.0f;
+constexpr float kAmbientKelvin = 293.0f;
 
 struct MotionRules {
     FlameSize size;                          // visible height, power, diameter

@@ -16,14 +16,15 @@ float inflow(float power, float diameter, float distance) noexcept {
 
 void updateNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
                       std::span<Neighbourhood> out) noexcept {
-    const size_t n = std::min(flames.size(), out.size());
+    FW_ASSERT(flames.size() == out.size(), "%zu flames, %zu answers", flames.size(), out.size());
+    const size_t n = flames.size();
     // 1 for flames much taller than their gap, 0 for flames that do not span it.
     const auto overlap = [](const NeighbourFlame& a, const NeighbourFlame& b, float distance) {
         const float gap = std::max(distance - 0.5f * (a.diameter + b.diameter), 0.0f);
         const float tall = std::min(a.height, b.height);
         return tall > 0.0f ? glm::smoothstep(0.0f, 1.0f, 1.5f * (tall - gap) / tall) : 0.0f;
     };
-    for (size_t k = 0; k < n; ++k) out[k] = {vec3(0.0f), flames[k].height, 0.0f, uint32_t(k)};
+    for (size_t k = 0; k < n; ++k) out[k] = {vec3(0.0f), flames[k].height, 0.0f};
     for (size_t a = 0; a < n; ++a) {
         const NeighbourFlame& fa = flames[a];
         // Heat and burning area of the flame and the flames that it merges with.
@@ -42,10 +43,6 @@ void updateNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
             const float o = overlap(fa, fb, distance);
             power += o * fb.power, area += o * fb.diameter * fb.diameter;
             most = std::max(most, o);
-            if (o > 0.0f) {  // the group's first flame; chains are resolved below
-                const uint32_t first = std::min(out[a].group, out[b].group);
-                out[a].group = out[b].group = first;
-            }
         }
         out[a].merged = most;
         const float together = flameHeight(power, std::sqrt(area));
@@ -53,28 +50,6 @@ void updateNeighbours(std::span<const NeighbourFlame> flames, vec3 up,
         const float limit = 0.3f * 1.93f * std::pow(std::max(fa.power, 1e-6f), 0.2f);
         const float l = glm::length(out[a].pull);
         if (l > limit) out[a].pull *= limit / l;
-    }
-    for (size_t pass = 0; pass < n; ++pass) {  // chains of flames; ends as soon as nothing changes
-        bool changed = false;
-        for (size_t k = 0; k < n; ++k) {
-            FW_ASSERT(out[k].group < n, "group %u of %zu", out[k].group, n);
-            const uint32_t root = out[out[k].group].group;
-            changed = changed || root != out[k].group;
-            out[k].group = root;
-        }
-        for (size_t a = 0; a < n && !changed; ++a)
-            for (size_t b = a + 1; b < n; ++b) {
-                if (out[a].group == out[b].group) continue;
-                vec3 to = flames[b].base - flames[a].base;
-                to -= up * glm::dot(to, up);
-                if (overlap(flames[a], flames[b], glm::length(to)) <= 0.0f) continue;
-                const uint32_t from = std::max(out[a].group, out[b].group),
-                               into = std::min(out[a].group, out[b].group);
-                for (size_t k = 0; k < n; ++k)
-                    if (out[k].group == from) out[k].group = into;
-                changed = true;
-            }
-        if (!changed) break;
     }
 }
 

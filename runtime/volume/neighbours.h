@@ -19,7 +19,6 @@ struct Neighbourhood {
     vec3 pull{0.0f};      // m/s, at the visible height, across `up`
     float height = 0.0f;  // m, with the others
     float merged = 0.0f;  // [0, 1], 1: one flame with others
-    uint32_t group = 0;   // index of the group's first flame; flames of a group touch
 };
 
 // Speed of air towards a fire at a distance, m/s. Entrainment: 0.12 of the plume's speed, falling

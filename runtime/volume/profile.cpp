@@ -14,7 +14,7 @@ namespace {
 
 constexpr uint32_t kMagic = 0x50465746;  // "FWFP"
 constexpr uint32_t kVersion = 1;
-constexpr size_t kHeaderBytes = 24;
+constexpr size_t kSumAt = 16, kHeaderBytes = 24;
 
 constexpr uint32_t kW = gpu::kProfileWidth, kH = gpu::kProfileHeight;
 
@@ -103,7 +103,7 @@ using core::wordAt;
 
 // Covers everything except the checksum itself.
 uint64_t checksum(std::span<const std::byte> bytes) {
-    return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(16)));
+    return core::hashBytes(bytes.subspan(kHeaderBytes), core::hashBytes(bytes.first(kSumAt)));
 }
 
 }  // namespace
@@ -111,38 +111,24 @@ uint64_t checksum(std::span<const std::byte> bytes) {
 std::pmr::vector<std::byte> cookProfile(const Profile& profile, std::pmr::memory_resource* memory) {
     std::pmr::vector<std::byte> out(memory);
     out.reserve(kHeaderBytes + 4 * Profile::kTexels);
-    const auto put = [&](uint64_t value, uint32_t bytes) {
-        for (uint32_t k = 0; k < bytes; ++k) out.push_back(std::byte(value >> (8 * k)));
-    };
-    put(kMagic, 4), put(kVersion, 4), put(kW, 4), put(kH, 4), put(0, 8);
-    for (uint32_t texel : profile.texels) put(texel, 4);
-    const uint64_t sum = checksum(out);
-    for (uint32_t k = 0; k < 8; ++k) out[16 + k] = std::byte(sum >> (8 * k));
+    core::Writer writer(out);
+    for (const uint32_t word : {kMagic, kVersion, kW, kH}) writer.number(word);
+    writer.number(uint64_t(0));
+    for (const uint32_t texel : profile.texels) writer.number(texel);
+    writer.numberAt(kSumAt, checksum(out));
     return out;
 }
 
 void readProfile(std::span<const std::byte> bytes, Profile& profile) {
-    if (bytes.size() < kHeaderBytes)
-        core::failData("the .fwprofile has %zu bytes; its header alone has %zu.", bytes.size(),
-                       kHeaderBytes);
-    if (wordAt(bytes, 0) != kMagic)
-        core::failData("the .fwprofile begins with 0x%08x; it must begin with 0x%08x.",
-                       wordAt(bytes, 0), kMagic);
-    if (wordAt(bytes, 4) != kVersion)
-        core::fail(FW_ERROR_VERSION,
-                   "the .fwprofile has version %u; this library reads version %u.",
-                   wordAt(bytes, 4), kVersion);
+    core::checkHead(bytes, ".fwprofile", kHeaderBytes, kMagic, kVersion);
     const uint32_t width = wordAt(bytes, 8), height = wordAt(bytes, 12);
     checkSize(width, height);
     const size_t expected = kHeaderBytes + size_t(4) * width * height;
     if (bytes.size() != expected)
         core::failData("the .fwprofile has %zu bytes; %u x %u texels need %zu.", bytes.size(),
                        width, height, expected);
-    const uint64_t sum = wordAt(bytes, 16) | uint64_t(wordAt(bytes, 20)) << 32;
-    if (sum != checksum(bytes))
-        core::failData("the .fwprofile's checksum is 0x%016llx; its content has 0x%016llx.",
-                       static_cast<unsigned long long>(sum),
-                       static_cast<unsigned long long>(checksum(bytes)));
+    core::checkSum(".fwprofile", wordAt(bytes, kSumAt) | uint64_t(wordAt(bytes, kSumAt + 4)) << 32,
+                   checksum(bytes));
     const auto texel = [&](uint32_t x, uint32_t y) {
         return glm::unpackHalf2x16(wordAt(bytes, kHeaderBytes + 4 * (size_t(y) * width + x)));
     };

@@ -1,6 +1,7 @@
 // The burn: events of texels on their way to their steps, the steps of a frame, records under
 // wind and gravity, baked burns, and the course of each object's fire as readbacks tell it.
 #pragma once
+#include "host_limits.h"
 #include "world/command.h"
 #include "world/pending.h"
 #include "world/scene.h"
@@ -90,9 +91,9 @@ class BurnSystem {
 
  private:
     friend class PersistenceSystem;
-    static constexpr uint32_t kMaxSteps = 64;
+    static constexpr uint32_t kMaxSteps = limits::kStepsPerFrame;
     static_assert(kMaxSteps == gpu::kMaxFieldRounds);
-    static constexpr size_t kMaxPending = size_t(1) << 22;  // texel events that wait
+    static constexpr size_t kMaxPending = limits::kPendingEvents;  // texel events that wait
 
     struct Frame {  // scratch of one frame; keeps its room between frames
         explicit Frame(std::pmr::memory_resource* given) : memory(given) {}

@@ -1,5 +1,6 @@
 // Bodies that flames of volumetric fires flow around: the host's colliders, among them pictures of
 // depth, and the world's occluders as boxes. Cosmetic.
+#include "host_limits.h"
 #include "world/exchange_system.h"
 #include "world/flame_system.h"
 
@@ -14,8 +15,6 @@ using components::checkLength;
 using components::checkLengths;
 using components::checkValue;
 using components::checkValues;
-
-constexpr uint32_t kMaxFireColliders = 64;
 
 float callHost(void* user, const float point[3], float normal[3]) noexcept {
     const auto& entry = *static_cast<const FireColliderEntry*>(user);
@@ -142,9 +141,9 @@ void setShape(const FwFireColliderDef& def, float unitsPerMetre, FireColliderEnt
 // Pictures of depth stop no jet: flames alone see them.
 FwFireColliderId FlameSystem::addCollider(const FwFireColliderDef& def, float unitsPerMetre) {
     scene_.geometryVersion += def.kind != FW_COLLIDER_DEPTH;
-    if (colliders_.live() >= kMaxFireColliders)
+    if (colliders_.live() >= limits::kFireColliders)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u fire colliders are in place; the limit is %u.",
-                   colliders_.live(), kMaxFireColliders);
+                   colliders_.live(), limits::kFireColliders);
     auto entry = core::Owned<FireColliderEntry>::make(context_.memory, context_.memory);
     setShape(def, unitsPerMetre, *entry);
     return colliders_.create(std::move(entry));

@@ -1,6 +1,7 @@
 #include "world/light_system.h"
 
 #include "components/lights.h"
+#include "host_limits.h"
 #include "shared/particle.h"
 #include "world/emitter_system.h"
 #include "world/flame_system.h"
@@ -15,12 +16,12 @@ namespace fw::world {
 LightSystem::LightSystem(const WorldContext& context, Scene& scene, const FlameSystem& flames,
                          const EmitterSystem& emitters)
     : context_(context), scene_(scene), flames_(flames), emitters_(emitters) {
-    state_.lights.reserve(components::kMostLights);
-    state_.before.reserve(components::kMostLights);
-    state_.shown.reserve(2 * components::kMostLights);
-    kept_.reserve(components::kMostLights);
+    state_.lights.reserve(limits::kLights);
+    state_.before.reserve(limits::kLights);
+    state_.shown.reserve(2 * limits::kLights);
+    kept_.reserve(limits::kLights);
     // Of meshes, of fires, of emitters.
-    sources_.reserve(2 * components::kMostLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
+    sources_.reserve(2 * limits::kLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
     taken_.reserve(sources_.capacity());
 }
 
@@ -99,7 +100,7 @@ void LightSystem::showSaved() noexcept {
 void LightSystem::commit(float seconds) {
     components::followLights(state_.shown, state_.lights, seconds, context_.def.maxLights);
     // Lights that were chosen among more than maxLights stay chosen.
-    std::array<FwLight, components::kMostLights> gathered;
+    std::array<FwLight, limits::kLights> gathered;
     const uint32_t count = gather({gathered.data(), context_.def.maxLights});
     kept_.clear();
     for (uint32_t i = 0; i < count; ++i) kept_.push_back(gathered[i].id);

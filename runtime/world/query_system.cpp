@@ -2,6 +2,7 @@
 
 #include "components/lights.h"
 #include "core/growth.h"
+#include "host_limits.h"
 #include "mesh/bake.h"
 #include "shared/particle.h"
 #include "shared/volume_draw.h"
@@ -41,7 +42,7 @@ QuerySystem::QuerySystem(const WorldContext& context, Scene& scene, const WindSy
       lights_(lights),
       burn_(burn) {
     // Lights of meshes, fires, emitters.
-    sources_.reserve(2 * components::kMostLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
+    sources_.reserve(2 * limits::kLights + gpu::kMaxVolumeFlames + gpu::kMaxEmitters);
     probeFrames_.reserve(kFramesInFlight);
     for (uint32_t i = 0; i < kFramesInFlight; ++i) probeFrames_.emplace_back(context.memory);
 }

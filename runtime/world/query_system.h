@@ -3,6 +3,7 @@
 #pragma once
 #include "components/jet.h"
 #include "components/surroundings.h"
+#include "host_limits.h"
 #include "world/scene.h"
 
 namespace fw::world {
@@ -96,9 +97,10 @@ class QuerySystem {
 
  private:
     friend class PersistenceSystem;
-    static constexpr uint32_t kMaxTags = 4096;
-    static constexpr uint32_t kMaxQueries = 1024;
-    static constexpr uint32_t kFramesInFlight = 16;  // readbacks whose probes are still known
+    static constexpr uint32_t kMaxTags = limits::kTags;
+    static constexpr uint32_t kMaxQueries = limits::kQueries;
+    static constexpr uint32_t kFramesInFlight =
+        limits::kFramesInFlight;  // readbacks whose probes are still known
 
     struct ProbeRef {  // what a probe of a frame was for
         bool isTag = false;

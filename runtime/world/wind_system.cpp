@@ -1,5 +1,6 @@
 #include "world/wind_system.h"
 
+#include "host_limits.h"
 #include "shared/wind.h"
 #include "world/exchange_system.h"
 #include "world/field_system.h"
@@ -138,9 +139,9 @@ void WindSystem::updateObject(Object& object) noexcept {
 }
 
 FwWindZoneId WindSystem::createZone(const FwWindZoneDef& def) {
-    if (state_.zones.live() >= components::kMaxWindZones)
+    if (state_.zones.live() >= limits::kWindZones)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "%u wind zones are there; the limit is %u.",
-                   state_.zones.live(), components::kMaxWindZones);
+                   state_.zones.live(), limits::kWindZones);
     const WindZone zone = components::makeWindZone(def);
     state_.ordered.reserve(state_.zones.live() + 1);
     const FwWindZoneId id = state_.zones.create(zone);

@@ -4,6 +4,7 @@
 #include "components/lights.h"
 #include "core/growth.h"
 #include "flamewright/flamewright_debug.h"
+#include "host_limits.h"
 #include "world/checks.h"
 #include "world/material.h"
 #include "world/shift.h"
@@ -37,7 +38,7 @@ FwWorldDef checkedDef(const FwWorldDef& given) {
     checkLengths(def.wind, 3, "FwWorldDef::wind", -fire::kMaxWind, fire::kMaxWind);
     checkLimit(def.reserved, "FwWorldDef::reserved", 0, 0);
     checkLimit(def.maxStepsPerFrame, "FwWorldDef::maxStepsPerFrame", 1, 64);
-    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, components::kMostLights);
+    checkLimit(def.maxLights, "FwWorldDef::maxLights", 0, limits::kLights);
     checkLimit(def.maxRefinedTriangles, "FwWorldDef::maxRefinedTriangles", 1000, 16000000);
     checkLimit(def.volumePixelSize, "FwWorldDef::volumePixelSize", 1, 16);
     checkLimit(def.rayStepCount, "FwWorldDef::rayStepCount", 6, 64);

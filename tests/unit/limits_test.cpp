@@ -2,12 +2,8 @@
 // is written instead of compared.
 #include "host_limits.h"
 
-#include "components/lights.h"
-#include "components/pose.h"
-#include "components/wind_grid.h"
-#include "components/wind_zone.h"
+#include "fire/wind_filter.h"
 #include "flamewright/flamewright_vulkan.h"
-#include "flipbook/flipbook.h"
 
 #include <gtest/gtest.h>
 
@@ -21,16 +17,7 @@ namespace {
 namespace limits = fw::limits;
 using namespace fw;
 
-static_assert(limits::kWindZones == components::kMaxWindZones &&
-              limits::kWindGridSide == components::kMaxGridSide &&
-              limits::kWindGridPoints == components::kMaxGridPoints &&
-              limits::kWind == uint32_t(fire::kMaxWind) &&
-              limits::kLights == components::kMostLights &&
-              limits::kFirePower == uint32_t(components::kMaxPower) &&
-              limits::kStretch == uint32_t(components::kMaxStretch) &&
-              limits::kFlipbookSide == flipbook::kMaxSide &&
-              limits::kFlipbookFrames == flipbook::kMaxFrames &&
-              limits::kPreparedViews == FW_MAX_VIEWS);
+static_assert(limits::kWind == uint32_t(fire::kMaxWind) && limits::kPreparedViews == FW_MAX_VIEWS);
 
 std::string page() {
     std::string text =

@@ -5,6 +5,7 @@
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
 #include "gpu/vk/timers.h"
+#include "host_limits.h"
 
 #include <array>
 
@@ -55,8 +56,8 @@ struct FrameInFlight {
 
 class FrameRing {
  public:
-    static constexpr uint32_t kMaxInFlight = 16;
-    static constexpr uint32_t kMaxDrawn = 16;  // views a frame that are drawn
+    static constexpr uint32_t kMaxInFlight = limits::kFramesInFlight;
+    static constexpr uint32_t kMaxDrawn = limits::kDrawnViews;
     static constexpr uint32_t kMaxViews = kMaxDrawn + gpu::kMaxViews;  // and recorded for
 
     explicit FrameRing(Device& device) : device_(device) {}
