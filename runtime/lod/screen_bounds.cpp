@@ -69,6 +69,19 @@ BoxShown showBox(const ViewParams& view, const vec3& low, const vec3& high) {
 
 }  // namespace
 
+bool sphereInView(const ViewParams& view, vec3 middle, float radius) noexcept {
+    const auto row = [&](int i) {
+        return vec4(view.clip0[i], view.clip1[i], view.clip2[i], view.clip3[i]);
+    };
+    for (int axis = 0; axis < 2; ++axis)
+        for (const float side : {-1.0f, 1.0f}) {
+            const vec4 plane = row(3) + side * row(axis);
+            if (glm::dot(vec3(plane), middle) + plane.w < -radius * glm::length(vec3(plane)))
+                return false;
+        }
+    return true;
+}
+
 vec4 volumeClip(const ViewParams& view) noexcept {
     const vec3 forward(view.forward);
     if (view.forward.w <= 0.5f) return {along(forward, view, 2), view.clip3.z, 0.0f, view.clip3.w};

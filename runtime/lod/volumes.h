@@ -28,6 +28,9 @@ struct VolumeItem {  // a volumetric flame that a view may show
     bool highQuality = false;  // FW_FIRE_TIER_MARCH_HIGH was asked for
     vec4 burns{};  // as VolumeDraw::rect, of the flame without its smoke; empty: that is not seen
 };
+// Whether some of a sphere is between the planes of the view's four sides. `middle`: m, from the
+// camera.
+bool sphereInView(const ViewParams& view, vec3 middle, float radius) noexcept;
 // Where the view shows it, in so many slabs; false: nowhere.
 bool volumeDraw(const ViewParams& view, const vec4& low, const vec4& high, uint32_t slabs,
                 VolumeDraw& out, vec4* whole = nullptr);

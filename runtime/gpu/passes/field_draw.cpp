@@ -14,17 +14,7 @@ bool fieldDrawn(const ViewParams& view, const FieldDraw& field, FieldItem& out) 
                                     : draw::field_refracting;
     out.vertices = field.shape == kFieldBillboard ? 6 : 6 * kFieldAround * kFieldUp;
     if (view.forward.w > 0.5f && out.depth < -radius) return false;
-    // Left or right of the view, above or below it, as a whole.
-    const auto row = [&](int i) {
-        return vec4(view.clip0[i], view.clip1[i], view.clip2[i], view.clip3[i]);
-    };
-    for (int axis = 0; axis < 2; ++axis)
-        for (const float side : {-1.0f, 1.0f}) {
-            const vec4 plane = row(3) + side * row(axis);
-            const float away = glm::dot(vec3(plane), middle) + plane.w;
-            if (away < -radius * glm::length(vec3(plane))) return false;
-        }
-    return true;
+    return sphereInView(view, middle, radius);
 }
 
 void sortFields(std::span<FieldItem> items) noexcept {

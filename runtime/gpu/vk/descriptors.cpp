@@ -1,8 +1,11 @@
 #include "gpu/vk/descriptors.h"
 
+#include "core/assert.h"
+#include "gpu/vk/device_objects.h"
 #include "shared/volume_draw.h"
 
 #include <array>
+#include <utility>
 
 namespace fw::gpu::vk {
 
@@ -14,8 +17,7 @@ PassSets::PassSets(Device& device, const Pipelines& pipelines, RetireQueue& reti
 }
 
 PassSets::~PassSets() {
-    for (const OfView& one : views_)
-        device_.table.DestroyDescriptorPool(device_.handle, one.pool, device_.allocationCallbacks);
+    for (OfView& one : views_) device_.destroy(device_.table.DestroyDescriptorPool, one.pool);
 }
 
 VkDescriptorSet PassSets::compute(size_t pass, uint32_t view) const {
@@ -35,8 +37,7 @@ void PassSets::drop(uint32_t view, uint64_t lastFrame) {
     OfView& of = views_[view];
     if (!of.pool) return;
     retired_.promise(1);
-    retired_.push(lastFrame, of.pool);
-    of.pool = VK_NULL_HANDLE;
+    retired_.push(lastFrame, {.pool = std::exchange(of.pool, VK_NULL_HANDLE)});
     of.generation = 0;
     of.compute.clear();
     of.draw.clear();
@@ -79,10 +80,12 @@ void PassSets::update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize 
     of.compute.resize(computeCount);
     of.draw.resize(drawCount);
     retired_.promise(1);
-    std::array<VkDescriptorSetLayout, 128> layouts{};
-    std::array<VkDescriptorSet, 128> made{};
-    std::array<VkDescriptorSet*, 128> places{};
-    std::array<std::span<const Use>, 128> uses{};
+    constexpr size_t kMostSets = 128;
+    FW_ASSERT(computeCount + drawCount <= kMostSets, "%zu passes", computeCount + drawCount);
+    std::array<VkDescriptorSetLayout, kMostSets> layouts{};
+    std::array<VkDescriptorSet, kMostSets> made{};
+    std::array<VkDescriptorSet*, kMostSets> places{};
+    std::array<std::span<const Use>, kMostSets> uses{};
     uint32_t sets = 0;
     const auto add = [&](VkDescriptorSet& place, const PassObjects& pass) {
         if (view > 0 && !pass.declared.isPerView()) return;
@@ -100,27 +103,9 @@ void PassSets::update(const WorldBuffers& buffers, VkBuffer views, VkDeviceSize 
         for (const Use& use : uses[i])
             for (VkDescriptorPoolSize& size : sizes)
                 size.descriptorCount += size.type == descriptorSlot(use).type ? 1 : 0;
-    auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    info.maxSets = sets;
-    info.poolSizeCount = uint32_t(sizes.size());
-    info.pPoolSizes = sizes.data();
-    VkDescriptorPool pool = VK_NULL_HANDLE;
-    device_.check(device_.table.CreateDescriptorPool(device_.handle, &info,
-                                                     device_.allocationCallbacks, &pool),
-                  "vkCreateDescriptorPool");
-    auto allocate =
-        typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
-    allocate.descriptorPool = pool;
-    allocate.descriptorSetCount = sets;
-    allocate.pSetLayouts = layouts.data();
-    const VkResult result =
-        device_.table.AllocateDescriptorSets(device_.handle, &allocate, made.data());
-    if (result != VK_SUCCESS) {
-        device_.table.DestroyDescriptorPool(device_.handle, pool, device_.allocationCallbacks);
-        device_.check(result, "vkAllocateDescriptorSets");
-    }
-    retired_.push(lastFrame, of.pool);
-    of.pool = pool;
+    const VkDescriptorPool pool =
+        makeSets(device_, sizes, std::span(layouts).first(sets), std::span(made).first(sets));
+    retired_.push(lastFrame, {.pool = std::exchange(of.pool, pool)});
     for (uint32_t i = 0; i < sets; ++i) {
         *places[i] = made[i];
         write(made[i], uses[i], buffers, views, viewBytes, view);
@@ -132,32 +117,10 @@ ImageSet makeImageSet(Device& device, const Pipelines& pipelines, VkImageView vi
                       VkSampler sampler) {
     ImageSet out;
     const VkDescriptorPoolSize size{VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1};
-    auto info = typed<VkDescriptorPoolCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_POOL_CREATE_INFO);
-    info.maxSets = 1;
-    info.poolSizeCount = 1;
-    info.pPoolSizes = &size;
-    device.check(device.table.CreateDescriptorPool(device.handle, &info, device.allocationCallbacks,
-                                                   &out.pool),
-                 "vkCreateDescriptorPool");
-    auto allocate =
-        typed<VkDescriptorSetAllocateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_ALLOCATE_INFO);
     const VkDescriptorSetLayout layout = pipelines.imageSetLayout();
-    allocate.descriptorPool = out.pool;
-    allocate.descriptorSetCount = 1;
-    allocate.pSetLayouts = &layout;
-    const VkResult result = device.table.AllocateDescriptorSets(device.handle, &allocate, &out.set);
-    if (result != VK_SUCCESS) {
-        device.table.DestroyDescriptorPool(device.handle, out.pool, device.allocationCallbacks);
-        device.check(result, "vkAllocateDescriptorSets");
-    }
-    const VkDescriptorImageInfo image{sampler ? sampler : pipelines.imageSampler(), view,
-                                      VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL};
-    auto write = typed<VkWriteDescriptorSet>(VK_STRUCTURE_TYPE_WRITE_DESCRIPTOR_SET);
-    write.dstSet = out.set;
-    write.descriptorCount = 1;
-    write.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    write.pImageInfo = &image;
-    device.table.UpdateDescriptorSets(device.handle, 1, &write, 0, nullptr);
+    out.pool = makeSets(device, {&size, 1}, {&layout, 1}, {&out.set, 1});
+    writeImageSet(device, out.set, sampler ? sampler : pipelines.imageSampler(), view,
+                  VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL);
     return out;
 }
 

@@ -47,7 +47,7 @@ Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
             make();
         checkDevice();
     } catch (...) {
-        destroy();
+        close();
         throw;
     }
     log_.write(FW_LOG_INFO, "Vulkan device \"%s\", %s, Vulkan %u.%u declared, queue family %u.",
@@ -55,7 +55,7 @@ Device::Device(const FwVulkanHost* host, const core::Log& log) : log_(log) {
                VK_API_VERSION_MINOR(apiVersion), queueFamily);
 }
 
-Device::~Device() { destroy(); }
+Device::~Device() { close(); }
 
 void Device::adoptHost(const FwVulkanHost& host) {
     if (!host.getInstanceProcAddr)
@@ -199,7 +199,7 @@ void Device::checkDevice() {
     }
 }
 
-void Device::destroy() noexcept {
+void Device::close() noexcept {
     if (own) {
         if (handle) table.DestroyDevice(handle, nullptr);
         if (instance && table.DestroyInstance) table.DestroyInstance(instance, nullptr);
@@ -218,6 +218,11 @@ void Device::notifyLost() noexcept {
 void Device::check(VkResult result, const char* what) {
     if (result == VK_ERROR_DEVICE_LOST) notifyLost();
     vk::check(result, what);
+}
+
+void Device::failIfLost() const {
+    if (lost())
+        core::fail(FW_ERROR_DEVICE_LOST, "The Vulkan device is lost; nothing more is recorded.");
 }
 
 void Device::name(VkObjectType type, uint64_t object, const char* text) const noexcept {

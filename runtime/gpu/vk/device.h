@@ -39,13 +39,31 @@ class Device {
     void notifyLost() noexcept;
     // As vk::check, and latches a lost device.
     void check(VkResult result, const char* what);
+    // Throws FW_ERROR_DEVICE_LOST once the loss is known.
+    void failIfLost() const;
+    // A new object: `create(table.CreateFence, info, "vkCreateFence")`. Throws as check does.
+    template <class Info, class Handle>
+    Handle create(VkResult(VKAPI_PTR* creates)(VkDevice, const Info*, const VkAllocationCallbacks*,
+                                               Handle*),
+                  const Info& info, const char* what) {
+        Handle made{};
+        check(creates(handle, &info, allocationCallbacks, &made), what);
+        return made;
+    }
+    // Destroys `object`, which may be null, and sets it to null.
+    template <class Handle>
+    void destroy(void(VKAPI_PTR* drop)(VkDevice, Handle, const VkAllocationCallbacks*),
+                 Handle& object) const noexcept {
+        drop(handle, object, allocationCallbacks);
+        object = Handle{};
+    }
     void name(VkObjectType type, uint64_t object, const char* text) const noexcept;
 
  private:
     void adoptHost(const FwVulkanHost& host);
     void make();
     void checkDevice();
-    void destroy() noexcept;
+    void close() noexcept;
 
     const core::Log& log_;
     void* library_ = nullptr;  // libvulkan.so.1, own device only

@@ -1,6 +1,6 @@
 #include "gpu/vk/frame.h"
 
-#include "gpu/vk/frame_needs.h"
+#include "gpu/vk/backend_state.h"
 #include "shared/burn_budget.h"
 
 #include <algorithm>
@@ -157,7 +157,8 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
     if (step.heat) {
         push = pushOf(lists, step);
         zeroRow(r, kRowHot + (lists.hotParity ^ 1));
-        lighting([&] { r.dispatchList(pass::heat, push, kRowHot + lists.hotParity); });
+        lighting(
+            [&] { r.dispatchRow(pass::heat, push, kRowHot + lists.hotParity, RowPart::list); });
         lists.hotParity ^= 1;
     }
     for (uint32_t k = 0; step.iterate && k < 1u << step.stepShift; ++k) {
@@ -165,16 +166,16 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
         push.iteration = k;
         push.count = step.wakeGroups.count;
         if (dense) r.dispatch(pass::schedule, push, std::max(push.count, 1u));
-        if (!dense) r.dispatchList(pass::schedule, push, lists.row);
-        r.dispatchRun(pass::gather, push, lists.row);
-        r.dispatchWork(pass::arrival, push, lists.row);
-        r.dispatchRim(pass::arrival_rim, push, lists.row);
+        if (!dense) r.dispatchRow(pass::schedule, push, lists.row, RowPart::list);
+        r.dispatchRow(pass::gather, push, lists.row, RowPart::run);
+        r.dispatchRow(pass::arrival, push, lists.row, RowPart::work);
+        r.dispatchRow(pass::arrival_rim, push, lists.row, RowPart::rim);
         if (step.capped) {
             push.switches |= kSwitchRequests;
             allotBudget();
             push.switches &= ~kSwitchRequests;
         }
-        r.dispatchWork(pass::commit, push, lists.row);
+        r.dispatchRow(pass::commit, push, lists.row, RowPart::work);
         lists.row += 1;
         lists.parity ^= 1;
     }
@@ -193,8 +194,8 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
     push.count = step.objectSlots;
     zeroRow(r, kRowBurn + (lists.burnParity ^ 1));
     r.dispatchItems(pass::reduce_clear, push, push.count);
-    r.dispatchList(pass::reduce_front, push, lists.row);
-    r.dispatchList(pass::reduce, push, kRowBurn + lists.burnParity);
+    r.dispatchRow(pass::reduce_front, push, lists.row, RowPart::list);
+    r.dispatchRow(pass::reduce, push, kRowBurn + lists.burnParity, RowPart::list);
     lists.burnParity ^= 1;
     if (!step.exchange) return;
     push = pushOf(lists, step);
@@ -217,12 +218,14 @@ void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord&
     push.switches = budgetPush.switches;
     push.count = step.objectSlots;
     zeroRow(r, kRowExchange);
-    r.dispatchRun(pass::fire_cells, push, kRowBurn + lists.burnParity);
+    r.dispatchRow(pass::fire_cells, push, kRowBurn + lists.burnParity, RowPart::run);
     r.dispatchItems(pass::fire_sources, push, push.count);
     if (push.warms != 0) {
         r.dispatchItems(pass::receivers, push, push.count);
-        if (push.occlusionCell == 0) r.dispatchRun(pass::exchange, push, kRowExchange);
-        if (push.occlusionCell != 0) r.dispatchRun(pass::exchange_occlusion, push, kRowExchange);
+        if (push.occlusionCell == 0)
+            r.dispatchRow(pass::exchange, push, kRowExchange, RowPart::run);
+        if (push.occlusionCell != 0)
+            r.dispatchRow(pass::exchange_occlusion, push, kRowExchange, RowPart::run);
     }
     const bool touches = (push.flags & kExchangeContact) && step.links;
     const bool parts = (push.flags & kExchangeContact) && step.parts;
@@ -234,7 +237,7 @@ void recordExchange(FrameRecorder& r, const FrameLists& lists, const StepRecord&
         push.count = step.links;
         if (touches) r.dispatchItems(pass::contacts, push, step.links);
         push.count = step.objectSlots;
-        if (parts) r.dispatchRun(pass::parts, push, kRowBurn + lists.burnParity);
+        if (parts) r.dispatchRow(pass::parts, push, kRowBurn + lists.burnParity, RowPart::run);
         if (throws) r.dispatchItems(pass::embers, push, push.count);
     });
 }
@@ -249,7 +252,7 @@ void recordShownTiles(FrameRecorder& r, const FrameLists& lists, uint32_t tick) 
     push.burnParity = lists.burnParity;
     push.now = tick;
     push.switches = kSwitchDisplayOnly;
-    r.dispatchList(pass::reduce, push, row);
+    r.dispatchRow(pass::reduce, push, row, RowPart::list);
 }
 
 // --- Prediction: arrival ahead of the front, and which burnt pieces fall. Cosmetic. ---
@@ -268,13 +271,13 @@ void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, boo
     push.predictParity = lists.predictParity;
     zeroRow(r, kRowPredict + (lists.predictParity ^ 1));
     const uint32_t row = kRowPredict + lists.predictParity;
-    r.dispatchList(pass::predict_states, push, row);
-    r.dispatchList(pass::predict_gather, push, row);
+    r.dispatchRow(pass::predict_states, push, row, RowPart::list);
+    r.dispatchRow(pass::predict_gather, push, row, RowPart::list);
     if (seen) {
-        r.dispatchWork(pass::predict, push, row);
-        r.dispatchRim(pass::predict_rim, push, row);
+        r.dispatchRow(pass::predict, push, row, RowPart::work);
+        r.dispatchRow(pass::predict_rim, push, row, RowPart::rim);
         for (push.iteration = 0; push.iteration < 2; ++push.iteration)
-            r.dispatchWork(pass::predict_commit, push, row);
+            r.dispatchRow(pass::predict_commit, push, row, RowPart::work);
     }
     lists.predictParity ^= 1;
 }
@@ -302,12 +305,13 @@ void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
     const uint32_t sheets = deform.count.nodes, springs = sheets + deform.count.sheets;
     dispatch(pass::recede, 0, deform.count.nodes, deform.steps << 1);
     // A sheet that did not move in the frame before knows of no link yet.
-    if (deform.begins && !(deform.steps > 0 && updatesLinkCache(deform.way)))
+    if (deform.begins && !(deform.steps > 0 && updatesLinkCache(deform.bendSet)))
         dispatch(pass::link_cache, sheets, deform.count.sheets, 0);
     for (uint32_t i = 0; i < deform.steps; ++i) {
-        const uint32_t way = (deform.way + i) % kBendSets;
-        if (updatesLinkCache(way)) dispatch(pass::link_cache, sheets, deform.count.sheets, i & 1);
-        dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | way << 1);
+        const uint32_t bendSet = (deform.bendSet + i) % kBendSets;
+        if (updatesLinkCache(bendSet))
+            dispatch(pass::link_cache, sheets, deform.count.sheets, i & 1);
+        dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | bendSet << 1);
         dispatch(pass::springs, springs, deform.count.springs, i & 1);
     }
     const uint32_t vertices = springs + deform.count.springs;
@@ -343,54 +347,55 @@ void clearMarch(FrameRecorder& r, const MarchRecord& march) {
 
 }  // namespace
 
-// Lights once a frame; flames, particles and marches of each view. Without a view lights alone.
-void VkBackend::State::recordEffects(FrameInFlight& slot) {
-    const std::span<OutsideView* const> from = seenFrom();
-    const bool looked = !from.empty(), emits = showsEmitters(), burns = !simulation.burnEmpty;
-    const bool fieldsShow = looked && !particleFields.fieldDraws.empty(),
-               marches = looked && !flames.volumes.empty();
-    if ((!burns && !marches && !emits && !fieldsShow) || !limits.looks.viewParams) return;
+void recordEffects(BackendState& s, FrameInFlight& slot) {
+    const std::span<OutsideView* const> from = s.seenFrom();
+    const bool looked = !from.empty(), emits = s.particles.shows(), burns = !s.simulation.burnEmpty;
+    const bool fieldsShow = looked && !s.particleFields.fieldDraws.empty(),
+               marches = looked && !s.flames.volumes.empty();
+    if ((!burns && !marches && !emits && !fieldsShow) || !s.limits.looks.viewParams) return;
     const VkViewport whole{0, 0, 1, 1, 0, 1};
-    RecordTarget target = recordTarget(slot, open.commands);
-    target.profiles = scene.profiles.set.set;
+    RecordTarget target = s.recordTarget(slot, s.open.commands);
+    target.profiles = s.scene.profiles.set.set;
     // A step of an own device has no view: lights alone, which flicker with simulated time.
     FwView none{};
-    none.time = float(double(open.endTick) / kTicksPerSecond);
-    target.viewOffset = pushView(slot, looked ? from[0]->view : none, whole);
+    none.time = float(double(s.open.endTick) / kTicksPerSecond);
+    target.viewOffset = s.pushView(slot, looked ? from[0]->view : none, whole);
     FrameRecorder r(target);
     StepPush push{};
-    push.now = open.endTick;
-    push.burnParity = simulation.lists.burnParity;
+    push.now = s.open.endTick;
+    push.burnParity = s.simulation.lists.burnParity;
     if (burns) r.dispatch(pass::lights, push, 1);
-    const TileShare soot = burns ? sootShare(looked) : TileShare{};
+    const TileShare soot =
+        burns ? s.simulation.sootShare(s.buffers.capacity(kPoolObjectTiles), s.open.endTick, looked)
+              : TileShare{};
     if (soot.count > 0) r.dispatch(pass::soot, pushOf(soot), (soot.count + 7) / 8);
-    const SortPush room = quadRoom();
+    const SortPush room = s.particles.quadRoom(s);
     ParticlePush moving{};
     moving.quads = room.particles;
     moving.firstQuad = room.tiles;
     moving.lights = room.lights;
-    moving.burnRow = burns ? kRowBurn + simulation.lists.burnParity : kNoBurnRow;
-    moving.moved = vec4(particles.particlesMove, 0.0f);
-    if (emits && particles.emittersMove && particles.emitterGroups > 0) {
-        r.dispatch(pass::particles, moving, particles.emitterGroups);
-        particles.particlesMove = vec3(0.0f);
+    moving.burnRow = burns ? kRowBurn + s.simulation.lists.burnParity : kNoBurnRow;
+    moving.moved = vec4(s.particles.particlesMove, 0.0f);
+    if (emits && s.particles.emittersMove && s.particles.emitterGroups > 0) {
+        r.dispatch(pass::particles, moving, s.particles.emitterGroups);
+        s.particles.particlesMove = vec3(0.0f);
     }
-    push.count = scene.books.live ? particles.flameFlipbooks : 0;
+    push.count = s.scene.books.live ? s.particles.flameFlipbooks : 0;
     const SparkPush sparks{room.lights, room.tiles + room.particles, moving.burnRow, 0};
     for (OutsideView* const of : from) {
-        if (of != from[0]) target.viewOffset = pushView(slot, of->view, whole);
+        if (of != from[0]) target.viewOffset = s.pushView(slot, of->view, whole);
         target.view = of->number;
         FrameRecorder view(target);
         // The lights begin the first view's quads.
         if ((emits && !burns) || (burns && of->number != 0))
             view.fillZero(FW_BIND_DRAW_ARGS, 0, kFlameOrder * 4);
         if (burns) view.dispatch(pass::flame_quads, push, 16);
-        if (particles.emitterGroups > 0)
-            view.dispatch(pass::particle_quads, moving, particles.emitterGroups);
-        if (particles.sparkSources > 0)
-            view.dispatch(pass::sparks, sparks, particles.sparkSources * kSparkGroups);
+        if (s.particles.emitterGroups > 0)
+            view.dispatch(pass::particle_quads, moving, s.particles.emitterGroups);
+        if (s.particles.sparkSources > 0)
+            view.dispatch(pass::sparks, sparks, s.particles.sparkSources * kSparkGroups);
         if (burns || emits) view.dispatch(pass::flame_sort, room, 1);
-        if (const MarchRecord march = marches ? marchVolumes(*of) : MarchRecord{};
+        if (const MarchRecord march = marches ? s.flames.march(s, *of) : MarchRecord{};
             !march.volumes.empty()) {
             clearMarch(view, march);
             view.dispatchVolumes(pass::volume_probe, march.volumes, VolumesOf::all);
@@ -400,7 +405,7 @@ void VkBackend::State::recordEffects(FrameInFlight& slot) {
     }
     if (fieldsShow)
         r.dispatch(pass::field_show, NoPush{},
-                   uint32_t(particleFields.fieldDraws.size()) * kFieldShowGroups);
+                   uint32_t(s.particleFields.fieldDraws.size()) * kFieldShowGroups);
 }
 
 // --- Refinement ---
@@ -412,10 +417,10 @@ void recordLevels(FrameRecorder& r, const FrameLists& lists, const RefineRecord&
     RefinePush push = refine.push;
     push.row = lists.row;
     push.parity = lists.parity;
-    r.dispatchList(pass::refine_heat, push, lists.row);
+    r.dispatchRow(pass::refine_heat, push, lists.row, RowPart::list);
     push.row = kRowBurn + lists.burnParity;
     push.parity = 2 + lists.burnParity;
-    r.dispatchList(pass::refine_heat, push, push.row);
+    r.dispatchRow(pass::refine_heat, push, push.row, RowPart::list);
     push.parity = kRefineFreshHeat;
     if (refine.fresh) r.dispatch(pass::refine_heat, push, push.objects);
     const uint32_t items = push.edgeGroups + push.triangleGroups, triangles = push.triangleGroups;
@@ -458,45 +463,6 @@ void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& with, uint
             r.dispatch(pass::refine_published, push, groups - done);
         }
     }
-}
-
-// --- Readback ---
-
-void VkBackend::State::recordReadback(FrameInFlight& slot) {
-    RecordTarget target = recordTarget(slot, open.commands);
-    const bool looked = open.viewCount > 0;
-    if (looked) target.view = seenFrom()[0]->number;  // whose quads are counted
-    FrameRecorder r(target);
-    ReadbackLayout& layout = slot.layout;
-    const auto copyShown = [&] {
-        layout.quads = looked && (!simulation.burnEmpty || showsEmitters());
-        layout.bias = open.refined;
-        if (layout.quads) r.copyOut(FW_BIND_DRAW_ARGS, 0, layout.flamesAt, 16);
-        if (layout.bias) r.copyOut(FW_BIND_REFINE_WORK, kRefineWorkBias * 4, layout.biasAt, 4);
-    };
-    if (open.planFrame == 0 && looked) copyShown();  // a picture of an own device's
-    if (open.planFrame == 0 || !open.readback) return;
-    const auto copy = [&](uint32_t resource, uint64_t at, uint64_t bytes) {
-        if (bytes > 0) r.copyOut(resource, 0, at, bytes);
-    };
-    // Counters before the lists: rows that this frame used, and the one its list ended in.
-    copy(FW_BIND_COUNTERS, layout.countersAt, uint64_t(layout.rows + 1) * kRowBytes);
-    copy(FW_BIND_OBJECT_COUNTERS, layout.objectsAt, layout.objects * sizeof(ObjectCounters));
-    copy(FW_BIND_ANSWERS, layout.answersAt, layout.answers * sizeof(ProbeAnswer));
-    copy(FW_BIND_LIGHTS, layout.lightsAt, layout.lights * sizeof(BurnLight));
-    copyShown();
-    copy(FW_BIND_FIELD_COUNTERS, layout.fieldsAt, layout.fields * sizeof(FieldCounters));
-    copy(FW_BIND_ROOM_AIR, layout.roomsAt, layout.rooms ? kMaxRooms * sizeof(RoomAir) : 0);
-    for (uint32_t i = 0; i < layout.mapCount; ++i) {
-        const ReadbackLayout::MapAt& map = layout.maps[i];
-        const BurnObject& object = scene.objects[map.object].record;
-        r.copyOut(FW_BIND_STATE, uint64_t(object.stateBase) * 4, map.at, uint64_t(map.texels) * 4);
-        if (map.heat)
-            r.copyOut(FW_BIND_HEAT, uint64_t(object.heatBase) * sizeof(uvec2), map.heatAt,
-                      uint64_t(map.texels) * sizeof(uvec2));
-    }
-    if (layout.images) recordImages(*this, r);
-    slot.readbackPending = true;
 }
 
 }  // namespace fw::gpu::vk

@@ -6,6 +6,8 @@
 
 namespace fw::gpu::vk {
 
+struct BackendState;
+
 // Where the lists are that live on between steps and frames.
 struct FrameLists {
     uint32_t row = kRowIteration;  // counters row of the front list
@@ -15,12 +17,7 @@ struct FrameLists {
     uint32_t hotParity = 0;
 };
 
-struct Staged {  // in the frame's upload buffer
-    uint64_t at = 0;
-    uint32_t count = 0;
-};
-
-struct DeformGroups {  // of kDeformGroup nodes or vertices
+struct DeformGroups {  // of kDeformGroup particles or vertices
     uint32_t nodes = 0, sheets = 0, springs = 0, vertices = 0;
     uint32_t inner = 0;  // of vertices with an inner skin
     [[nodiscard]] uint32_t all() const noexcept {
@@ -34,9 +31,9 @@ struct DeformRecord {
     DeformPush push{};
     Staged groups;
     DeformGroups count;
-    uint32_t steps = 0;   // of sheets and springs
-    uint32_t way = 0;     // of the first: which arms it minds
-    bool begins = false;  // some sheet did not move in the frame before
+    uint32_t steps = 0;    // of sheets and springs
+    uint32_t bendSet = 0;  // of the first: which bending constraints it takes
+    bool begins = false;   // some sheet did not move in the frame before
 };
 
 struct PublishedStep {  // one object in as-published mode
@@ -113,12 +110,13 @@ void recordPrediction(FrameRecorder& r, FrameLists& lists, uint32_t endTick, boo
 void recordSupport(FrameRecorder& r, uint32_t endTick, const TileShare& share);
 void recordDeformation(FrameRecorder& r, const DeformRecord& deform);
 void recordProbes(FrameRecorder& r, const Staged& probes);
-// VkBackend::State::recordEffects comes here.
+// Lights once a frame; flames, particles and marches of each view. Without a view lights alone.
+void recordEffects(BackendState& s, FrameInFlight& slot);
 // After the steps. The work buffer holds its lists, and zero before them.
 void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine);
 // Groups of vertices, then of listed triangles.
 void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& push, uint32_t placeGroups,
                                  uint32_t nameGroups);
-// VkBackend::State::recordReadback ends the frame.
+// recordReadback ends the frame.
 
 }  // namespace fw::gpu::vk

@@ -61,8 +61,7 @@ void FrameRing::pace(const FwVulkanFrame& frame, bool outside) {
 
 void FrameRing::dropFramebuffers(FrameInFlight& slot) noexcept {
     for (uint32_t i = 0; i < slot.framebufferCount; ++i)
-        device_.table.DestroyFramebuffer(device_.handle, slot.framebuffers[i],
-                                         device_.allocationCallbacks);
+        device_.destroy(device_.table.DestroyFramebuffer, slot.framebuffers[i]);
     slot.framebufferCount = 0;
 }
 

@@ -8,30 +8,33 @@
 #include "host_limits.h"
 
 #include <array>
+#include <span>
 
 namespace fw::gpu::vk {
 
-struct ReadbackLayout {  // where the pieces of a frame's readback lie, bytes
-    uint64_t frameIndex = 0;
-    uint32_t endTick = 0;
-    uint32_t objects = 0, answers = 0, lights = 0, fields = 0;  // counts
+struct TexelsAt {  // the state of an object's texels in a readback
+    uint32_t object = 0, count = 0;
+    uint64_t ticksAt = 0, heatAt = 0;  // bytes
+    bool heat = false;
+};
+
+struct ReadbackLayout {  // where the pieces of a frame's readback lie
+    struct Piece {
+        uint64_t at = 0, bytes = 0;
+    };
+    Piece counters, objects, answers, lights, flames, bias, fields, rooms;
     uint32_t firstRow = 0,
              rows = 0;  // counters rows: the first iteration's, and the list's at the end
     uint32_t burnParity = 0, predictParity = 0, hotParity = 0;  // as the frame leaves them
-    uint64_t objectsAt = 0, answersAt = 0, lightsAt = 0, flamesAt = 0, countersAt = 0, fieldsAt = 0;
-    uint64_t roomsAt = 0, biasAt = 0;
-    struct MapAt {
-        uint32_t object = 0, texels = 0;
-        uint64_t at = 0, heatAt = 0;
-        bool heat = false;
-    };
     static constexpr uint32_t kMaxMaps = 64;
-    std::array<MapAt, kMaxMaps> maps{};
+    std::array<TexelsAt, kMaxMaps> maps{};
     uint32_t mapCount = 0;
-    bool rooms = false;   // their air
-    bool bias = false;    // of refinement
-    bool quads = false;   // a view's were made
-    bool images = false;  // where they are is the world's: one frame's at a time
+    bool hasBias = false;    // of refinement
+    bool hasQuads = false;   // a view's were made
+    bool hasImages = false;  // where they are is the world's: one frame's at a time
+    [[nodiscard]] std::span<const TexelsAt> texelMaps() const noexcept {
+        return std::span(maps).first(mapCount);
+    }
 };
 
 struct FrameInFlight {

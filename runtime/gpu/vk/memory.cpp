@@ -1,7 +1,7 @@
 #include "gpu/vk/memory.h"
 
+#include "core/assert.h"
 #include "core/error.h"
-#include "core/growth.h"
 
 #include <algorithm>
 
@@ -17,8 +17,7 @@ constexpr const char* kComponentNames[kComponentCount] = {
 
 DeviceMemory::~DeviceMemory() {
     for (Block& block : blocks_) {
-        if (block.memory)
-            device_.table.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
+        if (block.memory) device_.destroy(device_.table.FreeMemory, block.memory);
     }
 }
 
@@ -44,41 +43,14 @@ uint32_t DeviceMemory::typeFor(uint32_t allowed, MemoryKind kind, const char* na
                name, allowed, needed);
 }
 
-bool DeviceMemory::cut(Block& block, const VkMemoryRequirements& needs, Piece& piece) {
-    for (size_t i = 0; i < block.free.size(); ++i) {
-        const Range range = block.free[i];
-        const VkDeviceSize start = alignUp(range.offset, needs.alignment);
-        const VkDeviceSize end = start + needs.size;
-        if (end > range.offset + range.size) continue;
-        core::growTo(block.free, block.pieces + 3);
-        const Range before{range.offset, start - range.offset};
-        const Range after{end, range.offset + range.size - end};
-        block.free.erase(block.free.begin() + std::ptrdiff_t(i));
-        auto at = block.free.begin() + std::ptrdiff_t(i);
-        if (after.size) at = block.free.insert(at, after);
-        if (before.size) block.free.insert(at, before);
-        piece.offset = start;
-        piece.size = needs.size;
-        ++block.pieces;
-        return true;
-    }
-    return false;
-}
-
 Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind, bool image,
                              const char* name) {
     const uint32_t type = typeFor(needs.memoryTypeBits, kind, name);
-    Piece piece;
     for (uint32_t i = 0; i < blocks_.size(); ++i) {
         Block& block = blocks_[i];
-        const bool mapped = kind != MemoryKind::device;
-        if (!block.memory || block.type != type || block.image != image ||
-            (block.mapped != nullptr) != mapped)
-            continue;
-        if (cut(block, needs, piece)) {
-            piece.block = i;
-            return piece;
-        }
+        if (!block.holds(type, image, kind != MemoryKind::device)) continue;
+        const uint64_t at = block.bytes.allocate(needs.size, needs.alignment);
+        if (at != RangeAllocator::kNoRange) return {i, at, needs.size};
     }
     VkDeviceSize size = std::max(needs.size, kBlockSize);
     // A sixteenth is the frames' own staging and readback: a world that is full still runs.
@@ -94,7 +66,9 @@ Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind,
     while (index < blocks_.size() && blocks_[index].memory) ++index;
     if (index == blocks_.size()) blocks_.emplace_back(memory_);
     Block block(memory_);
-    block.free.reserve(16);  // before the device's memory: what follows may not throw
+    // Before the device's memory is there: nothing may throw after that.
+    block.bytes.addCapacity(std::max(needs.size, kBlockSize));
+    const uint64_t first = block.bytes.allocate(needs.size);
     auto info = typed<VkMemoryAllocateInfo>(VK_STRUCTURE_TYPE_MEMORY_ALLOCATE_INFO);
     info.allocationSize = size;
     info.memoryTypeIndex = type;
@@ -117,55 +91,36 @@ Piece DeviceMemory::allocate(const VkMemoryRequirements& needs, MemoryKind kind,
         void* mapped = nullptr;
         result = vk.MapMemory(device_.handle, block.memory, 0, VK_WHOLE_SIZE, 0, &mapped);
         if (result != VK_SUCCESS) {
-            vk.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
+            device_.destroy(vk.FreeMemory, block.memory);
             device_.check(result, "vkMapMemory");
         }
         block.mapped = static_cast<std::byte*>(mapped);
     }
-    block.size = size;
     block.type = type;
     block.image = image;
-    block.free.push_back({0, size});
+    block.bytes.dropCapacity(block.bytes.capacity() - size);
     blocks_[index] = std::move(block);
     used_ += size;
-    cut(blocks_[index], needs, piece);
-    piece.block = index;
-    return piece;
+    return {index, first, needs.size};
 }
 
 void DeviceMemory::release(Piece& piece) noexcept {
     if (piece.block == 0xFFFFFFFFu) return;
+    FW_ASSERT(piece.block < blocks_.size(), "block %u of %zu", piece.block, blocks_.size());
     Block& block = blocks_[piece.block];
-    auto& free = block.free;
-    auto at = std::lower_bound(
-        free.begin(), free.end(), piece.offset,
-        [](const Range& range, VkDeviceSize offset) { return range.offset < offset; });
-    at = free.insert(at, {piece.offset, piece.size});  // room was reserved by cut
-    if (at + 1 != free.end() && at->offset + at->size == (at + 1)->offset) {
-        at->size += (at + 1)->size;
-        free.erase(at + 1);
-    }
-    if (at != free.begin() && (at - 1)->offset + (at - 1)->size == at->offset) {
-        (at - 1)->size += at->size;
-        at = free.erase(at) - 1;
-    }
+    block.bytes.release(piece.offset, piece.size);
     piece = {};
-    --block.pieces;
-    if (at->size != block.size) return;
-    // Empty. One spare block per kind stays, so that a host that makes and destroys does not churn.
-    for (const Block& other : blocks_) {
-        if (&other == &block || !other.memory || other.type != block.type ||
-            other.image != block.image || (other.mapped != nullptr) != (block.mapped != nullptr) ||
-            other.free.size() != 1 || other.free[0].size != other.size)
-            continue;
-        device_.table.FreeMemory(device_.handle, block.memory, device_.allocationCallbacks);
-        used_ -= block.size;
-        block.memory = VK_NULL_HANDLE;
-        block.mapped = nullptr;
-        block.size = 0;
-        block.free.clear();
-        return;
-    }
+    if (block.bytes.used() > 0) return;
+    // One spare block per kind stays, so that a host that makes and destroys does not churn.
+    const auto isSpare = [&](const Block& other) {
+        return &other != &block && other.holds(block.type, block.image, block.mapped != nullptr) &&
+               other.bytes.used() == 0;
+    };
+    if (std::none_of(blocks_.begin(), blocks_.end(), isSpare)) return;
+    device_.destroy(device_.table.FreeMemory, block.memory);
+    used_ -= block.bytes.capacity();
+    block.bytes.dropCapacity(block.bytes.capacity());
+    block.mapped = nullptr;
 }
 
 Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, MemoryKind kind,
@@ -180,9 +135,7 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
     auto info = typed<VkBufferCreateInfo>(VK_STRUCTURE_TYPE_BUFFER_CREATE_INFO);
     info.size = size;
     info.usage = usage;
-    device_.check(
-        vk.CreateBuffer(device_.handle, &info, device_.allocationCallbacks, &buffer.handle),
-        "vkCreateBuffer");
+    buffer.handle = device_.create(vk.CreateBuffer, info, "vkCreateBuffer");
     try {
         VkMemoryRequirements needs{};
         vk.GetBufferMemoryRequirements(device_.handle, buffer.handle, &needs);
@@ -197,12 +150,10 @@ Buffer DeviceMemory::createBuffer(VkDeviceSize size, VkBufferUsageFlags usage, M
             view.buffer = buffer.handle;
             view.format = VK_FORMAT_R32G32B32A32_UINT;
             view.range = size & ~VkDeviceSize{15};
-            device_.check(vk.CreateBufferView(device_.handle, &view, device_.allocationCallbacks,
-                                              &buffer.texels),
-                          "vkCreateBufferView");
+            buffer.texels = device_.create(vk.CreateBufferView, view, "vkCreateBufferView");
         }
     } catch (...) {
-        vk.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
+        device_.destroy(vk.DestroyBuffer, buffer.handle);
         release(buffer.memory);
         throw;
     }
@@ -217,8 +168,7 @@ Image DeviceMemory::createImage(const VkImageCreateInfo& info, VkImageAspectFlag
     const Table& vk = device_.table;
     Image image;
     image.component = component;
-    device_.check(vk.CreateImage(device_.handle, &info, device_.allocationCallbacks, &image.handle),
-                  "vkCreateImage");
+    image.handle = device_.create(vk.CreateImage, info, "vkCreateImage");
     try {
         VkMemoryRequirements needs{};
         vk.GetImageMemoryRequirements(device_.handle, image.handle, &needs);
@@ -231,11 +181,9 @@ Image DeviceMemory::createImage(const VkImageCreateInfo& info, VkImageAspectFlag
         view.viewType = info.arrayLayers > 1 ? VK_IMAGE_VIEW_TYPE_2D_ARRAY : VK_IMAGE_VIEW_TYPE_2D;
         view.format = info.format;
         view.subresourceRange = {aspect, 0, info.mipLevels, 0, info.arrayLayers};
-        device_.check(
-            vk.CreateImageView(device_.handle, &view, device_.allocationCallbacks, &image.view),
-            "vkCreateImageView");
+        image.view = device_.create(vk.CreateImageView, view, "vkCreateImageView");
     } catch (...) {
-        vk.DestroyImage(device_.handle, image.handle, device_.allocationCallbacks);
+        device_.destroy(vk.DestroyImage, image.handle);
         release(image.memory);
         throw;
     }
@@ -248,9 +196,8 @@ void DeviceMemory::destroy(Buffer& buffer) noexcept {
     if (!buffer.handle) return;
     const std::lock_guard lock(mutex_);
     components_[buffer.component] -= buffer.memory.size;
-    if (buffer.texels)
-        device_.table.DestroyBufferView(device_.handle, buffer.texels, device_.allocationCallbacks);
-    device_.table.DestroyBuffer(device_.handle, buffer.handle, device_.allocationCallbacks);
+    if (buffer.texels) device_.destroy(device_.table.DestroyBufferView, buffer.texels);
+    device_.destroy(device_.table.DestroyBuffer, buffer.handle);
     release(buffer.memory);
     buffer = {};
 }
@@ -259,8 +206,8 @@ void DeviceMemory::destroy(Image& image) noexcept {
     if (!image.handle) return;
     const std::lock_guard lock(mutex_);
     components_[image.component] -= image.memory.size;
-    device_.table.DestroyImageView(device_.handle, image.view, device_.allocationCallbacks);
-    device_.table.DestroyImage(device_.handle, image.handle, device_.allocationCallbacks);
+    device_.destroy(device_.table.DestroyImageView, image.view);
+    device_.destroy(device_.table.DestroyImage, image.handle);
     release(image.memory);
     image = {};
 }

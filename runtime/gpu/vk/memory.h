@@ -1,8 +1,9 @@
 // Device memory: a few blocks per memory type, cut into pieces; buffers and images on top of it.
-// Counted per component and held under a budget. Not growable: see pool.h.
+// Counted per component and held under a budget.
 #pragma once
 #include "gpu/backend.h"
 #include "gpu/vk/device.h"
+#include "gpu/vk/range_allocator.h"
 
 #include <vector>
 
@@ -77,22 +78,19 @@ class DeviceMemory {
     void rows(std::pmr::vector<MemoryRow>& out) const;
 
  private:
-    struct Range {
-        VkDeviceSize offset, size;
-    };
     struct Block {
         VkDeviceMemory memory = VK_NULL_HANDLE;
-        VkDeviceSize size = 0;
         uint32_t type = 0;
-        bool image = false;   // images and buffers never share a block: no granularity to mind
-        uint32_t pieces = 0;  // alive
+        bool image = false;  // images and buffers never share a block: no granularity to respect
         std::byte* mapped = nullptr;
-        std::pmr::vector<Range> free;  // by offset; room for pieces + 2, so release never allocates
-        explicit Block(std::pmr::memory_resource* pmr) : free(pmr) {}
+        RangeAllocator bytes;
+        explicit Block(std::pmr::memory_resource* pmr) : bytes(pmr) {}
+        [[nodiscard]] bool holds(uint32_t ofType, bool images, bool isMapped) const noexcept {
+            return memory && type == ofType && image == images && (mapped != nullptr) == isMapped;
+        }
     };
     Piece allocate(const VkMemoryRequirements& needs, MemoryKind kind, bool image,
                    const char* name);
-    bool cut(Block& block, const VkMemoryRequirements& needs, Piece& piece);
     void release(Piece& piece) noexcept;
     uint32_t typeFor(uint32_t allowed, MemoryKind kind, const char* name) const;
 

@@ -1,6 +1,8 @@
 #include "gpu/vk/pipelines.h"
 
+#include "core/assert.h"
 #include "core/error.h"
+#include "gpu/vk/device_objects.h"
 #include "gpu/vk/vk_backend.h"
 #include "mesh/burn_domain.h"
 #include "shared/deform.h"
@@ -23,15 +25,9 @@ VkFormat halfColorFor(VkFormat color, uint32_t encoding) noexcept {
     return Pipelines::kHalfColors[encoding == FW_OUTPUT_SRGB_VIEW ? 1 : 2];
 }
 
-bool hasStencil(VkFormat format) noexcept {
-    return format == VK_FORMAT_D16_UNORM_S8_UINT || format == VK_FORMAT_D24_UNORM_S8_UINT ||
-           format == VK_FORMAT_D32_SFLOAT_S8_UINT || format == VK_FORMAT_S8_UINT;
-}
-
 bool hasDepthAspect(VkFormat format) noexcept {
     return format == VK_FORMAT_D16_UNORM || format == VK_FORMAT_X8_D24_UNORM_PACK32 ||
-           format == VK_FORMAT_D32_SFLOAT || format == VK_FORMAT_D16_UNORM_S8_UINT ||
-           format == VK_FORMAT_D24_UNORM_S8_UINT || format == VK_FORMAT_D32_SFLOAT_S8_UINT;
+           format == VK_FORMAT_D32_SFLOAT || (hasStencil(format) && format != VK_FORMAT_S8_UINT);
 }
 
 // Checks the host's target def against the info that made its render pass.
@@ -99,55 +95,51 @@ void checkAgainstPass(const FwVulkanTargetDef& def) {
                    int(type));
 }
 
-TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
-    const auto bad = [](const char* name, unsigned value, const char* limit) {
-        core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanTargetDef::%s is %u; %s.", name, value,
-                   limit);
-    };
-    TargetKey key;
-    key.encoding = def.encoding == FW_OUTPUT_AUTO ? Context::encodingOf(def.colorFormat)
-                                                  : FwOutputEncoding(def.encoding);
-    key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
-    if (def.flags & ~127u) bad("flags", def.flags, "bits 0 to 6 are known");
-    key.asNeeded = (def.flags & FW_TARGET_AS_NEEDED) != 0;
-    key.haze = (def.flags & FW_TARGET_HAZE) != 0;
-    key.transparency = (def.flags & FW_TARGET_TRANSPARENCY) != 0;
-    if (key.haze && def.depthMode != FW_DEPTH_SAMPLED)
-        bad("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
-    const bool half = (def.flags & FW_TARGET_HALF_EFFECTS) != 0;
-    if (half && (def.depthMode != FW_DEPTH_SAMPLED || !key.composite))
-        bad("flags", def.flags,
-            "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
-    key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && def.depthMode != FW_DEPTH_SAMPLED;
-    key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
-    key.half = half && key.flames;
-    if (key.half) key.halfColor = halfColorFor(def.colorFormat, uint32_t(key.encoding));
-    if (key.composite && def.renderPass)
+[[noreturn]] void refuse(const char* name, unsigned value, const char* limit) {
+    core::fail(FW_ERROR_INVALID_ARGUMENT, "FwVulkanTargetDef::%s is %u; %s.", name, value, limit);
+}
+
+void checkFlags(const FwVulkanTargetDef& def) {
+    const bool composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
+    if (def.flags & ~127u) refuse("flags", def.flags, "bits 0 to 6 are known");
+    if ((def.flags & FW_TARGET_HAZE) && def.depthMode != FW_DEPTH_SAMPLED)
+        refuse("flags", def.flags, "FW_TARGET_HAZE needs depthMode FW_DEPTH_SAMPLED");
+    if ((def.flags & FW_TARGET_HALF_EFFECTS) && (def.depthMode != FW_DEPTH_SAMPLED || !composite))
+        refuse("flags", def.flags,
+               "FW_TARGET_HALF_EFFECTS needs FW_TARGET_COMPOSITE and FW_DEPTH_SAMPLED");
+    if (composite && def.renderPass)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::renderPass is given with FW_TARGET_COMPOSITE; that pass is "
                    "ours, it is null there.");
-    if (!key.composite && !def.renderPass)
+    if (!composite && !def.renderPass)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::renderPass is null without FW_TARGET_COMPOSITE.");
+}
+
+void checkAttachments(const Device& device, const FwVulkanTargetDef& def) {
+    const bool composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
     if (def.colorAttachmentCount < 1 || def.colorAttachmentCount > 8)
-        bad("colorAttachmentCount", def.colorAttachmentCount, "the range is [1, 8]");
+        refuse("colorAttachmentCount", def.colorAttachmentCount, "the range is [1, 8]");
     if (def.colorAttachmentCount > 1 && !device.independentBlend)
-        bad("colorAttachmentCount", def.colorAttachmentCount,
-            "more than 1 needs the feature independentBlend, which was not declared");
-    if (key.composite && def.colorAttachmentCount != 1)
-        bad("colorAttachmentCount", def.colorAttachmentCount, "a composite target has one");
-    if (def.viewMask) bad("viewMask", def.viewMask, "multiview is not in this version: it is 0");
+        refuse("colorAttachmentCount", def.colorAttachmentCount,
+               "more than 1 needs the feature independentBlend, which was not declared");
+    if (composite && def.colorAttachmentCount != 1)
+        refuse("colorAttachmentCount", def.colorAttachmentCount, "a composite target has one");
+    if (def.viewMask) refuse("viewMask", def.viewMask, "multiview is not in this version: it is 0");
     if (def.samples == 0 || def.samples > 16 || (def.samples & (def.samples - 1)))
-        bad("samples", def.samples, "1, 2, 4, 8 or 16 are possible");
-    if (def.encoding > FW_OUTPUT_AUTO) bad("encoding", def.encoding, "the last one is 3");
-    if (def.depthMode > FW_DEPTH_SAMPLED) bad("depthMode", def.depthMode, "the last one is 3");
-    if (def.reversedDepth > 1) bad("reversedDepth", def.reversedDepth, "it is 0 or 1");
-    if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && key.composite)
-        bad("depthFormat", def.depthFormat, "it is VK_FORMAT_UNDEFINED with FW_DEPTH_NONE");
+        refuse("samples", def.samples, "1, 2, 4, 8 or 16 are possible");
+    if (def.encoding > FW_OUTPUT_AUTO) refuse("encoding", def.encoding, "the last one is 3");
+    if (def.depthMode > FW_DEPTH_SAMPLED) refuse("depthMode", def.depthMode, "the last one is 3");
+    if (def.reversedDepth > 1) refuse("reversedDepth", def.reversedDepth, "it is 0 or 1");
+    if (def.depthMode == FW_DEPTH_NONE && def.depthFormat != VK_FORMAT_UNDEFINED && composite)
+        refuse("depthFormat", def.depthFormat, "it is VK_FORMAT_UNDEFINED with FW_DEPTH_NONE");
     if (def.depthMode != FW_DEPTH_NONE && def.depthFormat == VK_FORMAT_UNDEFINED)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwVulkanTargetDef::depthFormat is VK_FORMAT_UNDEFINED but depthMode is %u.",
                    def.depthMode);
+}
+
+void checkFormats(const Device& device, const FwVulkanTargetDef& def, FwOutputEncoding encoding) {
     VkFormatProperties format{};
     device.table.GetPhysicalDeviceFormatProperties(device.physicalDevice, def.colorFormat, &format);
     if (!(format.optimalTilingFeatures & VK_FORMAT_FEATURE_COLOR_ATTACHMENT_BLEND_BIT))
@@ -165,7 +157,7 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
                        "FwVulkanTargetDef::depthFormat is %d; the device %s.", int(def.depthFormat),
                        samples ? "cannot sample it" : "has no such depth attachment");
     }
-    if (key.encoding == FW_OUTPUT_AUTO)
+    if (encoding == FW_OUTPUT_AUTO)
         core::fail(
             FW_ERROR_INVALID_ARGUMENT,
             "FwVulkanTargetDef::encoding is FW_OUTPUT_AUTO (3) and colorFormat is %d, which is "
@@ -177,9 +169,11 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
                    "FwVulkanTargetDef::depthFormat is %d, which has no depth; give a format with a "
                    "depth aspect, as VK_FORMAT_D32_SFLOAT (126).",
                    int(def.depthFormat));
+}
+
+void checkSamples(const Device& device, const FwVulkanTargetDef& def, uint32_t depthSamples) {
     const VkPhysicalDeviceLimits& limits = device.properties.limits;
-    if (key.depthMode != FW_DEPTH_SAMPLED && def.depthMode != FW_DEPTH_NONE &&
-        !(limits.framebufferDepthSampleCounts & def.samples))
+    if (def.depthMode != FW_DEPTH_NONE && !(limits.framebufferDepthSampleCounts & def.samples))
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
                    "FwVulkanTargetDef::samples is %u; the device's depth sample counts are 0x%x.",
                    def.samples, limits.framebufferDepthSampleCounts);
@@ -188,14 +182,31 @@ TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
         core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
                    "FwVulkanTargetDef::samples is %u; the device's colour sample counts are 0x%x.",
                    def.samples, limits.framebufferColorSampleCounts);
-    if (def.depthMode == FW_DEPTH_SAMPLED) {
-        key.depthSamples = def.depthSamples ? def.depthSamples : def.samples;
-        if (!(limits.sampledImageDepthSampleCounts & key.depthSamples))
-            core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
-                       "FwVulkanTargetDef::depthSamples is %u; the device samples depth of the "
-                       "sample counts 0x%x.",
-                       key.depthSamples, limits.sampledImageDepthSampleCounts);
-    }
+    if (def.depthMode == FW_DEPTH_SAMPLED && !(limits.sampledImageDepthSampleCounts & depthSamples))
+        core::fail(FW_ERROR_UNSUPPORTED_DEVICE,
+                   "FwVulkanTargetDef::depthSamples is %u; the device samples depth of the sample "
+                   "counts 0x%x.",
+                   depthSamples, limits.sampledImageDepthSampleCounts);
+}
+
+TargetKey checkedKey(const Device& device, const FwVulkanTargetDef& def) {
+    TargetKey key;
+    key.encoding = def.encoding == FW_OUTPUT_AUTO ? Context::encodingOf(def.colorFormat)
+                                                  : FwOutputEncoding(def.encoding);
+    const bool sampled = def.depthMode == FW_DEPTH_SAMPLED;
+    if (sampled) key.depthSamples = def.depthSamples ? def.depthSamples : def.samples;
+    checkFlags(def);
+    checkAttachments(device, def);
+    checkFormats(device, def, key.encoding);
+    checkSamples(device, def, key.depthSamples);
+    key.composite = (def.flags & FW_TARGET_COMPOSITE) != 0;
+    key.asNeeded = (def.flags & FW_TARGET_AS_NEEDED) != 0;
+    key.haze = (def.flags & FW_TARGET_HAZE) != 0;
+    key.transparency = (def.flags & FW_TARGET_TRANSPARENCY) != 0;
+    key.surfaces = !(def.flags & FW_TARGET_NO_SURFACES) && !sampled;
+    key.flames = !(def.flags & FW_TARGET_NO_FLAMES);
+    key.half = (def.flags & FW_TARGET_HALF_EFFECTS) && key.flames;
+    if (key.half) key.halfColor = halfColorFor(def.colorFormat, uint32_t(key.encoding));
     key.color = def.colorFormat;
     key.depth = def.depthMode == FW_DEPTH_NONE ? VK_FORMAT_UNDEFINED : def.depthFormat;
     key.subpass = key.composite ? 0 : def.subpass;
@@ -229,6 +240,157 @@ bool isDrawn(const DrawPass& pass, const TargetKey& key) noexcept {
     return false;
 }
 
+// The structures of a graphics pipeline, which point at each other. All but shader modules, layout
+// and render pass.
+struct DrawPipeline {
+    DrawPipeline(const DrawPass& pass, const TargetKey& key);
+    DrawPipeline(const DrawPipeline&) = delete;
+    DrawPipeline& operator=(const DrawPipeline&) = delete;
+
+    bool colors;  // else positions are all it reads
+    std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
+    VkGraphicsPipelineCreateInfo info =
+        typed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
+
+ private:
+    void setConstants(const DrawPass& pass, const TargetKey& key);
+    void setVertices(const DrawPass& pass);
+    void setRaster(const DrawPass& pass, const TargetKey& key);
+    void setBlend(const DrawPass& pass, const TargetKey& key);
+
+    uint32_t constants_[5];
+    VkSpecializationInfo special_{};
+    VkPipelineVertexInputStateCreateInfo input_ = typed<VkPipelineVertexInputStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
+    VkPipelineInputAssemblyStateCreateInfo assembly_ =
+        typed<VkPipelineInputAssemblyStateCreateInfo>(
+            VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
+    VkPipelineViewportStateCreateInfo viewport_ = typed<VkPipelineViewportStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
+    VkPipelineRasterizationStateCreateInfo raster_ = typed<VkPipelineRasterizationStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
+    VkPipelineMultisampleStateCreateInfo multisample_ = typed<VkPipelineMultisampleStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
+    VkPipelineDepthStencilStateCreateInfo depth_ = typed<VkPipelineDepthStencilStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
+    std::array<VkPipelineColorBlendAttachmentState, 8> blends_{};
+    VkPipelineColorBlendStateCreateInfo blend_ = typed<VkPipelineColorBlendStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
+    VkPipelineDynamicStateCreateInfo dynamic_ = typed<VkPipelineDynamicStateCreateInfo>(
+        VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
+};
+
+DrawPipeline::DrawPipeline(const DrawPass& pass, const TargetKey& key)
+    : colors(pass.blend != Blend::depthAlone) {
+    setConstants(pass, key);
+    setVertices(pass);
+    setRaster(pass, key);
+    setBlend(pass, key);
+    info.stageCount = colors ? 2 : 1;
+    info.pStages = stages.data();
+    info.pVertexInputState = &input_;
+    info.pInputAssemblyState = &assembly_;
+    info.pViewportState = &viewport_;
+    info.pRasterizationState = &raster_;
+    info.pMultisampleState = &multisample_;
+    info.pDepthStencilState = &depth_;
+    info.pColorBlendState = &blend_;
+    info.pDynamicState = &dynamic_;
+    info.subpass = key.subpass;
+}
+
+void DrawPipeline::setConstants(const DrawPass& pass, const TargetKey& key) {
+    static constexpr std::array<VkSpecializationMapEntry, 5> kEntries{
+        {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}, {4, 16, 4}}};
+    constants_[0] = uint32_t(key.encoding);
+    constants_[1] = key.reversedDepth ? 1 : 0;
+    constants_[2] = pass.variant;
+    constants_[3] = pass.atHalf == AtHalf::sparks             ? kPartSparks
+                    : key.half && pass.atHalf == AtHalf::soft ? kPartSoft
+                                                              : kPartAll;
+    constants_[4] = key.samples;
+    special_ = {uint32_t(kEntries.size()), kEntries.data(), sizeof constants_, constants_};
+    for (VkPipelineShaderStageCreateInfo& stage : stages) {
+        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
+        stage.pName = "main";
+        stage.pSpecializationInfo = &special_;
+    }
+    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
+    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
+}
+
+void DrawPipeline::setVertices(const DrawPass& pass) {
+    using mesh::RenderVertex;
+    // Binding 1 is the object's own shown vertices, or the mesh's again: the same record where it
+    // matters, and a material index is no time at all.
+    static_assert(sizeof(RenderVertex) == sizeof(ShownVertex) &&
+                  offsetof(RenderVertex, position) == offsetof(ShownVertex, x) &&
+                  offsetof(RenderVertex, normal) == offsetof(ShownVertex, normal) &&
+                  offsetof(RenderVertex, material) == offsetof(ShownVertex, lead));
+    static constexpr std::array<VkVertexInputBindingDescription, 2> kBindings{
+        {{0, sizeof(RenderVertex), VK_VERTEX_INPUT_RATE_VERTEX},
+         {1, sizeof(ShownVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
+    static constexpr std::array<VkVertexInputAttributeDescription, 9> kAttributes{{
+        {0, 1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(ShownVertex, x)},
+        {1, 1, VK_FORMAT_R32_UINT, offsetof(ShownVertex, normal)},
+        {8, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
+        {7, 1, VK_FORMAT_R32_SFLOAT, offsetof(ShownVertex, lead)},
+        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
+        {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
+        {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
+        {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(RenderVertex, tint)},
+        {6, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, material)},
+    }};
+    assembly_.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
+    if (pass.vertexInput != VertexInput::mesh) return;
+    input_.vertexBindingDescriptionCount = uint32_t(kBindings.size());
+    input_.pVertexBindingDescriptions = kBindings.data();
+    input_.vertexAttributeDescriptionCount = colors ? uint32_t(kAttributes.size()) : 1;
+    input_.pVertexAttributeDescriptions = kAttributes.data();
+}
+
+void DrawPipeline::setRaster(const DrawPass& pass, const TargetKey& key) {
+    viewport_.viewportCount = viewport_.scissorCount = 1;
+    raster_.polygonMode = VK_POLYGON_MODE_FILL;
+    raster_.cullMode = pass.cull == Cull::none   ? VkCullModeFlags(VK_CULL_MODE_NONE)
+                       : pass.cull == Cull::back ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
+                                                 : VkCullModeFlags(VK_CULL_MODE_FRONT_BIT);
+    raster_.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
+    raster_.lineWidth = 1;
+    raster_.depthBiasEnable = pass.behind;
+    raster_.depthBiasConstantFactor = key.reversedDepth ? -2.0f : 2.0f;
+    multisample_.rasterizationSamples = VkSampleCountFlagBits(key.samples);
+    depth_.depthTestEnable = key.attachesDepth() && pass.blend != Blend::constant;
+    depth_.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
+    depth_.depthCompareOp =
+        key.reversedDepth ? (pass.strict ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_GREATER_OR_EQUAL)
+                          : (pass.strict ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_LESS_OR_EQUAL);
+}
+
+void DrawPipeline::setBlend(const DrawPass& pass, const TargetKey& key) {
+    FW_ASSERT(key.colorAttachments <= blends_.size(), "%u attachments", key.colorAttachments);
+    const bool mixes = pass.blend == Blend::constant;
+    VkPipelineColorBlendAttachmentState& first = blends_[0];
+    first.blendEnable = colors && pass.blend != Blend::opaque;
+    first.srcColorBlendFactor = mixes ? VK_BLEND_FACTOR_CONSTANT_ALPHA : VK_BLEND_FACTOR_ONE;
+    first.dstColorBlendFactor = mixes ? VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA
+                                : pass.blend == Blend::premultiplied
+                                    ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA
+                                    : VK_BLEND_FACTOR_ONE;
+    first.srcAlphaBlendFactor =
+        pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : first.srcColorBlendFactor;
+    first.dstAlphaBlendFactor = first.dstColorBlendFactor;
+    if (colors)
+        first.colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
+                               VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
+    blend_.attachmentCount = key.colorAttachments;
+    blend_.pAttachments = blends_.data();
+    static constexpr std::array<VkDynamicState, 3> kDynamics{
+        VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_BLEND_CONSTANTS};
+    dynamic_.dynamicStateCount = mixes ? 3 : 2;
+    dynamic_.pDynamicStates = kDynamics.data();
+}
+
 }  // namespace
 
 Pipelines::Pipelines(Device& device, std::pmr::memory_resource* memory)
@@ -254,24 +416,17 @@ void Pipelines::destroy() noexcept {
     }
     for (auto* passes : {&compute_, &draw_}) {
         for (PassObjects& pass : *passes) {
-            vk.DestroyPipeline(device_.handle, pass.pipeline, device_.allocationCallbacks);
-            vk.DestroyPipelineLayout(device_.handle, pass.layout, device_.allocationCallbacks);
-            vk.DestroyDescriptorSetLayout(device_.handle, pass.setLayout,
-                                          device_.allocationCallbacks);
+            device_.destroy(vk.DestroyPipeline, pass.pipeline);
+            device_.destroy(vk.DestroyPipelineLayout, pass.layout);
+            device_.destroy(vk.DestroyDescriptorSetLayout, pass.setLayout);
         }
         passes->clear();
     }
-    vk.DestroyDescriptorSetLayout(device_.handle, imageLayout_, device_.allocationCallbacks);
-    vk.DestroySampler(device_.handle, imageSampler_, device_.allocationCallbacks);
-    vk.DestroySampler(device_.handle, depthSampler_, device_.allocationCallbacks);
-    for (VkRenderPass& pass : halfPasses_) {
-        vk.DestroyRenderPass(device_.handle, pass, device_.allocationCallbacks);
-        pass = VK_NULL_HANDLE;
-    }
-    vk.DestroyRenderPass(device_.handle, halfDepthPass_, device_.allocationCallbacks);
-    halfDepthPass_ = VK_NULL_HANDLE;
-    imageLayout_ = VK_NULL_HANDLE;
-    imageSampler_ = depthSampler_ = VK_NULL_HANDLE;
+    device_.destroy(vk.DestroyDescriptorSetLayout, imageLayout_);
+    device_.destroy(vk.DestroySampler, imageSampler_);
+    device_.destroy(vk.DestroySampler, depthSampler_);
+    for (VkRenderPass& pass : halfPasses_) device_.destroy(vk.DestroyRenderPass, pass);
+    device_.destroy(vk.DestroyRenderPass, halfDepthPass_);
 }
 
 void Pipelines::makeLayouts() {
@@ -282,34 +437,29 @@ void Pipelines::makeLayouts() {
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW =
         VK_SAMPLER_ADDRESS_MODE_REPEAT;
     sampler.maxLod = VK_LOD_CLAMP_NONE;
-    device_.check(
-        vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &imageSampler_),
-        "vkCreateSampler");
+    imageSampler_ = device_.create(vk.CreateSampler, sampler, "vkCreateSampler");
     sampler.magFilter = sampler.minFilter = VK_FILTER_NEAREST;  // depth need not be filterable
     sampler.mipmapMode = VK_SAMPLER_MIPMAP_MODE_NEAREST;
     sampler.addressModeU = sampler.addressModeV = sampler.addressModeW =
         VK_SAMPLER_ADDRESS_MODE_CLAMP_TO_EDGE;
-    device_.check(
-        vk.CreateSampler(device_.handle, &sampler, device_.allocationCallbacks, &depthSampler_),
-        "vkCreateSampler");
+    depthSampler_ = device_.create(vk.CreateSampler, sampler, "vkCreateSampler");
 
     for (size_t i = 0; i < kHalfColors.size(); ++i)
         halfPasses_[i] = makeHalfPass(kHalfColors[i], true);
     halfDepthPass_ = makeHalfPass(kHalfDepth, false);
 
-    VkDescriptorSetLayoutBinding image{};
-    image.descriptorType = VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER;
-    image.descriptorCount = 1;
-    image.stageFlags =
-        VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_COMPUTE_BIT;
-    auto info =
-        typed<VkDescriptorSetLayoutCreateInfo>(VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-    info.bindingCount = 1;
-    info.pBindings = &image;
-    device_.check(vk.CreateDescriptorSetLayout(device_.handle, &info, device_.allocationCallbacks,
-                                               &imageLayout_),
-                  "vkCreateDescriptorSetLayout");
-
+    const auto setLayout = [&](std::span<const VkDescriptorSetLayoutBinding> bindings) {
+        auto info = typed<VkDescriptorSetLayoutCreateInfo>(
+            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
+        info.bindingCount = uint32_t(bindings.size());
+        info.pBindings = bindings.data();
+        return device_.create(vk.CreateDescriptorSetLayout, info, "vkCreateDescriptorSetLayout");
+    };
+    const VkDescriptorSetLayoutBinding image{
+        0, VK_DESCRIPTOR_TYPE_COMBINED_IMAGE_SAMPLER, 1,
+        VK_SHADER_STAGE_FRAGMENT_BIT | VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_COMPUTE_BIT,
+        nullptr};
+    imageLayout_ = setLayout({&image, 1});
     const auto make = [&](PassObjects& objects, uint32_t pushBytes, VkShaderStageFlags stages,
                           uint32_t setCount) {
         std::array<VkDescriptorSetLayoutBinding, ShaderInterface::kMost> bindings{};
@@ -318,25 +468,19 @@ void Pipelines::makeLayouts() {
             const DescriptorSlot slot = descriptorSlot(use);
             bindings[count++] = {slot.binding, slot.type, 1, stages, nullptr};
         }
-        auto set = typed<VkDescriptorSetLayoutCreateInfo>(
-            VK_STRUCTURE_TYPE_DESCRIPTOR_SET_LAYOUT_CREATE_INFO);
-        set.bindingCount = count;
-        set.pBindings = bindings.data();
-        device_.check(vk.CreateDescriptorSetLayout(device_.handle, &set,
-                                                   device_.allocationCallbacks, &objects.setLayout),
-                      "vkCreateDescriptorSetLayout");
+        objects.setLayout = setLayout(std::span(bindings).first(count));
         const VkPushConstantRange range{stages, 0, pushBytes};
         const VkDescriptorSetLayout sets[4] = {objects.setLayout, imageLayout_, imageLayout_,
                                                imageLayout_};
+        FW_ASSERT(setCount <= std::size(sets) && pushBytes <= 128, "%u sets, %u bytes", setCount,
+                  pushBytes);
         auto layout =
             typed<VkPipelineLayoutCreateInfo>(VK_STRUCTURE_TYPE_PIPELINE_LAYOUT_CREATE_INFO);
         layout.setLayoutCount = setCount;
         layout.pSetLayouts = sets;
         layout.pushConstantRangeCount = pushBytes ? 1 : 0;
         layout.pPushConstantRanges = &range;
-        device_.check(vk.CreatePipelineLayout(device_.handle, &layout, device_.allocationCallbacks,
-                                              &objects.layout),
-                      "vkCreatePipelineLayout");
+        objects.layout = device_.create(vk.CreatePipelineLayout, layout, "vkCreatePipelineLayout");
     };
     compute_.resize(computePasses().size());
     for (size_t i = 0; i < compute_.size(); ++i) {
@@ -357,11 +501,7 @@ VkShaderModule Pipelines::module(std::span<const uint32_t> code) const {
     auto info = typed<VkShaderModuleCreateInfo>(VK_STRUCTURE_TYPE_SHADER_MODULE_CREATE_INFO);
     info.codeSize = code.size_bytes();
     info.pCode = code.data();
-    VkShaderModule module = VK_NULL_HANDLE;
-    device_.check(device_.table.CreateShaderModule(device_.handle, &info,
-                                                   device_.allocationCallbacks, &module),
-                  "vkCreateShaderModule");
-    return module;
+    return device_.create(device_.table.CreateShaderModule, info, "vkCreateShaderModule");
 }
 
 // A module per shader while a target's pipelines are made: `surface` has a pipeline per variant.
@@ -371,9 +511,7 @@ class Pipelines::Modules {
         : pipelines_(pipelines), made_(pipelines.memory_) {}
     ~Modules() {
         const Device& device = pipelines_.device_;
-        for (const Made& made : made_)
-            device.table.DestroyShaderModule(device.handle, made.module,
-                                             device.allocationCallbacks);
+        for (Made& made : made_) device.destroy(device.table.DestroyShaderModule, made.module);
     }
     Modules(const Modules&) = delete;
     Modules& operator=(const Modules&) = delete;
@@ -412,7 +550,7 @@ void Pipelines::prepare() {
         const VkResult result =
             vk.CreateComputePipelines(device_.handle, device_.pipelineCache, 1, &info,
                                       device_.allocationCallbacks, &objects.pipeline);
-        vk.DestroyShaderModule(device_.handle, info.stage.module, device_.allocationCallbacks);
+        device_.destroy(vk.DestroyShaderModule, info.stage.module);
         if (result != VK_SUCCESS) objects.pipeline = VK_NULL_HANDLE;
         device_.check(result, "vkCreateComputePipelines");
         device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(objects.pipeline), pass.name);
@@ -421,42 +559,15 @@ void Pipelines::prepare() {
     ready_.store(true, std::memory_order_release);
 }
 
+// Layouts of use: the composite's own barriers bring the images there and away.
 VkRenderPass Pipelines::makePass(const TargetKey& key) const {
-    // Layouts of use: the composite's own barriers bring the images there and away.
-    std::array<VkAttachmentDescription, 2> attachments{};
-    attachments[0].format = key.color;
-    attachments[0].samples = VkSampleCountFlagBits(key.samples);
-    attachments[0].loadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-    attachments[0].storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    attachments[0].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    attachments[0].stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    attachments[0].initialLayout = attachments[0].finalLayout =
-        VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
-    attachments[1] = attachments[0];
-    attachments[1].format = key.depth;
-    attachments[1].initialLayout = attachments[1].finalLayout =
-        VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
-    if (hasStencil(key.depth)) {
-        attachments[1].stencilLoadOp = VK_ATTACHMENT_LOAD_OP_LOAD;
-        attachments[1].stencilStoreOp = VK_ATTACHMENT_STORE_OP_STORE;
-    }
-    const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    const VkAttachmentReference depth{1, VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &color;
-    if (key.attachesDepth()) subpass.pDepthStencilAttachment = &depth;
-    auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
-    info.attachmentCount = key.attachesDepth() ? 2 : 1;
-    info.pAttachments = attachments.data();
-    info.subpassCount = 1;
-    info.pSubpasses = &subpass;
-    VkRenderPass pass = VK_NULL_HANDLE;
-    device_.check(
-        device_.table.CreateRenderPass(device_.handle, &info, device_.allocationCallbacks, &pass),
-        "vkCreateRenderPass");
-    return pass;
+    AttachmentUse color{.format = key.color, .samples = key.samples};
+    color.before = color.after = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL;
+    AttachmentUse depth{
+        .format = key.depth, .samples = key.samples, .stencil = hasStencil(key.depth)};
+    depth.before = depth.after = VK_IMAGE_LAYOUT_DEPTH_STENCIL_ATTACHMENT_OPTIMAL;
+    const AttachmentUse uses[] = {color, depth};
+    return makeRenderPass(device_, std::span(uses).first(key.attachesDepth() ? 2 : 1));
 }
 
 VkRenderPass Pipelines::halfPass(VkFormat color) const {
@@ -466,22 +577,7 @@ VkRenderPass Pipelines::halfPass(VkFormat color) const {
 }
 
 VkRenderPass Pipelines::makeHalfPass(VkFormat format, bool clears) const {
-    VkAttachmentDescription image{};
-    image.format = format;
-    image.samples = VK_SAMPLE_COUNT_1_BIT;
-    image.loadOp = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD;
-    image.storeOp = VK_ATTACHMENT_STORE_OP_STORE;
-    image.stencilLoadOp = VK_ATTACHMENT_LOAD_OP_DONT_CARE;
-    image.stencilStoreOp = VK_ATTACHMENT_STORE_OP_DONT_CARE;
-    image.finalLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
-    image.initialLayout = clears ? VK_IMAGE_LAYOUT_UNDEFINED : image.finalLayout;
-    const VkAttachmentReference color{0, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL};
-    VkSubpassDescription subpass{};
-    subpass.pipelineBindPoint = VK_PIPELINE_BIND_POINT_GRAPHICS;
-    subpass.colorAttachmentCount = 1;
-    subpass.pColorAttachments = &color;
-    // Who read it last has done so, in the frame before or in another view; who reads it next
-    // waits.
+    // Previous readers, of the frame before or of another view, have finished; later ones wait.
     constexpr VkPipelineStageFlags kDraws = VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT;
     constexpr VkPipelineStageFlags kReads =
         VK_PIPELINE_STAGE_VERTEX_SHADER_BIT | VK_PIPELINE_STAGE_FRAGMENT_SHADER_BIT;
@@ -496,154 +592,35 @@ VkRenderPass Pipelines::makeHalfPass(VkFormat format, bool clears) const {
     waits[1].srcAccessMask = VK_ACCESS_COLOR_ATTACHMENT_WRITE_BIT;
     waits[1].dstStageMask = kReads;
     waits[1].dstAccessMask = VK_ACCESS_SHADER_READ_BIT;
-    auto info = typed<VkRenderPassCreateInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_CREATE_INFO);
-    info.attachmentCount = 1;
-    info.pAttachments = &image;
-    info.subpassCount = 1;
-    info.pSubpasses = &subpass;
-    info.dependencyCount = uint32_t(waits.size());
-    info.pDependencies = waits.data();
-    VkRenderPass pass = VK_NULL_HANDLE;
-    device_.check(
-        device_.table.CreateRenderPass(device_.handle, &info, device_.allocationCallbacks, &pass),
-        "vkCreateRenderPass");
-    return pass;
+    constexpr VkImageLayout kAfter = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+    const AttachmentUse image{
+        .format = format,
+        .load = clears ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD,
+        .before = clears ? VK_IMAGE_LAYOUT_UNDEFINED : kAfter,
+        .after = kAfter};
+    return makeRenderPass(device_, {&image, 1}, waits);
 }
 
 VkPipeline Pipelines::makeDraw(size_t number, const TargetKey& key, VkRenderPass renderPass,
                                Modules& modules) const {
     const DrawPass& pass = drawPasses()[number];
-    const bool colors = pass.blend != Blend::depthAlone;  // else places are all it reads
-    const struct {
-        uint32_t encoding, reversed, variant, part, samples;
-    } constants{uint32_t(key.encoding), key.reversedDepth ? 1u : 0u, pass.variant,
-                pass.atHalf == AtHalf::sparks             ? kPartSparks
-                : key.half && pass.atHalf == AtHalf::soft ? kPartSoft
-                                                          : kPartAll,
-                key.samples};
-    const std::array<VkSpecializationMapEntry, 5> entries{
-        {{0, 0, 4}, {1, 4, 4}, {2, 8, 4}, {3, 12, 4}, {4, 16, 4}}};
-    const VkSpecializationInfo special{uint32_t(entries.size()), entries.data(), sizeof constants,
-                                       &constants};
-
-    std::array<VkPipelineShaderStageCreateInfo, 2> stages{};
-    for (VkPipelineShaderStageCreateInfo& stage : stages) {
-        stage.sType = VK_STRUCTURE_TYPE_PIPELINE_SHADER_STAGE_CREATE_INFO;
-        stage.pName = "main";
-        stage.pSpecializationInfo = &special;
-    }
-    stages[0].stage = VK_SHADER_STAGE_VERTEX_BIT;
-    stages[1].stage = VK_SHADER_STAGE_FRAGMENT_BIT;
-
-    using mesh::RenderVertex;
-    // Binding 1 is the object's own shown vertices, or the mesh's again: the same record where it
-    // matters, and a material index is no time at all.
-    static_assert(sizeof(RenderVertex) == sizeof(ShownVertex) &&
-                  offsetof(RenderVertex, position) == offsetof(ShownVertex, x) &&
-                  offsetof(RenderVertex, normal) == offsetof(ShownVertex, normal) &&
-                  offsetof(RenderVertex, material) == offsetof(ShownVertex, lead));
-    const std::array<VkVertexInputBindingDescription, 2> vertexBindings{
-        {{0, sizeof(RenderVertex), VK_VERTEX_INPUT_RATE_VERTEX},
-         {1, sizeof(ShownVertex), VK_VERTEX_INPUT_RATE_VERTEX}}};
-    const std::array<VkVertexInputAttributeDescription, 9> attributes{{
-        {0, 1, VK_FORMAT_R32G32B32_SFLOAT, offsetof(ShownVertex, x)},
-        {1, 1, VK_FORMAT_R32_UINT, offsetof(ShownVertex, normal)},
-        {8, 0, VK_FORMAT_R32G32B32_SFLOAT, offsetof(RenderVertex, position)},
-        {7, 1, VK_FORMAT_R32_SFLOAT, offsetof(ShownVertex, lead)},
-        {2, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, atlasUv)},
-        {3, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, textureUv)},
-        {4, 0, VK_FORMAT_R32G32_SFLOAT, offsetof(RenderVertex, detail)},
-        {5, 0, VK_FORMAT_R8G8B8A8_UNORM, offsetof(RenderVertex, tint)},
-        {6, 0, VK_FORMAT_R32_UINT, offsetof(RenderVertex, material)},
-    }};
-    auto input = typed<VkPipelineVertexInputStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_VERTEX_INPUT_STATE_CREATE_INFO);
-    if (pass.vertexInput == VertexInput::mesh) {
-        input.vertexBindingDescriptionCount = uint32_t(vertexBindings.size());
-        input.pVertexBindingDescriptions = vertexBindings.data();
-        input.vertexAttributeDescriptionCount = colors ? uint32_t(attributes.size()) : 1;
-        input.pVertexAttributeDescriptions = attributes.data();
-    }
-    auto assembly = typed<VkPipelineInputAssemblyStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_INPUT_ASSEMBLY_STATE_CREATE_INFO);
-    assembly.topology = VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST;
-    auto viewport = typed<VkPipelineViewportStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_VIEWPORT_STATE_CREATE_INFO);
-    viewport.viewportCount = viewport.scissorCount = 1;
-    auto raster = typed<VkPipelineRasterizationStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_RASTERIZATION_STATE_CREATE_INFO);
-    raster.polygonMode = VK_POLYGON_MODE_FILL;
-    raster.cullMode = pass.cull == Cull::none   ? VkCullModeFlags(VK_CULL_MODE_NONE)
-                      : pass.cull == Cull::back ? VkCullModeFlags(VK_CULL_MODE_BACK_BIT)
-                                                : VkCullModeFlags(VK_CULL_MODE_FRONT_BIT);
-    raster.frontFace = VK_FRONT_FACE_COUNTER_CLOCKWISE;
-    raster.lineWidth = 1;
-    raster.depthBiasEnable = pass.behind;
-    raster.depthBiasConstantFactor = key.reversedDepth ? -2.0f : 2.0f;
-    auto multisample = typed<VkPipelineMultisampleStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_MULTISAMPLE_STATE_CREATE_INFO);
-    multisample.rasterizationSamples = VkSampleCountFlagBits(key.samples);
-    auto depth = typed<VkPipelineDepthStencilStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_DEPTH_STENCIL_STATE_CREATE_INFO);
-    const bool mixes = pass.blend == Blend::constant;
-    depth.depthTestEnable = key.attachesDepth() && !mixes;
-    depth.depthWriteEnable = key.depthMode == FW_DEPTH_TEST && pass.writeDepth;
-    depth.depthCompareOp =
-        key.reversedDepth ? (pass.strict ? VK_COMPARE_OP_GREATER : VK_COMPARE_OP_GREATER_OR_EQUAL)
-                          : (pass.strict ? VK_COMPARE_OP_LESS : VK_COMPARE_OP_LESS_OR_EQUAL);
-    std::array<VkPipelineColorBlendAttachmentState, 8> blends{};
-    blends[0].blendEnable = colors && pass.blend != Blend::opaque;
-    blends[0].srcColorBlendFactor = mixes ? VK_BLEND_FACTOR_CONSTANT_ALPHA : VK_BLEND_FACTOR_ONE;
-    blends[0].dstColorBlendFactor = mixes ? VK_BLEND_FACTOR_ONE_MINUS_CONSTANT_ALPHA
-                                    : pass.blend == Blend::premultiplied
-                                        ? VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA
-                                        : VK_BLEND_FACTOR_ONE;
-    blends[0].srcAlphaBlendFactor =
-        pass.blend == Blend::additive ? VK_BLEND_FACTOR_ZERO : blends[0].srcColorBlendFactor;
-    blends[0].dstAlphaBlendFactor = blends[0].dstColorBlendFactor;
-    if (colors)
-        blends[0].colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT |
-                                   VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT;
-    auto blend = typed<VkPipelineColorBlendStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_COLOR_BLEND_STATE_CREATE_INFO);
-    blend.attachmentCount = key.colorAttachments;
-    blend.pAttachments = blends.data();
-    const std::array<VkDynamicState, 3> dynamics{
-        VK_DYNAMIC_STATE_VIEWPORT, VK_DYNAMIC_STATE_SCISSOR, VK_DYNAMIC_STATE_BLEND_CONSTANTS};
-    auto dynamic = typed<VkPipelineDynamicStateCreateInfo>(
-        VK_STRUCTURE_TYPE_PIPELINE_DYNAMIC_STATE_CREATE_INFO);
-    dynamic.dynamicStateCount = mixes ? 3 : 2;
-    dynamic.pDynamicStates = dynamics.data();
-
-    auto info =
-        typed<VkGraphicsPipelineCreateInfo>(VK_STRUCTURE_TYPE_GRAPHICS_PIPELINE_CREATE_INFO);
-    info.stageCount = colors ? 2 : 1;
-    info.pStages = stages.data();
-    info.pVertexInputState = &input;
-    info.pInputAssemblyState = &assembly;
-    info.pViewportState = &viewport;
-    info.pRasterizationState = &raster;
-    info.pMultisampleState = &multisample;
-    info.pDepthStencilState = &depth;
-    info.pColorBlendState = &blend;
-    info.pDynamicState = &dynamic;
-    info.layout = draw_[number].layout;
-    info.renderPass = renderPass;
-    info.subpass = key.subpass;
+    DrawPipeline state(pass, key);
+    state.info.layout = draw_[number].layout;
+    state.info.renderPass = renderPass;
     const bool several = key.samples > 1 && pass.multisampledVertex;
-    stages[0].module = modules.get(several ? pass.multisampledVertex : pass.vertexShader);
-    if (colors) {
+    state.stages[0].module = modules.get(several ? pass.multisampledVertex : pass.vertexShader);
+    if (state.colors) {
         const char* const words[3] = {several ? pass.multisampledFragment : pass.fragmentShader,
                                       pass.softShader, pass.softShaderMultisampled};
         const char* const* shaders =
             device_.texels && pass.texelShaders ? pass.texelShaders : words;
-        stages[1].module = modules.get(shaders[!key.samplesDepth()    ? 0
-                                               : key.depthSamples > 1 ? 2
-                                                                      : 1]);
+        const int depth = !key.samplesDepth() ? 0 : key.depthSamples > 1 ? 2 : 1;
+        FW_ASSERT(shaders[depth], "pass %s has no shader for this depth", pass.name);
+        state.stages[1].module = modules.get(shaders[depth]);
     }
     VkPipeline pipeline = VK_NULL_HANDLE;
     device_.check(
-        device_.table.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &info,
+        device_.table.CreateGraphicsPipelines(device_.handle, device_.pipelineCache, 1, &state.info,
                                               device_.allocationCallbacks, &pipeline),
         "vkCreateGraphicsPipelines");
     device_.name(VK_OBJECT_TYPE_PIPELINE, uint64_t(pipeline), pass.name);
@@ -723,14 +700,14 @@ void Pipelines::need(DrawPassSet passes) {
 }
 
 void Pipelines::destroyTarget(Target& target) noexcept {
-    for (std::atomic<VkPipeline>& pipeline : target.pipelines)
-        device_.table.DestroyPipeline(device_.handle, pipeline.exchange(VK_NULL_HANDLE),
-                                      device_.allocationCallbacks);
+    for (std::atomic<VkPipeline>& pipeline : target.pipelines) {
+        VkPipeline made = pipeline.exchange(VK_NULL_HANDLE);
+        device_.destroy(device_.table.DestroyPipeline, made);
+    }
     drawMade_ -= target.made;
     drawTotal_ -= target.total;
     target.made = target.total = 0;
-    device_.table.DestroyRenderPass(device_.handle, target.ownPass, device_.allocationCallbacks);
-    target.ownPass = VK_NULL_HANDLE;
+    device_.destroy(device_.table.DestroyRenderPass, target.ownPass);
 }
 
 void Pipelines::unregisterTarget(FwTargetId id) {

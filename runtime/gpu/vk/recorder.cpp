@@ -89,33 +89,30 @@ void FrameRecorder::dispatchVolumes(ComputePassOf<MarchPush> pass,
 
 void FrameRecorder::copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyWrite}};
-    barrier(uses);
-    const VkBufferCopy region{uploadAt, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, t_.slot->upload.handle, buffer(resource), 1,
-                                   &region);
+    copy(uses, t_.slot->upload.handle, buffer(resource), {uploadAt, at, bytes});
 }
 
 void FrameRecorder::copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{resource, Access::copyRead}, {resource, Access::copyWrite}};
-    barrier(uses);
-    const VkBuffer handle = buffer(resource);
-    const VkBufferCopy region{from, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, handle, handle, 1, &region);
+    copy(uses, buffer(resource), buffer(resource), {from, at, bytes});
 }
 
 void FrameRecorder::copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes) {
     const Use uses[] = {{from, Access::copyRead}, {to, Access::copyWrite}};
-    barrier(uses);
-    const VkBufferCopy region{at, at, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, buffer(from), buffer(to), 1, &region);
+    copy(uses, buffer(from), buffer(to), {at, at, bytes});
 }
 
 void FrameRecorder::copyOut(uint32_t resource, uint64_t from, uint64_t readbackAt, uint64_t bytes) {
+    FW_ASSERT(readbackAt + bytes <= t_.slot->readback.size, "%llu of %llu bytes of a readback",
+              (unsigned long long)(readbackAt + bytes), (unsigned long long)t_.slot->readback.size);
     const Use uses[] = {{resource, Access::copyRead}};
+    copy(uses, buffer(resource), t_.slot->readback.handle, {from, readbackAt, bytes});
+}
+
+void FrameRecorder::copy(std::span<const Use> uses, VkBuffer from, VkBuffer to,
+                         const VkBufferCopy& region) {
     barrier(uses);
-    const VkBufferCopy region{from, readbackAt, bytes};
-    t_.device->table.CmdCopyBuffer(t_.commands, buffer(resource), t_.slot->readback.handle, 1,
-                                   &region);
+    t_.device->table.CmdCopyBuffer(t_.commands, from, to, 1, &region);
 }
 
 void FrameRecorder::fillZero(uint32_t resource, uint64_t at, uint64_t bytes) {

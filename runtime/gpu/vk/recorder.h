@@ -1,10 +1,13 @@
 // One command buffer being recorded: dispatches, copies and draws by resource and pass, with their
 // barriers, timers and labels. Knows no order: that is frame.cpp's.
 #pragma once
+#include "core/assert.h"
 #include "gpu/passes/draw.h"
 #include "gpu/vk/barriers.h"
 #include "gpu/vk/descriptors.h"
 #include "gpu/vk/frame_ring.h"
+
+#include <cstring>
 
 namespace fw::gpu::vk {
 
@@ -29,6 +32,22 @@ constexpr uint32_t groupsOf(uint32_t items) noexcept { return (items + 63) / 64;
 // groups that the probe listed.
 enum class VolumesOf : uint8_t { all, clear, smoke };
 
+// Groups of three words in a row of the counters.
+enum class RowPart : uint64_t {
+    work = offsetof(IterationCounters, workX),
+    rim = offsetof(IterationCounters, rimX),
+    run = offsetof(IterationCounters, runX),
+    list = offsetof(IterationCounters, listX),
+};
+
+struct Staged {  // in the frame's upload buffer
+    uint64_t at = 0;
+    uint32_t count = 0;
+};
+
+constexpr uint64_t kUploadAlignment = 16;  // bytes
+constexpr uint64_t uploaded(uint64_t bytes) noexcept { return alignUp(bytes, kUploadAlignment); }
+
 class FrameRecorder {
  public:
     explicit FrameRecorder(const RecordTarget& target) : t_(target) {}
@@ -43,26 +62,11 @@ class FrameRecorder {
     void dispatchItems(ComputePassOf<Push> pass, const Push& push, uint32_t items) {
         dispatchGroups(pass.number, &push, std::max(groupsOf(items), 1u), 1);
     }
-    // Groups from the work, rim, run or list part of a row of the counters.
+    // Groups from a part of a row of the counters.
     template <class Push>
-    void dispatchWork(ComputePassOf<Push> pass, const Push& push, uint32_t row) {
+    void dispatchRow(ComputePassOf<Push> pass, const Push& push, uint32_t row, RowPart part) {
         dispatchAt(pass.number, &push, FW_BIND_COUNTERS,
-                   rowAt(row) + offsetof(IterationCounters, workX));
-    }
-    template <class Push>
-    void dispatchRim(ComputePassOf<Push> pass, const Push& push, uint32_t row) {
-        dispatchAt(pass.number, &push, FW_BIND_COUNTERS,
-                   rowAt(row) + offsetof(IterationCounters, rimX));
-    }
-    template <class Push>
-    void dispatchRun(ComputePassOf<Push> pass, const Push& push, uint32_t row) {
-        dispatchAt(pass.number, &push, FW_BIND_COUNTERS,
-                   rowAt(row) + offsetof(IterationCounters, runX));
-    }
-    template <class Push>
-    void dispatchList(ComputePassOf<Push> pass, const Push& push, uint32_t row) {
-        dispatchAt(pass.number, &push, FW_BIND_COUNTERS,
-                   rowAt(row) + offsetof(IterationCounters, listX));
+                   row * sizeof(IterationCounters) + uint64_t(part));
     }
     // Groups from three words of a resource, at `at` bytes.
     template <class Push>
@@ -74,7 +78,43 @@ class FrameRecorder {
     void dispatchVolumes(ComputePassOf<MarchPush> pass, std::span<const MarchedVolume> volumes,
                          VolumesOf which);
 
+    // Linear writes into the frame's upload buffer. Piece by piece: beginStaged, append any number
+    // of times, endStaged.
+    [[nodiscard]] Staged beginStaged() const noexcept { return {t_.slot->uploadUsed, 0}; }
+    template <class T>
+    void append(Staged& staged, std::span<const T> data) noexcept {
+        FW_ASSERT(t_.slot->uploadUsed + data.size_bytes() <= t_.slot->upload.size,
+                  "%zu bytes behind %llu; the frame's needs are counted before", data.size_bytes(),
+                  (unsigned long long)t_.slot->uploadUsed);
+        if (!data.empty())
+            std::memcpy(t_.slot->upload.mapped + t_.slot->uploadUsed, data.data(),
+                        data.size_bytes());
+        t_.slot->uploadUsed += data.size_bytes();
+        staged.count += uint32_t(data.size());
+    }
+    template <class T>
+    void appendOne(Staged& staged, const T& one) noexcept {
+        append(staged, std::span<const T>(&one, 1));
+    }
+    void endStaged() noexcept { t_.slot->uploadUsed = uploaded(t_.slot->uploadUsed); }
+    template <class T>
+    Staged stage(std::span<const T> data) noexcept {
+        Staged staged = beginStaged();
+        append(staged, data);
+        endStaged();
+        return staged;
+    }
+
     void copyIn(uint64_t uploadAt, uint32_t resource, uint64_t at, uint64_t bytes);
+    // Staged elements to byte `at` of a resource.
+    template <class T>
+    void upload(uint32_t resource, uint64_t at, std::span<const T> data) {
+        if (!data.empty()) copyIn(stage(data).at, resource, at, data.size_bytes());
+    }
+    template <class T>
+    void uploadOne(uint32_t resource, uint64_t at, const T& one) {
+        upload(resource, at, std::span<const T>(&one, 1));
+    }
     void copyWithin(uint32_t resource, uint64_t from, uint64_t at, uint64_t bytes);
     // The same range of another resource.
     void copyBetween(uint32_t from, uint32_t to, uint64_t at, uint64_t bytes);
@@ -82,8 +122,8 @@ class FrameRecorder {
     void fillZero(uint32_t resource, uint64_t at, uint64_t bytes);
 
  private:
-    static constexpr uint64_t rowAt(uint32_t row) { return row * sizeof(IterationCounters); }
     void barrier(std::span<const Use> uses);
+    void copy(std::span<const Use> uses, VkBuffer from, VkBuffer to, const VkBufferCopy& region);
     [[nodiscard]] VkBuffer buffer(uint32_t resource) const;
     // Barrier, timer, pipeline. `arguments`: the resource that a dispatch takes its groups from, or
     // kNoResource.

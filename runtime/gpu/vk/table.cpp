@@ -2,6 +2,8 @@
 
 #include "core/error.h"
 
+#include <utility>
+
 namespace fw::gpu::vk {
 
 void Table::loadInstance(PFN_vkGetInstanceProcAddr get, VkInstance instance) {
@@ -36,40 +38,29 @@ void Table::loadDevice(VkInstance instance, VkDevice device, bool debugUtils) {
 }
 
 const char* resultName(VkResult result) noexcept {
-    switch (result) {
-        case VK_SUCCESS:
-            return "VK_SUCCESS";
-        case VK_NOT_READY:
-            return "VK_NOT_READY";
-        case VK_TIMEOUT:
-            return "VK_TIMEOUT";
-        case VK_INCOMPLETE:
-            return "VK_INCOMPLETE";
-        case VK_ERROR_OUT_OF_HOST_MEMORY:
-            return "VK_ERROR_OUT_OF_HOST_MEMORY";
-        case VK_ERROR_OUT_OF_DEVICE_MEMORY:
-            return "VK_ERROR_OUT_OF_DEVICE_MEMORY";
-        case VK_ERROR_INITIALIZATION_FAILED:
-            return "VK_ERROR_INITIALIZATION_FAILED";
-        case VK_ERROR_DEVICE_LOST:
-            return "VK_ERROR_DEVICE_LOST";
-        case VK_ERROR_MEMORY_MAP_FAILED:
-            return "VK_ERROR_MEMORY_MAP_FAILED";
-        case VK_ERROR_LAYER_NOT_PRESENT:
-            return "VK_ERROR_LAYER_NOT_PRESENT";
-        case VK_ERROR_EXTENSION_NOT_PRESENT:
-            return "VK_ERROR_EXTENSION_NOT_PRESENT";
-        case VK_ERROR_FEATURE_NOT_PRESENT:
-            return "VK_ERROR_FEATURE_NOT_PRESENT";
-        case VK_ERROR_INCOMPATIBLE_DRIVER:
-            return "VK_ERROR_INCOMPATIBLE_DRIVER";
-        case VK_ERROR_TOO_MANY_OBJECTS:
-            return "VK_ERROR_TOO_MANY_OBJECTS";
-        case VK_ERROR_FORMAT_NOT_SUPPORTED:
-            return "VK_ERROR_FORMAT_NOT_SUPPORTED";
-        default:
-            return "an unnamed VkResult";
-    }
+#define FW_VK_NAME(name) \
+    { name, #name }
+    static constexpr std::pair<VkResult, const char*> kNames[] = {
+        FW_VK_NAME(VK_SUCCESS),
+        FW_VK_NAME(VK_NOT_READY),
+        FW_VK_NAME(VK_TIMEOUT),
+        FW_VK_NAME(VK_INCOMPLETE),
+        FW_VK_NAME(VK_ERROR_OUT_OF_HOST_MEMORY),
+        FW_VK_NAME(VK_ERROR_OUT_OF_DEVICE_MEMORY),
+        FW_VK_NAME(VK_ERROR_INITIALIZATION_FAILED),
+        FW_VK_NAME(VK_ERROR_DEVICE_LOST),
+        FW_VK_NAME(VK_ERROR_MEMORY_MAP_FAILED),
+        FW_VK_NAME(VK_ERROR_LAYER_NOT_PRESENT),
+        FW_VK_NAME(VK_ERROR_EXTENSION_NOT_PRESENT),
+        FW_VK_NAME(VK_ERROR_FEATURE_NOT_PRESENT),
+        FW_VK_NAME(VK_ERROR_INCOMPATIBLE_DRIVER),
+        FW_VK_NAME(VK_ERROR_TOO_MANY_OBJECTS),
+        FW_VK_NAME(VK_ERROR_FORMAT_NOT_SUPPORTED),
+    };
+#undef FW_VK_NAME
+    for (const auto& [code, name] : kNames)
+        if (code == result) return name;
+    return "an unnamed VkResult";
 }
 
 void check(VkResult result, const char* what) {

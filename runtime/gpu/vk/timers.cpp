@@ -10,14 +10,11 @@ void FrameTimers::create(Device& device) {
     auto info = typed<VkQueryPoolCreateInfo>(VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO);
     info.queryType = VK_QUERY_TYPE_TIMESTAMP;
     info.queryCount = kMaxSpans * 2;
-    device.check(
-        device.table.CreateQueryPool(device.handle, &info, device.allocationCallbacks, &pool_),
-        "vkCreateQueryPool");
+    pool_ = device.create(device.table.CreateQueryPool, info, "vkCreateQueryPool");
 }
 
 void FrameTimers::destroy(Device& device) noexcept {
-    device.table.DestroyQueryPool(device.handle, pool_, device.allocationCallbacks);
-    pool_ = VK_NULL_HANDLE;
+    device.destroy(device.table.DestroyQueryPool, pool_);
 }
 
 void FrameTimers::reset(const Device& device, VkCommandBuffer commands) {

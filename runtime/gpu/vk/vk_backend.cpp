@@ -1,19 +1,103 @@
 #include "gpu/vk/vk_backend.h"
 
 #include "core/error.h"
-#include "core/growth.h"
-#include "gpu/vk/world_state.h"
+#include "gpu/vk/frame_needs.h"
 #include "shared/volume.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 namespace fw::gpu::vk {
+namespace {
 
-// --- VkBackend::State ---
+// White, look textures, fire profiles, the table of refinement and that of appearances.
+void addSources(BackendState& s) {
+    LookSources& looks = s.limits.looks;
+    std::byte whitePixel[4];
+    std::fill(std::begin(whitePixel), std::end(whitePixel), std::byte(255));
+    addImage(s, s.scene.white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
+    if (!looks.textures.empty())
+        addImage(s, s.scene.lookTextures, 512, 512, kLookTextureLayers, 10,
+                 VK_FORMAT_R8G8B8A8_UNORM, looks.textures, "look textures");
+    if (!looks.profiles.empty()) {
+        // The host's come behind the presets; none of them is there yet.
+        std::pmr::vector<std::byte> layers(looks.profiles.begin(), looks.profiles.end(), s.memory);
+        layers.resize(size_t(kFirePresets + kMaxFireProfiles) * kProfileBytes);
+        addImage(s, s.scene.profiles, kProfileWidth, kProfileHeight,
+                 kFirePresets + kMaxFireProfiles, 1, VK_FORMAT_R16G16_SFLOAT, layers,
+                 "fire profiles");
+    }
+    s.refine.uploadTable(s);
+    if (!looks.table.empty()) {
+        const size_t rows = s.buffers.buffer(FW_BIND_APPEARANCES).size / sizeof looks.table[0];
+        s.scene.uploads.stage(looks.table.size_bytes(), "appearances")
+            .add(FW_BIND_APPEARANCES, 0, looks.table.first(std::min(rows, looks.table.size())));
+    }
+    looks.table = {};
+    looks.textures = {};
+    looks.profiles = {};
+}
 
-VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLimits,
-                        std::pmr::memory_resource* pmr, const core::Log& logTo)
+// Records objects created, moved or restored since the last frame, and the plan's changes outside
+// of steps.
+void recordChanges(BackendState& s, const FramePlan& plan, const FrameNeeds& needs,
+                   FrameRecorder& recorder) {
+    const Table& vk = s.device.table;
+    if (s.buffers.recordMoves(vk, s.open.commands, s.open.ringFrame))
+        s.barriers.begin(vk, s.open.commands);  // rare: waits for all of the moves
+    if (!s.scene.initialized) {
+        for (const uint32_t resource :
+             {FW_BIND_COUNTERS, FW_BIND_OBJECT_COUNTERS, FW_BIND_LIGHTS, FW_BIND_LIGHT_CELLS,
+              FW_BIND_DRAW_ARGS, FW_BIND_OBJECTS, FW_BIND_REFINE_OBJECTS, FW_BIND_EXCHANGE_OBJECTS,
+              FW_BIND_ROOMS, FW_BIND_ROOM_AIR})
+            recorder.fillZero(resource, 0, VK_WHOLE_SIZE);
+        s.scene.initialized = true;
+    }
+    s.scene.uploads.record(s.device, s.open.commands, s.barriers, s.buffers, s.open.ringFrame);
+    if (s.scene.recordsDirty) s.surfaces.recordObjects(s, recorder);
+    if (s.scene.roomsDirty) recorder.upload(FW_BIND_ROOMS, 0, std::span<const Room>(s.scene.rooms));
+    s.scene.roomsDirty = false;
+    recordRestores(s, recorder);
+    recordMovedTiles(s, recorder);
+    recordForgetting(s, recorder);
+    s.surfaces.drawVertices = s.buffers.buffer(kResourceVertices).handle;
+    s.surfaces.drawIndices = s.buffers.buffer(kResourceIndices).handle;
+    s.surfaces.drawShown = s.buffers.buffer(FW_BIND_SHOWN).handle;
+    s.particleFields.record(plan, recorder);
+    if (plan.volumes) s.flames.record(*plan.volumes, recorder);
+    s.particles.emittersMove = plan.emitters != nullptr;
+    if (plan.emitters) s.particles.record(*plan.emitters, recorder);
+    if (needs.skins) s.deforming.recordSkins(s, recorder);
+}
+
+// Moves the detail shown toward the plan's detail, a bounded amount per frame.
+void followDetail(BackendState& s, const Detail& planned) noexcept {
+    constexpr float kQuadsTurn = 1.0f / 32;  // a frame: none comes or goes at once
+    constexpr float kLightsTurn = 1.0f / 16;
+    const auto toward = [](auto& now, auto wanted, auto turn) {
+        now = now > wanted ? std::max(now - turn, wanted) : std::min(now + turn, wanted);
+    };
+    s.detail = planned;
+    toward(s.flames.volumeStepsNow, planned.rayStepCount, kStepsTurn);
+    toward(s.particles.quadShare, planned.quads, kQuadsTurn);
+    toward(s.particles.lightCount, float(lightsOf(planned, s.limits.maxLights)), kLightsTurn);
+}
+
+PendingReadback pendingOf(const OpenFrame& open) noexcept {
+    PendingReadback one;
+    one.ringFrame = open.ringFrame;
+    one.frameIndex = open.planFrame;
+    one.endTick = open.endTick;
+    return one;
+}
+
+}  // namespace
+
+// --- BackendState ---
+
+BackendState::BackendState(Context::State& contextState, const WorldLimits& worldLimits,
+                           std::pmr::memory_resource* pmr, const core::Log& logTo)
     : context(contextState),
       device(contextState.device),
       deviceMemory(contextState.deviceMemory),
@@ -27,136 +111,109 @@ VkBackend::State::State(Context::State& contextState, const WorldLimits& worldLi
                std::clamp(worldLimits.maxFlames, 1u, kFlameCapacity), worldLimits.exactBuffers},
               pmr),
       sets(device, contextState.pipelines, retired, pmr),
-      scene(pmr),
+      scene(deviceMemory, retired, pmr),
       simulation(pmr),
       deforming(pmr),
       flames(pmr),
       particles(float(worldLimits.maxLights)),
       particleFields(pmr),
       surfaces(pmr),
-      results(pmr),
       refine(pmr),
-      pattern(pmr) {
+      pattern(pmr),
+      outsideViews(pmr),
+      results(pmr) {
     results.times.reserve(computePasses().size() + drawPasses().size());
-    flames.outsideViews[0] = core::Owned<OutsideView>::make(memory, 0u);
-    const auto alignment = uint32_t(device.properties.limits.minUniformBufferOffsetAlignment);
-    viewStride = uint32_t((sizeof(ViewParams) + alignment - 1) / alignment * alignment);
+    const auto alignment = device.properties.limits.minUniformBufferOffsetAlignment;
+    viewStride = uint32_t(alignUp(sizeof(ViewParams), alignment));
     views = deviceMemory.createBuffer(
         uint64_t(viewStride) * FrameRing::kMaxInFlight * FrameRing::kMaxViews,
         VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT, MemoryKind::upload, kComponentStaging, "views");
     try {
-        std::byte whitePixel[4];
-        std::fill(std::begin(whitePixel), std::end(whitePixel), std::byte(255));
-        addImage(scene.white, 1, 1, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, whitePixel, "white");
-        if (!limits.looks.textures.empty())
-            addImage(scene.lookTextures, 512, 512, kLookTextureLayers, 10, VK_FORMAT_R8G8B8A8_UNORM,
-                     limits.looks.textures, "look textures");
-        if (!limits.looks.profiles.empty()) {
-            // The host's come behind the presets; none of them is there yet.
-            std::pmr::vector<std::byte> layers(limits.looks.profiles.begin(),
-                                               limits.looks.profiles.end(), memory);
-            layers.resize(size_t(kFirePresets + kMaxFireProfiles) * kProfileBytes);
-            addImage(scene.profiles, kProfileWidth, kProfileHeight, kFirePresets + kMaxFireProfiles,
-                     1, VK_FORMAT_R16G16_SFLOAT, layers, "fire profiles");
-        }
-        uploadRefineTable();
-        if (!limits.looks.table.empty()) {
-            PendingUpload& upload = stage(limits.looks.table.size_bytes(), "looks");
-            std::memcpy(upload.staging.mapped, limits.looks.table.data(),
-                        limits.looks.table.size_bytes());
-            upload.regions[upload.regionCount++] = {
-                FW_BIND_APPEARANCES, 0, 0,
-                std::min<uint64_t>(limits.looks.table.size_bytes(),
-                                   buffers.buffer(FW_BIND_APPEARANCES).size)};
-        }
+        addSources(*this);
     } catch (...) {
-        for (PendingUpload& upload : scene.uploads) deviceMemory.destroy(upload.staging);
-        for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles}) {
-            deviceMemory.destroy(entry->image);
-            device.table.DestroyDescriptorPool(device.handle, entry->set.pool,
-                                               device.allocationCallbacks);
-        }
-        deviceMemory.destroy(views);
+        destroyAll();
         throw;
     }
-    limits.looks.table = {};
-    limits.looks.textures = {};
-    limits.looks.profiles = {};
 }
 
-VkBackend::State::~State() {
-    const Table& vk = device.table;
-    const VkAllocationCallbacks* callbacks = device.allocationCallbacks;
-    for (auto* waiting : {&scene.uploads, &scene.restores})
-        for (PendingUpload& upload : *waiting) deviceMemory.destroy(upload.staging);
-    const auto drop = [&](ImageEntry& entry) {
-        deviceMemory.destroy(entry.image);
-        vk.DestroyDescriptorPool(device.handle, entry.set.pool, callbacks);
-    };
-    for (ImageEntry& entry : scene.images) drop(entry);
-    drop(scene.white);
-    drop(scene.lookTextures);
-    drop(scene.profiles);
-    drop(scene.books);
+BackendState::~BackendState() { destroyAll(); }
+
+void BackendState::destroyAll() noexcept {
+    for (ImageEntry& entry : scene.images) destroyImage(*this, entry);
+    for (ImageEntry* entry : {&scene.white, &scene.lookTextures, &scene.profiles, &scene.books})
+        destroyImage(*this, *entry);
     for (FrameInFlight& slot : ring.slots()) {
         deviceMemory.destroy(slot.upload);
         deviceMemory.destroy(slot.readback);
         slot.timers.destroy(device);
         ring.dropFramebuffers(slot);
-        vk.DestroyDescriptorPool(device.handle, slot.hostPool, callbacks);
+        device.destroy(device.table.DestroyDescriptorPool, slot.hostPool);
     }
-    destroyFramebuffers();
-    for (HalfImages& half : surfaces.halves) {
-        deviceMemory.destroy(half.color);
-        deviceMemory.destroy(half.depth);
-        vk.DestroyDescriptorPool(device.handle, half.colorSet.pool, callbacks);
-        vk.DestroyDescriptorPool(device.handle, half.depthSet.pool, callbacks);
-        vk.DestroyFramebuffer(device.handle, half.colorBuffer, callbacks);
-        vk.DestroyFramebuffer(device.handle, half.depthBuffer, callbacks);
-    }
+    destroyFramebuffers(*this);
+    for (HalfImages& half : targets.halves) destroyHalf(*this, half);
     deviceMemory.destroy(views);
-    dropOffscreen();
-    vk.DestroyRenderPass(device.handle, own.clearPass, callbacks);
-    vk.DestroyFence(device.handle, own.fence, callbacks);
-    vk.DestroyCommandPool(device.handle, own.pool, callbacks);
+    destroyOwn(*this);
 }
 
-void VkBackend::State::failIfLost() const {
-    if (device.lost())
-        core::fail(FW_ERROR_DEVICE_LOST, "The Vulkan device is lost; nothing more is recorded.");
+void BackendState::openFrame(VkCommandBuffer commands, uint64_t ringFrame) noexcept {
+    open = {};
+    open.open = true;
+    open.commands = commands;
+    open.ringFrame = ringFrame;
 }
 
-PendingUpload& VkBackend::State::stage(uint64_t bytes, const char* name) {
-    core::growTo(scene.uploads, scene.uploads.size() + 1);
-    retired.promise(1);
-    PendingUpload upload;
-    upload.staging = deviceMemory.createBuffer(bytes, VK_BUFFER_USAGE_TRANSFER_SRC_BIT,
-                                               MemoryKind::upload, kComponentStaging, name);
-    scene.uploads.push_back(upload);
-    return scene.uploads.back();
+RecordTarget BackendState::recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept {
+    RecordTarget target;
+    target.device = &device;
+    target.pipelines = &context.pipelines;
+    target.sets = &sets;
+    target.buffers = &buffers;
+    target.barriers = &barriers;
+    target.slot = &slot;
+    target.commands = commands;
+    return target;
 }
 
-void VkBackend::State::dropUploads(size_t kept) noexcept {
-    while (scene.uploads.size() > kept) {
-        deviceMemory.destroy(scene.uploads.back().staging);
-        scene.uploads.pop_back();
-    }
+uint32_t BackendState::pushView(FrameInFlight& slot, const FwView& view,
+                                const VkViewport& viewport) {
+    if (slot.views == FrameRing::kMaxViews)
+        core::fail(FW_ERROR_INVALID_ARGUMENT,
+                   "A frame is drawn with more than %u views; that is the limit.",
+                   FrameRing::kMaxDrawn);
+    ViewInput input;
+    input.view = &view;
+    input.viewport[0] = viewport.x;
+    input.viewport[1] = viewport.y;
+    input.viewport[2] = viewport.width;
+    input.viewport[3] = viewport.height;
+    input.now = simulation.shownTick;
+    input.tickFraction = simulation.tickFraction;
+    std::copy(std::begin(simulation.wind), std::end(simulation.wind), input.wind);
+    std::copy(std::begin(limits.up), std::end(limits.up), input.up);
+    input.paceFactor = limits.paceFactor;
+    input.lightCount = uint32_t(std::ceil(particles.lightCount));
+    input.lastLight =
+        particles.lightCount > 0 ? particles.lightCount - float(input.lightCount - 1) : 1;
+    input.flameCapacity = std::min(limits.maxFlames, kFlameCapacity);
+    input.quadShare = particles.quadShare;
+    input.seed = limits.seed;
+    ViewParams params{};
+    if (limits.looks.viewParams) limits.looks.viewParams(input, params);
+    seen = params;
+    const uint32_t offset = (ring.indexOf(slot) * FrameRing::kMaxViews + slot.views) * viewStride;
+    std::memcpy(views.mapped + offset, &params, sizeof params);
+    ++slot.views;
+    return offset;
 }
 
-void VkBackend::State::freeQuarantine() noexcept {
-    size_t kept = 0;
-    for (const Quarantined& one : scene.quarantine) {
-        const bool passed =
-            (simulation.frontWalks > one.frontWalks || simulation.frontEmpty) &&
-            (simulation.burnWalks > one.burnWalks || simulation.burnEmpty) &&
-            (simulation.predictWalks > one.predictWalks || simulation.predictEmpty) &&
-            (simulation.hotWalks > one.hotWalks || simulation.hotEmpty);
-        if (passed)
-            buffers.release(kPoolObjectTiles, one.tiles.first, one.tiles.units);
-        else
-            scene.quarantine[kept++] = one;
-    }
-    scene.quarantine.resize(kept);
+ViewParams BackendState::paramsOf(const FwView& view, float height,
+                                  float otherwise) const noexcept {
+    ViewInput input;
+    input.view = &view;
+    input.viewport[2] = input.viewport[3] = height > 0 ? height : otherwise;
+    ViewParams params{};
+    limits.looks.viewParams(input, params);
+    return params;
 }
 
 // --- VkBackend ---
@@ -164,21 +221,21 @@ void VkBackend::State::freeQuarantine() noexcept {
 VkBackend::VkBackend(Context& context, const WorldLimits& limits, std::pmr::memory_resource* memory,
                      const core::Log& log)
     : memory_(memory) {
-    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<State>(context.state(), limits,
-                                                                         memory, log);
+    state_ = std::pmr::polymorphic_allocator<>(memory).new_object<BackendState>(
+        context.state(), limits, memory, log);
 }
 
 VkBackend::~VkBackend() { std::pmr::polymorphic_allocator<>(memory_).delete_object(state_); }
 
 bool VkBackend::beginOutside(const FwVulkanFrame& frame, std::span<const FwView> views) {
-    State& s = *state_;
-    s.failIfLost();
+    BackendState& s = *state_;
+    s.device.failIfLost();
     if (!s.context.pipelines.ready()) return false;
     s.ring.pace(frame, true);
     s.retired.collect(s.ring.completed());
     s.openFrame(frame.commandBuffer, frame.frameIndex);
     try {
-        s.openViews(views);
+        s.outsideViews.open(s, views);
     } catch (...) {
         cancelOutside();
         throw;
@@ -186,28 +243,83 @@ bool VkBackend::beginOutside(const FwVulkanFrame& frame, std::span<const FwView>
     return true;
 }
 
-void VkBackend::run(const FramePlan& plan) { state_->run(plan); }
-void VkBackend::endOutside() { state_->closeFrame(); }
 void VkBackend::cancelOutside() noexcept {
     if (!state_->open.open) return;
     state_->open = {};
     state_->ring.undoOutside();
 }
 
-void VkBackend::beginOwn() {
-    state_->beginOwn();
-    state_->open.unseen = true;  // pictures are frames of their own
-}
-void VkBackend::endOwn() {
-    state_->closeFrame();
-    state_->submitOwn();
+void VkBackend::run(const FramePlan& plan) {
+    BackendState& s = *state_;
+    if (!s.open.open || s.open.ran)
+        core::fail(FW_ERROR_INTERNAL, "A frame's plan is run once, after the frame is begun.");
+    s.deforming.advance(double(plan.endTick) + double(plan.tickFraction) * kStepTicks);
+    const FrameNeeds needs = needsOf(s, plan);
+    s.open.planFrame = plan.frameIndex;
+    s.open.endTick = plan.endTick;
+    s.open.readback = needs.readback;
+    std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(s.simulation.wind));
+    s.simulation.tickFraction = plan.tickFraction;
+    followDetail(s, plan.detail);
+    s.crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
+    if (!needs.work) {
+        s.open.ran = true;
+        s.simulation.shownTick = plan.endTick;
+        if (plan.frameIndex != 0) s.results.push(pendingOf(s.open));
+        return;
+    }
+    FrameInFlight& slot = makeRoom(s, plan, needs);
+
+    // From here on nothing fails.
+    s.open.ran = true;
+    s.open.slot = &slot;
+    s.open.recording = true;
+    s.barriers.begin(s.device.table, s.open.commands);
+    slot.timers.reset(s.device, s.open.commands);
+    FrameRecorder recorder(s.recordTarget(slot, s.open.commands));
+    recordChanges(s, plan, needs, recorder);
+    recordSteps(s, plan, needs, recorder);
+    s.simulation.shownTick = plan.endTick;
+    if (needs.predicting && predictsNow(s, needs, plan.endTick))
+        recordPredictions(s, plan, recorder);
+    if (needs.falling) recordFalling(s, plan, needs.burning, recorder);
+    slot.layout.predictParity = s.simulation.lists.predictParity;
+    s.deforming.record(s, needs, recorder);
+    settle(s);
+    if (!plan.probes.empty()) recordProbes(recorder, recorder.stage(plan.probes));
 }
 
-void VkBackend::renderOffscreen(const FwOffscreenDef& def) { state_->renderOffscreen(def); }
+void VkBackend::endOutside() {
+    BackendState& s = *state_;
+    const std::span<OutsideView* const> from = s.seenFrom();
+    for (const OutsideView* const of : from) markVisible(s, of->view, of->height, s.open.ringFrame);
+    if (!from.empty() && !s.showsQuads()) s.particles.quadsShown = 0;
+    if (s.open.recording) {
+        FrameInFlight& slot = *s.open.slot;
+        recordEffects(s, slot);
+        if (!from.empty()) {
+            s.refine.record(s, slot);
+            refineAsPublished(s, slot);
+        }
+        for (DrawItem& item : s.surfaces.drawItems)
+            if (s.scene.awake.contains(item.object)) s.scene.objects[item.object].refine.show(item);
+        recordReadback(s, slot);
+        if (s.open.planFrame) {
+            PendingReadback one = pendingOf(s.open);
+            (s.open.readback ? one.slot : one.looks) = int32_t(s.ring.indexOf(slot));
+            s.results.push(one);
+        }
+        s.barriers.end(s.device.table, s.open.commands);
+    }
+    s.open = {};
+}
 
-const Readback* VkBackend::nextReadback() { return state_->nextReadback(); }
 std::span<const PassTime> VkBackend::passTimes() { return state_->results.times; }
-
 void VkBackend::memoryRows(std::pmr::vector<MemoryRow>& out) const { state_->buffers.rows(out); }
+uint32_t VkBackend::quadsShown() const noexcept { return state_->particles.quadsShown; }
+uint64_t VkBackend::detailBytes() const noexcept { return state_->flames.detailBytes(*state_); }
+void VkBackend::setTileFlipbooks(uint32_t books) noexcept {
+    state_->particles.flameFlipbooks = books;
+}
 
 }  // namespace fw::gpu::vk

@@ -9,6 +9,8 @@
 
 namespace fw::gpu::vk {
 
+struct BackendState;
+
 // One per FwContext. Errors are core::Error or std::bad_alloc, and leave things unchanged.
 class Context {
  public:
@@ -145,10 +147,8 @@ class VkBackend final : public Backend {
     [[nodiscard]] uint32_t quadsShown() const noexcept override;
     void moveWorld(const double (&by)[3]) noexcept override;
 
-    struct State;
-
  private:
-    State* state_ = nullptr;
+    BackendState* state_ = nullptr;
     std::pmr::memory_resource* memory_ = nullptr;
 };
 

@@ -10,31 +10,31 @@ namespace fw::gpu::vk {
 namespace {
 
 // Groups of its list, at most.
-uint32_t maxGroups(const ObjectEntry& object) { return object.refine.patternList.units / 64; }
+uint32_t maxGroups(const ObjectEntry& object) { return object.refine.patternList.units() / 64; }
 
 }  // namespace
 
-void VkBackend::State::adoptPattern(RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
-                                    uint64_t last) {
+void adoptPattern(BackendState& s, RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
+                  uint64_t last) {
     uint32_t free = 0;
-    while (free < pattern.patternUses.size() && pattern.patternUses[free]->model) ++free;
-    if (free == pattern.patternUses.size())
-        pattern.patternUses.push_back(core::Owned<PatternUse>::make(memory, memory));
-    PatternUse& taken = *pattern.patternUses[free];
+    while (free < s.pattern.patternUses.size() && s.pattern.patternUses[free]->model) ++free;
+    if (free == s.pattern.patternUses.size())
+        s.pattern.patternUses.push_back(core::Owned<PatternUse>::make(s.memory, s.memory));
+    PatternUse& taken = *s.pattern.patternUses[free];
     taken.state.reset(*init.patternModel);
-    use.allocatePattern(buffers, mesh, last);
+    use.allocatePattern(s.buffers, mesh, last);
     taken.model = init.patternModel;
     taken.settings = init.pattern;
     use.patternPlus1 = free + 1;
 }
 
-void VkBackend::State::dropPattern(RefineUse& use) noexcept {
-    if (use.patternPlus1) pattern.patternUses[use.patternPlus1 - 1]->model = nullptr;
+void dropPattern(BackendState& s, RefineUse& use) noexcept {
+    if (use.patternPlus1) s.pattern.patternUses[use.patternPlus1 - 1]->model = nullptr;
     use.patternPlus1 = 0;
 }
 
 void VkBackend::startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept {
-    State& s = *state_;
+    BackendState& s = *state_;
     const uint32_t plus1 = s.scene.objects[slot].refine.patternPlus1;
     if (plus1 == 0) return;
     PatternUse& use = *s.pattern.patternUses[plus1 - 1];
@@ -42,99 +42,101 @@ void VkBackend::startBoundary(uint32_t slot, const float point[3], uint32_t tick
 }
 
 // Where no host lit it there is no boundary: such an object is drawn as its mesh.
-bool VkBackend::State::refinesAsPublished(const ObjectEntry& object) const noexcept {
+bool refinesAsPublished(const BackendState& s, const ObjectEntry& object) noexcept {
     return object.live && object.refine.patternPlus1 &&
-           pattern.patternUses[object.refine.patternPlus1 - 1]->state.lit &&
-           double(object.refine.quietTick) > pattern.lastTick;
+           s.pattern.patternUses[object.refine.patternPlus1 - 1]->state.lit &&
+           double(object.refine.quietTick) > s.pattern.lastTick;
 }
 
 // The bytes that the frame may upload for it. May throw.
-uint64_t VkBackend::State::planPatterns() {
-    pattern.placeGroups = pattern.nameGroups = 0;
-    if (pattern.users == 0 || open.unseen) return 0;
+uint64_t planPatterns(BackendState& s) {
+    s.pattern.placeGroups = s.pattern.nameGroups = 0;
+    if (s.pattern.users == 0 || s.open.unseen) return 0;
     uint64_t bytes = 0;
-    for (const uint32_t i : scene.awake) {
-        const ObjectEntry& object = scene.objects[i];
-        if (!refinesAsPublished(object)) continue;
-        pattern.placeGroups +=
-            groupsOf(scene.meshes[object.mesh].refine[object.refine.key].slotCount);
-        pattern.nameGroups += maxGroups(object);
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
+        if (!refinesAsPublished(s, object)) continue;
+        s.pattern.placeGroups +=
+            groupsOf(s.scene.meshes[object.mesh].refine[object.refine.key].slotCount);
+        s.pattern.nameGroups += maxGroups(object);
         bytes += uploaded(sizeof(RefineObject)) + uploaded(maxGroups(object) * 256ull) +
                  uploaded(kMaterialsPerObject * sizeof(VkDrawIndexedIndirectCommand));
     }
     if (bytes == 0) return 0;
-    buffers.atLeast(kPoolPatternGroups, pattern.placeGroups + pattern.nameGroups, ring.newest());
-    return bytes + uploaded((pattern.placeGroups + pattern.nameGroups) * sizeof(WakeGroup));
+    s.buffers.atLeast(kPoolPatternGroups, s.pattern.placeGroups + s.pattern.nameGroups,
+                      s.ring.newest());
+    return bytes + uploaded((s.pattern.placeGroups + s.pattern.nameGroups) * sizeof(WakeGroup));
 }
 
 namespace {
 
 // The list, filled up to whole groups, and a draw for each material.
 void writeList(const ObjectEntry& object, uint32_t slot, const RefineMesh& mesh,
-               const mesh::PatternState& state, FrameRecorder& recorder, UploadWriter& writer) {
-    Staged staged = writer.begin();
-    writer.append(staged, std::span<const uint32_t>(state.list));
+               const mesh::PatternState& state, FrameRecorder& recorder) {
+    Staged staged = recorder.beginStaged();
+    recorder.append(staged, std::span<const uint32_t>(state.list));
     const uint32_t nothing = kPatternEmpty;
-    while (staged.count % 64 != 0) writer.append(staged, std::span<const uint32_t>(&nothing, 1));
-    writer.end();
-    recorder.copyIn(staged.at, FW_BIND_PATTERN_LIST, uint64_t(object.refine.patternList.first) * 4,
-                    uint64_t(staged.count) * 4);
+    while (staged.count % 64 != 0) recorder.append(staged, std::span<const uint32_t>(&nothing, 1));
+    recorder.endStaged();
+    recorder.copyIn(staged.at, FW_BIND_PATTERN_LIST,
+                    uint64_t(object.refine.patternList.first()) * 4, uint64_t(staged.count) * 4);
     VkDrawIndexedIndirectCommand draws[kMaterialsPerObject]{};
-    uint32_t first = object.refine.indices.first;
+    uint32_t first = object.refine.indices.first();
     for (uint32_t m = 0; m < kMaterialsPerObject; ++m) {
-        draws[m] = {state.listed[m] * 3, 1, first, int32_t(mesh.draws.first), 0};
+        draws[m] = {state.listed[m] * 3, 1, first, int32_t(mesh.draws.first()), 0};
         first += state.listed[m] * 3;
     }
-    const Staged args = writer.write(std::span<const VkDrawIndexedIndirectCommand>(draws));
+    const Staged args = recorder.stage(std::span<const VkDrawIndexedIndirectCommand>(draws));
     recorder.copyIn(args.at, FW_BIND_REFINE_DRAWS, uint64_t(slot) * sizeof draws, sizeof draws);
 }
 
 }  // namespace
 
-void VkBackend::State::refineAsPublished(FrameInFlight& slot) {
-    if (pattern.placeGroups == 0) return;
-    visibilityFromViews();
-    FrameRecorder recorder(recordTarget(slot, open.commands));
-    UploadWriter writer(slot);
-    const double now = double(simulation.shownTick) + double(simulation.tickFraction) * kStepTicks;
-    for (const uint32_t i : scene.awake) {
-        ObjectEntry& object = scene.objects[i];
-        if (!refinesAsPublished(object)) continue;
-        const RefineMesh& refined = scene.meshes[object.mesh].refine[object.refine.key];
-        PatternUse& use = *pattern.patternUses[object.refine.patternPlus1 - 1];
-        RefineObject record = refineRecord(object, refine.full);
-        record.items = object.refine.patternList.first;
+void refineAsPublished(BackendState& s, FrameInFlight& slot) {
+    if (s.pattern.placeGroups == 0) return;
+    s.refine.takeEyes(s);
+    FrameRecorder recorder(s.recordTarget(slot, s.open.commands));
+    const double now =
+        double(s.simulation.shownTick) + double(s.simulation.tickFraction) * kStepTicks;
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        if (!refinesAsPublished(s, object)) continue;
+        const RefineMesh& refined = s.scene.meshes[object.mesh].refine[object.refine.key];
+        PatternUse& use = *s.pattern.patternUses[object.refine.patternPlus1 - 1];
+        RefineObject record = s.refine.recordOf(s, object, s.refine.full);
+        record.items = object.refine.patternList.first();
         record.cornerCount = refined.slotCount;
-        const Staged staged = writer.write(std::span<const RefineObject>(&record, 1));
+        const Staged staged = recorder.stage(std::span<const RefineObject>(&record, 1));
         recorder.copyIn(staged.at, FW_BIND_REFINE_OBJECTS, uint64_t(i) * sizeof record,
                         sizeof record);
         use.settings.pixelsPerEdge = object.refine.pixelsPerEdge;
         const mesh::PatternView from{{record.eye.x, record.eye.y, record.eye.z}, record.eye.w};
-        if (mesh::advancePattern(*use.model, use.settings, now, from, refine.full, use.state))
-            writeList(object, i, refined, use.state, recorder, writer);
+        if (mesh::advancePattern(*use.model, use.settings, now, from, s.refine.full, use.state))
+            writeList(object, i, refined, use.state, recorder);
         object.refine.started = true;
         object.refine.now = record.now;
     }
-    Staged groups = writer.begin();
+    Staged groups = recorder.beginStaged();
     uint32_t places = 0;
     for (const bool naming : {false, true})
-        for (const uint32_t i : scene.awake) {
-            const ObjectEntry& object = scene.objects[i];
-            if (!refinesAsPublished(object)) continue;
+        for (const uint32_t i : s.scene.awake) {
+            const ObjectEntry& object = s.scene.objects[i];
+            if (!refinesAsPublished(s, object)) continue;
             const auto count =
-                naming ? uint32_t(
-                             pattern.patternUses[object.refine.patternPlus1 - 1]->state.list.size())
-                       : scene.meshes[object.mesh].refine[object.refine.key].slotCount;
+                naming
+                    ? uint32_t(
+                          s.pattern.patternUses[object.refine.patternPlus1 - 1]->state.list.size())
+                    : s.scene.meshes[object.mesh].refine[object.refine.key].slotCount;
             for (uint32_t first = 0; first < count; first += 64) {
                 const WakeGroup group{i, first};
-                writer.append(groups, std::span<const WakeGroup>(&group, 1));
+                recorder.append(groups, std::span<const WakeGroup>(&group, 1));
             }
             if (!naming) places = groups.count;
         }
-    writer.end();
+    recorder.endStaged();
     recorder.copyIn(groups.at, FW_BIND_PATTERN_GROUPS, 0, groups.count * sizeof(WakeGroup));
-    pattern.lastTick = now;
-    recordRefinementAsPublished(recorder, {0, simulation.shownTick, 0, kRefineRecede}, places,
+    s.pattern.lastTick = now;
+    recordRefinementAsPublished(recorder, {0, s.simulation.shownTick, 0, kRefineRecede}, places,
                                 groups.count - places);
 }
 

@@ -1,5 +1,6 @@
 #include "gpu/vk/world_buffers.h"
 
+#include "core/assert.h"
 #include "core/error.h"
 #include "shared/deform.h"
 #include "shared/exchange.h"
@@ -181,94 +182,15 @@ static_assert(std::all_of(std::begin(kBuffers), std::end(kBuffers), [](const Buf
 
 }  // namespace
 
-// --- RangeAllocator ---
-
-void RangeAllocator::addCapacity(uint32_t units) {
-    core::growTo(free_, pieces_ + 3);
-    if (!free_.empty() && free_.back().first + free_.back().units == capacity_)
-        free_.back().units += units;
-    else
-        free_.push_back({capacity_, units});
-    capacity_ += units;
-}
-
-void RangeAllocator::dropCapacity(uint32_t units) noexcept {
-    free_.back().units -= units;
-    if (free_.back().units == 0) free_.pop_back();
-    capacity_ -= units;
-}
-
-uint32_t RangeAllocator::allocate(uint32_t units) {
-    for (size_t i = 0; i < free_.size(); ++i) {
-        if (free_[i].units < units) continue;
-        core::growTo(free_, pieces_ + 3);
-        const uint32_t first = free_[i].first;
-        free_[i].first += units;
-        free_[i].units -= units;
-        if (free_[i].units == 0) free_.erase(free_.begin() + std::ptrdiff_t(i));
-        used_ += units;
-        ++pieces_;
-        return first;
-    }
-    return kNoRange;
-}
-
-void RangeAllocator::release(uint32_t first, uint32_t units) noexcept {
-    auto at =
-        std::lower_bound(free_.begin(), free_.end(), first,
-                         [](const Range& range, uint32_t wanted) { return range.first < wanted; });
-    at = free_.insert(at, {first, units});
-    if (at + 1 != free_.end() && at->first + at->units == (at + 1)->first) {
-        at->units += (at + 1)->units;
-        free_.erase(at + 1);
-    }
-    if (at != free_.begin() && (at - 1)->first + (at - 1)->units == at->first) {
-        (at - 1)->units += at->units;
-        free_.erase(at);
-    }
-    used_ -= units;
-    --pieces_;
-}
-
-// --- RetireQueue ---
-
-void RetireQueue::add(const Retired& one) noexcept {
-    queue_.push_back(one);  // promise() reserved the capacity
+void RetireQueue::push(uint64_t lastFrame, Retired resources) noexcept {
+    if (!resources.buffer.handle && !resources.image.handle && !resources.pool &&
+        !resources.framebuffer)
+        return;
+    FW_ASSERT(queue_.size() < queue_.capacity(), "%zu resources retire; promise reserves for them",
+              queue_.size());
+    resources.frameIndex = lastFrame;
+    queue_.push_back(resources);
     if (promised_) --promised_;
-}
-
-void RetireQueue::push(uint64_t lastFrame, Buffer& buffer) noexcept {
-    if (!buffer.handle) return;
-    Retired one;
-    one.frameIndex = lastFrame;
-    one.buffer = buffer;
-    add(one);
-    buffer = {};
-}
-
-void RetireQueue::push(uint64_t lastFrame, Image& image) noexcept {
-    if (!image.handle) return;
-    Retired one;
-    one.frameIndex = lastFrame;
-    one.image = image;
-    add(one);
-    image = {};
-}
-
-void RetireQueue::push(uint64_t lastFrame, VkDescriptorPool pool) noexcept {
-    if (!pool) return;
-    Retired one;
-    one.frameIndex = lastFrame;
-    one.pool = pool;
-    add(one);
-}
-
-void RetireQueue::pushFramebuffer(uint64_t lastFrame, VkFramebuffer framebuffer) noexcept {
-    if (!framebuffer) return;
-    Retired one;
-    one.frameIndex = lastFrame;
-    one.framebuffer = framebuffer;
-    add(one);
 }
 
 void RetireQueue::collect(uint64_t completedFrame) noexcept {
@@ -280,17 +202,11 @@ void RetireQueue::collect(uint64_t completedFrame) noexcept {
         }
         deviceMemory_.destroy(one.buffer);
         deviceMemory_.destroy(one.image);
-        if (one.framebuffer)
-            device_.table.DestroyFramebuffer(device_.handle, one.framebuffer,
-                                             device_.allocationCallbacks);
-        if (one.pool)
-            device_.table.DestroyDescriptorPool(device_.handle, one.pool,
-                                                device_.allocationCallbacks);
+        if (one.framebuffer) device_.destroy(device_.table.DestroyFramebuffer, one.framebuffer);
+        if (one.pool) device_.destroy(device_.table.DestroyDescriptorPool, one.pool);
     }
     queue_.resize(kept);
 }
-
-// --- WorldBuffers ---
 
 WorldBuffers::WorldBuffers(Device& device, DeviceMemory& deviceMemory, RetireQueue& retired,
                            const WorldSizes& sizes, std::pmr::memory_resource* memory)
@@ -367,7 +283,7 @@ void WorldBuffers::resize(BufferPool pool, uint32_t units, uint64_t lastFrame) {
             ++made;
         }
         retired_.promise(made);
-        if (const uint32_t had = pools_[pool].capacity(); units < had)
+        if (const uint32_t had = capacity(pool); units < had)
             pools_[pool].dropCapacity(had - units);
         else
             pools_[pool].addCapacity(units - had);
@@ -392,47 +308,53 @@ void WorldBuffers::resize(BufferPool pool, uint32_t units, uint64_t lastFrame) {
     ++generation_;
 }
 
-uint32_t WorldBuffers::allocate(BufferPool pool, uint32_t units, uint64_t lastFrame) {
+BufferRange WorldBuffers::allocate(BufferPool pool, uint32_t units, uint64_t lastFrame) {
     const uint32_t first = allocateIn(pool, units, lastFrame);
-    usedUnits_[pool] = pools_[pool].used();
-    return first;
+    FW_ASSERT(uint64_t(first) + units <= pools_[pool].capacity(), "%u units from %u on", units,
+              first);
+    usedUnits_[pool] = uint32_t(pools_[pool].used());
+    return {*this, pool, first, units};
 }
 
 uint32_t WorldBuffers::allocateIn(BufferPool pool, uint32_t units, uint64_t lastFrame) {
-    const uint32_t first = pools_[pool].allocate(units);
-    if (first != RangeAllocator::kNoRange) return first;
-    const uint32_t capacity = pools_[pool].capacity();
-    const uint32_t most = limit(pool);
-    if (units > most || capacity > most - units)
+    RangeAllocator& ranges = pools_[pool];
+    const uint64_t first = ranges.allocate(units);
+    if (first != RangeAllocator::kNoRange) return uint32_t(first);
+    const uint32_t had = capacity(pool), most = limit(pool);
+    if (units > most || had > most - units)
         core::fail(FW_ERROR_OUT_OF_MEMORY,
                    "%u more units do not fit: %u are in use and the device's "
                    "maxStorageBufferRange of %u bytes holds %u.",
-                   units, pools_[pool].used(), device_.properties.limits.maxStorageBufferRange,
+                   units, uint32_t(ranges.used()), device_.properties.limits.maxStorageBufferRange,
                    most);
-    const uint32_t least = capacity + units - (exact_ ? pools_[pool].freeAtEnd() : 0);
-    const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(capacity) * 2));
+    const uint32_t least = had + units - (exact_ ? uint32_t(ranges.freeAtEnd()) : 0);
+    const auto doubled = uint32_t(std::min<uint64_t>(most, uint64_t(had) * 2));
     if (doubled > least && !exact_) {
         try {
             resize(pool, doubled, lastFrame);
-            return pools_[pool].allocate(units);
+            return uint32_t(ranges.allocate(units));
         } catch (const core::Error& error) {
             if (error.result != FW_ERROR_OUT_OF_MEMORY) throw;
         }
     }
     resize(pool, least, lastFrame);
-    return pools_[pool].allocate(units);
+    return uint32_t(ranges.allocate(units));
 }
 
 void WorldBuffers::release(BufferPool pool, uint32_t first, uint32_t units) noexcept {
     pools_[pool].release(first, units);
-    usedUnits_[pool] = pools_[pool].used();
+    usedUnits_[pool] = uint32_t(pools_[pool].used());
+}
+
+BufferRange::~BufferRange() {
+    if (units_ > 0) buffers_->release(pool_, first_, units_);
 }
 
 void WorldBuffers::atLeast(BufferPool pool, uint32_t units, uint64_t lastFrame) {
-    const uint32_t capacity = pools_[pool].capacity();
-    if (units <= capacity) return;
+    const uint32_t had = capacity(pool);
+    if (units <= had) return;
     checkLimit(pool, units);
-    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, capacity * 2ull);
+    const uint64_t doubled = exact_ ? units : std::max<uint64_t>(units, had * 2ull);
     resize(pool, uint32_t(std::min<uint64_t>(limit(pool), doubled)), lastFrame);
 }
 
@@ -447,8 +369,8 @@ void WorldBuffers::checkLimit(BufferPool pool, uint32_t units) const {
 
 void WorldBuffers::fit(BufferPool pool, uint32_t units, bool shrinks, uint64_t lastFrame) {
     // Requests fluctuate and grow slowly: spare capacity avoids a reallocation for each.
-    const uint32_t capacity = pools_[pool].capacity(), spare = units / 8;
-    if (units <= capacity && (!shrinks || capacity - units <= spare)) return;
+    const uint32_t had = capacity(pool), spare = units / 8;
+    if (units <= had && (!shrinks || had - units <= spare)) return;
     checkLimit(pool, units);
     const uint32_t room = shrinks || exact_ ? units : std::min(limit(pool), units + spare);
     resize(pool, std::max(room, 1u), lastFrame);

@@ -5,10 +5,12 @@
 #include "core/growth.h"
 #include "gpu/passes/pass.h"
 #include "gpu/vk/memory.h"
+#include "gpu/vk/range_allocator.h"
 #include "shared/look.h"
 
 #include <array>
 #include <atomic>
+#include <utility>
 
 namespace fw::gpu::vk {
 
@@ -82,30 +84,6 @@ constexpr BufferPool poolOf(BufferPool pool, uint32_t view) noexcept {
 // theirs has two.
 constexpr uint32_t quadUnits(uint32_t quads) noexcept { return quads + kFlameOrder / 2; }
 
-// First-fit ranges of whole units.
-class RangeAllocator {
- public:
-    explicit RangeAllocator(std::pmr::memory_resource* memory) : free_(memory) {}
-    static constexpr uint32_t kNoRange = 0xFFFFFFFFu;
-    void addCapacity(uint32_t units);            // at the end
-    void dropCapacity(uint32_t units) noexcept;  // likewise, of what is free there
-    uint32_t allocate(uint32_t units);           // kNoRange: does not fit
-    void release(uint32_t first, uint32_t units) noexcept;
-    [[nodiscard]] uint32_t capacity() const noexcept { return capacity_; }
-    [[nodiscard]] uint32_t used() const noexcept { return used_; }
-    [[nodiscard]] uint32_t freeAtEnd() const noexcept {
-        const bool any = !free_.empty() && free_.back().first + free_.back().units == capacity_;
-        return any ? free_.back().units : 0;
-    }
-
- private:
-    struct Range {
-        uint32_t first, units;
-    };
-    std::pmr::vector<Range> free_;  // by first; room for pieces_ + 2
-    uint32_t capacity_ = 0, used_ = 0, pieces_ = 0;
-};
-
 struct BufferRow {
     uint32_t binding = 0;
     const char* name = "";
@@ -123,13 +101,13 @@ struct WorldSizes {       // of the fixed buffers
     bool exact = false;  // buffers have no room to spare: see WorldLimits::exactBuffers
 };
 
-// A resource to free once the GPU is done with a frame.
+// Resources to free together once the GPU is done with a frame.
 struct Retired {
-    uint64_t frameIndex = 0;
-    Buffer buffer;
-    Image image;
+    Buffer buffer{};
+    Image image{};
     VkDescriptorPool pool = VK_NULL_HANDLE;
     VkFramebuffer framebuffer = VK_NULL_HANDLE;
+    uint64_t frameIndex = 0;  // the queue's
 };
 
 class RetireQueue {
@@ -144,18 +122,45 @@ class RetireQueue {
         core::growTo(queue_, queue_.size() + promised_ + count);
         promised_ += count;
     }
-    void push(uint64_t lastFrame, Buffer& buffer) noexcept;
-    void push(uint64_t lastFrame, Image& image) noexcept;
-    void push(uint64_t lastFrame, VkDescriptorPool pool) noexcept;
-    void pushFramebuffer(uint64_t lastFrame, VkFramebuffer framebuffer) noexcept;
+    // `lastFrame`: the newest frame that may use them.
+    void push(uint64_t lastFrame, Retired resources) noexcept;
+    void push(uint64_t lastFrame, Buffer& buffer) noexcept {
+        push(lastFrame, {.buffer = std::exchange(buffer, {})});
+    }
     void collect(uint64_t completedFrame) noexcept;
 
  private:
     Device& device_;
     DeviceMemory& deviceMemory_;
-    void add(const Retired& one) noexcept;
     std::pmr::vector<Retired> queue_;
     size_t promised_ = 0;
+};
+
+class WorldBuffers;
+
+// Units of a pool, which go back with it.
+class BufferRange {
+ public:
+    BufferRange() = default;
+    BufferRange(WorldBuffers& buffers, BufferPool pool, uint32_t first, uint32_t units) noexcept
+        : buffers_(&buffers), pool_(pool), first_(first), units_(units) {}
+    BufferRange(BufferRange&& other) noexcept { *this = std::move(other); }
+    BufferRange& operator=(BufferRange&& other) noexcept {
+        std::swap(buffers_, other.buffers_);
+        std::swap(pool_, other.pool_);
+        std::swap(first_, other.first_);
+        std::swap(units_, other.units_);
+        return *this;
+    }
+    ~BufferRange();
+    [[nodiscard]] uint32_t first() const noexcept { return first_; }
+    [[nodiscard]] uint32_t units() const noexcept { return units_; }
+    explicit operator bool() const noexcept { return units_ > 0; }
+
+ private:
+    WorldBuffers* buffers_ = nullptr;
+    BufferPool pool_{};
+    uint32_t first_ = 0, units_ = 0;
 };
 
 class WorldBuffers {
@@ -168,8 +173,7 @@ class WorldBuffers {
 
     // Throws FW_ERROR_OUT_OF_MEMORY (budget, device, or the device's storage buffer range) and then
     // changed nothing. lastFrame: the newest frame that may use the present buffers.
-    uint32_t allocate(BufferPool pool, uint32_t units, uint64_t lastFrame);
-    void release(BufferPool pool, uint32_t first, uint32_t units) noexcept;
+    [[nodiscard]] BufferRange allocate(BufferPool pool, uint32_t units, uint64_t lastFrame);
     // For pools that are refilled each frame or indexed by slot.
     void atLeast(BufferPool pool, uint32_t units, uint64_t lastFrame);
     // Likewise, with little to spare; `shrinks`: with none, and fewer where it has many more. For
@@ -182,7 +186,9 @@ class WorldBuffers {
     void dropView(uint32_t view, uint64_t lastFrame);
 
     [[nodiscard]] const Buffer& buffer(uint32_t resource) const { return slots_[resource].now; }
-    [[nodiscard]] uint32_t capacity(BufferPool pool) const { return pools_[pool].capacity(); }
+    [[nodiscard]] uint32_t capacity(BufferPool pool) const {
+        return uint32_t(pools_[pool].capacity());
+    }
     // Changes whenever a buffer is another one: descriptor sets are rewritten then.
     [[nodiscard]] uint64_t generation() const noexcept { return generation_; }
     // Records the copies that growth left over. True: something was recorded.
@@ -198,6 +204,8 @@ class WorldBuffers {
         Buffer before;          // holds the recorded content until the next frame moves it
         bool recorded = false;  // `now` was used by a recorded frame
     };
+    friend class BufferRange;
+    void release(BufferPool pool, uint32_t first, uint32_t units) noexcept;
     uint32_t allocateIn(BufferPool pool, uint32_t units, uint64_t lastFrame);
     // New buffers of so many units, more or fewer; fewer: the last ones are free.
     void resize(BufferPool pool, uint32_t units, uint64_t lastFrame);

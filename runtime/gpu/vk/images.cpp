@@ -1,6 +1,8 @@
 // Base colours and look textures: images with their mips, and their way to the device.
 #include "core/error.h"
-#include "gpu/vk/world_state.h"
+#include "gpu/vk/backend_state.h"
+#include "gpu/vk/device_objects.h"
+#include "shared/volume.h"
 
 #include <algorithm>
 #include <array>
@@ -95,25 +97,20 @@ void centreAlpha(std::byte* pixels, size_t count, double share) {
 
 }  // namespace
 
-void VkBackend::State::addImage(ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
-                                uint32_t mips, VkFormat format, std::span<const std::byte> pixels,
-                                const char* name) {
-    retired.promise(2);
-    auto info = typed<VkImageCreateInfo>(VK_STRUCTURE_TYPE_IMAGE_CREATE_INFO);
-    info.imageType = VK_IMAGE_TYPE_2D;
-    info.format = format;
-    info.extent = {width, height, 1};
+void addImage(BackendState& s, ImageEntry& entry, uint32_t width, uint32_t height, uint32_t layers,
+              uint32_t mips, VkFormat format, std::span<const std::byte> pixels, const char* name) {
+    FW_ASSERT(!entry.live, "%s", name);
+    s.retired.promise(1);
+    VkImageCreateInfo info = imageInfo(
+        format, width, height, VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT);
     info.mipLevels = mips;
     info.arrayLayers = layers;
-    info.samples = VK_SAMPLE_COUNT_1_BIT;
-    info.tiling = VK_IMAGE_TILING_OPTIMAL;
-    info.usage = VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT;
-    info.initialLayout = VK_IMAGE_LAYOUT_UNDEFINED;
     ImageEntry fresh;
-    fresh.image = deviceMemory.createImage(info, VK_IMAGE_ASPECT_COLOR_BIT, kComponentImages, name);
     try {
-        fresh.set = makeImageSet(device, context.pipelines, fresh.image.view);
-        PendingUpload& upload = stage(pixels.size(), name);
+        fresh.image =
+            s.deviceMemory.createImage(info, VK_IMAGE_ASPECT_COLOR_BIT, kComponentImages, name);
+        fresh.set = makeImageSet(s.device, s.context.pipelines, fresh.image.view);
+        PendingUpload& upload = s.scene.uploads.stage(pixels.size(), name);
         std::memcpy(upload.staging.mapped, pixels.data(), pixels.size());
         upload.image = fresh.image.handle;
         upload.width = width;
@@ -121,18 +118,27 @@ void VkBackend::State::addImage(ImageEntry& entry, uint32_t width, uint32_t heig
         upload.mips = mips;
         upload.layers = layers;
     } catch (...) {
-        device.table.DestroyDescriptorPool(device.handle, fresh.set.pool,
-                                           device.allocationCallbacks);
-        deviceMemory.destroy(fresh.image);
+        destroyImage(s, fresh);
         throw;
     }
     fresh.live = true;
     entry = fresh;
 }
 
+void destroyImage(BackendState& s, ImageEntry& entry) noexcept {
+    s.deviceMemory.destroy(entry.image);
+    s.device.destroy(s.device.table.DestroyDescriptorPool, entry.set.pool);
+}
+
+void dropImage(BackendState& s, ImageEntry& entry) noexcept {
+    s.scene.uploads.dropFor(entry.image.handle);
+    s.retired.push(s.ring.newest(), {.image = entry.image, .pool = entry.set.pool});
+    entry = {};
+}
+
 void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
                             std::span<const std::byte> pixels, float alphaCutoff) {
-    State& s = *state_;
+    BackendState& s = *state_;
     const uint32_t most = s.device.properties.limits.maxImageDimension2D;
     if (width > most || height > most)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -140,20 +146,20 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
                    height, most);
     ImageEntry& entry = slotOf(s.scene.images, slot);
     const uint32_t mips = mipsOf(width, height);
-    size_t bytes = 0;
-    for (uint32_t mip = 0; mip < mips; ++mip)
-        bytes += size_t(std::max(width >> mip, 1u)) * std::max(height >> mip, 1u) * 4;
-    std::pmr::vector<std::byte> all(bytes, s.memory);
-    std::memcpy(all.data(), pixels.data(), size_t(width) * height * 4);
-    const bool cutOut = alphaCutoff > 0;
-    const SrgbTable table;
-    std::array<size_t, 32> starts{};  // of each mip
     const auto sizeOf = [&](uint32_t mip) {
         return std::pair(std::max(width >> mip, 1u), std::max(height >> mip, 1u));
     };
-    for (uint32_t mip = 0; mip + 1 < mips; ++mip) {
+    std::array<size_t, 33> starts{};  // of each mip, and their end
+    for (uint32_t mip = 0; mip < mips; ++mip) {
         const auto [w, h] = sizeOf(mip);
         starts[mip + 1] = starts[mip] + size_t(w) * h * 4;
+    }
+    std::pmr::vector<std::byte> all(starts[mips], s.memory);
+    std::memcpy(all.data(), pixels.data(), size_t(width) * height * 4);
+    const bool cutOut = alphaCutoff > 0;
+    const SrgbTable table;
+    for (uint32_t mip = 0; mip + 1 < mips; ++mip) {
+        const auto [w, h] = sizeOf(mip);
         halveSrgb(table, all.data() + starts[mip], w, h, all.data() + starts[mip + 1], cutOut);
     }
     if (cutOut) {
@@ -170,51 +176,43 @@ void VkBackend::createImage(uint32_t slot, uint32_t width, uint32_t height,
             centreAlpha(all.data() + starts[mip], size_t(w) * h, double(there) / double(count));
         }
     } else {
-        for (size_t i = 3; i < bytes; i += 4) all[i] = std::byte(255);
+        for (size_t i = 3; i < all.size(); i += 4) all[i] = std::byte(255);
     }
-    s.addImage(entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
-}
-
-// Once the frames so far are done with it.
-void VkBackend::State::dropImage(ImageEntry& entry) noexcept {
-    for (size_t i = 0; i < scene.uploads.size(); ++i) {
-        if (scene.uploads[i].image != entry.image.handle) continue;
-        deviceMemory.destroy(scene.uploads[i].staging);
-        scene.uploads.erase(scene.uploads.begin() + std::ptrdiff_t(i));
-        break;
-    }
-    retired.push(ring.newest(), entry.image);
-    retired.push(ring.newest(), entry.set.pool);
-    entry = {};
+    addImage(s, entry, width, height, 1, mips, VK_FORMAT_R8G8B8A8_SRGB, all, "base colour");
 }
 
 void VkBackend::setFlipbooks(uint32_t width, uint32_t height, std::span<const std::byte> texels,
                              std::span<const uint32_t> words) {
-    State& s = *state_;
+    BackendState& s = *state_;
     if (!s.scene.lookTextures.live) return;  // nothing is ever drawn
     ImageEntry fresh;
-    const size_t kept = s.scene.uploads.size();
     if (width > 0) {
-        PendingUpload& upload = s.stage(words.size_bytes(), "flipbooks");
-        std::memcpy(upload.staging.mapped, words.data(), words.size_bytes());
-        upload.regions[upload.regionCount++] = {FW_BIND_FLIPBOOKS, 0, 0, words.size_bytes()};
-        try {
-            s.addImage(fresh, width, height, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, texels, "flipbooks");
-        } catch (...) {
-            s.dropUploads(kept);
-            throw;
-        }
+        UploadGuard staged(s.scene.uploads);
+        s.scene.uploads.stage(words.size_bytes(), "flipbooks").add(FW_BIND_FLIPBOOKS, 0, words);
+        addImage(s, fresh, width, height, 1, 1, VK_FORMAT_R8G8B8A8_UNORM, texels, "flipbooks");
+        staged.keep();
     }
-    if (s.scene.books.live) s.dropImage(s.scene.books);
+    if (s.scene.books.live) dropImage(s, s.scene.books);
     s.scene.books = fresh;
 }
 
-void VkBackend::setTileFlipbooks(uint32_t books) noexcept {
-    state_->particles.flameFlipbooks = books;
+// A fire profile of the host's comes behind those of presets.
+void VkBackend::setFireProfile(uint32_t slot, std::span<const uint32_t> texels) {
+    static_assert(kProfileBytes == kProfileWidth * kProfileHeight * 4);
+    SceneTables& scene = state_->scene;
+    if (!scene.profiles.live) return;
+    FW_ASSERT(slot < kMaxFireProfiles && texels.size_bytes() >= kProfileBytes,
+              "profile %u of %zu bytes", slot, texels.size_bytes());
+    PendingUpload& upload = scene.uploads.stage(kProfileBytes, "fire profile");
+    std::memcpy(upload.staging.mapped, texels.data(), kProfileBytes);
+    upload.image = scene.profiles.image.handle;
+    upload.width = kProfileWidth;
+    upload.height = kProfileHeight;
+    upload.firstLayer = kFirePresets + slot;
 }
 
 void VkBackend::destroyImage(uint32_t slot) {
-    State& s = *state_;
+    BackendState& s = *state_;
     ImageEntry& entry = s.scene.images[slot];
     if (!entry.live) return;
     const auto shows = [&](uint32_t image) { return image == slot + 1; };
@@ -223,12 +221,12 @@ void VkBackend::destroyImage(uint32_t slot) {
         for (uint32_t m = 0; m < kMaterialsPerObject; ++m)
             if (shows(object.images[m])) passes |= surfacePasses(object.materials[m], false);
     s.context.pipelines.need(passes);
-    s.dropImage(entry);
+    dropImage(s, entry);
     for (uint32_t i = 0; i < s.scene.objects.size(); ++i) {
         ObjectEntry& object = s.scene.objects[i];
         if (std::none_of(std::begin(object.images), std::end(object.images), shows)) continue;
         std::replace_if(std::begin(object.images), std::end(object.images), shows, 0u);
-        s.changed(i);
+        s.scene.changed(i);
     }
 }
 

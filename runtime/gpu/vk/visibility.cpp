@@ -1,7 +1,6 @@
-// Which objects some view shows, and what that spares: arrival ahead of the front is for looks
-// alone. Of an object that none shows, what burns and what was put out is noted as it comes, so
-// that its ages are right, and nothing ahead of it; when a view shows it again, that is found at
-// once.
+// Which objects some view shows. Arrival ahead of the front is cosmetic: of an object that no view
+// shows, only burning and extinguished texels are recorded as they come, so that their ages are
+// right. When a view shows the object again, arrival ahead of its front is found at once.
 #include "gpu/vk/frame_needs.h"
 
 #include <algorithm>
@@ -43,15 +42,7 @@ Sphere sphereOf(const ObjectEntry& object, const mesh::BurnDomain& domain, const
 }
 
 bool shows(const ViewParams& p, const Sphere& sphere) noexcept {
-    const auto row = [&](int i) { return vec4(p.clip0[i], p.clip1[i], p.clip2[i], p.clip3[i]); };
-    const vec4 w = row(3);
-    for (int axis = 0; axis < 2; ++axis)
-        for (const float side : {-1.0f, 1.0f}) {
-            const vec4 plane = w + side * row(axis);
-            if (glm::dot(glm::vec3(plane), sphere.middle) + plane.w <
-                -sphere.radius * glm::length(glm::vec3(plane)))
-                return false;
-        }
+    if (!sphereInView(p, sphere.middle, sphere.radius)) return false;
     const bool perspective = p.forward.w > 0.5f;
     const float away = perspective ? std::max(glm::length(sphere.middle) - sphere.radius, 0.0f) : 1;
     return sphere.radius >= kMinPixels * p.eye.w * away;
@@ -59,12 +50,7 @@ bool shows(const ViewParams& p, const Sphere& sphere) noexcept {
 
 // Texels that fire may cross in a tick.
 double paceOf(const ObjectEntry& object) noexcept {
-    uint32_t least = ~0u;
-    for (const BurnMaterial& m : object.materials)
-        if ((m.flags & 1) != 0) least = std::min(least, m.sigma0);
-    // m in a tick: ticks are 2^-22 of sigma0 for 1/8 of a quantum.
-    const double speed = double(object.record.originQuantum.w) / 8 * 4194304.0 / double(least);
-    return speed / std::sqrt(std::max(double(object.record.tint.w), 1e-12));
+    return metresPerTick(object) / std::sqrt(std::max(double(object.record.tint.w), 1e-12));
 }
 
 // Texels that fire may cross in the time that is looked ahead.
@@ -83,29 +69,25 @@ bool seenLately(const ObjectEntry& object, uint64_t frame) noexcept {
 
 }  // namespace
 
-void VkBackend::State::look(const FwView& view, float height, uint64_t frame) noexcept {
-    if (!limits.looks.viewParams) return;
-    ViewInput input;
-    input.view = &view;
-    input.viewport[2] = input.viewport[3] = height > 0 ? height : kAnyHeight;
-    ViewParams params{};
-    limits.looks.viewParams(input, params);
+void markVisible(BackendState& s, const FwView& view, float height, uint64_t frame) noexcept {
+    if (!s.limits.looks.viewParams) return;
+    const ViewParams params = s.paramsOf(view, height, kAnyHeight);
     const auto lookAt = [&](ObjectEntry& object) {
         if (!object.live || object.seenFrame == frame) return;
         // A host moves the vertices of what is skinned where it likes.
         if (object.deforms.skinPlus1 == 0 &&
-            !shows(params, sphereOf(object, *scene.meshes[object.mesh].domain, params.eye)))
+            !shows(params, sphereOf(object, *s.scene.meshOf(object).domain, params.eye)))
             return;
         object.seenFrame = frame;
-        if ((object.record.flags & kObjectHidden) == 0) simulation.seenFrame = frame;
+        if ((object.record.flags & kObjectHidden) == 0) s.simulation.seenFrame = frame;
     };
-    for (const uint32_t i : scene.awake)
-        if (scene.objects[i].burn.touched) lookAt(scene.objects[i]);
-    for (size_t i = frame % kIdleTurns; i < scene.objects.size(); i += kIdleTurns)
-        if (!scene.objects[i].burn.touched) lookAt(scene.objects[i]);
+    for (const uint32_t i : s.scene.awake)
+        if (s.scene.objects[i].burn.touched) lookAt(s.scene.objects[i]);
+    for (size_t i = frame % kIdleTurns; i < s.scene.objects.size(); i += kIdleTurns)
+        if (!s.scene.objects[i].burn.touched) lookAt(s.scene.objects[i]);
 }
 
-void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
+void addSeenNeeds(BackendState& s, FrameNeeds& needs) {
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
         const bool unseen = (object.record.flags & kObjectUnseen) != 0;
@@ -117,7 +99,7 @@ void addSeenNeeds(VkBackend::State& s, FrameNeeds& needs) {
     }
 }
 
-bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t endTick) noexcept {
+bool predictsNow(const BackendState& s, const FrameNeeds& needs, uint32_t endTick) noexcept {
     const double shortOf = 1.0 - double(s.detail.triangles);
     if (shortOf <= 0 || needs.stimulus || needs.appears) return true;
     double pause = kLongestPause * shortOf;
@@ -129,13 +111,11 @@ bool predictsNow(const VkBackend::State& s, const FrameNeeds& needs, uint32_t en
            pause;  // of a save that was loaded: long ago
 }
 
-void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder& recorder,
-                       UploadWriter& writer) {
-    const auto tell = [&](uint32_t slot, uint32_t flags) {
-        const Staged staged = writer.write(std::span<const uint32_t>(&flags, 1));
-        recorder.copyIn(staged.at, FW_BIND_OBJECTS,
-                        uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
-                        sizeof flags);
+void recordPredictions(BackendState& s, const FramePlan& plan, FrameRecorder& recorder) {
+    const auto uploadFlags = [&](uint32_t slot, uint32_t flags) {
+        recorder.uploadOne(FW_BIND_OBJECTS,
+                           uint64_t(slot) * sizeof(BurnObject) + offsetof(BurnObject, flags),
+                           flags);
     };
     s.simulation.predictTick = plan.endTick;
     const uint32_t most = plan.frameIndex == 0 ? kRingsOfPicture : kRingsOfFrame;
@@ -148,7 +128,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
         if (object.turns) {
             flags ^= kObjectUnseen;
             const bool comes = (flags & kObjectUnseen) == 0;
-            tell(i, comes ? flags | kObjectShownAgain : flags);
+            uploadFlags(i, comes ? flags | kObjectShownAgain : flags);
             if (comes) {
                 recordPredictRestart(recorder, s.simulation.lists, i, object.record.tileCount);
                 rings = std::max(rings, std::min(ringsOf(object), most));
@@ -166,7 +146,7 @@ void recordPredictions(VkBackend::State& s, const FramePlan& plan, FrameRecorder
         rounds += rings;
         for (const uint32_t i : s.scene.awake)
             if (s.scene.objects[i].turns && (s.scene.objects[i].record.flags & kObjectUnseen) == 0)
-                tell(i, s.scene.objects[i].record.flags);
+                uploadFlags(i, s.scene.objects[i].record.flags);
     }
     for (uint32_t i = 1; seen && i < rounds; ++i)
         recordPrediction(recorder, s.simulation.lists, plan.endTick, seen);

@@ -2,13 +2,17 @@
 // volumetric flames are marched and shown. Each view has its own quads and marches on the device,
 // see resourceOf; all share the simulation, lights and meshes.
 #pragma once
+#include "core/owned.h"
 #include "gpu/passes/draw.h"
+#include "gpu/vk/descriptors.h"
 #include "lod/impostor_atlas.h"
 #include "lod/tiers.h"
 
 #include <array>
 
 namespace fw::gpu::vk {
+
+struct BackendState;
 
 // Flames that are marched before they are drawn, on the screen that a draw of the view was last
 // seen to have. Views that were not given to RecordOutside, and the first picture, march as they
@@ -45,6 +49,15 @@ struct March {
 
 struct OutsideView {
     explicit OutsideView(uint32_t of) : number(of) {}
+    // A draw in `ringFrame` shows `shown` so.
+    void recordScreen(const FwView& shown, const VolumeScreen& screen, uint64_t ringFrame) noexcept;
+    // Whether what is marched is for `shown` on this screen; else flames are marched as they are
+    // drawn.
+    [[nodiscard]] bool isMarchedFor(const FwView& shown, const VolumeScreen& screen) const noexcept;
+    // Rays a side of a pixel, of the view as it is drawn: more where nobody could know its screen,
+    // in the first picture and after a resize. A second screen of each frame takes them once.
+    uint32_t minRays(const FwView& shown, const VolumeScreen& screen) noexcept;
+
     uint32_t number;     // of its resources and sets, [0, kMaxViews)
     uint64_t frame = 0;  // ring frame that was last recorded for it; 0: none
     bool given = false;  // the newest frame was recorded for it
@@ -52,6 +65,25 @@ struct OutsideView {
     FwView view{};       // as that frame had it
     float height = 0;    // px, of its last draw; 0: it was never drawn
     March march;
+};
+
+// The views of RecordOutside, by number; null: not there. The first is always there.
+struct OutsideViews {
+    explicit OutsideViews(std::pmr::memory_resource* memory) : memory_(memory) {
+        all[0] = core::Owned<OutsideView>::make(memory, 0u);
+    }
+    // The open frame is recorded for these. May throw.
+    void open(BackendState& s, std::span<const FwView> from);
+    // Buffers of the open frame's views; `marches`: they march so many flames.
+    void makeRoom(BackendState& s, uint32_t flameCount, bool marches, uint64_t last) const;
+    // Of the newest frame's views the one that a draw of `view` shows.
+    [[nodiscard]] OutsideView& viewFor(const PassSets& sets, const FwView& view) const noexcept;
+
+    std::array<core::Owned<OutsideView>, kMaxViews> all;
+
+ private:
+    OutsideView& freeView(std::span<OutsideView* const> taken, uint64_t ringFrame);
+    std::pmr::memory_resource* memory_;
 };
 
 // Whether what was marched for one view is what another shows.

@@ -1,5 +1,5 @@
 // A host's device and what its worlds share: memory, pipelines, targets.
-#include "gpu/vk/world_state.h"
+#include "gpu/vk/backend_state.h"
 
 #include <cstring>
 

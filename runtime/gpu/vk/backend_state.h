@@ -1,0 +1,127 @@
+// What a VkBackend holds: the device's parts, the tables of the scene, and the renderers, each with
+// its buffers, dirty flags and recording. Internal to the backend's .cpp files.
+#pragma once
+#include "gpu/vk/field_renderer.h"
+#include "gpu/vk/flame_renderer.h"
+#include "gpu/vk/own_device.h"
+#include "gpu/vk/particle_renderer.h"
+#include "gpu/vk/readback.h"
+#include "gpu/vk/scene_tables.h"
+#include "gpu/vk/simulation.h"
+#include "gpu/vk/surface_renderer.h"
+#include "gpu/vk/view_draws.h"
+#include "gpu/vk/vk_backend.h"
+
+#include "core/owned.h"
+
+namespace fw::gpu::vk {
+
+struct Context::State {
+    State(const FwVulkanHost* host, uint64_t budget, std::pmr::memory_resource* memory,
+          const core::Log& logTo)
+        : device(host, logTo), deviceMemory(device, budget, memory), pipelines(device, memory) {}
+    Device device;
+    DeviceMemory deviceMemory;
+    Pipelines pipelines;
+};
+
+// What the published scheme keeps of an object.
+struct PatternUse {
+    explicit PatternUse(std::pmr::memory_resource* memory) : state(memory) {}
+    const mesh::PatternModel* model = nullptr;  // null: free
+    mesh::PatternSettings settings;
+    mesh::PatternState state;
+};
+struct PatternFrame {  // refined by the published scheme
+    explicit PatternFrame(std::pmr::memory_resource* memory) : patternUses(memory) {}
+    std::pmr::vector<core::Owned<PatternUse>> patternUses;
+    uint32_t users = 0;  // objects
+    uint32_t placeGroups = 0, nameGroups = 0;
+    double lastTick = 0;  // of the last frame with any
+};
+
+struct OpenFrame {
+    bool open = false, ran = false, recording = false, readback = false;
+    bool unseen = false;   // nothing draws before the next one
+    bool refined = false;  // the refinement budget was allocated again
+    VkCommandBuffer commands = VK_NULL_HANDLE;
+    uint64_t ringFrame = 0, planFrame = 0;
+    uint32_t endTick = 0;
+    FrameInFlight* slot = nullptr;
+    std::array<OutsideView*, kMaxViews> views{};  // that it is recorded for
+    uint32_t viewCount = 0;
+};
+
+struct BackendState {
+    BackendState(Context::State& contextState, const WorldLimits& limits,
+                 std::pmr::memory_resource* pmr, const core::Log& logTo);
+    ~BackendState();
+    BackendState(const BackendState&) = delete;
+    BackendState& operator=(const BackendState&) = delete;
+
+    Context::State& context;
+    Device& device;
+    DeviceMemory& deviceMemory;
+    WorldLimits limits;
+    std::pmr::memory_resource* memory;
+    const core::Log& log;
+
+    RetireQueue retired;
+    FrameRing ring;
+    WorldBuffers buffers;
+    PassSets sets;
+    BarrierTracker barriers;
+    Buffer views;             // view ring: frame in flight, then view
+    uint32_t viewStride = 0;  // bytes
+
+    SceneTables scene;
+    SimulationState simulation;
+    DeformRenderer deforming;
+    FlameRenderer flames;
+    ParticleRenderer particles;
+    FieldRenderer particleFields;
+    SurfaceRenderer surfaces;
+    RefineRenderer refine;
+    PatternFrame pattern;
+    DrawTargets targets;
+    OutsideViews outsideViews;
+    ReadbackResults results;
+    Detail detail;          // as of the frame's plan
+    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
+    ViewParams seen{};      // of the last pushView
+    OwnDevice own;
+    OpenFrame open;
+
+    void openFrame(VkCommandBuffer commands, uint64_t ringFrame) noexcept;
+    [[nodiscard]] RecordTarget recordTarget(FrameInFlight& slot, VkCommandBuffer commands) noexcept;
+    // Writes a view's parameters for the passes and draws that follow; returns their offset in
+    // `views`. Throws where a frame has too many.
+    uint32_t pushView(FrameInFlight& slot, const FwView& view, const VkViewport& viewport);
+    // The views that the open frame is recorded for.
+    [[nodiscard]] std::span<OutsideView* const> seenFrom() const noexcept {
+        return {open.views.data(), open.viewCount};
+    }
+    [[nodiscard]] bool showsQuads() const noexcept {
+        return !simulation.burnEmpty || particles.shows();
+    }
+    [[nodiscard]] bool showsAnything() const noexcept {
+        return (surfaces.drawVertices || particles.shows()) && scene.lookTextures.live &&
+               limits.looks.viewParams;
+    }
+    // Of a view of `height` px; 0: it was never drawn, `otherwise` px.
+    [[nodiscard]] ViewParams paramsOf(const FwView& view, float height,
+                                      float otherwise) const noexcept;
+
+ private:
+    void destroyAll() noexcept;
+};
+
+// vk_published.cpp
+[[nodiscard]] bool refinesAsPublished(const BackendState& s, const ObjectEntry& object) noexcept;
+void adoptPattern(BackendState& s, RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
+                  uint64_t last);
+void dropPattern(BackendState& s, RefineUse& use) noexcept;
+uint64_t planPatterns(BackendState& s);
+void refineAsPublished(BackendState& s, FrameInFlight& slot);
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,50 @@
+// Volumetric flames: what draws show of them, the march of each view, and the order in which a
+// view draws them.
+#pragma once
+#include "gpu/vk/frame.h"
+#include "gpu/vk/outside_views.h"
+#include "gpu/vk/pipelines.h"
+
+namespace fw::gpu::vk {
+
+struct BackendState;
+
+struct VolumeBox {  // as in FlameRecord
+    vec4 low{}, high{};
+    vec4 flameLow{}, flameHigh{};  // without its smoke
+    uint32_t intervals = 1;        // see VolumeDraw
+    vec3 base{};                   // where it stands
+    uint32_t key = 0, tier = 0;
+    bool smokes = false;
+    vec4 hazeLow{}, hazeHigh{};  // of its column of hot gas
+    AtlasKind kind;
+    vec3 tip{};        // as VolumeItem's
+    vec4 basePlane{};  // as volumeBasePlane has it
+};
+
+struct FlameRenderer {
+    explicit FlameRenderer(std::pmr::memory_resource* pmr) : volumes(pmr) {}
+    // The flames of the frame, as they are drawn until the next ones come.
+    void record(const VolumeUpdate& update, FrameRecorder& recorder);
+    // Before the first command: space for what is marched; less of it makes it coarser.
+    void makeMarchRoom(BackendState& s, OutsideView& of, uint32_t flameCount, uint64_t last) const;
+    // For the view that was last pushed, which is `of`'s.
+    [[nodiscard]] MarchRecord march(const BackendState& s, OutsideView& of) const noexcept;
+    // What the view that was last pushed shows of them, farthest first; how many.
+    uint32_t order(const BackendState& s, uint32_t slabs,
+                   std::array<VolumeItem, kMaxVolumeFlames>& out) const noexcept;
+    // What bends what is behind it in the view that was last pushed, farthest first; how many.
+    // `march`: that shows the flames, or null.
+    uint32_t orderHazes(const BackendState& s, const March* march, float strength,
+                        std::array<HazedVolume, kMaxVolumeFlames>& out) const noexcept;
+    // How a target of `size` px shows what is marched for it.
+    [[nodiscard]] VolumeScreen screenOf(const BackendState& s, const TargetKey& target,
+                                        vec2 size) const noexcept;
+    // Of device memory, those that follow a plan's Detail::memory.
+    [[nodiscard]] uint64_t detailBytes(const BackendState& s) const noexcept;
+
+    std::pmr::vector<VolumeBox> volumes;              // that draws show
+    uint32_t volumeStepsNow = Detail{}.rayStepCount;  // on its way to detail's
+};
+
+}  // namespace fw::gpu::vk

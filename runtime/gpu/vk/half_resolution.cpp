@@ -1,0 +1,154 @@
+// What is soft of a view at half resolution: images for it, by size, and their passes.
+#include "gpu/vk/backend_state.h"
+#include "gpu/vk/device_objects.h"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+namespace fw::gpu::vk {
+namespace {
+
+constexpr uint64_t kHalfKept = 60;  // frames from when a size was last drawn
+
+// Once its last frame is done.
+void dropHalf(BackendState& s, HalfImages& half) noexcept {
+    s.retired.push(
+        half.lastFrame,
+        {.image = half.color, .pool = half.colorSet.pool, .framebuffer = half.colorBuffer});
+    s.retired.push(
+        half.lastFrame,
+        {.image = half.depth, .pool = half.depthSet.pool, .framebuffer = half.depthBuffer});
+    half = {};
+}
+
+void makeHalf(BackendState& s, HalfImages& half, VkFormat format, uint32_t width, uint32_t height) {
+    constexpr size_t kPieces = 2;
+    s.retired.promise(kPieces);
+    half.format = format;
+    half.width = width;
+    half.height = height;
+    half.tilesY = (height + kHalfTile - 1) / kHalfTile;
+    const Pipelines& pipelines = s.context.pipelines;
+    const auto make = [&](VkFormat of, uint32_t rows, const char* name) {
+        return s.deviceMemory.createImage(
+            imageInfo(of, width, rows,
+                      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT),
+            VK_IMAGE_ASPECT_COLOR_BIT, kComponentTargets, name);
+    };
+    try {
+        half.color = make(format, height, "half resolution");
+        half.depth = make(Pipelines::kHalfDepth, height + half.tilesY, "half resolution, depth");
+        // Read texel by texel.
+        half.colorSet =
+            makeImageSet(s.device, pipelines, half.color.view, pipelines.depthSampler());
+        half.depthSet =
+            makeImageSet(s.device, pipelines, half.depth.view, pipelines.depthSampler());
+        half.colorBuffer = makeFramebuffer(s.device, pipelines.halfPass(format),
+                                           {&half.color.view, 1}, width, height);
+        half.depthBuffer = makeFramebuffer(s.device, pipelines.halfDepthPass(),
+                                           {&half.depth.view, 1}, width, height + half.tilesY);
+    } catch (...) {
+        dropHalf(s, half);
+        throw;
+    }
+}
+
+HalfImages& halfFor(BackendState& s, VkFormat format, uint32_t width, uint32_t height,
+                    uint64_t frame) {
+    auto& halves = s.targets.halves;
+    auto found = std::find_if(halves.begin(), halves.end(), [&](const HalfImages& one) {
+        return one.format == format && one.width == width && one.height == height;
+    });
+    if (found == halves.end()) {
+        // Sizes that the host has left behind go, and where all are in use that of longest ago.
+        for (HalfImages& one : halves)
+            if (one.width && one.lastFrame + kHalfKept < frame) dropHalf(s, one);
+        found = std::min_element(halves.begin(), halves.end(), [](const auto& a, const auto& b) {
+            return a.lastFrame < b.lastFrame;
+        });
+        if (found->width) dropHalf(s, *found);
+        makeHalf(s, *found, format, width, height);
+    }
+    found->lastFrame = frame;
+    return *found;
+}
+
+}  // namespace
+
+void destroyHalf(BackendState& s, HalfImages& half) noexcept {
+    const Table& vk = s.device.table;
+    for (Image* image : {&half.color, &half.depth}) s.deviceMemory.destroy(*image);
+    for (ImageSet* set : {&half.colorSet, &half.depthSet})
+        s.device.destroy(vk.DestroyDescriptorPool, set->pool);
+    for (VkFramebuffer* framebuffer : {&half.colorBuffer, &half.depthBuffer})
+        s.device.destroy(vk.DestroyFramebuffer, *framebuffer);
+}
+
+HalfImages* recordHalf(BackendState& s, FrameInFlight& slot, VkCommandBuffer commands,
+                       const Target& target, const FwView& view, const VkViewport& viewport,
+                       const HostImages& host) {
+    const bool shows =
+        s.showsQuads() || !s.particleFields.fieldDraws.empty() || !s.flames.volumes.empty();
+    if (!s.showsAnything() || !shows) return nullptr;
+    const HalfPush push = halfPushFor(s, viewport);
+    const VkRect2D clip =
+        std::exchange(s.targets.scissor, {});  // of the picture that this goes over
+    HalfImages& half =
+        halfFor(s, target.key.halfColor, push.texelsX, push.texelsY, slot.frameIndex);
+    const Table& vk = s.device.table;
+    if (half.fresh) {
+        VkImageMemoryBarrier barrier = imageBarrier(half.depth.handle, VK_IMAGE_ASPECT_COLOR_BIT);
+        barrier.newLayout = VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL;
+        vk.CmdPipelineBarrier(commands, VK_PIPELINE_STAGE_TOP_OF_PIPE_BIT,
+                              VK_PIPELINE_STAGE_COLOR_ATTACHMENT_OUTPUT_BIT, 0, 0, nullptr, 0,
+                              nullptr, 1, &barrier);
+        half.fresh = false;
+    }
+    auto begin = typed<VkRenderPassBeginInfo>(VK_STRUCTURE_TYPE_RENDER_PASS_BEGIN_INFO);
+    const VkClearValue nothing{};
+    const auto into = [&](VkRenderPass pass, VkFramebuffer framebuffer, uint32_t height) {
+        begin.renderPass = pass;
+        begin.framebuffer = framebuffer;
+        begin.renderArea.extent = {half.width, height};
+        begin.clearValueCount = 1;
+        begin.pClearValues = &nothing;
+        vk.CmdBeginRenderPass(commands, &begin, VK_SUBPASS_CONTENTS_INLINE);
+    };
+    // All of a part of the image, with one set.
+    const auto fill = [&](draw::Number number, uint32_t place, VkDescriptorSet set,
+                          const VkViewport& part) {
+        const VkPipelineLayout layout = s.context.pipelines.draw(number).layout;
+        into(s.context.pipelines.halfDepthPass(), half.depthBuffer, half.height + half.tilesY);
+        slot.timers.begin(s.device, commands, drawPasses()[number].name);
+        setViewport(s, commands, part);
+        vk.CmdBindPipeline(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, target.pipelines[number]);
+        vk.CmdBindDescriptorSets(commands, VK_PIPELINE_BIND_POINT_GRAPHICS, layout, place, 1, &set,
+                                 0, nullptr);
+        vk.CmdPushConstants(commands, layout,
+                            VK_SHADER_STAGE_VERTEX_BIT | VK_SHADER_STAGE_FRAGMENT_BIT, 0,
+                            sizeof push, &push);
+        vk.CmdDraw(commands, 6, 1, 0, 0);
+        slot.timers.end(s.device, commands);
+        vk.CmdEndRenderPass(commands);
+    };
+    fill(draw::half_depth, 3, host.depth, {0, 0, float(half.width), float(half.height), 0, 1});
+
+    into(s.context.pipelines.halfPass(half.format), half.colorBuffer, half.height);
+    const VkViewport halved{0, 0, 0.5f * viewport.width, 0.5f * viewport.height, 0, 1};
+    recordDraws(s, slot, commands, target, view, halved, {half.depthSet.set, VK_NULL_HANDLE},
+                DrawPart::half);
+    vk.CmdEndRenderPass(commands);
+
+    fill(draw::half_tiles, 1, half.colorSet.set,
+         {0, float(half.height), float(push.tilesX), float(push.tilesY), 0, 1});
+    s.targets.scissor = clip;
+    return &half;
+}
+
+HalfPush halfPushFor(const BackendState& s, const VkViewport& viewport) noexcept {
+    return halfPush(s.seen, int(viewport.x), int(viewport.y), uint32_t(viewport.width),
+                    uint32_t(viewport.height));
+}
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,68 @@
+// Readbacks that are due, oldest first, and the last one as the world receives it.
+#pragma once
+#include "gpu/backend.h"
+#include "gpu/vk/frame_ring.h"
+#include "gpu/vk/recorder.h"
+
+namespace fw::gpu::vk {
+
+struct BackendState;
+struct ObjectEntry;
+
+struct PendingReadback {  // in the order of frames
+    uint64_t ringFrame = 0;
+    int32_t slot = -1;   // -1: nothing was simulated, the last figures hold
+    int32_t looks = -1;  // slot of a frame that recorded looks alone, whose passes took time
+    uint64_t frameIndex = 0;
+    uint32_t endTick = 0;
+};
+
+// An object's image in a frame's readback.
+struct ImageAt {
+    TexelsAt texels;
+    uint32_t tiles = 0;
+    uint64_t tilesAt = 0, tileHeatAt = 0;  // bytes
+};
+
+struct ReadbackResults {
+    explicit ReadbackResults(std::pmr::memory_resource* pmr)
+        : givenObjects(pmr),
+          givenAnswers(pmr),
+          givenTexels(pmr),
+          givenHeat(pmr),
+          givenMaps(pmr),
+          givenLights(pmr),
+          givenFields(pmr),
+          givenRooms(pmr),
+          times(pmr),
+          imageLayout(pmr),
+          givenImages(pmr) {}
+    void push(const PendingReadback& one) noexcept;
+
+    std::array<PendingReadback, FrameRing::kMaxInFlight * 4> pending{};
+    uint32_t pendingFirst = 0, pendingCount = 0;
+    Readback given;
+    std::pmr::vector<ObjectCounters> givenObjects;
+    std::pmr::vector<ProbeAnswer> givenAnswers;
+    std::pmr::vector<uint32_t> givenTexels;
+    std::pmr::vector<uvec2> givenHeat;
+    std::pmr::vector<BurnMap> givenMaps;
+    std::pmr::vector<BurnLight> givenLights;
+    std::pmr::vector<FieldCounters> givenFields;
+    std::pmr::vector<RoomAir> givenRooms;  // empty: no step had any yet
+    std::pmr::vector<PassTime> times;
+    float pictureTime = 0;  // ms of a picture on our own device that no frame has counted
+    std::pmr::vector<ImageAt> imageLayout;  // of the last frame that took images
+    uint64_t imagesFrame = 0;               // ring frame, of that
+    std::pmr::vector<ObjectImage> givenImages;
+};
+
+// Where the pieces of the frame's readback will lie; `bytes`: all of it. May throw.
+[[nodiscard]] ReadbackLayout layoutReadback(BackendState& s, const FramePlan& plan,
+                                            uint64_t iterations, bool airs, uint64_t& bytes);
+// The end of a frame's recording: copies what its layout says.
+void recordReadback(BackendState& s, FrameInFlight& slot);
+// Applies the counters that a view wrote.
+void applyShown(BackendState& s, const ReadbackLayout& layout, const std::byte* from) noexcept;
+
+}  // namespace fw::gpu::vk

@@ -1,0 +1,222 @@
+#include "gpu/vk/simulation.h"
+
+#include "gpu/vk/frame_needs.h"
+
+#include <algorithm>
+
+namespace fw::gpu::vk {
+namespace {
+
+// New records of a step's latches.
+void recordMaterials(BackendState& s, std::span<const MaterialUpdate> updates,
+                     FrameRecorder& recorder) {
+    for (const MaterialUpdate& update : updates) {
+        ObjectEntry& object = s.scene.objects[update.object];
+        std::copy(std::begin(update.materials), std::end(update.materials),
+                  std::begin(object.materials));
+        object.record.window = update.window;
+        object.record.substepShift = update.substepShift;
+        s.surfaces.update(s, update.object, false);
+        recorder.uploadOne(FW_BIND_MATERIALS, uint64_t(update.object) * sizeof object.materials,
+                           object.materials);
+        const uint32_t timing[2] = {update.window, update.substepShift};
+        static_assert(offsetof(BurnObject, substepShift) == offsetof(BurnObject, window) + 4);
+        recorder.uploadOne(
+            FW_BIND_OBJECTS,
+            uint64_t(update.object) * sizeof(BurnObject) + offsetof(BurnObject, window), timing);
+    }
+}
+
+// Where objects are from this step on. A record is known without sources: those are ours.
+void recordExchangeUpdate(BackendState& s, const ExchangeUpdate& update, FrameRecorder& recorder) {
+    for (const ExchangeUpdate::Placed& placed : update.objects) {
+        const BufferRange& sources = s.scene.objects[placed.object].sources;
+        ExchangeObject record = placed.record;
+        record.sourceBase = sources.first();
+        record.sourceCount = sources.units();
+        recorder.uploadOne(FW_BIND_EXCHANGE_OBJECTS, uint64_t(placed.object) * sizeof record,
+                           record);
+    }
+    for (const ExchangeUpdate::Range& range : update.neighbourRanges)
+        recorder.upload(FW_BIND_NEIGHBOURS, uint64_t(range.first) * sizeof(uint32_t),
+                        update.neighbours.subspan(range.first, range.count));
+    for (const ExchangeUpdate::Range& range : update.linkRanges)
+        recorder.upload(FW_BIND_CONTACTS, uint64_t(range.first) * sizeof(ContactLink),
+                        update.links.subspan(range.first, range.count));
+    FW_ASSERT(update.occluders.size() <= kMaxHeatOccluders, "%zu occluders",
+              update.occluders.size());
+    recorder.upload(FW_BIND_HEAT_OCCLUDERS, 0, update.occluders);
+    s.simulation.links = uint32_t(update.links.size());
+    s.simulation.occluders = uint32_t(update.occluders.size());
+}
+
+void uploadOcclusion(SimulationState& simulation, const OcclusionUpdate& update,
+                     FrameRecorder& recorder) {
+    simulation.shield = update;
+    simulation.shield.words = {};
+    recorder.upload(FW_BIND_HEAT_OCCLUSION, 0, update.words);
+}
+
+// The tiles that a step looks at again: those of latched objects and of objects that restart their
+// prediction, or all.
+Staged stageWakeGroups(const BackendState& s, std::span<const MaterialUpdate> updates, bool dense,
+                       bool rebuildsPrediction, FrameRecorder& recorder) {
+    Staged staged = recorder.beginStaged();
+    const auto append = [&](uint32_t object) {
+        const uint32_t groups = wakeGroupsOf(s.scene.objects[object]);
+        for (uint32_t g = 0; g < groups; ++g) recorder.appendOne(staged, WakeGroup{object, g * 64});
+    };
+    for (uint32_t i = 0; dense && i < s.scene.objects.size(); ++i)
+        if (s.scene.objects[i].live) append(i);
+    if (!dense)
+        for (const MaterialUpdate& update : updates) append(update.object);
+    for (const uint32_t i : s.scene.awake)
+        if (rebuildsPrediction && s.scene.objects[i].burn.forget) append(i);
+    recorder.endStaged();
+    return staged;
+}
+
+// An object that an event reaches is drawn as one that may burn from now on.
+void markObjectOfEvent(BackendState& s, const TexelEvent& event, uint32_t now) {
+    ObjectEntry& object = s.scene.objects[event.object];
+    object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
+    object.burn.lastEvent = std::max<uint64_t>(object.burn.lastEvent, now + kStepTicks);
+    const uint32_t kind = eventKind(event.kind);
+    const bool douses = (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
+                         kind == kEventCarry) &&
+                        !object.burn.doused;
+    const bool lights = kind == kEventIgnite || kind == kEventCarry;
+    object.burn.catches |= lights && !object.burn.lit;
+    object.burn.lit |= lights;
+    if (object.burn.touched && !douses) return;
+    object.burn.touched = true;
+    object.burn.doused = object.burn.doused || douses;
+    s.surfaces.update(s, event.object, true);
+}
+
+// Uploads what step `planned` brings. `first`: the plan's first; `iterate`: its front may move.
+StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planned,
+                  const FrameNeeds& needs, bool first, bool iterate, FrameRecorder& recorder) {
+    StepRecord step;
+    step.now = planned.now;
+    step.stepShift = planned.substepShift;
+    step.switches = plan.switches;
+    step.objectSlots = uint32_t(s.scene.objects.size());
+    step.iterate = iterate;
+    step.reduce = planned.reduce && needs.burning;
+    step.heat = planned.heat && needs.heating;
+    step.rooms = planned.rooms;
+    s.scene.airs = s.scene.airs || planned.rooms;
+    step.exchange = step.reduce && planned.exchange;
+    step.governed = planned.governed;
+    step.capped = planned.capped;
+    step.plays = planned.plays;
+    step.rules = planned.rules;
+    if (planned.remote) recordExchangeUpdate(s, *planned.remote, recorder);
+    step.links = s.simulation.links;
+    step.parts = s.scene.partMeshes != 0;
+    if (planned.shield) uploadOcclusion(s.simulation, *planned.shield, recorder);
+    step.rules.occluders = s.simulation.occluders;
+    setOcclusionPush(s.simulation.shield, step.rules);
+    recordMaterials(s, planned.materials, recorder);
+    step.wakeGroups = stageWakeGroups(s, planned.materials, needs.dense,
+                                      needs.rebuildsPrediction && first, recorder);
+    step.events = recorder.stage(planned.events);
+    step.eventList = planned.events;
+    for (const TexelEvent& event : planned.events) {
+        markObjectOfEvent(s, event, planned.now);
+        if (addressesAll(event))
+            step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
+    }
+    if (!needs.publishedRuns) return step;
+    for (PublishedStep& one : s.simulation.published) {
+        one.parity = s.scene.objects[one.object].publishedParity;
+        s.scene.objects[one.object].publishedParity ^= 1;
+    }
+    step.published = s.simulation.published;
+    return step;
+}
+
+}  // namespace
+
+void recordSteps(BackendState& s, const FramePlan& plan, const FrameNeeds& needs,
+                 FrameRecorder& recorder) {
+    ReadbackLayout& layout = s.open.slot->layout;
+    if (needs.iterations) recordCounters(recorder, s.simulation.lists, uint32_t(needs.iterations));
+    layout.firstRow = s.simulation.lists.row;
+    bool iterates = !s.simulation.frontEmpty || needs.dense || needs.never;
+    for (const StepPlan& planned : plan.steps) {
+        iterates |= changesState(planned) || (planned.exchange && !s.simulation.burnEmpty);
+        const bool first = &planned == plan.steps.data();
+        const StepRecord step = stepOf(s, plan, planned, needs, first, iterates, recorder);
+        recordSimulation(recorder, s.simulation.lists, step);
+        s.simulation.frontWalks += step.iterate ? 1 : 0;
+        s.simulation.burnWalks += step.reduce ? 1 : 0;
+        s.simulation.hotWalks += step.heat ? 1 : 0;
+    }
+    layout.rows = s.simulation.lists.row;
+    layout.burnParity = s.simulation.lists.burnParity;
+    layout.hotParity = s.simulation.lists.hotParity;
+    if (!needs.stimulus) return;
+    s.simulation.lastStimulus = s.open.ringFrame;
+    s.simulation.setAllEmpty(false);
+}
+
+void recordForgetting(BackendState& s, FrameRecorder& recorder) {
+    for (const uint32_t i : s.scene.awake) {
+        ObjectEntry& object = s.scene.objects[i];
+        if (!object.burn.forget) continue;
+        recorder.copyBetween(FW_BIND_STATE, FW_BIND_PREDICT, uint64_t(object.record.stateBase) * 4,
+                             uint64_t(object.texelCount()) * 4);
+        object.burn.lastDouse = 0;
+    }
+}
+
+// Burnt pieces that lost their hold: a part of the tiles each frame, in turn, from the first object
+// that fire came to up to the last one.
+void recordFalling(BackendState& s, const FramePlan& plan, bool burning, FrameRecorder& recorder) {
+    constexpr uint32_t kMaxTiles = 16384;
+    uint32_t begin = kNoneTexel, end = 0;
+    float latest = 0;
+    for (const uint32_t i : s.scene.awake) {
+        const ObjectEntry& object = s.scene.objects[i];
+        if (!object.live || !object.burn.touched) continue;
+        begin = std::min(begin, object.record.worldTileBase);
+        end = std::max(end, object.record.worldTileBase + object.record.tileCount);
+        for (const BurnMaterial& material : object.materials)
+            if (material.holeTicks) latest = std::max(latest, material.baseColor.w);
+    }
+    if (burning) {
+        // After the last flame: until all is gone, and as long as it takes to notice.
+        s.simulation.supportUntil = plan.endTick + uint32_t(1.2f * latest) + 16 * kTicksPerSecond;
+        if (latest == 0) return;
+    }
+    if (end <= begin) return;
+    const uint32_t parts = (end - begin + kMaxTiles - 1) / kMaxTiles;
+    const bool goesOn = s.simulation.supportFirst > begin && s.simulation.supportFirst < end;
+    const uint32_t first = goesOn ? s.simulation.supportFirst : begin;
+    const uint32_t count = std::min(end - first, kMaxTiles);
+    s.simulation.supportFirst = first + count;
+    const auto ticks = uint32_t(plan.steps.size()) * kStepTicks * parts;
+    recordSupport(recorder, plan.endTick, {first, count, ticks});
+}
+
+// Soot above this frame's flames: of many tiles a part each frame, in turn, and then no more of it
+// than hides where that part ends. Where nobody looks it is laid a few times a second.
+TileShare SimulationState::sootShare(uint32_t tiles, uint32_t endTick, bool looked) noexcept {
+    constexpr uint32_t kMaxTiles = 4096, kUnseenTicks = kTicksPerSecond / 4;
+    const uint32_t mostTicksOfAPart = looked ? kTicksPerSecond / 64 : kTicksPerSecond;
+    if (!looked && endTick - sootTick < kUnseenTicks) return {};
+    const uint32_t parts = std::max((tiles + kMaxTiles - 1) / kMaxTiles, 1u);
+    TileShare share;
+    share.first = sootFirst < tiles ? sootFirst : 0;
+    share.count = std::min(tiles - share.first, kMaxTiles);
+    share.ticks = std::min(endTick - sootTick, kTicksPerSecond);
+    sootTick = endTick;
+    if (share.count == 0 || share.ticks == 0) return {};
+    sootFirst = share.first + share.count;
+    if (parts > 1) share.ticks = std::min(share.ticks * parts, mostTicksOfAPart);
+    return share;
+}
+
+}  // namespace fw::gpu::vk
