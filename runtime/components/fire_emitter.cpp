@@ -376,12 +376,12 @@ bool advanceEmitter(FireEmitter& emitter, const EmitterAir& air, float frame,
     record.apart = float(1.0 / rate);
     record.age = f.burns ? float(births.part / rate) : 0.0f;
     record.seed = emitter.seed;
-    record.fireFlipbooks = emitter.fireFlipbooks.fire;
-    record.smokeFlipbooks = emitter.fireFlipbooks.other;
+    record.fireFlipbooks = emitter.books.fire;
+    record.smokeFlipbooks = emitter.books.other;
     record.flags = ((def.flags & FW_EMITTER_HIDDEN) ? gpu::kEmitterHidden : 0u) |
                    ((def.flags & FW_EMITTER_GROUND) ? gpu::kEmitterGround : 0u) |
                    ((def.flags & FW_EMITTER_JET) ? gpu::kEmitterJet : 0u) |
-                   (emitter.fireFlipbooks.fireEmits ? gpu::kEmitterEmits : 0u);
+                   (emitter.books.fireEmits ? gpu::kEmitterEmits : 0u);
     if (isSwept(def)) writeShields(emitter, air.now, record);
     // Waves of the stream at the frame's start and now: births lie between.
     const double phase = double(emitter.seed & 1023u) * 0.137;

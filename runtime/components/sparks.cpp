@@ -128,7 +128,7 @@ bool advanceSparks(FireEmitter& emitter, const EmitterAir& air, float seconds,
     record.slots =
         std::min(uint32_t(std::ceil(double(most) * double(gpu::kSparkTurn))), gpu::kMaxSparks);
     if (def.flags & FW_EMITTER_GROUND) record.flags |= gpu::kSparkGround;
-    record.flipbook = emitter.fireFlipbooks.spark;
+    record.flipbook = emitter.books.spark;
     record.object = onMesh ? def.object.index1 : 0;
     return !onMesh || record.object != 0;
 }

@@ -98,7 +98,7 @@ FwFireEmitterId EmitterSystem::create(const FwFireEmitterDef& def) {
                    state_.emitters.live(), gpu::kMaxEmitters);
     FireEmitter emitter;
     components::makeFireEmitter(def, context_.def.seed * 0x9E3779B9u + 77u * (made_ + 1), emitter);
-    emitter.fireFlipbooks = flames_.flipbooksOf(def);
+    emitter.books = flames_.flipbooksOf(def);
     if (def.shape == FW_EMITTER_MESH) (void)scene_.objects.get(def.object);
     emitter.ring = std::max(components::particlesNeeded(emitter), 1u);
     emitter.first = findRing(emitter.ring);
