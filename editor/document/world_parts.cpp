@@ -1,5 +1,7 @@
 #include "document/world_parts.h"
 
+#include "flamewright_reference.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>

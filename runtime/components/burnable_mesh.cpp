@@ -2,6 +2,7 @@
 
 #include "components/appearance_table.h"
 #include "core/error.h"
+#include "core/reserved.h"
 #include "fire/presets.h"
 #include "mesh/bake.h"
 #include "shared/refine.h"
@@ -70,18 +71,20 @@ FwBurnableMeshDef applyWorldFlags(const FwBurnableMeshDef& given, uint32_t world
     if (worldFlags & FW_WORLD_NO_HOLES) def.flags |= FW_BURNABLE_NO_HOLES;
     if (!(def.flags & FW_BURNABLE_NO_DAMAGE)) return def;
     def.flags |= FW_BURNABLE_NO_HOLES;  // and no feature that only shows damage
-    def.flags &= ~uint32_t(FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_RECEDE |
-                           FW_BURNABLE_SPRINGS | FW_BURNABLE_DEPTH_PEEL);
+    def.flags &= ~uint32_t(FW_BURNABLE_REFINE | core::reserved::kRefinement | FW_BURNABLE_RECEDE |
+                           core::reserved::kSolver | core::reserved::kDepth);
     return def;
 }
 
 BurnableMesh makeBurnableMesh(const FwBurnableMeshDef& def) {
-    constexpr uint32_t kKnown =
-        FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED | FW_BURNABLE_PUBLISHED | FW_BURNABLE_NO_HOLES |
-        FW_BURNABLE_LITE | FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL |
-        FW_BURNABLE_SPRINGS | FW_BURNABLE_NO_SPREAD | FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED |
-        FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_DEPTH_PEEL;
+    constexpr uint32_t kKnown = FW_BURNABLE_HIDDEN | FW_BURNABLE_TWO_SIDED |
+                                core::reserved::kBurning | FW_BURNABLE_NO_HOLES | FW_BURNABLE_LITE |
+                                FW_BURNABLE_REFINE | FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL |
+                                core::reserved::kSolver | FW_BURNABLE_NO_SPREAD |
+                                FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED |
+                                core::reserved::kRefinement | core::reserved::kDepth;
     checkFlags(def.flags, "FwBurnableMeshDef::flags", kKnown);
+    core::reserved::checkBurnable(def.flags);
     BurnableMesh object;
     object.flags = def.flags;
     object.pose = makePose(def.transform, "FwBurnableMeshDef::transform");
@@ -124,11 +127,11 @@ bool burns(const BurnableMesh& object, uint32_t material) noexcept {
 }
 
 bool hasHeat(const BurnableMesh& object) noexcept {
-    return (object.flags & (FW_BURNABLE_LITE | FW_BURNABLE_PUBLISHED)) == 0;
+    return (object.flags & (FW_BURNABLE_LITE | core::reserved::kBurning)) == 0;
 }
 
 bool tracksBurntFuel(const BurnableMesh& object) noexcept {
-    return (object.flags & FW_BURNABLE_PUBLISHED) == 0;
+    return (object.flags & core::reserved::kBurning) == 0;
 }
 
 bool CutOut::at(int64_t x, int64_t y) const noexcept {
@@ -446,16 +449,16 @@ gpu::vec4 objectTint(const BurnableMesh& object, const mesh::BurnDomain& domain)
 
 uint32_t objectFlags(const BurnableMesh& object, const mesh::BurnDomain& domain) noexcept {
     uint32_t flags = gpu::kObjectLive;
-    if (object.flags & FW_BURNABLE_PUBLISHED) flags |= gpu::kObjectPublished;
+    if (object.flags & core::reserved::kBurning) flags |= gpu::kObjectExtended;
     if (object.flags & FW_BURNABLE_TWO_SIDED) flags |= gpu::kObjectTwoSided;
     if (object.flags & FW_BURNABLE_NO_HOLES) flags |= gpu::kObjectNoHoles;
     if (object.flags & FW_BURNABLE_HIDDEN) flags |= gpu::kObjectHidden;
     if (object.flags & FW_BURNABLE_NO_DAMAGE) flags |= gpu::kObjectNoDamage;
     if (domain.hasDetail) flags |= gpu::kObjectDetail;
-    if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS))
+    if (object.flags & (FW_BURNABLE_SKINNED | FW_BURNABLE_SHELL | core::reserved::kSolver))
         flags |= gpu::kObjectSkinned;
     if (hasHeat(object)) flags |= gpu::kObjectHeat;
-    if (object.flags & FW_BURNABLE_DEPTH_PEEL) flags |= gpu::kObjectZPass;
+    if (object.flags & core::reserved::kDepth) flags |= gpu::kObjectDepthFirst;
     return flags;
 }
 

@@ -2,6 +2,7 @@
 
 #include "components/appearance_table.h"
 #include "core/error.h"
+#include "core/reserved.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,9 +10,9 @@
 namespace fw::components {
 namespace {
 
-constexpr uint32_t kTiers = FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | FW_BURNABLE_SPRINGS;
+constexpr uint32_t kTiers = FW_BURNABLE_RECEDE | FW_BURNABLE_SHELL | core::reserved::kSolver;
 // Flags of which a def may have one.
-constexpr uint32_t kOne = kTiers | FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED;
+constexpr uint32_t kOne = kTiers | FW_BURNABLE_REFINE | core::reserved::kRefinement;
 
 // m/s at which a flat sheet of 0.08 kg/m^2 falls.
 constexpr float kFlutter = 1.2f;
@@ -67,14 +68,8 @@ void checkDeform(const FwBurnableMeshDef& def) {
     const uint32_t tiers = def.flags & kOne;
     if (tiers & (tiers - 1))
         core::refuse(
-            "FwBurnableMeshDef::flags is 0x%x; of REFINE, REFINE_PUBLISHED, RECEDE, SHELL "
-            "and SPRINGS one is "
+            "FwBurnableMeshDef::flags is 0x%x; of REFINE, RECEDE, SHELL, 64 and 512 one is "
             "possible.",
-            def.flags);
-    if ((def.flags & FW_BURNABLE_DEPTH_PEEL) &&
-        !(def.flags & (FW_BURNABLE_RECEDE | FW_BURNABLE_SPRINGS)))
-        core::refuse(
-            "FwBurnableMeshDef::flags is 0x%x; FW_BURNABLE_DEPTH_PEEL needs SPRINGS or RECEDE.",
             def.flags);
     checkLength(def.ground, "FwBurnableMeshDef::ground", -1e9f, 1e9f);
     if (def.pinCount > gpu::kMaxPins)
@@ -97,11 +92,9 @@ gpu::DeformObject makeDeform(const FwBurnableMeshDef& def, const BurnableMesh& o
     gpu::DeformObject made{};
     if (object.flags & FW_BURNABLE_RECEDE) made.flags |= gpu::kDeformRecede;
     if (object.flags & FW_BURNABLE_SHELL) made.flags |= gpu::kDeformShell;
-    if (object.flags & FW_BURNABLE_SPRINGS) made.flags |= gpu::kDeformSprings;
+    if (object.flags & core::reserved::kSolver) made.flags |= gpu::kDeformExtended;
     made.ground = def.ground;
     made.scale = object.pose.scale;
-    constexpr float kStep = float(gpu::kSoftTicks) / float(gpu::kTicksPerSecond);
-    made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
     FW_ASSERT(def.pinCount <= gpu::kMaxPins, "%u pins", def.pinCount);
     made.pinCount = def.pinCount;
     for (uint32_t i = 0; i < def.pinCount; ++i) {

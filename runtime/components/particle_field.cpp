@@ -3,6 +3,7 @@
 #include "components/pose.h"
 #include "core/assert.h"
 #include "core/error.h"
+#include "core/reserved.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,10 +11,10 @@
 namespace fw::components {
 namespace {
 
-constexpr uint32_t kPublishedRate = 10;  // Hz
+constexpr uint32_t kStillRate = 10;  // Hz
 constexpr uint32_t kTicksPerSecond = 4096;
 constexpr float kMaxWind = 1.5f;  // cells a step
-constexpr uint32_t kFlags = FW_FIELD_HIDDEN | FW_FIELD_AS_PUBLISHED | FW_FIELD_WETS;
+constexpr uint32_t kFlags = FW_FIELD_HIDDEN | core::reserved::kFieldStill | FW_FIELD_WETS;
 constexpr uint32_t kOpen =
     FW_FIELD_OPEN_LEFT | FW_FIELD_OPEN_RIGHT | FW_FIELD_OPEN_BOTTOM | FW_FIELD_OPEN_TOP;
 static_assert(FW_FIELD_OPEN_LEFT == gpu::kFieldOpenLeft &&
@@ -43,6 +44,7 @@ const char* fieldPresetName(uint32_t preset) noexcept {
 
 void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, ParticleField& field) {
     checkFlags(def.flags, "FwParticleFieldDef::flags", kFlags);
+    core::reserved::checkField(def.flags);
     checkWhole(def.shape, "FwParticleFieldDef::shape", 0, FW_FIELD_DISPLACED);
     checkLengths(def.position, 3, "FwParticleFieldDef::position", -1e6f, 1e6f);
     checkLengths(def.size, 3, "FwParticleFieldDef::size", 1e-3f, 1000.0f);
@@ -74,7 +76,7 @@ void makeParticleField(const FwParticleFieldDef& def, uint32_t ownSeed, Particle
     field.def.height = def.height;
     field.def.look = {def.amount, def.rise, def.spread, def.memory,
                       def.chaos,  def.life, def.detail, def.body};
-    field.def.stepRate = def.flags & FW_FIELD_AS_PUBLISHED ? kPublishedRate : def.stepRate;
+    field.def.stepRate = def.flags & core::reserved::kFieldStill ? kStillRate : def.stepRate;
     field.def.open =
         ring ? (def.open & (gpu::kFieldOpenTop | gpu::kFieldOpenBottom)) | gpu::kFieldRing
              : def.open;
@@ -176,7 +178,7 @@ uint32_t fieldSteps(const ParticleField& field, uint64_t ticks) noexcept {
 gpu::FieldDraw fieldDraw(const ParticleField& field, double ticks, uint32_t steps,
                          double clock) noexcept {
     constexpr double kWrap = 819.2;  // s, whole periods of the noise
-    const bool still = (field.flags & FW_FIELD_AS_PUBLISHED) != 0;
+    const bool still = (field.flags & core::reserved::kFieldStill) != 0;
     const double into = ticks * field.def.stepRate / kTicksPerSecond - double(steps);
     const float* q = field.rotation;
     const auto axis = [&](float x, float y, float z, float w) {

@@ -4,6 +4,7 @@
 #include "core/assert.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/reserved.h"
 
 #include <algorithm>
 #include <cmath>
@@ -176,6 +177,7 @@ void setFirePosition(VolumetricFire& fire, const float position[3]) {
 
 void setFireTier(VolumetricFire& fire, uint32_t tier, const char* name) {
     checkWhole(tier, name, 0, FW_FIRE_TIER_SHARED_IMPOSTOR);
+    core::reserved::checkFireTier(tier, name);
     fire.tier = tier;
 }
 

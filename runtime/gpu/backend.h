@@ -3,7 +3,7 @@
 // readbacks out; a backend decides nothing about the game.
 #pragma once
 #include "mesh/deform/model.h"
-#include "mesh/refine/published_frame.h"
+#include "mesh/refine/model.h"
 #include "mesh/refine/roughen.h"
 #include "shared/burn.h"
 #include "shared/exchange.h"
@@ -18,6 +18,12 @@
 
 namespace fw::gpu {
 
+struct HeatBoundary {  // by which an extension refines. See FwBurnableMeshDef
+    float psi = 0;     // 1/m^2, 0: by the size of the triangles
+    float step = 0;    // m, 0: by `speed`
+    float speed = 0;   // m/s, object space, of the fire's head
+};
+
 struct ObjectInit {
     uint32_t mesh = 0;                        // slot
     BurnObject record;                        // bases are the backend's to fill
@@ -29,9 +35,8 @@ struct ObjectInit {
     bool inner = false;   // createInnerSkin was: from inside it is drawn there
     uint32_t refineDepth = 0;
     float refinePixelsPerEdge = 8;
-    // Refined by the published scheme; the model outlives the mesh.
-    const mesh::PatternModel* patternModel = nullptr;
-    mesh::PatternSettings pattern;
+    bool refineExtended = false;         // by an extension
+    HeatBoundary boundary;               // then
     std::span<const HeatMaterial> heat;  // kMaterialsPerObject; empty: no heat plane
     // Of an object that deforms; the model outlives the mesh. Bases are the backend's to fill.
     const mesh::DeformModel* deformModel = nullptr;
@@ -231,9 +236,13 @@ class Backend {
     // numbers, dense from 0. A domain outlives its mesh.
     virtual void createMesh(uint32_t slot, const mesh::BurnDomain& domain) = 0;
     virtual void destroyMesh(uint32_t slot) noexcept = 0;
-    // What objects of the mesh need that refine down to `depth`, by the published scheme or ours;
+    // How a mesh is baked for an extension's refinement.
+    [[nodiscard]] virtual mesh::RefineOptions extendedRefineOptions(uint32_t /*depth*/) const {
+        return {};
+    }
+    // What objects of the mesh need that refine down to `depth`, by an extension or by the library;
     // once for each. Looks only.
-    virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, bool /*published*/,
+    virtual void createRefinement(uint32_t /*mesh*/, uint32_t /*depth*/, bool /*extended*/,
                                   const mesh::BurnDomain&, const mesh::RefineModel&,
                                   std::span<const mesh::RefineHoles> /*materials*/) {}
     // Where its vertices are on the inner skin, once a mesh. Looks only.
@@ -246,8 +255,7 @@ class Backend {
     virtual void setObjectWind(uint32_t, uint32_t) {}
     virtual void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                                uint32_t flags) = 0;
-    // Of an object with an patternModel: its heat boundary begins at a point (m, object space),
-    // once.
+    // The heat boundary of an object with refineExtended begins at a point (m, object space), once.
     virtual void startBoundary(uint32_t /*slot*/, const float /*point*/[3],
                                uint32_t /*tick*/) noexcept {}
     // Of an object with kObjectSkinned: where the host's vertices are from the next frame on, m,

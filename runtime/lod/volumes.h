@@ -113,13 +113,6 @@ void placeImpostor(const ViewParams& view, const VolumeItem& item, const VolumeS
 bool showImpostor(const ViewParams& view, const VolumeItem& item, const VolumeScreen& screen,
                   uint32_t slot, const ImpostorShape& card, VolumeImpostor& out) noexcept;
 
-struct SlicedVolume {  // one that is drawn as slices of its lattice
-    uint32_t flame = 0;
-    SlicesPush draw{};
-};
-bool slicesShow(uint32_t encoding) noexcept;  // whether slices add up there, see FwOutputEncoding
-SlicedVolume makeSlicedVolume(const VolumeItem& item) noexcept;
-
 struct HazedVolume {  // one whose heat bends what is seen behind it
     uint32_t flame = 0;
     float away = 0;  // m along the view

@@ -1,5 +1,6 @@
 // Arrival times: a copy of an object's front runs ahead, a slice each frame, from the state of a
 // readback and under the present wind and pose. See mesh/front/arrivals.h.
+#include "core/reserved.h"
 #include "world/burn_system.h"
 #include "world/exchange_system.h"
 #include "world/query_system.h"
@@ -28,9 +29,9 @@ bool answers(const Forecast& forecast, const Query& query) noexcept {
 FwQueryId QuerySystem::requestArrival(FwBurnableMeshId id, const float position[3]) {
     Query query = makeQuery(id, position);
     Object& object = *scene_.objects.get(id);
-    if (object.data.flags & FW_BURNABLE_PUBLISHED)
+    if (object.data.flags & core::reserved::kBurning)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u burns as published, without arrivals to tell.", id.index1);
+                   "Burnable mesh %u burns by an extension and has no arrivals.", id.index1);
     if (!object.forecast) {
         auto forecast = core::Owned<Forecast>::make(context_.memory, context_.memory);
         mesh::reserveArrivals(forecast->arrivals, scene_.domainOf(object));

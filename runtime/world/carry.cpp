@@ -1,6 +1,7 @@
 // A burn that goes on on another object: what each of its texels gets is found here, once; the step
 // that begins next copies it, on whatever backend.
 #include "mesh/carry.h"
+#include "core/reserved.h"
 #include "world/burn_system.h"
 #include "world/persistence.h"
 
@@ -24,9 +25,9 @@ void BurnSystem::transferBurn(FwBurnableMeshId fromId, FwBurnableMeshId toId) {
     if (&from == &to)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "Burnable mesh %u gives its burn to itself.",
                    fromId.index1);
-    if ((from.data.flags | to.data.flags) & FW_BURNABLE_PUBLISHED)
+    if ((from.data.flags | to.data.flags) & core::reserved::kBurning)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u or %u has FW_BURNABLE_PUBLISHED; such burns are not carried.",
+                   "Burnable mesh %u or %u burns by an extension; such burns are not carried.",
                    fromId.index1, toId.index1);
     if (components::hasHeat(from.data) != components::hasHeat(to.data))
         core::fail(FW_ERROR_INVALID_ARGUMENT,
@@ -107,7 +108,7 @@ void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
     if (!owned || slot == event.object || event.tick > clock.tick ||
         event.water >= scene_.domainOf(**owned).texelCount() ||
         !scene_.domainOf(**owned).real(event.water) ||
-        (((*owned)->data.flags | to.data.flags) & FW_BURNABLE_PUBLISHED) != 0 ||
+        (((*owned)->data.flags | to.data.flags) & core::reserved::kBurning) != 0 ||
         components::hasHeat((*owned)->data) != components::hasHeat(to.data))
         core::fail(
             FW_ERROR_BAD_DATA,

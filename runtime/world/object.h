@@ -38,9 +38,7 @@ struct MeshEntry {
     InnerSkin innerSkin = InnerSkin::unknown;  // of the backend
     float innerWall = 0;                       // m below the surface
     core::Owned<mesh::Pieces> pieces;          // once an object asks what breaks
-    uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: as published
-    // By depth, once an object is refined by the published scheme.
-    std::array<core::Owned<mesh::PatternModel>, gpu::kRefineDepth + 1> patternUses;
+    uint32_t refinements = 0;  // bit per depth that the backend has; 16 higher: by an extension
 };
 
 struct ImageEntry {

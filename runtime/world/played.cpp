@@ -2,6 +2,7 @@
 
 #include "core/growth.h"
 #include "core/hash.h"
+#include "core/reserved.h"
 #include "core/stream.h"
 #include "save/plane.h"
 #include "world/burn_system.h"
@@ -141,10 +142,9 @@ void BurnSystem::playBurnAt(FwBurnableMeshId id, FwBurnId burnId, uint32_t tick,
     Object& object = *scene_.objects.get(id);
     const Burn& burn = *state_.burns.get(burnId);
     components::checkValue(speed, "speed", kSlowestPlay, kFastestPlay);
-    if (object.data.flags & FW_BURNABLE_PUBLISHED)
+    if (object.data.flags & core::reserved::kBurning)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u has FW_BURNABLE_PUBLISHED; it plays no baked burn.",
-                   id.index1);
+                   "Burnable mesh %u burns by an extension; it plays no baked burn.", id.index1);
     const uint64_t mesh = scene_.meshHash(object);
     if (burn.mesh != mesh || burn.ticks.size() != scene_.domainOf(object).texelCount())
         core::fail(FW_ERROR_INVALID_ARGUMENT,

@@ -5,6 +5,7 @@
 
 #include "components/sparks.h"
 #include "core/hash.h"
+#include "core/reserved.h"
 #include "shared/field_draw.h"
 #include "shared/heat.h"
 
@@ -196,7 +197,7 @@ uint32_t PersistenceSystem::windowOf(const Object& object) noexcept {
 uint32_t PersistenceSystem::explainUnsavable() noexcept {
     for (uint32_t i = 0; i < world_.scene_.objects.slotCount(); ++i)
         if (auto* object = world_.scene_.objects.at(i);
-            object && ((*object)->data.flags & FW_BURNABLE_PUBLISHED) && (*object)->touched)
+            object && ((*object)->data.flags & core::reserved::kBurning) && (*object)->touched)
             return i + 1;
     return 0;
 }
@@ -204,8 +205,7 @@ uint32_t PersistenceSystem::explainUnsavable() noexcept {
 void PersistenceSystem::requestSave(SaveFor who) {
     if (const uint32_t object1 = explainUnsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be saved.",
-                   object1);
+                   "Burnable mesh %u burns by an extension; such fires cannot be saved.", object1);
     core::Owned<Save>& save = saves_[size_t(who)];
     if (!save) save = core::Owned<Save>::make(world_.context_.memory, world_.context_.memory);
     save->requested = true;

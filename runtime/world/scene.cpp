@@ -4,6 +4,7 @@
 #include "components/appearance_table.h"
 #include "components/deform.h"
 #include "core/growth.h"
+#include "core/reserved.h"
 #include "mesh/bake.h"
 #include "mesh/shaped.h"
 #include "world/checks.h"
@@ -234,11 +235,11 @@ std::span<const uint8_t> Scene::goneOf(const FwBurnableMeshDef& def, MeshEntry& 
 // asks.
 void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                        const components::BurnableMesh& object) {
-    const bool published = (def.flags & FW_BURNABLE_REFINE_PUBLISHED) != 0;
-    const uint32_t bit = 1u << (def.refineDepth + (published ? 16 : 0));
+    const bool extended = (def.flags & core::reserved::kRefinement) != 0;
+    const uint32_t bit = 1u << (def.refineDepth + (extended ? 16 : 0));
     if (mesh.refinements & bit) return;
     mesh::RefineOptions options;
-    if (published) options = mesh::patternOptions(def.refineDepth);
+    if (extended) options = context_.backend.extendedRefineOptions(def.refineDepth);
     options.depth = def.refineDepth;
     float wall = 0;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i)
@@ -250,13 +251,7 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
             holes[i] =
                 components::holesOf(components::materialLook(object.materials[i].appearance));
     const mesh::RefineModel model = mesh::bakeRefine(*mesh.domain, options, context_.memory);
-    core::Owned<mesh::PatternModel> pattern;
-    if (published) {
-        pattern = core::Owned<mesh::PatternModel>::make(context_.memory, context_.memory);
-        *pattern = mesh::makePatternModel(*mesh.domain, model, def.refineDepth, context_.memory);
-    }
-    context_.backend.createRefinement(slot, def.refineDepth, published, *mesh.domain, model, holes);
-    if (published) mesh.patternUses[def.refineDepth] = std::move(pattern);
+    context_.backend.createRefinement(slot, def.refineDepth, extended, *mesh.domain, model, holes);
     mesh.refinements |= bit;
 }
 
@@ -266,7 +261,7 @@ void Scene::refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& 
 bool Scene::innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object) {
     constexpr uint32_t kOthers = FW_BURNABLE_TWO_SIDED | FW_BURNABLE_NO_HOLES |
                                  FW_BURNABLE_NO_DAMAGE | FW_BURNABLE_SKINNED | FW_BURNABLE_REFINE |
-                                 FW_BURNABLE_REFINE_PUBLISHED | FW_BURNABLE_DEPTH_PEEL;
+                                 core::reserved::kRefinement | core::reserved::kDepth;
     const bool moves = components::deforms(object) && (object.flags & FW_BURNABLE_RECEDE) == 0;
     if ((object.flags & kOthers) != 0 || moves || !context_.backend.draws()) return false;
     if (mesh.innerSkin == InnerSkin::unknown) {
@@ -287,17 +282,15 @@ bool Scene::innerSkin(MeshEntry& mesh, uint32_t slot, const components::Burnable
 }
 
 // The boundary keeps up with the head of a fire that climbs.
-mesh::PatternSettings Scene::patternSettings(const FwBurnableMeshDef& def,
-                                             const mesh::PatternModel& model,
-                                             const components::BurnableMesh& object) const {
+gpu::HeatBoundary Scene::boundaryOf(const FwBurnableMeshDef& def,
+                                    const components::BurnableMesh& object) const {
     float speed = 0;
     for (uint32_t i = 0; i < gpu::kMaterialsPerObject; ++i) {
         if (!components::burns(object, i)) continue;
         const FwMaterialDef& m = object.materials[i];
         speed = std::max(speed, m.spreadRate * (1 + m.headGain * std::min(m.upGain, m.driveMax)));
     }
-    return mesh::patternSettings(model, def.heatPsi, def.heatStep,
-                                 speed * context_.def.paceFactor / object.pose.scale);
+    return {def.heatPsi, def.heatStep, speed * context_.def.paceFactor / object.pose.scale};
 }
 
 uint32_t Scene::skinnedSlot(FwBurnableMeshId id, uint32_t vertexCount) {

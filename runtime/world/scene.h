@@ -77,9 +77,8 @@ class Scene {
     bool innerSkin(MeshEntry& mesh, uint32_t slot, const components::BurnableMesh& object);
     void refineMesh(MeshEntry& mesh, uint32_t slot, const FwBurnableMeshDef& def,
                     const components::BurnableMesh& object);
-    mesh::PatternSettings patternSettings(const FwBurnableMeshDef& def,
-                                          const mesh::PatternModel& model,
-                                          const components::BurnableMesh& object) const;
+    gpu::HeatBoundary boundaryOf(const FwBurnableMeshDef& def,
+                                 const components::BurnableMesh& object) const;
     void countImages(const components::BurnableMesh& object, bool more) noexcept;
     void countFuel(const Object& object, bool more) noexcept;
     void forgetObject(const Object& object) noexcept;  // that goes

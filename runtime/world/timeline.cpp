@@ -2,6 +2,7 @@
 // tick and applies the commands since, step by step.
 #include "world/timeline.h"
 
+#include "core/reserved.h"
 #include "world/save.h"
 #include "world/world.h"
 
@@ -157,8 +158,7 @@ bool PersistenceSystem::seek(uint64_t untilTick, float& seconds) {
     mayChange();
     if (const uint32_t object1 = explainUnsavable())
         core::fail(FW_ERROR_INVALID_ARGUMENT,
-                   "Burnable mesh %u has FW_BURNABLE_PUBLISHED; such fires cannot be sought.",
-                   object1);
+                   "Burnable mesh %u burns by an extension; such fires cannot be sought.", object1);
     Timeline& timeline = *timeline_;
     if (timeline.commands.lost)
         core::fail(FW_ERROR_OUT_OF_MEMORY,

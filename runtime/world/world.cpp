@@ -3,6 +3,7 @@
 #include "components/deform.h"
 #include "components/lights.h"
 #include "core/growth.h"
+#include "core/reserved.h"
 #include "flamewright/flamewright_debug.h"
 #include "host_limits.h"
 #include "world/checks.h"
@@ -148,15 +149,13 @@ void World::makeRecords(Object& object, MeshEntry& mesh, const FwBurnableMeshDef
         init.heat = made.heat;
     }
     std::copy_n(object.data.shape, 3, init.shape);
-    if (def.flags & (FW_BURNABLE_REFINE | FW_BURNABLE_REFINE_PUBLISHED)) {
+    if (def.flags & (FW_BURNABLE_REFINE | core::reserved::kRefinement)) {
         scene_.refineMesh(mesh, init.mesh, def, object.data);
         init.refine = true;
         init.refineDepth = def.refineDepth;
         init.refinePixelsPerEdge = def.refinePixelsPerEdge;
-        if (def.flags & FW_BURNABLE_REFINE_PUBLISHED) {
-            init.patternModel = mesh.patternUses[def.refineDepth].get();
-            init.pattern = scene_.patternSettings(def, *init.patternModel, object.data);
-        }
+        init.refineExtended = (def.flags & core::reserved::kRefinement) != 0;
+        init.boundary = scene_.boundaryOf(def, object.data);
     }
     init.inner = scene_.innerSkin(mesh, init.mesh, object.data);
     if (components::deforms(object.data) || (object.data.flags & FW_BURNABLE_SKINNED)) {
@@ -461,7 +460,8 @@ void World::setSwitches(uint32_t switches) {
     constexpr uint32_t kKnown = FW_DEBUG_DENSE | FW_DEBUG_SHUFFLE | FW_DEBUG_NO_SEAM_WAKE |
                                 FW_DEBUG_WRONG_DEPENDENTS | FW_DEBUG_NO_WIND_WAKE |
                                 FW_DEBUG_NEVER_IDLE | FW_DEBUG_REFINE_FULL |
-                                FW_DEBUG_SELF_INTERSECTION | FW_DEBUG_NO_DEPTH_PEEL;
+                                FW_DEBUG_SELF_INTERSECTION | core::reserved::kSwitchNoDepth;
+    core::reserved::checkSwitches(switches);
     if (switches & ~kKnown)
         core::fail(FW_ERROR_INVALID_ARGUMENT, "switches is 0x%x; the known switches are 0x%x.",
                    switches, kKnown);

@@ -9,6 +9,7 @@
 #include "common/studio.h"
 #include "common/subject.h"
 #include "common/turntable.h"
+#include "flamewright_reference.h"
 
 namespace {
 
@@ -31,7 +32,7 @@ FwBurnableMeshId placePublished(sample::FireHost& fire, FwBurnableMeshDef def, f
     FwMaterialId skin{};
     fire.check(fwWorld_CreateMaterial(fire.world, &material, &skin), "fwWorld_CreateMaterial");
     for (FwMaterialId& slot : def.materials) slot = skin;
-    def.flags = uint32_t{FW_BURNABLE_PUBLISHED} | uint32_t{FW_BURNABLE_LITE};
+    def.flags = FW_BURNABLE_PUBLISHED | uint32_t{FW_BURNABLE_LITE};
     def.transform[12] = aside;
     FwBurnableMeshId object{};
     fire.check(fwWorld_CreateBurnableMesh(fire.world, &def, &object), "fwWorld_CreateBurnableMesh");

@@ -10,6 +10,7 @@
 #include "common/fire_host.h"
 #include "common/studio.h"
 #include "common/turntable.h"
+#include "flamewright_reference.h"
 
 namespace {
 

@@ -2,12 +2,12 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
-#include "shared/published.h"
-FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(NORMALS) FW_READ(SLOWNESS)
-FW_READ_WRITE(TILE_STATE) FW_WRITE(STATE) FW_WRITE(PREDICT) FW_WRITE(GRADIENT) FW_WRITE(PUBLISHED)
+FW_READ(OBJECTS) FW_READ(MATERIALS) FW_READ(TEXELS) FW_READ(SLOWNESS)
+FW_READ_WRITE(TILE_STATE) FW_WRITE(STATE) FW_WRITE(PREDICT) FW_WRITE(GRADIENT)
 FW_WRITE(HEAT) FW_WRITE(TILE_HEAT) FW_WRITE(TILE_FIRE) FW_PUSH(StepPush)
 #include "lib/heat_material.glsl"
 #include "lib/tile.glsl"
+#include "lib/extension_reset.glsl"
 
 void resetTile(uint local, uint lane) {
     uint object = push.object;
@@ -33,15 +33,7 @@ void resetTile(uint local, uint lane) {
         tileHeat[worldTile] = TileHeat(0u, 0u);
         tileFire[worldTile] = 0.0;
     }
-    if ((objects[object].flags & kObjectPublished) == 0u) return;
-    uint plane = objects[object].width * objects[object].height;
-    uint base = objects[object].publishedBase + texel;
-    ivec3 n = decodeNormal(normals[objects[object].texelBase + texel]);
-    uvec4 up = materials[material].upCeiling;
-    int rise = dotInt(n, ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
-    published[base] = 0.0;
-    published[base + plane] = 0.0;
-    published[base + 2u * plane] = burns ? publishedSpread(slow, -rise >> 12) : 0.0;
+    if ((objects[object].flags & kObjectExtended) != 0u) extensionReset(object, texel, material, slow, burns);
 }
 
 void main() {

@@ -31,7 +31,7 @@ void schedule(uint worldTile, bool dense) {
         tileState[worldTile].flag = flag & ~(kTileListed | kTileTouched | kTileLitBeside);
         return;
     }
-    if (dense && (objects[tile.object].flags & kObjectPublished) != 0u) return;
+    if (dense && (objects[tile.object].flags & kObjectExtended) != 0u) return;
     uint shift = objects[tile.object].substepShift;
     bool wanted = runsInIteration(push.iteration, push.stepShift, shift);
     if (!wanted) {

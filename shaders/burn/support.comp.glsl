@@ -65,7 +65,7 @@ uint offer(uint worldTile) {
 // Can the tile fall?
 bool concerns(uint worldTile, TileRef ref) {
     return ref.alive && tileState[worldTile].lastChange != kNeverChanged &&
-           (objectPlaces(ref.object).w & (kObjectNoHoles | kObjectPublished)) == 0u;
+           (objectPlaces(ref.object).w & (kObjectNoHoles | kObjectExtended)) == 0u;
 }
 
 uint materialOf(uint object, uint flag) {

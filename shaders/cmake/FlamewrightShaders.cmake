@@ -3,11 +3,12 @@
 
 find_program(FW_GLSLANG glslangValidator REQUIRED)
 
-# flamewright_shaders(target entry...)
+# flamewright_shaders(target function entry...)
+# function: returns all shaders; "embeddedShaders" is declared in embedded_shaders.h
 # An entry is one string:
 #   "burn/arrival.comp"                                  -> name "arrival.comp"
-#   "burn/arrival.comp AS arrival_published.comp A=1 B"  -> a variant compiled with -DA=1 -DB
-function(flamewright_shaders target)
+#   "burn/arrival.comp AS arrival_rim.comp A=1 B"  -> a variant compiled with -DA=1 -DB
+function(flamewright_shaders target function)
     set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
     file(MAKE_DIRECTORY ${generated})
     set(includes "")
@@ -42,7 +43,8 @@ function(flamewright_shaders target)
         add_custom_command(
             OUTPUT ${header}
             COMMAND ${FW_GLSLANG} --quiet -V --target-env vulkan1.0 -S ${stage}
-                    -I${CMAKE_CURRENT_SOURCE_DIR} ${words}
+                    -I${CMAKE_CURRENT_SOURCE_DIR}/shaders -I${PROJECT_SOURCE_DIR}/shaders
+                    -I${PROJECT_SOURCE_DIR}/runtime ${words}
                     --vn ${variable} --depfile ${header}.d -o ${header} ${source}
             DEPENDS ${source}
             DEPFILE ${header}.d
@@ -53,15 +55,18 @@ function(flamewright_shaders target)
         string(APPEND rows "    {\"${name}\", ${variable}},\n")
     endforeach()
 
+    set(FW_SHADER_FUNCTION ${function})
+    string(REGEX REPLACE "([A-Z])" "_\\1" FW_SHADER_HEADER ${function}.h)
+    string(TOLOWER ${FW_SHADER_HEADER} FW_SHADER_HEADER)
     set(FW_SHADER_INCLUDES "${includes}")
     set(FW_SHADER_ROWS "${rows}")
     list(LENGTH names FW_SHADER_COUNT)
-    configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/shaders_embedded.cpp.in
-                   ${generated}/shaders_embedded.cpp @ONLY)
-    configure_file(${CMAKE_CURRENT_SOURCE_DIR}/cmake/shaders_embedded.h.in
-                   ${generated}/shaders_embedded.h @ONLY)
-    add_library(${target} OBJECT ${generated}/shaders_embedded.cpp ${headers})
-    target_include_directories(${target} PUBLIC ${generated})
+    configure_file(${PROJECT_SOURCE_DIR}/shaders/cmake/embedded_shaders.cpp.in
+                   ${generated}/embedded_shaders.cpp @ONLY)
+    configure_file(${PROJECT_SOURCE_DIR}/shaders/cmake/embedded_shaders.h.in
+                   ${generated}/${FW_SHADER_HEADER} @ONLY)
+    add_library(${target} OBJECT ${generated}/embedded_shaders.cpp ${headers})
+    target_include_directories(${target} PUBLIC ${generated} ${PROJECT_SOURCE_DIR}/shaders)
     set_target_properties(${target} PROPERTIES
         POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden VISIBILITY_INLINES_HIDDEN ON)
 endfunction()

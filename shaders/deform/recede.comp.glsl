@@ -11,7 +11,7 @@ void main() {
     uint softBase = deformObjects[item.object + 3u].x;
     uvec2 material0 = deformObjects[item.object + 4u].xy,
           holes0 = deformObjects[item.object + 5u].xy;
-    bool moves = (bases.z & (kDeformShell | kDeformSprings)) != 0u;
+    bool moves = (bases.z & (kDeformShell | kDeformExtended)) != 0u;
 
     uint last = min(item.end, sizes.y);
     uint number = item.number;

@@ -78,7 +78,6 @@ const uint kRunBits = 3u;
     FW_BUFFER(PREDICT_LIST_B, access, uint, predictB)
 #define FW_BUFFER_PROBES(access) FW_BUFFER(PROBES, access, uvec2, probes)
 #define FW_BUFFER_ANSWERS(access) FW_BUFFER(ANSWERS, access, ProbeAnswer, answers)
-#define FW_BUFFER_PUBLISHED(access) FW_BUFFER(PUBLISHED, access, float, published)
 #define FW_BUFFER_HEAT(access) FW_BUFFER(HEAT, access, uvec2, heat)
 #define FW_BUFFER_HEAT_PAIRS(access) FW_BUFFER(HEAT, access, uvec4, heatPairs)  // two texels each
 #define FW_BUFFER_TILE_HEAT(access) FW_BUFFER(TILE_HEAT, access, TileHeat, tileHeat)
@@ -118,8 +117,6 @@ const uint kRunBits = 3u;
 #define FW_BUFFER_REFINE_CUTS(access) FW_BUFFER(REFINE_CUTS, access, uvec4, cuts)
 #define FW_BUFFER_REFINE_CUT_DRAWS(access) FW_BUFFER(REFINE_CUT_DRAWS, access, uint, cutDraws)
 #define FW_BUFFER_VERTICES(access) FW_BUFFER(VERTICES, access, uvec4, meshVertices)
-#define FW_BUFFER_PATTERN_GROUPS(access) FW_BUFFER(PATTERN_GROUPS, access, uvec2, groups)
-#define FW_BUFFER_PATTERN_LIST(access) FW_BUFFER(PATTERN_LIST, access, uint, patternList)
 
 // Effects.
 #define FW_BUFFER_APPEARANCES(access) FW_BUFFER(APPEARANCES, access, MaterialAppearance, looks)

@@ -1,5 +1,6 @@
 // Effects of a texel's change outside the front kernel: dependent tiles become due, counters and
 // lists are updated. For events, contacts and embers.
+#include "lib/extension_change.glsl"
 #include "lib/predict_list.glsl"
 #include "lib/touch.glsl"
 
@@ -29,12 +30,8 @@ void litFrom(uint object, uint by) {
 // burns: the texel is a source now.
 void texelChanged(uint object, uint texel, TexelPlace p, bool burns) {
     predictTouch(push.predictParity, p.worldTile);
-    if ((objects[object].flags & kObjectPublished) != 0u) {
-        uint plane = objects[object].width * objects[object].height;
-        uint base = objects[object].publishedBase + texel;
-        float q = burns ? published[base + 2u * plane] : 0.0;
-        published[base] = q;
-        published[base + plane] = q;
+    if ((objects[object].flags & kObjectExtended) != 0u) {
+        extensionChanged(object, texel, burns);
         return;
     }
     tileState[p.worldTile].lastChange = push.now;

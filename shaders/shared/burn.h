@@ -39,8 +39,7 @@
 #define FW_BIND_PREDICT_LIST_B 25
 #define FW_BIND_PROBES 26  // uvec2[]: object slot, texel
 #define FW_BIND_ANSWERS 27  // ProbeAnswer[]: one per probe
-#define FW_BIND_PUBLISHED 28  // float[]: per object of the reference kernel S*D (ping), S*D (pong),
-                              // D
+#define FW_BIND_EXTENSION_TILES 28  // 768 bytes a tile of objects that an extension works on
 #define FW_BIND_LIGHTS 29  // BurnLight[]
 #define FW_BIND_LIGHT_CELLS 30  // uint[]: hash grid of burning cells
 #define FW_BIND_FLAMES 31  // FlameQuad[]
@@ -96,8 +95,8 @@
 #define FW_BIND_VERTICES 74  // mesh::RenderVertex[], as three uvec4 (per mesh)
 #define FW_BIND_REFINE_CUTS 75  // vertices along holes (per object), see kRefineCut... in refine.h
 #define FW_BIND_REFINE_CUT_DRAWS 76  // uint[]: indirect draws, 8 per object slot
-#define FW_BIND_PATTERN_GROUPS 77  // uvec2[]: object slot, first of 64 slots or listed triangles
-#define FW_BIND_PATTERN_LIST 78  // uint[]: drawn triangles of the reference pattern
+#define FW_BIND_EXTENSION_GROUPS 77  // uvec2[]: per frame
+#define FW_BIND_EXTENSION_WORDS 78  // uvec4[]: of objects that an extension works on
 #define FW_BIND_VOLUMES 90  // VolumeFlame[]: volumetric flames of the frame, see volume_draw.h
 #define FW_BIND_VOLUME_RAYS 91  // uint[]: marched flames of a view, see volume_draw.h
 #define FW_BIND_VOLUME_WORK 92  // VolumeWork[]: result of the probe per flame
@@ -138,7 +137,7 @@ FW_SHARED_CONST uint kTexelRim = 0x200u;
 
 // BurnObject::flags
 FW_SHARED_CONST uint kObjectLive = 1u;
-FW_SHARED_CONST uint kObjectPublished = 2u;
+FW_SHARED_CONST uint kObjectExtended = 2u;  // an extension burns its texels
 FW_SHARED_CONST uint kObjectTwoSided = 4u;
 FW_SHARED_CONST uint kObjectNoHoles = 8u;
 FW_SHARED_CONST uint kObjectHidden = 16u;
@@ -146,7 +145,7 @@ FW_SHARED_CONST uint kObjectDetail = 32u;    // vertices carry detail coordinate
 FW_SHARED_CONST uint kObjectHeat = 64u;      // has a heat buffer
 FW_SHARED_CONST uint kObjectNoDamage = 128u; // burns without visible damage
 FW_SHARED_CONST uint kObjectSkinned = 0x1000u; // its fire follows the shown vertices
-FW_SHARED_CONST uint kObjectZPass = 0x2000u;   // draws a depth pre-pass
+FW_SHARED_CONST uint kObjectDepthFirst = 0x2000u;  // draws depth before colour
 FW_SHARED_CONST uint kObjectUnseen = 0x4000u;  // no view shows it: not predicted
 // A view shows it again: prediction restarts from the burning texels
 FW_SHARED_CONST uint kObjectShownAgain = 0x8000u;
@@ -193,7 +192,7 @@ FW_SHARED_CONST uint kSwitchWrongDependents = 8u;
 FW_SHARED_CONST uint kSwitchNoWindWake = 16u;
 FW_SHARED_CONST uint kSwitchRefineFull = 64u;
 FW_SHARED_CONST uint kSwitchCrossing = 128u;
-FW_SHARED_CONST uint kSwitchNoZPass = 256u;
+FW_SHARED_CONST uint kSwitchNoDepthFirst = 256u;
 // internal: an object or the world limits its fire
 FW_SHARED_CONST uint kSwitchGoverned = 0x10000u;
 FW_SHARED_CONST uint kSwitchPlayback = 0x80000u;     // internal: an object may play a baked burn
@@ -245,7 +244,7 @@ struct BurnObject {   // offsets and constants of one object
     vec4 worldRow1;
     vec4 worldRow2;
     vec4 tint;        // rgb; w: mean texel area, m^2, world scale
-    uint publishedBase;  // into published; reference-kernel objects only
+    uint extensionBase;  // floats, into the tiles of an extension
     uint heatBase;    // into heat; with kObjectHeat
     uint skinBase;    // into the skin texels; with kObjectSkinned
     uint zoneWind;    // wind of the zones at the object, wind.h; cosmetic
@@ -379,8 +378,8 @@ struct StepPush {     // push constants of the simulation passes
     uint predictParity;
     uint switches;    // FwDebugSwitch
     uint count;       // events, wake groups, probes or object slots
-    uint object;      // reset, published: slot
-    uint publishedParity;  // plane that is read
+    uint object;      // reset, an extension's step: slot
+    uint extensionParity;  // of the object's steps by an extension
     uint hotParity;   // hot list that is read (other passes: appended to)
     uint maxTiles;   // limit of the world's burning tiles, with kSwitchGoverned
     uint reserved0; uint reserved1; uint reserved2;

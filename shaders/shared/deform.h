@@ -21,14 +21,12 @@ FW_SHARED_CONST uint kDeformLinkPasses = 4u;       // passes over the links: kDe
 FW_SHARED_CONST uint kBendSets = 4u;
 FW_SHARED_CONST uint kDeformRun = 64u;        // particles that need the same number of link passes
 // Quads of a DeviceParticle; offsets of its parts:
-FW_SHARED_CONST uint kDeformParticleQuads = 20u;
+FW_SHARED_CONST uint kDeformParticleQuads = 16u;
 FW_SHARED_CONST uint kParticleLinks = 1u;          // neighbours, one quad per pass
 FW_SHARED_CONST uint kParticleBends = 5u;          // bending constraints, one quad per set
 FW_SHARED_CONST uint kParticleRest = 9u;
-// Neighbours two steps away, one quad per pass; spring model
-FW_SHARED_CONST uint kParticleFarLinks = 10u;
-FW_SHARED_CONST uint kParticleTexels = 14u;
-FW_SHARED_CONST uint kParticleRecession = 18u;
+FW_SHARED_CONST uint kParticleTexels = 10u;
+FW_SHARED_CONST uint kParticleRecession = 14u;
 FW_SHARED_CONST uint kDeformEmbeddingQuads = 4u;
 // Quads of a DeformObject: materials from 4, pins from 20
 FW_SHARED_CONST uint kDeformObjectQuads = 36u;
@@ -49,7 +47,7 @@ FW_SHARED_CONST uint kMaxSoftSteps = 6u;     // steps of a frame; a longer frame
 // DeformObject::flags
 FW_SHARED_CONST uint kDeformRecede = 1u;      // tier A: recedes along its offset, no forces
 FW_SHARED_CONST uint kDeformShell = 2u;       // tier B: a thin sheet
-FW_SHARED_CONST uint kDeformSprings = 4u;     // tier C: mass-spring model of the reference
+FW_SHARED_CONST uint kDeformExtended = 4u;    // an extension's pass moves its particles
 
 // DeformParticle::flags, above the material (bits 0..7)
 FW_SHARED_CONST uint kParticleClosed = 0x100u;    // its ring of neighbours closes
@@ -71,8 +69,6 @@ struct DeformParticle {       // constant, per mesh
     uint ringLength[4];          // m, half floats
     float x; float y; float z;   // m, rest
     float area;                  // m^2, a third of its triangles
-    uint cross_[8];              // as ring, two steps away; no length or kNoneTexel: none
-    uint crossLength[4];         // m, half floats
     uint texels[16];             // in its ring, in the burn map; padded with kNoneTexel
     // Direction of recession: -1 along every face's normal where possible
     float outX; float outY; float outZ;
@@ -81,7 +77,7 @@ struct DeformParticle {       // constant, per mesh
     float bendLength[8];          // m
     float bendRise[4];            // m, as `rise`, of each pair
 };
-FW_SHARED_SIZE(DeformParticle, 288)
+FW_SHARED_SIZE(DeformParticle, 240)
 
 struct DeviceLinks {      // one link pass
     uint first; uint second;     // particles; the link's odds (linkOdds) above bit 23
@@ -94,12 +90,11 @@ struct DeviceParticle {
     DeviceLinks near_[4];
     DeviceLinks arms[4];
     float x; float y; float z; float area;
-    DeviceLinks far_[4];
     uint texels[16];
     float outX; float outY; float outZ; float limit;
     uint reserved[4];
 };
-FW_SHARED_SIZE(DeviceParticle, 320)
+FW_SHARED_SIZE(DeviceParticle, 256)
 
 // Constant, per drawn vertex: how its normal follows; device: quad by quad
 struct DeformEmbedding {
@@ -150,7 +145,7 @@ struct DeformObject {     // per object slot
     float ground;         // m, world, along up: nothing falls below it; -1e9: no ground
     uint slot;            // of its BurnObject
     float scale;          // m in the world of 1 m
-    float springs;        // 1/s^2, stiffness over mass of the spring model
+    uint extensionBase;   // quads, into the words of an extension
     uint softBase;        // into the state of the particles
     uint innerFirst;      // first of its vertices on the inner skin, in the vertices; see `wall`
     float wall;           // m, depth of the inner skin below the surface; 0: none
@@ -383,27 +378,6 @@ FW_SHARED_FN vec3 limitSpeed(vec3 v, float most) {
 FW_SHARED_FN vec3 pinPoint(vec3 x, vec3 from, vec3 to) {
     vec3 d = to - from;
     return from + d * saturate(dot(x - from, d) / max(dot(d, d), 1e-12f));
-}
-
-// ---- spring model of the reference, eqs. (3) to (8)
-
-FW_SHARED_CONST float kSpringShare = 0.2f;   // alpha of eq. (3)
-FW_SHARED_CONST float kDecayShare = 1.0f;    // beta
-FW_SHARED_CONST float kSpringDamping = 0.08f;  // of the velocity, per step
-
-// Eq. (4): force of one spring per unit mass.
-FW_SHARED_FN vec3 springPull(vec3 x, vec3 y, float rest, float stiffness) {
-    return linkCorrection(x, y, rest, stiffness);
-}
-// Eqs. (5) to (8): recession by `depth` within one step of dt, as an acceleration.
-FW_SHARED_FN vec3 decayPull(vec3 normal, float depth, float dt) {
-    return normal * (-2.0f * depth / (dt * dt));
-}
-// Stiffness at `share` of the stability bound of semi-implicit Euler: dt < 2 / w, w^2 <= 2 *
-// springs * stiffness (Gershgorin).
-FW_SHARED_FN float springsAt(float share, float dt, float springs) {
-    float w = 2.0f * share / dt;
-    return w * w / (2.0f * springs);
 }
 
 FW_SHARED_FN uint packDirection(vec3 n) {  // signed 11:11:10

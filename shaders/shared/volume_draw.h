@@ -211,18 +211,6 @@ struct VolumeImpostor {
 };
 FW_SHARED_SIZE(VolumeImpostor, 96)
 
-// Push constants of a flame that is drawn as slices of its lattice, see volume_slices.h.
-struct SlicesPush {
-    vec4 clip;            // as VolumeDraw's
-    float front;          // m along the view, near distance of the nearest slice
-    float spacing;        // m along the view, per slice
-    uint slices;          // [1, kVolumeSlices]
-    float from; float to; // see passesDither
-    uint reserved0; uint reserved1; uint reserved2;
-};
-FW_SHARED_SIZE(SlicesPush, 48)
-FW_SHARED_CONST uint kVolumeSlices = 96u;       // per flame, at most
-
 // Push constants of the haze over a flame.
 struct HazePush {
     vec4 rect;            // VolumeDraw::rect of the hot column

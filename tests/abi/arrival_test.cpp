@@ -235,14 +235,6 @@ TEST(Arrival, RefusesBadQueriesByName) {
     ASSERT_EQ(FW_OK, fwWorld_DestroyBurnableMesh(w.world, w.object));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_FetchArrival(w.world, query, &state));
     EXPECT_EQ(FW_ERROR_STALE_ID, fwWorld_RequestArrival(w.world, w.object, middle, &query));
-
-    FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-    def.mesh = w.mesh;
-    def.materials[0] = w.materialId;
-    def.flags = FW_BURNABLE_PUBLISHED;
-    ASSERT_EQ(FW_OK, fwWorld_CreateBurnableMesh(w.world, &def, &w.object));
-    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_RequestArrival(w.world, w.object, middle, &query));
-    EXPECT_THAT(lastMessage(w.world), testing::HasSubstr("burns as published"));
 }
 
 }  // namespace

@@ -18,8 +18,9 @@ runtime/components|components/|core/|fire/|mesh/|volume/|field/|flipbook/|shared
 runtime/world|world/|components/|core/|fire/|mesh/|volume/|field/|flipbook/|save/|shared/|gpu/backend.h|flamewright/flamewright.h|flamewright/flamewright_debug.h|host_limits.h
 runtime/net|net/|world/|components/|core/|shared/|flamewright/flamewright.h|host_limits.h
 runtime/lod|lod/|core/|volume/|shared/|flamewright/flamewright.h
+runtime/reference|reference/|gpu/|mesh/|core/|shared/|flamewright/
 runtime/gpu|gpu/|lod/|core/|fire/|mesh/|volume/|field/|shared/|flamewright/|host_limits.h
-plugin/src|flamewright/|world/|net/|components/|core/|gpu/backend.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
+plugin/src|flamewright/|world/|net/|components/|core/|gpu/backend.h|gpu/extension.h|gpu/cpu/cpu_backend.h|gpu/vk/vk_backend.h
 plugin/include|flamewright/
 shaders/shared|shared/
 samples|flamewright/|common/|import/|model/|shell/|document/|link/

@@ -77,13 +77,13 @@ TEST(ParticleField, StepsDependOnTicksAlone) {
     EXPECT_EQ(ends[0].out, ends[1].out);
 }
 
-TEST(ParticleField, ReferenceFieldRunsTenStepsASecond) {
+TEST(ParticleField, RefusesTheReservedFlag) {
     FieldWorld w;
     FwParticleFieldDef def = presetOf(FW_FIELD_FIRE);
-    def.flags = FW_FIELD_AS_PUBLISHED;
-    const FwParticleFieldId id = w.add(def);
-    w.run(3);
-    EXPECT_EQ(30u, w.of(id).steps);
+    def.flags = 2;
+    FwParticleFieldId id{};
+    EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_CreateParticleField(w.world, &def, &id));
+    EXPECT_NE(std::string::npos, lastMessage(w.world).find("FW_FIELD_AS_PUBLISHED is not in"));
 }
 
 TEST(ParticleField, FollowsSourcesWindAndWalls) {

@@ -193,7 +193,8 @@ TEST(VolumetricFire, AcceptsATierAtAnyTime) {
     const FwVolumetricFireDef def = fwDefaultVolumetricFireDef();
     const FwVolumetricFireId id = w.make(def);
     for (uint32_t tier = FW_FIRE_TIER_AUTO; tier <= FW_FIRE_TIER_SHARED_IMPOSTOR; ++tier)
-        EXPECT_EQ(FW_OK, fwWorld_SetVolumetricFireTier(w.world, id, tier));
+        EXPECT_EQ(tier == 4 ? FW_ERROR_INVALID_ARGUMENT : FW_OK,  // 4 is reserved
+                  fwWorld_SetVolumetricFireTier(w.world, id, tier));
     EXPECT_EQ(FW_ERROR_INVALID_ARGUMENT, fwWorld_SetVolumetricFireTier(w.world, id, 6));
     EXPECT_NE(std::string::npos, std::string(lastMessage(w.world)).find("tier is 6"));
     EXPECT_EQ(FW_OK, fwWorld_DestroyVolumetricFire(w.world, id));

@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"
-#include "flamewright/flamewright_debug.h"
+#include "flamewright_reference.h"
 
 namespace {
 
@@ -25,7 +25,7 @@ void deform(benchmark::State& state, const char* file, uint32_t flags) {
     scene.light();
     plain.light();
     constexpr float kFrame = 1.0f / 60;
-    constexpr const char* kPasses[] = {"recede",  "link_cache",         "soft",
+    constexpr const char* kPasses[] = {"recede",  "link_cache",   "soft",
                                        "springs", "skin_to_mesh", "inner"};
     double spent[std::size(kPasses)] = {};  // ms
     const auto passes = [&] {

@@ -194,7 +194,7 @@ void igniteLines(Bench& bench, uint32_t object, uint32_t side, double share) {
 enum Kernel { kDense, kSparse, kPublished };
 
 uint32_t flagsOf(Kernel kernel) {
-    return kernel == kPublished ? uint32_t(gpu::kObjectPublished) : 0;
+    return kernel == kPublished ? uint32_t(gpu::kObjectExtended) : 0;
 }
 
 void runSteps(benchmark::State& state, Bench& bench, Kernel kernel, bool heat = false) {

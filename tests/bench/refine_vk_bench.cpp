@@ -8,8 +8,7 @@
 // Counters of adaptive rows, same run. ratio: full / adaptive; wall: the same by the clock; unlike:
 // mean difference of the two pictures in 1/1000 of 1/255; alone: pixels of 10,000 that only one of
 // them shows. A row whose pictures differ by more than the limit is an error.
-#include "flamewright/flamewright.h"
-#include "flamewright/flamewright_debug.h"
+#include "flamewright_reference.h"
 #include "support/refine_scene.h"
 
 #include <benchmark/benchmark.h>
@@ -71,9 +70,9 @@ struct World {
         wood.windGain = wood.upGain = wood.headGain = wood.ceilingGain = 0;
         wood.burnTime = 4;
         FwBurnableMeshDef def = fwDefaultBurnableMeshDef();
-        def.flags = FW_BURNABLE_LITE | (how == How::hidden      ? FW_BURNABLE_HIDDEN
+        def.flags = FW_BURNABLE_LITE | (how == How::hidden      ? uint32_t{FW_BURNABLE_HIDDEN}
                                         : how == How::published ? FW_BURNABLE_REFINE_PUBLISHED
-                                                                : FW_BURNABLE_REFINE);
+                                                                : uint32_t{FW_BURNABLE_REFINE});
         def.refineDepth = how == How::published ? 4 : 3;  // ours halves long edges beforehand
         FwIgnitionDef match = fwDefaultIgnitionDef();
         match.position[0] = 0;

@@ -7,7 +7,7 @@
 #include <benchmark/benchmark.h>
 
 #include "bench/bunny_scene.h"
-#include "flamewright/flamewright_debug.h"
+#include "flamewright_reference.h"
 
 #include <algorithm>
 

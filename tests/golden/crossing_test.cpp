@@ -1,8 +1,7 @@
 // Walls of a solid that burnt from both sides, seen from the front. Bounds keep them from
 // intersecting; without bounds the depth peel pass of the reference implementation hides
 // intersections behind holes.
-#include "flamewright/flamewright.h"
-#include "flamewright/flamewright_debug.h"
+#include "flamewright_reference.h"
 #include "support/own_world.h"
 
 #include <cstring>

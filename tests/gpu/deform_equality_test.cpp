@@ -22,6 +22,7 @@ constexpr uint32_t kBindings[] = {FW_BIND_STATE,
                                   FW_BIND_DEFORM_EMBEDDINGS,
                                   FW_BIND_SHOWN,
                                   FW_BIND_SOFT,
+                                  FW_BIND_EXTENSION_WORDS,
                                   FW_BIND_VERTICES};
 constexpr uint32_t kTexels[] = {FW_BIND_DEFORM_PARTICLES, FW_BIND_DEFORM_EMBEDDINGS, FW_BIND_SHOWN,
                                 FW_BIND_SOFT};
@@ -76,6 +77,10 @@ struct Pair {
         }
         rig.make(FW_BIND_VERTICES, skin.size() * sizeof skin[0], skin.data());
         rig.make(FW_BIND_SOFT, nodes.size() * 16 * gpu::kSoftQuads);
+        far = reference::makeFarLinks(domain, model, std::pmr::new_delete_resource());
+        std::vector<gpu::DeviceLinks> links(far.size() * gpu::kDeformLinkPasses);
+        reference::packFarLinks(model, far, links);
+        rig.make(FW_BIND_EXTENSION_WORDS, links.size() * sizeof links[0], links.data());
         for (const std::string pass :
              {"recede", "link_cache", "soft", "springs", "skin_to_mesh", "inner"})
             rig.add((pass + (words ? ".comp" : "_texels.comp")).c_str());
@@ -94,7 +99,7 @@ struct Pair {
     // A frame at `now` with `steps` solver steps.
     void frame(uint32_t now, uint32_t steps) {
         const bool soft = (object.flags & gpu::kDeformRecede) == 0;
-        const bool springs = (object.flags & gpu::kDeformSprings) != 0;
+        const bool springs = (object.flags & gpu::kDeformExtended) != 0;
         const auto marks = (fresh ? gpu::kDeformReset : 0) | (odd ? gpu::kDeformOdd : 0);
         for (uint32_t i = 0; i < groups; ++i)
             rig.of<gpu::uvec2>(FW_BIND_DEFORM_GROUPS)[i] = {0, (i * gpu::kDeformGroup) | marks};
@@ -134,7 +139,8 @@ struct Pair {
         drive.wind = vec3(push.wind);
         for (uint32_t i = 0; i < steps && soft; ++i) {
             if (springs)
-                mesh::springStep(model, object, kStep, lost, gpu::kSpringDamping, state);
+                mesh::springStep(model, far, gpu::springStiffness(), kStep, lost,
+                                 gpu::kSpringDamping, state);
             else
                 mesh::sheetStep(model, object, drive, state);
         }
@@ -201,6 +207,7 @@ struct Pair {
     mesh::BurnDomain domain;
     mesh::DeformModel model;
     mesh::DeformState state;
+    std::pmr::vector<reference::FarLinks> far;
     gpu::DeformObject object;
     std::vector<uint32_t> states;
     std::pmr::vector<mesh::RenderVertex> skin;
@@ -332,9 +339,8 @@ TEST_F(DeformEquality, SheetsAgree) {
 }
 
 TEST_F(DeformEquality, WordsAndTexelsGiveEqualBits) {
-    gpu::DeformObject springs = object(gpu::kDeformSprings);
-    springs.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
-    for (const gpu::DeformObject& what : {sheet(), object(gpu::kDeformRecede), springs}) {
+    for (const gpu::DeformObject& what :
+         {sheet(), object(gpu::kDeformRecede), object(gpu::kDeformExtended)}) {
         const Mesh mesh = makeSheet(double(kSide), 10);
         Pair texels(*device_, mesh, what), words(*device_, mesh, what, true);
         for (Pair* pair : {&texels, &words}) {
@@ -367,9 +373,7 @@ TEST_F(DeformEquality, ComparisonCatchesMutants) {
 }
 
 TEST_F(DeformEquality, ReferenceSpringsAgree) {
-    gpu::DeformObject made = object(gpu::kDeformSprings);
-    made.springs = gpu::springsAt(0.7f, kStep, float(2 * gpu::kDeformRing));
-    Pair pair(*device_, makeCube(kSide, 10, true), made);
+    Pair pair(*device_, makeCube(kSide, 10, true), object(gpu::kDeformExtended));
     pair.burn([&](uint32_t texel) { return (texel * 37u) % 9000u; });
     for (uint32_t frame = 0; frame < 100; ++frame) {
         pair.frame(100 + frame * 256, 2);

@@ -6,6 +6,7 @@
 #include "components/remote.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
+#include "flamewright_reference.h"
 #include "flipbook/own.h"
 #include "flipbook/picture.h"
 #include "gpu/passes/pass.h"
@@ -22,7 +23,7 @@ namespace fw::test::every_pass_test {
 namespace {
 
 constexpr uint32_t kSide = 48;  // px
-constexpr std::string_view kOfPublished[] = {"published", "skin", "refine_published"};
+constexpr std::string_view kOfPublished[] = {"published", "skin", "refine_pattern"};
 
 class EveryPass : public GpuTest {
  protected:
@@ -41,7 +42,7 @@ class EveryPass : public GpuTest {
         scene.domains.push_back(mesh::bake(input, std::pmr::get_default_resource()));
         SceneObject object;
         object.substepShift = 1;
-        if (published) object.flags = gpu::kObjectPublished | gpu::kObjectSkinned;
+        if (published) object.flags = gpu::kObjectExtended | gpu::kObjectSkinned;
         object.refine = !published;
         object.refinePixelsPerEdge = 2;  // its holes are cut
         const mesh::BurnDomain& domain = scene.domains[0];
@@ -64,7 +65,7 @@ class EveryPass : public GpuTest {
         }
         scene.objects.push_back(object);
         if (published) {  // and a refined object with one
-            object.flags = gpu::kObjectPublished;
+            object.flags = gpu::kObjectExtended;
             object.reference = true;
             scene.objects.push_back(object);
             scene.addPublished();
@@ -76,9 +77,8 @@ class EveryPass : public GpuTest {
         object.deform.pins[0] = {0.25f, 0.25f, 0.25f, 0.1f};
         object.deform.pins[1] = {-0.25f, 0.25f, 0.25f, 0};
         scene.objects.push_back(object);
-        object.deform.flags = gpu::kDeformSprings;
-        object.deform.springs = 500;
-        object.flags |= gpu::kObjectZPass;
+        object.deform.flags = gpu::kDeformExtended;
+        object.flags |= gpu::kObjectDepthFirst;
         scene.objects.push_back(object);
         if (!published) scene.addHeat();
         return scene;

@@ -7,7 +7,7 @@
 #include "world/world.h"
 
 #include "fire/presets.h"
-#include "flamewright/flamewright_debug.h"
+#include "flamewright_reference.h"
 
 #include <random>
 

@@ -162,7 +162,7 @@ TEST_F(FrontEquality, ReferenceKernelIsEqual) {
     for (size_t i = 0; i < scene.objects.size(); ++i) {
         SceneObject& object = scene.objects[i];
         if (i % 4 == 3) continue;  // includes an object of the product front
-        object.flags |= gpu::kObjectPublished;
+        object.flags |= gpu::kObjectExtended;
         const auto& slowness = scene.domains[object.mesh].slowness;
         object.slowness.assign(slowness.begin(), slowness.end());
         for (uint16_t& value : object.slowness) value = uint16_t((value + 15) / (i % 2 ? 16 : 64));

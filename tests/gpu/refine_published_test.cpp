@@ -1,17 +1,17 @@
 // The refinement pass of the reference implementation on a device against the library: vertices of
 // its triangles, consumed triangles, vertex positions.
-#include "mesh/refine/published_frame.h"
+#include "reference/pattern_frame.h"
 #include "support/pass_rig.h"
 #include "support/refine_scene.h"
 
 namespace fw::test::refine_published_test {
 namespace {
 
-constexpr uint32_t kBindings[] = {FW_BIND_PREDICT,        FW_BIND_GRADIENT,
-                                  FW_BIND_PATTERN_GROUPS, FW_BIND_PATTERN_LIST,
-                                  FW_BIND_REFINE_OBJECTS, FW_BIND_REFINE_TRIANGLES,
-                                  FW_BIND_REFINE_SLOTS,   FW_BIND_REFINE_VERTICES,
-                                  FW_BIND_REFINE_INDICES, FW_BIND_VERTICES};
+constexpr uint32_t kBindings[] = {FW_BIND_PREDICT,          FW_BIND_GRADIENT,
+                                  FW_BIND_EXTENSION_GROUPS, FW_BIND_EXTENSION_WORDS,
+                                  FW_BIND_REFINE_OBJECTS,   FW_BIND_REFINE_TRIANGLES,
+                                  FW_BIND_REFINE_SLOTS,     FW_BIND_REFINE_VERTICES,
+                                  FW_BIND_REFINE_INDICES,   FW_BIND_VERTICES};
 constexpr float kRecede = 0.6f;
 
 class RefinePublishedEquality : public GpuTest {
@@ -37,14 +37,15 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     if (!device_) return;
     auto* memory = std::pmr::new_delete_resource();
     const uint32_t depth = 4;
-    RefineScene scene(gridBox(0.8, 0.6, 0.02, 1, 1, 1, 11), mesh::patternOptions(depth), 96);
+    RefineScene scene(gridBox(0.8, 0.6, 0.02, 1, 1, 1, 11), reference::patternOptions(depth), 96);
     scene.light({0.2, 0.2, 0.02}, 0.05, 0.15);
     const mesh::RefineModel& m = scene.model;
-    const mesh::PatternModel reference = mesh::makePatternModel(scene.domain, m, depth, memory);
-    const mesh::PatternSettings settings = mesh::patternSettings(reference, 0, 0, 0.05f);
-    mesh::PatternState state(memory);
-    state.reset(reference);
-    mesh::ignitePattern(reference, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
+    const reference::PatternModel pattern =
+        reference::makePatternModel(scene.domain, m, depth, memory);
+    const reference::PatternSettings settings = reference::patternSettings(pattern, 0, 0, 0.05f);
+    reference::PatternState state(memory);
+    state.reset(pattern);
+    reference::ignitePattern(pattern, settings, {0.2f, 0.2f, 0.02f}, kStartTick, state);
 
     PassRig rig(*device_, kBindings, sizeof(gpu::PatternPush));
     const auto make = [&](uint32_t binding, const auto& data) {
@@ -58,23 +59,23 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
     for (uint32_t d = 0; d < m.draws.size(); ++d) vertices[d].material = m.draws[d].slot;
     make(FW_BIND_VERTICES, vertices);
     const auto slots = uint32_t(m.slots.size());
-    const uint32_t placeGroups = (slots + 63) / 64, nameGroups = (reference.most() + 63) / 64;
+    const uint32_t placeGroups = (slots + 63) / 64, nameGroups = (pattern.most() + 63) / 64;
     rig.make(FW_BIND_REFINE_VERTICES, slots * sizeof(gpu::RefineVertex));
-    rig.make(FW_BIND_PATTERN_LIST, size_t(nameGroups) * 256);
+    rig.make(FW_BIND_EXTENSION_WORDS, size_t(nameGroups) * 256);
     rig.make(FW_BIND_REFINE_INDICES, size_t(nameGroups) * 768);
     rig.make(FW_BIND_REFINE_OBJECTS, sizeof(gpu::RefineObject));
     std::vector<gpu::uvec2> groups;
     for (uint32_t g = 0; g < placeGroups; ++g) groups.push_back({0, g * 64});
     for (uint32_t g = 0; g < nameGroups; ++g) groups.push_back({0, g * 64});
-    make(FW_BIND_PATTERN_GROUPS, groups);
-    const uint32_t pass = rig.add("refine_published.comp");
+    make(FW_BIND_EXTENSION_GROUPS, groups);
+    const uint32_t pass = rig.add("refine_pattern.comp");
 
     uint32_t consumed = 0, coarser = 0, frames = 0;
     double worst = 0;
     for (float now = 0; now < scene.end + 6; now += 0.9f, ++frames) {
         const uint32_t tick = kStartTick + uint32_t(now * 4096);
-        const mesh::PatternView view{{0.2f, 0.2f, 1.5f}, frames % 3 == 2 ? 150.0f : 0.0f};
-        mesh::advancePattern(reference, settings, tick, view, false, state);
+        const reference::PatternView view{{0.2f, 0.2f, 1.5f}, frames % 3 == 2 ? 150.0f : 0.0f};
+        reference::advancePattern(pattern, settings, tick, view, false, state);
         gpu::RefineObject object{};
         object.cornerCount = slots;
         object.textureWidth = m.textureWidth;
@@ -82,7 +83,7 @@ TEST_F(RefinePublishedEquality, TrianglesAndPositionsEqualTheLibrarys) {
         object.now = now;
         object.burnSeconds0 = gpu::vec4(kBurnSeconds);
         rig.of<gpu::RefineObject>(FW_BIND_REFINE_OBJECTS)[0] = object;
-        const auto list = rig.of<uint32_t>(FW_BIND_PATTERN_LIST);
+        const auto list = rig.of<uint32_t>(FW_BIND_EXTENSION_WORDS);
         std::fill(list.begin(), list.end(), gpu::kPatternEmpty);
         std::copy(state.list.begin(), state.list.end(), list.begin());
         device_->run([&](VkCommandBuffer commands) {

@@ -3,6 +3,7 @@
 #include "components/particle_field.h"
 #include "components/sparks.h"
 #include "components/volumetric_fire.h"
+#include "flamewright_reference.h"
 #include "flipbook/own.h"
 #include "flipbook/picture.h"
 #include "lod/impostor_atlas.h"

@@ -1,5 +1,7 @@
 #include "reference/deform_solver.h"
 
+#include <glm/gtc/packing.hpp>
+
 #include <algorithm>
 #include <cmath>
 
@@ -229,23 +231,23 @@ void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const 
     state.way = (state.way + 1) % gpu::kBendSets;
 }
 
-void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,
-                std::span<const float> lost, float damping, DeformState& state) {
+void springStep(const DeformModel& model, std::span<const reference::FarLinks> far, float stiffness,
+                float step, std::span<const float> lost, float damping, DeformState& state) {
     const uint32_t now = state.parity;
-    const float stiffness = object.springs * gpu::kSpringShare;
+    const float share = stiffness * gpu::kSpringShare;
     for (size_t i = 0; i < model.nodes.size(); ++i) {
         const DeformParticle& node = model.nodes[i];
         DeformState::Soft& self = state.soft[node.vertex];
         const vec3 x = self.place[now];
-        const Links ring(node.ringLength), cross(node.crossLength);
+        const Links ring(node.ringLength);
         vec3 force(0);
         for (uint32_t k = 0; k < gpu::kDeformRing; ++k) {
             if (ring.rest[k] > 0)
-                force += gpu::springPull(x, state.soft[node.ring[k]].place[now], ring.rest[k],
-                                         stiffness);
-            if (cross.rest[k] > 0)
-                force += gpu::springPull(x, state.soft[node.cross_[k]].place[now], cross.rest[k],
-                                         stiffness);
+                force +=
+                    gpu::springPull(x, state.soft[node.ring[k]].place[now], ring.rest[k], share);
+            if (far.empty() || !(far[i].length[k] > 0)) continue;
+            const float rest = glm::unpackHalf1x16(glm::packHalf1x16(far[i].length[k]));
+            force += gpu::springPull(x, state.soft[far[i].vertex[k]].place[now], rest, share);
         }
         if (!lost.empty())
             force += gpu::decayPull(normalOf(node, state, now), lost[i], step) * gpu::kDecayShare;

@@ -1,7 +1,7 @@
 // Deformation of one object on the CPU, in object axes: the reference for the passes recede,
 // link_cache, soft, springs and skin_to_mesh.
 #pragma once
-#include "mesh/deform/model.h"
+#include "reference/far_links.h"
 
 #include <span>
 
@@ -52,8 +52,8 @@ void skinVertices(const DeformModel& model, DeformState& state, bool tears = fal
 // One step of a sheet: pass soft, and before every fourth pass link_cache.
 void sheetStep(const DeformModel& model, const gpu::DeformObject& object, const SheetDrive& drive,
                DeformState& state);
-// One step of the published springs; `lost`: m that every particle recedes in it.
-void springStep(const DeformModel& model, const gpu::DeformObject& object, float step,
-                std::span<const float> lost, float damping, DeformState& state);
+// One step of springs of `stiffness` (1/s^2); `lost`: m that every particle recedes in it.
+void springStep(const DeformModel& model, std::span<const reference::FarLinks> far, float stiffness,
+                float step, std::span<const float> lost, float damping, DeformState& state);
 
 }  // namespace fw::mesh

@@ -114,12 +114,7 @@ namespace {
 constexpr uint32_t kReferenceDepth = 2;
 }
 
-void BurnScene::addPublished() {
-    auto* memory = std::pmr::get_default_resource();
-    referenceModel = std::make_shared<const mesh::PatternModel>(mesh::makePatternModel(
-        domains[0], mesh::bakeRefine(domains[0], mesh::patternOptions(kReferenceDepth), memory),
-        kReferenceDepth, memory));
-}
+void BurnScene::addPublished() { refinesByReference = true; }
 
 gpu::ObjectInit BurnScene::init(uint32_t index) const {
     const SceneObject& object = objects[index];
@@ -145,8 +140,8 @@ gpu::ObjectInit BurnScene::init(uint32_t index) const {
     if (object.reference) {
         init.refine = true;
         init.refineDepth = kReferenceDepth;
-        init.patternModel = referenceModel.get();
-        init.pattern = mesh::patternSettings(*referenceModel, 0, 0, 0.3f);
+        init.refineExtended = true;
+        init.boundary.speed = 0.3f;
     }
     if (object.deform.flags || (object.flags & gpu::kObjectSkinned)) {
         init.deformModel = &models[object.mesh];
@@ -178,11 +173,12 @@ void BurnScene::create(gpu::Backend& backend) const {
             std::array<mesh::RefineHoles, 1>{{{0.4f, 2.6f, 0.8f, true}}});
         refined[object.mesh] = true;
     }
-    if (referenceModel) {
+    if (refinesByReference) {
         auto* memory = std::pmr::get_default_resource();
         backend.createRefinement(
             0, kReferenceDepth, true, domains[0],
-            mesh::bakeRefine(domains[0], mesh::patternOptions(kReferenceDepth), memory), {});
+            mesh::bakeRefine(domains[0], backend.extendedRefineOptions(kReferenceDepth), memory),
+            {});
     }
     for (uint32_t i = 0; i < objects.size(); ++i) backend.createObject(i, init(i));
 }

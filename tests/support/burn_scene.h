@@ -19,7 +19,7 @@ struct SceneObject {
     uint32_t window = 512, substepShift = 0;
     uint32_t flags = 0;      // kObject..., beyond live
     bool refine = false;     // down to 4 halvings
-    bool reference = false;  // refined as in the reference implementation, by the scene's model
+    bool reference = false;  // refined by the reference pattern
     float refinePixelsPerEdge = 8;
     gpu::DeformObject deform{};           // without flags it does not deform
     std::vector<gpu::HeatMaterial> heat;  // empty: none
@@ -29,9 +29,7 @@ struct BurnScene {
     std::vector<mesh::BurnDomain> domains;
     std::vector<SceneObject> objects;
     std::vector<mesh::DeformModel> models;  // one per domain if an object deforms
-    std::shared_ptr<const mesh::PatternModel>
-        referenceModel;  // of the first mesh, if an object refines as in the reference
-                         // implementation
+    bool refinesByReference = false;        // an object of the first mesh does
 
     // `densityScale` 1: some 2000 texels per mesh. With $FLAMEWRIGHT_ASSETS also two loaded meshes.
     static BurnScene make(uint32_t seed, double densityScale = 1);

@@ -3,8 +3,8 @@
 #pragma once
 #include "support/vulkan_device.h"
 
+#include "embedded_shaders.h"
 #include "gpu/passes/pass.h"
-#include "shaders_embedded.h"
 #include "shared/burn.h"
 
 #include <algorithm>

@@ -362,7 +362,6 @@ double springSpread(float share) {
         node.x = kRest * float(i);
         node.vertex = i;
         std::fill(std::begin(node.ring), std::end(node.ring), i);
-        std::fill(std::begin(node.cross_), std::end(node.cross_), i);
         node.ring[0] = i ? i - 1 : i;
         node.ring[1] = i + 1 < kNodes ? i + 1 : i;
         node.ringLength[0] = gpu::packHalf2x16({i ? kRest : 0.0f, i + 1 < kNodes ? kRest : 0.0f});
@@ -373,13 +372,13 @@ double springSpread(float share) {
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
     mesh::resetSoft(model, object, state);
-    object.springs = gpu::springsAt(share, kSheetStep, 2) / gpu::kSpringShare;
+    const float stiffness = gpu::springsAt(share, kSheetStep, 2) / gpu::kSpringShare;
     std::mt19937 random(3);
     std::uniform_real_distribution<float> off(-1e-5f, 1e-5f);
     for (uint32_t i = 0; i < kNodes; ++i) state.soft[i].place[0].x += off(random);
     double worst = 0;
     for (int i = 0; i < 10000; ++i) {
-        mesh::springStep(model, object, kSheetStep, {}, 0, state);
+        mesh::springStep(model, {}, stiffness, kSheetStep, {}, 0, state);
         if (i % 100) continue;
         for (uint32_t n = 0; n < kNodes; ++n)
             worst = std::max(worst, double(std::fabs(state.shown[n].x - model.nodes[n].x)));
@@ -401,11 +400,12 @@ TEST(DeformSprings, DecayMovesInwardsByTheLostDepth) {
     DeformState state(std::pmr::new_delete_resource());
     mesh::resetDeform(model, state);
     gpu::DeformObject object{};
-    object.springs = gpu::springsAt(0.7f, kSheetStep, 16);
     mesh::resetSoft(model, object, state);
     const std::vector<float> lost(model.nodes.size(), 1e-5f);
+    const auto far = reference::makeFarLinks(domain, model, std::pmr::new_delete_resource());
     for (int i = 0; i < 128; ++i)
-        mesh::springStep(model, object, kSheetStep, lost, gpu::kSpringDamping, state);
+        mesh::springStep(model, far, gpu::springStiffness(), kSheetStep, lost, gpu::kSpringDamping,
+                         state);
     double sum = 0;
     for (const gpu::DeformParticle& node : model.nodes) {
         const gpu::ShownVertex& v = state.shown[node.vertex];

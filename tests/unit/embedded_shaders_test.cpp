@@ -8,12 +8,22 @@
 #include <set>
 #include <string>
 
-#include "shaders_embedded.h"
+#include <vector>
+
+#include "embedded_shaders.h"
+#include "gpu/extension.h"
 
 namespace {
 
-using fw::gpu::embeddedShaders;
 using fw::gpu::ShaderCode;
+
+// Those of the library and of the reference methods.
+std::vector<ShaderCode> allShaders() {
+    const auto own = fw::gpu::embeddedShaders(), more = fw::gpu::extension()->shaders;
+    std::vector<ShaderCode> all(own.begin(), own.end());
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
 
 constexpr std::uint32_t kMagic = 0x07230203u;
 constexpr std::uint32_t kVersion10 = 0x00010000u;
@@ -31,18 +41,24 @@ const std::set<std::uint32_t> kFreeCapabilities{
     51,  // DerivativeControl
 };
 
+// Shaders of the reference methods may have the names of the library's, which they replace.
 TEST(EmbeddedShaders, NamesAreUniqueAndFound) {
-    std::set<std::string> names;
-    for (const ShaderCode& shader : embeddedShaders()) {
-        EXPECT_TRUE(names.insert(shader.name).second) << shader.name << " is embedded twice";
-        EXPECT_EQ(fw::gpu::findShader(shader.name), &shader);
+    std::set<std::string> replaced;
+    for (const auto shaders : {fw::gpu::extension()->shaders, fw::gpu::embeddedShaders()}) {
+        std::set<std::string> names;
+        for (const ShaderCode& shader : shaders) {
+            EXPECT_TRUE(names.insert(shader.name).second) << shader.name << " is embedded twice";
+            if (replaced.count(shader.name) == 0) {
+                EXPECT_EQ(fw::gpu::findShader(shader.name)->words.data(), shader.words.data());
+            }
+        }
+        replaced = names;
     }
     EXPECT_EQ(fw::gpu::findShader("no such shader.comp"), nullptr);
 }
 
 TEST(EmbeddedShaders, NeedNoDeviceFeature) {
-    if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
-    for (const ShaderCode& shader : embeddedShaders()) {
+    for (const ShaderCode& shader : allShaders()) {
         ASSERT_GT(shader.words.size(), kHeaderWords) << shader.name;
         EXPECT_EQ(shader.words[0], kMagic) << shader.name;
         EXPECT_EQ(shader.words[1], kVersion10) << shader.name;
@@ -63,7 +79,7 @@ TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
     const std::set<std::uint32_t> kOfWholes{1,  2,  3,  6,  8,  9,  10, 18, 19,
                                             20, 22, 32, 33, 34, 41, 42, 43};
     constexpr std::uint32_t kOpMemberDecorate = 72;
-    for (const ShaderCode& shader : embeddedShaders()) {
+    for (const ShaderCode& shader : allShaders()) {
         for (std::size_t at = kHeaderWords; at < shader.words.size();) {
             const std::uint32_t op = shader.words[at] & 0xffffu, size = shader.words[at] >> 16;
             ASSERT_GT(size, 0u) << shader.name;
@@ -77,12 +93,11 @@ TEST(EmbeddedShaders, DecorateStructMembersAsDriversExpect) {
 }
 
 TEST(EmbeddedShaders, PassTheValidator) {
-    if (embeddedShaders().empty()) GTEST_SKIP() << "no shader is embedded";
     if (std::system("command -v spirv-val >/dev/null") != 0)
         GTEST_SKIP() << "spirv-val is not installed";
     const std::filesystem::path file =
         std::filesystem::path(::testing::TempDir()) / "flamewright_shader.spv";
-    for (const ShaderCode& shader : embeddedShaders()) {
+    for (const ShaderCode& shader : allShaders()) {
         {
             std::ofstream out(file, std::ios::binary);
             out.write(reinterpret_cast<const char*>(shader.words.data()),

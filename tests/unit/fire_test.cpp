@@ -2,8 +2,8 @@
 // implementation.
 #include "core/error.h"
 #include "fire/presets.h"
+#include "reference/published.h"
 #include "shared/front.h"
-#include "shared/published.h"
 #include "support/front_rig.h"
 
 #include <gtest/gtest.h>
@@ -154,7 +154,8 @@ TEST(Fire, RefusesBadMaterialsByName) {
               std::string::npos);
     EXPECT_NE(message([](FwMaterialDef& d) { d.baseColor[2] = INFINITY; }).find("baseColor[2]"),
               std::string::npos);
-    EXPECT_NE(message([](FwMaterialDef& d) { d.appearance = 14; }).find("appearance is 14"), std::string::npos);
+    EXPECT_NE(message([](FwMaterialDef& d) { d.appearance = 14; }).find("appearance is 14"),
+              std::string::npos);
 }
 
 // Every valid material stays within the kernel's ranges.
@@ -239,7 +240,7 @@ TEST(Fire, ReferenceKernelHasItsTheoreticalSpeed) {
         record.flags = 1;
         record.sigma0 = 1 << 20;
         record.burnTicks = record.flameTicks = gpu::kNoneTexel;
-        FrontRig rig(d, record, slowness, gpu::kObjectPublished);
+        FrontRig rig(d, record, slowness, gpu::kObjectExtended);
         for (uint32_t i = 0; i < d.texelCount(); ++i)
             if (d.real(i) && texelPosition(d, i).x < 3 / density)
                 rig.push(i, gpu::kEventIgnite, kStartTick);
@@ -265,7 +266,7 @@ TEST(Fire, ReferenceKernelKeepsItsPrecision) {
     record.flags = 1;
     record.sigma0 = 1 << 20;
     record.burnTicks = record.flameTicks = gpu::kNoneTexel;
-    FrontRig rig(d, record, slowness, gpu::kObjectPublished);
+    FrontRig rig(d, record, slowness, gpu::kObjectExtended);
     std::vector<double> now(d.texelCount()), next(d.texelCount()), at(d.texelCount(), -1);
     const auto spread = [&](int x, int y) {
         const uint32_t i = uint32_t(y) * d.width + uint32_t(x);

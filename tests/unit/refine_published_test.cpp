@@ -1,16 +1,16 @@
 // The adaptive refinement of the reference implementation: its rules as printed, and the repaired
 // rules that reach a stable state.
-#include "mesh/refine/published.h"
+#include "reference/pattern_frame.h"
 
 #include "core/error.h"
-#include "mesh/refine/published_frame.h"
+#include "reference/pattern_oracles.h"
 #include "support/refine_scene.h"
 
 #include <gtest/gtest.h>
 
 #include <set>
 
-namespace fw::mesh {
+namespace fw::reference {
 namespace {
 
 using Point = std::pair<int, int>;
@@ -346,4 +346,4 @@ TEST(RefinePublished, RefusesTooManyTriangles) {
 }
 
 }  // namespace
-}  // namespace fw::mesh
+}  // namespace fw::reference

@@ -2,7 +2,7 @@
 // over slices.
 #include "volume_scene.h"
 
-#include "shared/volume_slices.h"
+#include "reference/volume_slices.h"
 
 #include <gtest/gtest.h>
 

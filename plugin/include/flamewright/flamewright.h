@@ -607,31 +607,21 @@ FW_API FwResult FW_CALL fwCookMesh(FwContext* context, const FwMeshDef* def, voi
 
 /* ---- burnable meshes: objects that burn ----------------------------------------------------------------- */
 
-typedef enum FwBurnableFlags {
+typedef enum FwBurnableFlags { /* 4, 64, 512 and 8192 are reserved */
     FW_BURNABLE_HIDDEN = 1,     /* simulated but not drawn by the library */
     FW_BURNABLE_TWO_SIDED = 2,  /* draws back faces too */
-    FW_BURNABLE_PUBLISHED = 4,  /* fire spreads by the published 16-tap kernel, for comparison */
     FW_BURNABLE_NO_HOLES = 8,   /* the surface is never consumed */
     FW_BURNABLE_LITE = 16,      /* no temperature, fuel or water for each texel. Saves 8 bytes a texel and all work behind the
                                    front. The object burns by burnTime alone, and water stays until FW_DRY */
     FW_BURNABLE_REFINE = 32,    /* drawn with finer triangles where it burns, down to the texels of its burn map. The refined
                                    surface recedes as the material is consumed */
-    FW_BURNABLE_REFINE_PUBLISHED = 64, /* instead of FW_BURNABLE_REFINE: the published adaptive refinement, for comparison.
-                                   Each triangle has a template of four-way splits. It refines where a heat boundary reaches
-                                   it; the boundary grows from the host's first ignition (fire from other objects stays
-                                   coarse). Burnt triangles vanish whole, levels crack where they meet, and there is no
-                                   budget. Fire and mesh are the same */
     FW_BURNABLE_RECEDE = 128,   /* for solids: the drawn surface recedes as it is consumed. Closed meshes of up to 65536
                                    triangles show inner walls behind holes; that needs no flag */
     FW_BURNABLE_SHELL = 256,    /* for thin sheets: the sheet hangs, flutters, curls and shrinks as it chars, and tears; see
                                    FwPin. Cosmetic: fire spreads and is queried in the rest pose */
-    FW_BURNABLE_SPRINGS = 512,  /* deformed by the published mass-spring model, for comparison */
     FW_BURNABLE_SKINNED = 1024, /* the host moves its vertices: fwWorld_SetVertexPositions */
     FW_BURNABLE_NO_SPREAD = 2048, /* its fire reaches no other object */
     FW_BURNABLE_NO_DAMAGE = 4096, /* it burns as usual but shows only flames: no char, holes, recession, curling or refinement */
-    FW_BURNABLE_DEPTH_PEEL = 8192,  /* with SPRINGS or RECEDE, for comparison: once it has ignited, self-intersections are hidden
-                                   as published. Costs one depth draw of the object for each view, shows no insides, and needs a
-                                   target with FW_DEPTH_TEST */
     FW_BURNABLE_FLAGS_FORCE32 = 0x7fffffff
 } FwBurnableFlags;
 
@@ -639,8 +629,8 @@ typedef struct FwPin { /* holds the points of a sheet that are within `radius` o
     float from[3], to[3], radius, reserved; /* m, [-1e6, 1e6], object space; radius: m, [0, 1e6]; reserved: 0 */
 } FwPin;
 typedef struct FwBurnableMeshDef {
-    uint32_t structSize, flags;       /* flags: FwBurnableFlags, default 0. At most one of SKINNED, REFINE, REFINE_PUBLISHED,
-                                         RECEDE, SHELL and SPRINGS */
+    uint32_t structSize, flags;       /* flags: FwBurnableFlags, default 0. At most one of SKINNED, REFINE, RECEDE and
+                                         SHELL */
     FwMeshId mesh;
     FwMaterialId materials[8];        /* by triangle material. All null: pine. If one is set, null ones are noncombustible */
     FwImageId baseColor;              /* null: the material's base colour and procedural detail */
@@ -664,11 +654,7 @@ typedef struct FwBurnableMeshDef {
     uint32_t maxHops;                 /* default 0: no limit. As in FwWorldDef */
     uint32_t maxBurningTiles;         /* default 0: no limit. As in FwWorldDef, for this object */
     float timeToLive;                 /* s, [0, 1e6], default 0: no limit. As in FwWorldDef */
-    /* FW_BURNABLE_REFINE_PUBLISHED: its heat boundary at a radius r is where
-     * r^2 = |sin(pi Theta / heatStep) + sin(pi Theta) + heatPsi |x - x0|^2|, Theta random. */
-    float heatPsi;                    /* 1/m^2, [0, 1e8], default 0: 1 / (mean finest edge)^2 */
-    float heatStep;                   /* [0, 1000], default 0: as fast as the materials' fastest fire. Growth of r in a step
-                                         of 1/32 s (delta r) */
+    float heatPsi, heatStep;          /* reserved, default 0 */
     /* FW_EVENT_STRUCTURE_BROKE. Checked twice a second of world time. Holes count as gone: burnt out or collapsed. Each check
      * costs about 25 ns a texel; on a device it copies the burn map, 12 bytes a texel. */
     float breakShare;                 /* share, [0, 1], default 0: never. Raises the event once this share of the surface is
@@ -731,8 +717,7 @@ FW_API FwResult FW_CALL fwWorld_Ignite(FwWorld*, const FwIgnitionDef* def, uint3
  * texels stay unchanged. Events and FwObjectState of `to` continue those of `from`; tags and queries stay with their object.
  * `from` keeps its burn. Destroy it after the next step (fwWorld_DestroyLater waits for that), or hide it and put it out.
  * The result is bit-identical on every backend and in command logs, timelines and networks.
- * FW_ERROR_INVALID_ARGUMENT: one has FW_BURNABLE_LITE and the other not; either has FW_BURNABLE_PUBLISHED, plays a baked burn
- * or takes part in another transfer. FW_ERROR_BAD_DATA: less than half of `to` has a matching texel. [world] */
+ * FW_ERROR_INVALID_ARGUMENT: one has FW_BURNABLE_LITE and the other not; either plays a baked burn or takes part in another transfer. FW_ERROR_BAD_DATA: less than half of `to` has a matching texel. [world] */
 FW_API FwResult FW_CALL fwWorld_TransferBurn(FwWorld*, FwBurnableMeshId from, FwBurnableMeshId to);
 
 /* ---- volumetric fires: flames without fuel ----------------------------------------------------------------- */
@@ -750,7 +735,7 @@ typedef enum FwVolumetricFireFlags {
     FW_FIRE_IGNITES = 16, /* ignites burnable meshes that it touches long enough; see FwVolumetricFireDef */
     FW_FIRE_FLAGS_FORCE32 = 0x7fffffff
 } FwVolumetricFireFlags;
-typedef enum FwFireTier { /* how the views of fwWorld_RecordOutside show a fire. Other views march all fires as they draw */
+typedef enum FwFireTier { /* 4 is reserved. How the views of fwWorld_RecordOutside show a fire. Other views march all fires as they draw */
     FW_FIRE_TIER_AUTO = 0,       /* by size on the screen. Marches at most 32 flames, the 16 largest at high quality */
     FW_FIRE_TIER_MARCH_HIGH = 1, /* marched each frame with up to 64 samples a ray. If the host requests it, rays
                                     through thin regions take more samples than with AUTO: thin flame tongues show the least
@@ -759,10 +744,6 @@ typedef enum FwFireTier { /* how the views of fwWorld_RecordOutside show a fire.
     FW_FIRE_TIER_IMPOSTOR = 3,   /* an impostor of its own: a billboard, marched at up to 24 march pixels across. Twelve
                                     impostors are marched in each frame, round-robin, whatever their number. Meant for flames
                                     less than 13 px across */
-    FW_FIRE_TIER_SLICES = 4,     /* the published method, for comparison: view-aligned planes through the flame's lattice, one
-                                    sample each. For hosts that can run little before their pass. Layers may be visible. Slices
-                                    need FW_OUTPUT_LINEAR; with another FwOutputEncoding they would blend wrongly, so the fire
-                                    is marched low instead */
     FW_FIRE_TIER_SHARED_IMPOSTOR = 5,   /* an impostor that similar flames share. Each frame marches one of them into an atlas of
                                     the last 32 frames. Each flame shows the atlas up to 22 frames late, with its own width,
                                     height and lean; half of them are mirrored. Similar: the same appearance, nearly the same
@@ -1112,9 +1093,8 @@ typedef enum FwFieldOpen {        /* borders through which particles leave; the 
     FW_FIELD_OPEN_LEFT = 1, FW_FIELD_OPEN_RIGHT = 2, FW_FIELD_OPEN_BOTTOM = 4, FW_FIELD_OPEN_TOP = 8,
     FW_FIELD_OPEN_FORCE32 = 0x7fffffff
 } FwFieldOpen;
-typedef enum FwParticleFieldFlags {
+typedef enum FwParticleFieldFlags { /* 2 is reserved */
     FW_FIELD_HIDDEN = 1,          /* not drawn; its time continues */
-    FW_FIELD_AS_PUBLISHED = 2,    /* ten steps a second, shown without interpolation */
     FW_FIELD_WETS = 4,            /* for water: wets the burnable meshes that it touches and so puts them out. Eight times a
                                      second, from the content of its cells, the same on every backend. Full cells give 320 g/m^2
                                      in a second. A billboard acts as a sheet across its own x axis, however it faces the
@@ -1307,7 +1287,7 @@ typedef struct FwObjectState { /* state at `frameIndex`: 2 to 3 frames ago on a 
     float burningArea;         /* m^2 */
     float power;               /* W at pace 1 */
     float reserved1;
-    double energy;             /* J that its fuel gave off; 0 with FW_BURNABLE_PUBLISHED */
+    double energy;             /* J that its fuel gave off */
     uint32_t refinedTriangles; /* at the last draw, if it refines and has ignited; see FwWorldStats */
     uint32_t playsBakedBurn;            /* 1: it plays a baked burn (fwWorld_PlayBurn); 0: it is simulated */
 } FwObjectState;
@@ -1365,8 +1345,7 @@ typedef struct FwArrivalState {
  * other objects, gusts, drying water and limits on burning tiles. Exact for a fire left alone; after a change of fire, water,
  * wind, pose or air, request again. The library runs the front ahead, at most FwWorldDef::arrivalTiles tiles a frame, once
  * for all queries on an object. Near points are answered first; on a device the first frames wait for the readback of the
- * state. Counts towards the 1024 open queries. An object's first query allocates about 5 bytes a texel.
- * FW_ERROR_INVALID_ARGUMENT: the object has FW_BURNABLE_PUBLISHED. [world] */
+ * state. Counts towards the 1024 open queries. An object's first query allocates about 5 bytes a texel. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestArrival(FwWorld*, FwBurnableMeshId id, const float position[3], FwQueryId* query);
 /* Writes the answer and frees the query. FW_NOT_READY: it has not arrived yet. [world] */
 FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArrivalState* state);
@@ -1384,8 +1363,7 @@ FW_API FwResult FW_CALL fwWorld_FetchArrival(FwWorld*, FwQueryId query, FwArriva
  * (meshes, materials, burnable meshes).
  * The bytes are little-endian, versioned, checksummed and compressed. They are equal on every backend if polling was equal and
  * no object moved since (event positions are those of the poll). A loaded world continues like its original: state, events
- * and later saves are equal, except FwWorldStats::runTiles and flames, which count work.
- * FW_ERROR_INVALID_ARGUMENT: an object with FW_BURNABLE_PUBLISHED burns. [world] */
+ * and later saves are equal, except FwWorldStats::runTiles and flames, which count work. [world] */
 FW_API FwResult FW_CALL fwWorld_RequestSave(FwWorld*);
 /* Copies the save. If `buffer` is null, *size gets the size needed; otherwise *size is the capacity on entry and the bytes
  * written on return. The library keeps the save until the next fwWorld_RequestSave. Write it to a new file, then rename that
@@ -1447,8 +1425,7 @@ static inline FwTimelineDef fwDefaultTimelineDef(void) {
     FwTimelineDef d; fwInitDef(FW_DEF_TIMELINE, &d, (uint32_t)sizeof d); return d;
 }
 /* Starts a timeline at the state after the next frame; drops an earlier one. A keyframe costs its frame as much as
- * fwWorld_RequestSave. fwWorld_Load restarts the timeline. FW_ERROR_INVALID_ARGUMENT: an object with FW_BURNABLE_PUBLISHED
- * burns. [world] */
+ * fwWorld_RequestSave. fwWorld_Load restarts the timeline. [world] */
 FW_API FwResult FW_CALL fwWorld_StartTimeline(FwWorld*, const FwTimelineDef* def);
 FW_API FwResult FW_CALL fwWorld_StopTimeline(FwWorld*); /* the world stays as it is [world] */
 /* Moves one part of the way to the last whole step (1/32 s) at or before untilTick (see FwWorldStats::tick), back or forth:
@@ -1496,8 +1473,7 @@ FW_API FwResult FW_CALL fwWorld_DestroyBurn(FwWorld*, FwBurnId id); /* refused w
  * 4 kW/m^2 (see FW_WORLD_RADIATION), too little to ignite wood; its wind or pose changes enough to change its front;
  * fwWorld_StopBurn; the last texel of the burn ignites.
  * The result is the same on every backend and in command logs, networks and saves, which name burns by id and hash: create
- * them in the same order. FW_ERROR_INVALID_ARGUMENT: the burn is of another mesh or shape (by hash), or the object has
- * FW_BURNABLE_PUBLISHED. [world] */
+ * them in the same order. FW_ERROR_INVALID_ARGUMENT: the burn is of another mesh or shape (by hash). [world] */
 FW_API FwResult FW_CALL fwWorld_PlayBurn(FwWorld*, FwBurnableMeshId id, FwBurnId burn, float delay, float speed);
 /* Makes an object that plays a burn go live. Otherwise does nothing. [world] */
 FW_API FwResult FW_CALL fwWorld_StopBurn(FwWorld*, FwBurnableMeshId id);
@@ -1685,7 +1661,7 @@ FW_API FwResult FW_CALL fwWorld_GetStats(FwWorld*, FwWorldStats* stats); /* [wor
 
 /* Energy of all burnable meshes of the world, exact: fuel = unburnt + radiated + convected, always. In units of 2^-20 J, which
  * the simulation counts. At `frameIndex`, as in FwObjectState. FW_BURNABLE_LITE: a texel's fuel counts as a whole once it has
- * burnt out (if put out earlier, all of it is unburnt). FW_BURNABLE_PUBLISHED keeps no ledger. */
+ * burnt out (if put out earlier, all of it is unburnt). */
 typedef struct FwEnergyLedger {
     uint32_t structSize;
     uint32_t objects;          /* objects that keep a ledger */

@@ -21,7 +21,7 @@ FW_API FwResult FW_CALL fwDebug_RequestBurnMap(FwWorld*, FwBurnableMeshId id);
 FW_API FwResult FW_CALL fwDebug_FetchBurnMap(FwWorld*, FwBurnableMeshId id, uint32_t* ticks, uint64_t capacity,
                                              uint64_t* count, uint64_t* hash, uint64_t* tick);
 
-typedef enum FwDebugSwitch {
+typedef enum FwDebugSwitch { /* 256 is reserved */
     FW_DEBUG_DENSE = 1,             /* runs every tile of burning objects each step */
     FW_DEBUG_SHUFFLE = 2,           /* cpu backend: runs due tiles and embers in a random order */
     FW_DEBUG_NO_SEAM_WAKE = 4,      /* mutant, which must make a test fail: tiles across a seam do not wake */
@@ -30,7 +30,6 @@ typedef enum FwDebugSwitch {
     FW_DEBUG_NEVER_IDLE = 32,       /* records the passes even if nothing burns */
     FW_DEBUG_REFINE_FULL = 64,      /* refined objects have their deepest level everywhere, and all of it moves */
     FW_DEBUG_SELF_INTERSECTION = 128,        /* no bounds on recession: walls cross, and each opens by itself */
-    FW_DEBUG_NO_DEPTH_PEEL = 256,       /* objects with FW_BURNABLE_DEPTH_PEEL draw only front faces */
     FW_DEBUG_SWITCH_FORCE32 = 0x7fffffff
 } FwDebugSwitch;
 FW_API FwResult FW_CALL fwDebug_SetSwitches(FwWorld*, uint32_t switches); /* FwDebugSwitch bits [world] */

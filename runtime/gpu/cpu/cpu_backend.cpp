@@ -7,6 +7,7 @@
 #include "core/hash.h"
 #include "flamewright/flamewright_debug.h"
 #include "gpu/cpu/cpu_state.h"
+#include "gpu/extension.h"
 #include "mesh/exchange_tiles.h"
 #include "shared/burn_budget.h"
 
@@ -27,7 +28,7 @@ namespace {
 
 constexpr const char* kTimerNames[kTimerCount] = {"wake",      "events",  "rooms",       "heat",
                                                   "schedule",  "arrival", "burn_budget", "commit",
-                                                  "published", "reduce",  "exchange",    "field"};
+                                                  "extension", "reduce",  "exchange",    "field"};
 
 class Stopwatch {
  public:
@@ -236,8 +237,8 @@ void CpuBackend::State::applyEvents(const StepPlan& step) noexcept {
         if (now == before) continue;
         if (setState(object, worldTile, first.texel, now, step.now + kStepTicks))
             litFrom(object, kLitByHand);
-        if (!object.published.empty()) {
-            publishedEvent(object, first.texel, isSource(now));
+        if (!object.extended.empty()) {
+            extension()->cpu->event(object, first.texel, isSource(now));
             continue;
         }
         changedTexel(object, first.texel, step.now);
@@ -285,12 +286,12 @@ void CpuBackend::State::applyToAll(CpuObject& object, std::span<const TexelEvent
             changed |= 1ull << lane;
             if (setState(object, worldTile, texel, now, step.now + kStepTicks))
                 litFrom(object, kLitByHand);
-            if (!object.published.empty()) publishedEvent(object, texel, isSource(now));
+            if (!object.extended.empty()) extension()->cpu->event(object, texel, isSource(now));
         }
         if (heated) hot(worldTile);
         if (burns) burning(worldTile);
         if (changed == 0) continue;
-        if (!object.published.empty()) continue;
+        if (!object.extended.empty()) continue;
         tiles[worldTile].lastChange = step.now;
         touchDependents(object, local, changed);
     }
@@ -302,7 +303,7 @@ void CpuBackend::State::wake(const StepPlan& step) noexcept {
         std::copy_n(update.materials, kMaterialsPerObject, object.materials.begin());
         object.record.window = update.window;
         object.record.substepShift = update.substepShift;
-        if ((switches & kSwitchNoWindWake) != 0 || !object.published.empty()) continue;
+        if ((switches & kSwitchNoWindWake) != 0 || !object.extended.empty()) continue;
         for (uint32_t local = 0; local < object.record.tileCount; ++local) {
             const uint32_t worldTile = object.record.worldTileBase + local;
             const bool listed = (tiles[worldTile].flag & kTileListed) != 0;
@@ -353,7 +354,7 @@ void CpuBackend::State::schedule(const StepPlan& step, uint32_t iteration) noexc
     scheduledBurning = uint32_t(burnList.size()) + goneBurning;
     if ((switches & kSwitchDense) != 0) {
         for (const core::Owned<CpuObject>& object : objects) {
-            if (!object || !object->live || !object->published.empty()) continue;
+            if (!object || !object->live || !object->extended.empty()) continue;
             for (uint32_t local = 0; local < object->record.tileCount; ++local)
                 scheduleTile(step, iteration, object->record.worldTileBase + local, true);
         }
@@ -534,7 +535,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
         std::copy_n(init.heat.begin(), kMaterialsPerObject, object->heatMaterials.begin());
         object->heat.resize(texels);
     }
-    if ((init.record.flags & kObjectPublished) != 0) createPublished(*object);
+    if ((init.record.flags & kObjectExtended) != 0) extension()->cpu->create(*object);
     object->sources.resize(mesh::sourceCells(s.exchangeTiles[init.mesh]));
     if (slot >= s.objects.size()) s.objects.resize(slot + 1);
     core::growTo(s.freeTiles, s.objects.size() + s.freeTiles.size() + 1);
@@ -547,7 +548,7 @@ void CpuBackend::createObject(uint32_t slot, const ObjectInit& init) {
     object->record.flags |= kObjectLive;
     object->live = true;
     s.resetObject(*object, slot);
-    if (!object->published.empty()) ++s.publishedObjects;
+    if (!object->extended.empty()) ++s.extendedObjects;
     s.counts.add(*object);
     s.countLists();
     s.objects[slot] = std::move(object);
@@ -566,8 +567,8 @@ void CpuBackend::destroyObject(uint32_t slot) noexcept {
     s.goneBurning += drop(s.burnList);
     s.goneHot += drop(s.hotList);
     std::erase_if(s.burnTiles, [&](const BurnTile& tile) { return tile.object == slot; });
-    FW_ASSERT(object->published.empty() || s.publishedObjects > 0);
-    if (!object->published.empty()) --s.publishedObjects;
+    FW_ASSERT(object->extended.empty() || s.extendedObjects > 0);
+    if (!object->extended.empty()) --s.extendedObjects;
     s.releaseTiles(first, count);
     s.counts.remove(*object);
     s.objects[slot] = core::Owned<CpuObject>();
@@ -644,9 +645,9 @@ void CpuBackend::State::runStep(const StepPlan& step) noexcept {
     goneListed = 0;
     if (!list.empty() || (switches & kSwitchDense) != 0)
         for (uint32_t k = 0; k < 1u << step.substepShift; ++k) iterate(step, k);
-    if (publishedObjects != 0) {
-        Stopwatch watch(*this, kTimerPublished);
-        requestThenBurn(most, step.now, [&] { publishedStep(step.now); });
+    if (extendedObjects != 0) {
+        Stopwatch watch(*this, kTimerExtension);
+        requestThenBurn(most, step.now, [&] { extension()->cpu->step(*this, step.now); });
     }
     if (step.reduce) {
         Stopwatch watch(*this, kTimerReduce);
@@ -776,7 +777,7 @@ uint64_t stateBytes(const CpuObject& object, SizeOf sizeOf) noexcept {
     const auto bytes = [&](const auto&... of) {
         return ((uint64_t(sizeOf(of)) * sizeof of[0]) + ...);
     };
-    return bytes(object.state, object.slowness, object.published, object.heat);
+    return bytes(object.state, object.slowness, object.extended, object.heat);
 }
 uint64_t stateBytes(const CpuObject& object) noexcept {
     return stateBytes(object, [](const auto& of) { return of.size(); });

@@ -4,6 +4,7 @@
 #include "core/growth.h"
 #include "core/hash.h"
 #include "gpu/cpu/cpu_state.h"
+#include "gpu/extension.h"
 #include "mesh/exchange_tiles.h"
 #include "mesh/part_links.h"
 
@@ -207,8 +208,8 @@ bool CpuBackend::State::light(uint32_t slot, uint32_t texel, uint32_t tick, uint
     setState(object, worldTile, texel, tick, now);
     if (!object.heat.empty()) hot(worldTile);
     disturb(object, now);
-    if (!object.published.empty()) {
-        publishedEvent(object, texel, true);
+    if (!object.extended.empty()) {
+        extension()->cpu->event(object, texel, true);
         return true;
     }
     changedTexel(object, texel, now);

@@ -1,6 +1,7 @@
 // Images of objects: taken at a frame's end, and put back. Images hold no lists: the tiles' flags
 // say which lists they are in, and touched tiles find their pending arrivals again.
 #include "gpu/cpu/cpu_state.h"
+#include "gpu/extension.h"
 
 #include <algorithm>
 
@@ -54,9 +55,9 @@ void CpuBackend::State::resetObject(CpuObject& object, uint32_t slot) noexcept {
         object.state[i] = burns ? kNever : kInert;
     }
     if (!object.heat.empty()) createHeat(object);
-    if (!object.published.empty()) {
-        std::fill(object.published.begin(), object.published.end(), 0.0f);
-        createPublished(object);  // allocates nothing: its planes have their size
+    if (!object.extended.empty()) {
+        std::fill(object.extended.begin(), object.extended.end(), 0.0f);
+        extension()->cpu->create(object);  // allocates nothing: its planes have their size
     }
     object.counters = {};
     std::fill(object.sources.begin(), object.sources.end(), FireSource{});

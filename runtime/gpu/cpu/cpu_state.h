@@ -15,7 +15,7 @@ using mesh::FrontTile;
 
 struct CpuObject {
     explicit CpuObject(std::pmr::memory_resource* memory)
-        : state(memory), slowness(memory), published(memory), heat(memory), sources(memory) {}
+        : state(memory), slowness(memory), extended(memory), heat(memory), sources(memory) {}
     bool live = false;
     uint32_t mesh = 0;
     BurnObject record{};
@@ -24,10 +24,10 @@ struct CpuObject {
     const mesh::BurnDomain* domain = nullptr;
     std::pmr::vector<uint32_t> state;     // one per texel
     std::pmr::vector<uint16_t> slowness;  // empty: the mesh's own
-    std::pmr::vector<float> published;    // as-published objects only: see cpu_published.cpp
+    std::pmr::vector<float> extended;     // of an extension that burns its texels; else empty
     std::pmr::vector<uvec2> heat;         // packed HeatTexel, one per texel; empty: none
     std::array<HeatMaterial, kMaterialsPerObject> heatMaterials{};
-    uint32_t publishedParity = 0;
+    uint32_t extensionParity = 0;
     ExchangeObject remote{};               // without kExchangeLive until its first update
     std::pmr::vector<FireSource> sources;  // by cell, see mesh/exchange_tiles.h
     bool gives = false;                    // some source differs from FireSource{}
@@ -75,9 +75,12 @@ std::span<T> copyNext(std::span<const T> from, std::span<T>& to) noexcept {
 // cpu_heat.cpp. Needs the states; makes those of wet texels wet.
 void createHeat(CpuObject& object);
 
-// cpu_published.cpp. Needs the states.
-void createPublished(CpuObject& object);
-void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept;
+// What an extension does for objects with kObjectExtended.
+struct CpuMethods {
+    void (*create)(CpuObject& object);  // fills `extended`; needs the states
+    void (*event)(CpuObject& object, uint32_t texel, bool burns) noexcept;
+    void (*step)(CpuBackend::State& s, uint32_t now) noexcept;  // of all objects
+};
 
 struct CpuField {
     explicit CpuField(std::pmr::memory_resource* memory) : field(memory) {}
@@ -113,7 +116,7 @@ enum Timer : uint32_t {
     kTimerArrival,
     kTimerBurnBudget,
     kTimerCommit,
-    kTimerPublished,
+    kTimerExtension,
     kTimerReduce,
     kTimerExchange,
     kTimerField,
@@ -211,7 +214,6 @@ struct CpuBackend::State {
     [[nodiscard]] uint32_t heatTexel(const CpuObject& object, uint32_t texel, uint32_t work,
                                      const TileHeat& comes, uint32_t now, HeatTexel& x,
                                      uint32_t& units) const noexcept;
-    void publishedStep(uint32_t now) noexcept;  // cpu_published.cpp
     void carryTexel(const TexelEvent& event, uint32_t now) noexcept;
     // Writes a texel's state and counts it. True: the texel is a source now, and was none.
     bool setState(CpuObject& object, uint32_t worldTile, uint32_t texel, uint32_t after,
@@ -304,7 +306,7 @@ struct CpuBackend::State {
     bool isRequestPass = false;  // tiles that would be lit are requested, and none is lit
     uint32_t random = 1;         // of the shuffle switch
     uint64_t runTiles = 0;
-    uint32_t publishedObjects = 0;
+    uint32_t extendedObjects = 0;
     CpuCounts counts;
     // Exchange between objects.
     std::pmr::vector<std::pmr::vector<ExchangeTile>> exchangeTiles{memory};  // by mesh

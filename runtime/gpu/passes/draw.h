@@ -61,21 +61,22 @@ struct DrawItem {
     float coldReach = 0;     // texels, of those
     bool refined = false;    // its triangles are in the refinement's buffers
     bool cut = false;        // and some of them are cut
-    bool perPixelHoles = false;   // the cut along open edges is too coarse: texels show the holes
-    uint32_t inner = 0;           // from a vertex's place to that on the inner skin; 0: has none
-    bool consumed = false;        // those burnt through are left out, whole: nothing is cut
-    bool selfIntersects = false;  // drawn after the others, behind its own nearest depth
+    bool perPixelHoles = false;  // the cut along open edges is too coarse: texels show the holes
+    uint32_t inner = 0;          // from a vertex's place to that on the inner skin; 0: has none
+    bool consumed = false;       // those burnt through are left out, whole: nothing is cut
+    bool depthFirst = false;     // drawn after the others, behind its own nearest depth
     SurfaceDraw draw{};
 };
 
-// The order of a view's draws. Self-intersecting surfaces come after the other surfaces: where a
-// back face is nearest they show what was drawn before. Haze bends solid surfaces alone. Fields,
+// The order of a view's draws. Surfaces of DepthFirst come after the other surfaces: where a back
+// face is nearest they show what was drawn before. Haze bends solid surfaces alone. Fields,
 // flames and volumes are soft: in a target of half resolution they are drawn there, and come over
 // the picture with HalfResolutionComposite, with sparks after them.
 enum class DrawPhase : uint8_t {
     OpaqueFresh,
     OpaqueBurning,
-    OpaqueSelfIntersecting,
+    DepthFirst,
+    OpaqueOverDepth,
     Distortion,
     Fields,
     Flames,

@@ -1,8 +1,9 @@
 #include "gpu/passes/pass.h"
 
+#include "core/assert.h"
+#include "gpu/extension.h"
 #include "shared/half.h"
 #include "shared/volume_haze.h"
-#include "shared/volume_slices.h"
 
 #include <algorithm>
 #include <type_traits>
@@ -131,17 +132,6 @@ constexpr DrawPass intoHalf(const char* name, const char* shader, const char* mu
 
 constexpr auto kDrawPasses = [] {
     std::array<DrawPass, kDrawPassCount> passes{};
-    // The published method for walls that have crossed: the nearest depth of an object from both
-    // sides first, then only what faces the eye and is not behind it.
-    passes[draw::self_intersection_depth] = {.name = "z_pass",
-                                             .vertexShader = "z_pass.vert",
-                                             .fragmentShader = nullptr,
-                                             .vertexInput = VertexInput::mesh,
-                                             .blend = Blend::depthAlone,
-                                             .writeDepth = true,
-                                             .pushBytes = sizeof(SurfaceDraw),
-                                             .behind = true,
-                                             .drawnIn = DrawnIn::surfaces};
     passes[draw::flames] = {.name = "flames",
                             .vertexShader = "flames.vert",
                             .fragmentShader = "flames.frag",
@@ -174,14 +164,6 @@ constexpr auto kDrawPasses = [] {
                                       .softShaderMultisampled = "volume_composite_soft_ms.frag",
                                       .texelShaders = kCompositeTexelShaders,
                                       .atHalf = AtHalf::soft};
-    passes[draw::volume_slices] = {.name = "volume_slices",
-                                   .vertexShader = "volume_slices.vert",
-                                   .fragmentShader = "volume_slices.frag",
-                                   .pushBytes = sizeof(SlicesPush),
-                                   .softShader = "volume_slices_soft.frag",
-                                   .softShaderMultisampled = "volume_slices_soft_ms.frag",
-                                   .atHalf = AtHalf::soft,
-                                   .textures2 = Textures::profiles};
     passes[draw::volume_haze] = {.name = "volume_haze",
                                  .vertexShader = "volume_haze.vert",
                                  .fragmentShader = nullptr,
@@ -226,10 +208,37 @@ constexpr auto kDrawPasses = [] {
     return passes;
 }();
 
+constexpr uint32_t kMaxComputePasses = 80;
+
+// The rows of the library, then those of an extension.
+template <class Row, uint32_t kMax>
+class Table {
+ public:
+    Table(std::span<const Row> own, std::span<const Row> more) {
+        FW_ASSERT(own.size() + more.size() <= kMax, "%zu and %zu passes", own.size(), more.size());
+        const auto end = std::copy(own.begin(), own.end(), rows_.begin());
+        count_ = size_t(std::copy(more.begin(), more.end(), end) - rows_.begin());
+    }
+    [[nodiscard]] std::span<const Row> rows() const noexcept { return {rows_.data(), count_}; }
+
+ private:
+    std::array<Row, kMax> rows_{};
+    size_t count_ = 0;
+};
+
 }  // namespace
 
-std::span<const ComputePass> computePasses() noexcept { return kComputePasses; }
-std::span<const DrawPass> drawPasses() noexcept { return kDrawPasses; }
+std::span<const ComputePass> computePasses() noexcept {
+    static const auto passes = Table<ComputePass, kMaxComputePasses>(
+        kComputePasses, extension() ? extension()->computePasses : std::span<const ComputePass>());
+    return passes.rows();
+}
+
+std::span<const DrawPass> drawPasses() noexcept {
+    static const auto passes = Table<DrawPass, kMaxDrawPasses>(
+        kDrawPasses, extension() ? extension()->drawPasses : std::span<const DrawPass>());
+    return passes.rows();
+}
 
 uint32_t surfacePass(const SurfaceKey& key) noexcept {
     SurfaceKey drawn = key;

@@ -8,7 +8,6 @@
 #include "shared/field.h"
 #include "shared/look.h"
 #include "shared/particle.h"
-#include "shared/reference_pattern.h"
 #include "shared/refine.h"
 #include "shared/spark.h"
 #include "shared/volume_draw.h"
@@ -81,6 +80,7 @@ enum Number : uint32_t {
 #define FW_COMPUTE_PASS(name, Push) number_##name,
 #include "gpu/passes/passes.inl"
 #undef FW_COMPUTE_PASS
+    count,
 };
 #define FW_COMPUTE_PASS(name, Push) inline constexpr ComputePassOf<Push> name{number_##name};
 #include "gpu/passes/passes.inl"
@@ -173,14 +173,12 @@ struct SurfaceKey {
 // Draw passes by their number in drawPasses(). Surfaces, by key, lie behind them: surfacePass.
 namespace draw {
 enum Number : uint32_t {
-    self_intersection_depth,
     flames,
     flipbook_flames,       // where flipbooks show some of the quads
     flipbook_flames_only,  // where they show all but sparks
     volume,
     volume_impostor,
     volume_composite,
-    volume_slices,
     volume_haze,
     field_emitting,
     field_absorbing,
@@ -195,7 +193,7 @@ enum Number : uint32_t {
 };
 }  // namespace draw
 constexpr uint32_t kSurfacePassCount = 35;
-constexpr uint32_t kDrawPassCount = draw::count + kSurfacePassCount;
+constexpr uint32_t kDrawPassCount = draw::count + kSurfacePassCount;  // without an extension's
 [[nodiscard]] std::span<const DrawPass> drawPasses() noexcept;
 
 // The pass that draws surfaces of this key. Some keys share one: an image is all that a fresh
@@ -204,6 +202,7 @@ constexpr uint32_t kDrawPassCount = draw::count + kSurfacePassCount;
 
 // A bit for each draw pass, by its number.
 using DrawPassSet = uint64_t;
-static_assert(kDrawPassCount <= 64);
+constexpr uint32_t kMaxDrawPasses = 64;
+static_assert(kDrawPassCount <= kMaxDrawPasses);
 
 }  // namespace fw::gpu

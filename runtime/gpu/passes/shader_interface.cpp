@@ -1,7 +1,8 @@
 #include "gpu/passes/shader_interface.h"
 
 #include "core/error.h"
-#include "shaders_embedded.h"
+#include "embedded_shaders.h"
+#include "gpu/extension.h"
 
 #include <algorithm>
 #include <string>
@@ -104,6 +105,16 @@ bool ShaderInterface::usesView() const noexcept {
 bool ShaderInterface::isPerView() const noexcept {
     return std::any_of(uses().begin(), uses().end(),
                        [](const Use& use) { return resourceOf(use.resource, 1) != use.resource; });
+}
+
+const ShaderCode* findShader(std::string_view name) noexcept {
+    const auto find = [&](std::span<const ShaderCode> shaders) -> const ShaderCode* {
+        const auto at = std::find_if(shaders.begin(), shaders.end(),
+                                     [&](const ShaderCode& shader) { return name == shader.name; });
+        return at == shaders.end() ? nullptr : &*at;
+    };
+    const ShaderCode* const own = extension() ? find(extension()->shaders) : nullptr;
+    return own ? own : find(embeddedShaders());
 }
 
 std::span<const uint32_t> shaderCode(std::string_view name) {

@@ -1,6 +1,6 @@
 // Burnable meshes as they look now, one draw per object and material. Pipelines differ in what they
 // can draw, not in how it looks: see kSurface... in shared/look.h.
-#include "gpu/passes/draw.h"
+#include "gpu/extension.h"
 
 #include <algorithm>
 #include <tuple>
@@ -14,7 +14,8 @@ constexpr uint32_t kObjectsOwn = (1u << kObjectRoomShift) - 1;
 static_assert(((kDrawVertexLight | kDrawPlaced | kDrawHeat | kDrawWet | kDrawThick | kDrawCut |
                 kDrawPerPixelHoles | kDrawInner) &
                kObjectsOwn) == 0);
-static_assert((kObjectSkinned | kObjectZPass | kObjectUnseen | kObjectShownAgain) <= kObjectsOwn);
+static_assert((kObjectSkinned | kObjectDepthFirst | kObjectUnseen | kObjectShownAgain) <=
+              kObjectsOwn);
 
 // m. Triangles with shorter edges are lit by flames at their corners.
 constexpr float kSmallEdge = 0.03f;
@@ -97,9 +98,9 @@ void orderSurfaces(std::span<const DrawItem> items, std::pmr::vector<SurfaceStep
         if (!item.burns) {
             add(DrawPhase::OpaqueFresh, SurfaceState::fresh, Cull::back);
             add(DrawPhase::OpaqueFresh, SurfaceState::fresh, Cull::front);
-        } else if (item.selfIntersects) {
-            out.push_back({DrawPhase::OpaqueSelfIntersecting, draw::self_intersection_depth, i});
-            add(DrawPhase::OpaqueSelfIntersecting, SurfaceState::burning, Cull::back);
+        } else if (item.depthFirst) {
+            out.push_back({DrawPhase::DepthFirst, extension()->depthPass, i});
+            add(DrawPhase::OpaqueOverDepth, SurfaceState::burning, Cull::back);
         } else {
             if (item.coldApart) add(DrawPhase::OpaqueBurning, SurfaceState::cold, Cull::back);
             add(DrawPhase::OpaqueBurning, SurfaceState::burning, Cull::back);

@@ -14,6 +14,8 @@
 
 #include "core/owned.h"
 
+#include <memory>
+
 namespace fw::gpu::vk {
 
 struct Context::State {
@@ -23,21 +25,6 @@ struct Context::State {
     Device device;
     DeviceMemory deviceMemory;
     Pipelines pipelines;
-};
-
-// What the published scheme keeps of an object.
-struct PatternUse {
-    explicit PatternUse(std::pmr::memory_resource* memory) : state(memory) {}
-    const mesh::PatternModel* model = nullptr;  // null: free
-    mesh::PatternSettings settings;
-    mesh::PatternState state;
-};
-struct PatternFrame {  // refined by the published scheme
-    explicit PatternFrame(std::pmr::memory_resource* memory) : patternUses(memory) {}
-    std::pmr::vector<core::Owned<PatternUse>> patternUses;
-    uint32_t users = 0;  // objects
-    uint32_t placeGroups = 0, nameGroups = 0;
-    double lastTick = 0;  // of the last frame with any
 };
 
 struct OpenFrame {
@@ -82,12 +69,12 @@ struct BackendState {
     FieldRenderer particleFields;
     SurfaceRenderer surfaces;
     RefineRenderer refine;
-    PatternFrame pattern;
+    std::shared_ptr<void> extended;  // of an extension, from its first use on
     DrawTargets targets;
     OutsideViews outsideViews;
     ReadbackResults results;
     Detail detail;          // as of the frame's plan
-    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoZPass
+    uint32_t crossing = 0;  // of kSwitchCrossing and kSwitchNoDepthFirst
     ViewParams seen{};      // of the last pushView
     OwnDevice own;
     OpenFrame open;
@@ -115,13 +102,5 @@ struct BackendState {
  private:
     void destroyAll() noexcept;
 };
-
-// vk_published.cpp
-[[nodiscard]] bool refinesAsPublished(const BackendState& s, const ObjectEntry& object) noexcept;
-void adoptPattern(BackendState& s, RefineUse& use, const ObjectInit& init, const RefineMesh& mesh,
-                  uint64_t last);
-void dropPattern(BackendState& s, RefineUse& use) noexcept;
-uint64_t planPatterns(BackendState& s);
-void refineAsPublished(BackendState& s, FrameInFlight& slot);
 
 }  // namespace fw::gpu::vk

@@ -116,7 +116,7 @@ void DeformRenderer::addNeeds(BackendState& s, uint32_t slot, uint64_t endTick,
             needs.deform.sheets += groups;
             needs.sheetsBegin |= object.deforms.reset || object.deforms.woke;
         }
-        if (object.deform.flags & kDeformSprings) needs.deform.springs += groups;
+        if (object.deform.flags & kDeformExtended) needs.deform.extended += groups;
         needs.deform.vertices += vertexGroups;
         if (object.inner) needs.deform.inner += vertexGroups;
     }
@@ -155,7 +155,7 @@ Staged DeformRenderer::stageGroups(BackendState& s, FrameRecorder& recorder) con
             if (!recede || recedes(softSteps, object, first / kDeformGroup))
                 recorder.appendOne(staged, WakeGroup{object.deforms.range.first(), first | marks});
     };
-    for (const uint32_t tier : {~0u, kDeformShell, kDeformSprings})
+    for (const uint32_t tier : {~0u, kDeformShell, kDeformExtended})
         for (const uint32_t i : s.scene.awake)
             if (const ObjectEntry& object = s.scene.objects[i];
                 object.deforms.now && !object.deforms.skinPlus1 &&

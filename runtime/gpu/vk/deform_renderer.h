@@ -43,7 +43,7 @@ struct Skin {
 
 struct DeformRenderer {
     explicit DeformRenderer(std::pmr::memory_resource* pmr) : skins(pmr) {}
-    // Sheets and springs step at a rate of their own, up to `ticks` (with a fraction).
+    // Particles with a solver step at a rate of their own, up to `ticks` (with a fraction).
     void advance(double ticks) noexcept;
     // What object `slot` needs to deform or to be skinned in this frame; marks if it does.
     void addNeeds(BackendState& s, uint32_t slot, uint64_t endTick, FrameNeeds& needs) const;
@@ -55,7 +55,7 @@ struct DeformRenderer {
     [[nodiscard]] Skin& skinOf(const ObjectEntry& object) noexcept;
 
     std::pmr::vector<Skin> skins;
-    uint64_t softStep = 0;   // number of the step that sheets and springs have come to
+    uint64_t softStep = 0;   // number of the step that particles with a solver have come to
     uint32_t softSteps = 0;  // that they take in the frame
     uint32_t bendSet = 0;    // which bending constraints the next one takes
 

@@ -1,6 +1,7 @@
 #include "gpu/vk/flame_renderer.h"
 
 #include "core/error.h"
+#include "core/reserved.h"
 #include "gpu/passes/blend_order.h"
 #include "gpu/vk/backend_state.h"
 #include "shared/volume_flame.h"
@@ -186,10 +187,10 @@ void MarchFrame::chooseTiers() noexcept {
         const bool ready = atlas && (atlas->key == box.key || atlas->written + 1 >= kAtlasFrames);
         asked[i] = {box.key,           box.tier, volumeWide(items_[i].draw, march_.screen),
                     areaOf(items_[i]), ready,    atlas && atlas->shares > 1};
-        const bool slices = box.tier == FW_FIRE_TIER_SLICES;
-        if (slices && !slicesShow(march_.screen.encoding))
+        const bool extended = box.tier == core::reserved::kFireTier;
+        if (extended && !extension()->showsVolumes(march_.screen.encoding))
             asked[i].asked = FW_FIRE_TIER_MARCH_LOW;
-        else if (!slices && !impostorFits(items_[i]))
+        else if (!extended && !impostorFits(items_[i]))
             asked[i].asked = FW_FIRE_TIER_MARCH_HIGH;  // around the camera
     }
     lod::chooseTiers({asked.data(), items_.size()}, slots_,
@@ -299,11 +300,11 @@ void MarchFrame::order() noexcept {
         const TierLife& life = march_.lives[places_[i]];
         for (; shown < marched_.count && march_.items[shown].flame == items_[i].flame; ++shown)
             march_.order.add(draw::volume_composite, shown);
-        if (life.shows(FW_FIRE_TIER_SLICES)) {
-            SlicedVolume& one = march_.sliced[march_.slicedCount];
-            one = makeSlicedVolume(items_[i]);
-            setFade(life, life.tier == FW_FIRE_TIER_SLICES, one.draw.from, one.draw.to);
-            march_.order.add(draw::volume_slices, march_.slicedCount++);
+        if (life.shows(core::reserved::kFireTier)) {
+            float from = 0, to = 1;
+            setFade(life, life.tier == core::reserved::kFireTier, from, to);
+            march_.calls[march_.callCount] = extension()->volumeCall(items_[i], from, to);
+            march_.order.add(draw::Number(extension()->volumePass), march_.callCount++);
         }
         if (life.shows(FW_FIRE_TIER_SHARED_IMPOSTOR))
             showAtlas(items_[i], places_[i], numbers_[i]);
@@ -461,7 +462,7 @@ uint32_t FlameRenderer::orderHazes(const BackendState& s, const March* march, fl
 
 MarchRecord FlameRenderer::march(const BackendState& s, OutsideView& of) const noexcept {
     March& march = of.march;
-    march.count = march.impostorCount = march.slicedCount = march.order.count = 0;
+    march.count = march.impostorCount = march.callCount = march.order.count = 0;
     march.there = false;
     march.screen.steps = rayStepCount(s);
     if (!(march.screen.size.x >= 1.0f && march.screen.size.y >= 1.0f)) return {};

@@ -1,5 +1,6 @@
 #include "gpu/vk/frame.h"
 
+#include "gpu/extension.h"
 #include "gpu/vk/backend_state.h"
 #include "shared/burn_budget.h"
 
@@ -180,12 +181,12 @@ void recordSimulation(FrameRecorder& r, FrameLists& lists, const StepRecord& ste
         lists.parity ^= 1;
     }
     push = pushOf(lists, step);
-    if (!step.published.empty())
+    if (!step.extended.empty())
         lighting([&] {
-            for (const PublishedStep& object : step.published) {
+            for (const ExtendedStep& object : step.extended) {
                 push.object = object.object;
-                push.publishedParity = object.parity;
-                r.dispatch(pass::published, push, object.groups);
+                push.extensionParity = object.parity;
+                r.dispatch(extension()->stepPass, push, object.groups);
             }
         });
     if (!step.reduce) return;
@@ -302,7 +303,7 @@ void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
             r.dispatch(pass, push, groups - done);
         }
     };
-    const uint32_t sheets = deform.count.nodes, springs = sheets + deform.count.sheets;
+    const uint32_t sheets = deform.count.nodes, extended = sheets + deform.count.sheets;
     dispatch(pass::recede, 0, deform.count.nodes, deform.steps << 1);
     // A sheet that did not move in the frame before knows of no link yet.
     if (deform.begins && !(deform.steps > 0 && updatesLinkCache(deform.bendSet)))
@@ -312,9 +313,10 @@ void recordDeformation(FrameRecorder& r, const DeformRecord& deform) {
         if (updatesLinkCache(bendSet))
             dispatch(pass::link_cache, sheets, deform.count.sheets, i & 1);
         dispatch(pass::soft, sheets, deform.count.sheets, (i & 1) | bendSet << 1);
-        dispatch(pass::springs, springs, deform.count.springs, i & 1);
+        if (deform.count.extended)
+            dispatch(extension()->deformPass, extended, deform.count.extended, i & 1);
     }
-    const uint32_t vertices = springs + deform.count.springs;
+    const uint32_t vertices = extended + deform.count.extended;
     dispatch(pass::skin_to_mesh, vertices, deform.count.vertices, 0);
     dispatch(pass::inner, vertices + deform.count.vertices, deform.count.inner, 0);
 }
@@ -450,19 +452,6 @@ void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRec
     r.dispatchIndirect(pass::refine_cut, push, FW_BIND_REFINE_WORK, kRefineWorkCut * 4);
     push.phase = 2;
     r.dispatchItems(pass::refine_cut, push, push.objects * kMaterialsPerObject);
-}
-
-void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& with, uint32_t placeGroups,
-                                 uint32_t nameGroups) {
-    PatternPush push = with;
-    for (push.phase = 0; push.phase < 2; ++push.phase) {
-        const uint32_t first = push.phase ? placeGroups : 0;
-        const uint32_t groups = push.phase ? nameGroups : placeGroups;
-        for (uint32_t done = 0; done < groups; done += kMaxGroups) {
-            push.firstGroup = first + done;
-            r.dispatch(pass::refine_published, push, groups - done);
-        }
-    }
 }
 
 }  // namespace fw::gpu::vk

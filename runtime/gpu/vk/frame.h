@@ -18,25 +18,25 @@ struct FrameLists {
 };
 
 struct DeformGroups {  // of kDeformGroup particles or vertices
-    uint32_t nodes = 0, sheets = 0, springs = 0, vertices = 0;
+    uint32_t nodes = 0, sheets = 0, extended = 0, vertices = 0;
     uint32_t inner = 0;  // of vertices with an inner skin
     [[nodiscard]] uint32_t all() const noexcept {
-        return nodes + sheets + springs + vertices + inner;
+        return nodes + sheets + extended + vertices + inner;
     }
 };
 
 // Groups of 64 of the objects that deform in this frame, in this order: nodes of all, of sheets and
-// of springs; drawn vertices of all.
+// of those that an extension moves; drawn vertices of all.
 struct DeformRecord {
     DeformPush push{};
     Staged groups;
     DeformGroups count;
-    uint32_t steps = 0;    // of sheets and springs
+    uint32_t steps = 0;    // of particles with a solver
     uint32_t bendSet = 0;  // of the first: which bending constraints it takes
     bool begins = false;   // some sheet did not move in the frame before
 };
 
-struct PublishedStep {  // one object in as-published mode
+struct ExtendedStep {  // one object whose texels an extension burns
     uint32_t object = 0, groups = 0, parity = 0;
 };
 
@@ -51,7 +51,7 @@ struct StepRecord {
     uint32_t allTiles = 0;  // of the largest object that one addresses as a whole; 0: none does
     Staged wakeGroups;      // of latches; with the dense switch: of all objects
     uint32_t objectSlots = 0;
-    std::span<const PublishedStep> published;
+    std::span<const ExtendedStep> extended;
     bool governed = false, capped = false, plays = false;
     bool exchange = false;
     ExchangePush rules{};  // of the exchange, but for what the lists say
@@ -114,9 +114,6 @@ void recordProbes(FrameRecorder& r, const Staged& probes);
 void recordEffects(BackendState& s, FrameInFlight& slot);
 // After the steps. The work buffer holds its lists, and zero before them.
 void recordRefinement(FrameRecorder& r, const FrameLists& lists, const RefineRecord& refine);
-// Groups of vertices, then of listed triangles.
-void recordRefinementAsPublished(FrameRecorder& r, const PatternPush& push, uint32_t placeGroups,
-                                 uint32_t nameGroups);
 // recordReadback ends the frame.
 
 }  // namespace fw::gpu::vk

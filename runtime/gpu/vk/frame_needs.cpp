@@ -2,19 +2,13 @@
 
 #include "core/error.h"
 #include "flamewright/flamewright_debug.h"
-#include "shared/published.h"
+#include "gpu/vk/vk_extension.h"
 #include "shared/spark.h"
 
 #include <algorithm>
 
 namespace fw::gpu::vk {
 namespace {
-
-uint32_t publishedGroups(const BurnObject& object) {
-    const uint32_t blocks = object.width / kPublishedBlockX *
-                            ((object.height + kPublishedBlockY - 1) / kPublishedBlockY);
-    return groupsOf(blocks);
-}
 
 // A frame's own buffer of at least `bytes`; never shrinks. Throws and then left the old one.
 void ensure(DeviceMemory& memory, Buffer& buffer, uint64_t bytes, MemoryKind kind) {
@@ -29,7 +23,7 @@ void ensure(DeviceMemory& memory, Buffer& buffer, uint64_t bytes, MemoryKind kin
 }
 
 void addObjectNeeds(BackendState& s, uint64_t endTick, FrameNeeds& needs) {
-    s.simulation.published.clear();
+    s.simulation.extended.clear();
     for (const uint32_t i : s.scene.awake) {
         ObjectEntry& object = s.scene.objects[i];
         if (object.recordDirty) needs.uploadBytes += uploaded(sizeof(BurnObject));
@@ -37,8 +31,8 @@ void addObjectNeeds(BackendState& s, uint64_t endTick, FrameNeeds& needs) {
             needs.uploadBytes += uploaded(sizeof object.materials) + uploaded(sizeof object.heat);
         if (object.deforms.recordDirty) needs.uploadBytes += uploaded(sizeof object.deform);
         s.deforming.addNeeds(s, i, endTick, needs);
-        if (object.live && (object.record.flags & kObjectPublished) != 0)
-            s.simulation.published.push_back({i, publishedGroups(object.record), 0});
+        if (object.live && (object.record.flags & kObjectExtended) != 0)
+            s.simulation.extended.push_back({i, extension()->vulkan->stepGroups(object.record), 0});
     }
     if (s.scene.roomsDirty) needs.uploadBytes += uploaded(sizeof s.scene.rooms);
 }
@@ -145,11 +139,11 @@ void checkLimits(const BackendState& s, const FramePlan& plan, const FrameNeeds&
 void choosePasses(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
     const bool anyStep = !plan.steps.empty();
     const bool wakes = needs.stimulus || needs.never;
-    needs.publishedRuns =
-        anyStep && std::any_of(s.simulation.published.begin(), s.simulation.published.end(),
-                               [&](const PublishedStep& one) {
+    needs.extensionRuns =
+        anyStep && std::any_of(s.simulation.extended.begin(), s.simulation.extended.end(),
+                               [&](const ExtendedStep& one) {
                                    return needs.stimulus || needs.exchanges ||
-                                          s.scene.objects[one.object].publishedTouched;
+                                          s.scene.objects[one.object].extensionTouched;
                                });
     needs.burning = !s.simulation.burnEmpty || wakes;
     needs.heating = !s.simulation.hotEmpty || (needs.exchanges && needs.burning) || wakes;
@@ -159,7 +153,7 @@ void choosePasses(BackendState& s, const FramePlan& plan, FrameNeeds& needs) {
     needs.falling = anyStep && s.limits.looks.viewParams &&
                     (needs.burning || plan.endTick < s.simulation.supportUntil);
     needs.readback = needs.burning || needs.predicting || needs.heating || needs.iterations > 0 ||
-                     needs.publishedRuns || needs.airs || !plan.probes.empty() ||
+                     needs.extensionRuns || needs.airs || !plan.probes.empty() ||
                      !plan.burnMaps.empty() || !plan.images.empty();
 }
 
@@ -184,7 +178,8 @@ FrameNeeds needsOf(BackendState& s, const FramePlan& plan) {
                              uploaded(plan.emitters->groups.size_bytes()) +
                              uploaded(plan.emitters->sparkCount * sizeof(SparkSource));
     s.particleFields.addNeeds(plan, needs);
-    const uint64_t refineBytes = s.refine.plan(s, plan) + planPatterns(s);
+    const uint64_t refineBytes =
+        s.refine.plan(s, plan) + (extension() ? extension()->vulkan->planRefinement(s) : 0);
     needs.uploadBytes += refineBytes;
     needs.work = needs.readback || needs.falling || needs.deform.vertices > 0 || needs.skins ||
                  refineBytes > 0 || forgets || plan.volumes || plan.emitters ||

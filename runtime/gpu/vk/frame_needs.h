@@ -30,7 +30,7 @@ struct FrameNeeds {
     bool airs = false;                    // rooms have a step
     bool stimulus = false;                // an event or a latch
     bool rebuildsPrediction = false;      // the first step wakes what forgets
-    bool burning = false, predicting = false, publishedRuns = false, heating = false;
+    bool burning = false, predicting = false, extensionRuns = false, heating = false;
     bool appears = false;                 // an object comes into view
     bool falling = false;                 // burnt pieces may lose their hold
     DeformGroups deform;                  // what deforms
@@ -41,7 +41,7 @@ struct FrameNeeds {
     bool readback = false, work = false;  // no work: nothing is recorded
 };
 
-// Also marks which objects `forget`, and fills `published`. Throws where a limit is exceeded.
+// Also marks which objects `forget`, and fills `extended`. Throws where a limit is exceeded.
 [[nodiscard]] FrameNeeds needsOf(BackendState& s, const FramePlan& plan);
 // Everything that may fail: buffers of the size that the frame needs, and sets that name them.
 [[nodiscard]] FrameInFlight& makeRoom(BackendState& s, const FramePlan& plan,

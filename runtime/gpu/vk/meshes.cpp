@@ -1,6 +1,7 @@
 // Meshes as they come and go: what objects of one mesh share on the device.
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/drawn_order.h"
+#include "gpu/vk/vk_extension.h"
 #include "mesh/exchange_tiles.h"
 
 #include <glm/glm.hpp>
@@ -120,6 +121,7 @@ void VkBackend::destroyMesh(uint32_t slot) noexcept {
     MeshEntry& entry = state_->scene.meshes[slot];
     if (entry.parts) --state_->scene.partMeshes;
     entry = {};
+    if (extension()) extension()->vulkan->destroyMesh(*state_, slot);
 }
 
 }  // namespace fw::gpu::vk

@@ -3,6 +3,7 @@
 #include "core/growth.h"
 #include "gpu/vk/backend_state.h"
 #include "gpu/vk/drawn_order.h"
+#include "gpu/vk/vk_extension.h"
 
 #include <algorithm>
 #include <cstring>
@@ -91,7 +92,7 @@ void stageSkin(BackendState& s, const mesh::BurnDomain& domain, const DrawnOrder
 }
 
 bool isSheet(const ObjectInit& init) noexcept {
-    return init.deform && (init.deform->flags & (kDeformShell | kDeformSprings)) != 0;
+    return init.deform && (init.deform->flags & (kDeformShell | kDeformExtended)) != 0;
 }
 
 // Everything that may fail before a new object in `slot` has anything of its own.
@@ -100,7 +101,7 @@ void reserveForObject(BackendState& s, uint32_t slot, uint64_t last) {
     core::growTo(s.scene.quarantine, s.scene.quarantine.size() + live);
     core::growTo(s.surfaces.drawItems, live * kMaterialsPerObject);
     core::growTo(s.surfaces.surfaceSteps, live * kMaterialsPerObject * kMostSurfaceSteps);
-    core::growTo(s.simulation.published, live);
+    core::growTo(s.simulation.extended, live);
     core::growTo(s.results.givenObjects, std::max<size_t>(slot + 1, s.scene.objects.size()));
     (void)slotOf(s.scene.objects, slot);
     s.scene.awake.atLeast(slot + 1);
@@ -111,14 +112,12 @@ void reserveForObject(BackendState& s, uint32_t slot, uint64_t last) {
 void allocateRefinement(BackendState& s, const ObjectInit& init, const MeshEntry& mesh,
                         RefineUse& use, uint64_t last) {
     use.on = true;
-    use.key = refineKey(init.patternModel != nullptr, init.refineDepth);
+    use.key = refineKey(init.refineExtended, init.refineDepth);
     use.pixelsPerEdge = init.refinePixelsPerEdge;
     use.epochTick = s.simulation.shownTick;
     const RefineMesh& refined = mesh.refine[use.key];
     FW_ASSERT(refined.live, "createRefinement comes before objects of depth %u", init.refineDepth);
-    if (init.patternModel)
-        adoptPattern(s, use, init, refined, last);
-    else
+    if (!init.refineExtended)
         use.allocate(s.buffers, refined, (init.record.flags & kObjectTwoSided) == 0, last);
 }
 
@@ -163,7 +162,7 @@ void fillRecord(const ObjectInit& init, const MeshEntry& mesh, ObjectEntry& fres
     r.worldTileBase = fresh.tiles.first();
     r.linkBase = mesh.links.first();
     r.dependentBase = mesh.readers.first();
-    r.publishedBase = fresh.published.first() * kTileTexels * 3;
+    r.extensionBase = fresh.extensionTiles.first() * kTileTexels * 3;
     r.heatBase = fresh.heatTiles.first() * kTileTexels;
     r.width = mesh.width;
     r.height = mesh.height;
@@ -191,6 +190,7 @@ void fillDeformation(const ObjectInit& init, const MeshEntry& mesh, uint32_t slo
     deform.vertexCount = mesh.vertices;
     deform.shownBase = fresh.shown.first();
     deform.softBase = fresh.soft.first();
+    deform.extensionBase = fresh.extensionWords.first();
     deform.innerFirst = mesh.innerVertices.first();
     deform.stateBase = fresh.record.stateBase;
     deform.slot = slot;
@@ -211,8 +211,8 @@ bool rests(const ObjectEntry& object) noexcept {
     const bool reached = object.burn.touched || object.burn.warmed || object.burn.charred;
     const bool moves = object.deforms.recordDirty || object.deforms.reset || object.deforms.now ||
                        object.soft || object.deforms.skinPlus1 != 0;
-    const bool refined = object.refine.patternPlus1 != 0 || object.refine.due || refines(object);
-    return !reached && !moves && !refined && (object.record.flags & kObjectPublished) == 0;
+    const bool refined = object.refine.extendedPlus1 != 0 || object.refine.due || refines(object);
+    return !reached && !moves && !refined && (object.record.flags & kObjectExtended) == 0;
 }
 
 }  // namespace
@@ -289,14 +289,13 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
                 .add(FW_BIND_SLOWNESS, uint64_t(fresh.slowness.first()) * kTileTexels,
                      init.slowness);
         }
-        if (init.record.flags & kObjectPublished)
-            fresh.published = s.buffers.allocate(kPoolPublished, mesh.tiles, last);
         fresh.sources = s.buffers.allocate(kPoolSources, mesh.sourceCells, last);
         if (!init.heat.empty()) fresh.heatTiles = s.buffers.allocate(kPoolHeat, mesh.tiles, last);
         if (init.deform) allocateDeformation(s, init, mesh, fresh, added, last);
         if (init.record.flags & kObjectSkinned) allocateSkin(s, init, mesh, fresh, added, last);
+        if (extension()) extension()->vulkan->createObject(s, fresh, init, last);
     } catch (...) {
-        dropPattern(s, fresh.refine);
+        if (fresh.refine.extendedPlus1) extension()->vulkan->destroyObject(s, fresh);
         if (fresh.deforms.skinPlus1) s.deforming.skinOf(fresh).free();
         throw;
     }
@@ -311,7 +310,7 @@ void VkBackend::createObject(uint32_t slot, const ObjectInit& init) {
     }
     fillRecord(init, mesh, fresh);
     if (init.deform) fillDeformation(init, mesh, slot, fresh);
-    (fresh.refine.patternPlus1 ? s.pattern.users : s.refine.users) += fresh.refine.on ? 1 : 0;
+    if (fresh.refine.on && !fresh.refine.extendedPlus1) ++s.refine.users;
     FW_ASSERT(!s.scene.objects[slot].live, "object %u is there", slot);
     s.scene.objects[slot] = std::move(fresh);
     s.scene.changed(slot);
@@ -329,10 +328,12 @@ void VkBackend::destroyObject(uint32_t slot) noexcept {
                                       s.simulation.burnWalks, s.simulation.predictWalks,
                                       s.simulation.hotWalks});
     }
-    uint32_t& users = entry.refine.patternPlus1 ? s.pattern.users : s.refine.users;
-    FW_ASSERT(!entry.refine.on || users > 0, "object %u refines and no user is counted", slot);
-    users -= entry.refine.on ? 1 : 0;
-    dropPattern(s, entry.refine);
+    if (entry.refine.extendedPlus1) {
+        extension()->vulkan->destroyObject(s, entry);
+    } else if (entry.refine.on) {
+        FW_ASSERT(s.refine.users > 0, "object %u refines and no user is counted", slot);
+        --s.refine.users;
+    }
     if (entry.deforms.skinPlus1) s.deforming.skinOf(entry).free();
     entry = {};
     s.scene.changed(slot);  // a record without kObjectLive: list entries fall out
@@ -354,7 +355,7 @@ void VkBackend::setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tin
         entry.deforms.recordDirty = true;
         entry.deforms.softUntil = 0;  // it swings again
     }
-    constexpr uint32_t kFixed = kObjectPublished | kObjectHeat | kObjectUnseen;
+    constexpr uint32_t kFixed = kObjectExtended | kObjectHeat | kObjectUnseen;
     entry.record.flags = (flags & ~kFixed) | (entry.record.flags & kFixed) | kObjectLive;
     s.scene.changed(slot);
 }

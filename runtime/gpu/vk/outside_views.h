@@ -3,7 +3,7 @@
 // see resourceOf; all share the simulation, lights and meshes.
 #pragma once
 #include "core/owned.h"
-#include "gpu/passes/draw.h"
+#include "gpu/extension.h"
 #include "gpu/vk/descriptors.h"
 #include "lod/impostor_atlas.h"
 #include "lod/tiers.h"
@@ -29,9 +29,9 @@ struct March {
     std::array<MarchedVolume, kVolumeWorks * kMaxVolumeFlames> items;
     uint32_t impostorCount = 0;
     std::array<VolumeImpostor, 4 * kMaxVolumeFlames> cards;  // a flame may turn from book to card
-    uint32_t slicedCount = 0;
-    std::array<SlicedVolume, kMaxVolumeFlames> sliced;
-    VolumeOrder order;  // of all of them
+    uint32_t callCount = 0;
+    std::array<VolumeCall, kMaxVolumeFlames> calls;  // of flames that an extension draws
+    VolumeOrder order;                               // of all of them
     TierLives lives;
     std::array<ImpostorPair, kMaxVolumeFlames> pairs;  // by life
     ImpostorAtlases books;

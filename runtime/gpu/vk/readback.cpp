@@ -1,6 +1,7 @@
 #include "gpu/vk/readback.h"
 
 #include "gpu/vk/backend_state.h"
+#include "gpu/vk/vk_extension.h"
 #include "shared/refine.h"
 
 #include <algorithm>
@@ -105,9 +106,8 @@ void updateFromCounters(BackendState& s, uint32_t slot, ObjectCounters& counters
     if (counters.ignited != 0 || counters.until != 0) scene.awake.insert(slot);
     if (!scene.awake.contains(slot)) return;
     ObjectEntry& object = scene.objects[slot];
-    // The published scheme's lists are the host's.
-    if (const uint32_t patternPlus1 = object.refine.patternPlus1)
-        counters.refined = uint32_t(s.pattern.patternUses[patternPlus1 - 1]->state.list.size());
+    if (object.refine.extendedPlus1)
+        counters.refined = extension()->vulkan->refinedCount(s, object);
     // Of what burns little is left cold; what is warm may turn brown before it burns.
     const bool known = object.live && !object.resetDue;
     const bool lit = known && counters.ignited != 0;
@@ -135,7 +135,7 @@ void takeCounters(BackendState& s, const std::byte* from, const ReadbackLayout& 
     given.burningTiles = burn.runCount;
     given.hotTiles = rows[kRowHot + layout.hotParity].listCount;
     bool spreading = false;
-    for (const uint32_t i : s.scene.awake) spreading |= s.scene.objects[i].publishedTouched;
+    for (const uint32_t i : s.scene.awake) spreading |= s.scene.objects[i].extensionTouched;
     SimulationState& simulation = s.simulation;
     if (ringFrame < simulation.lastStimulus || spreading) return;
     simulation.hotEmpty = given.hotTiles == 0;

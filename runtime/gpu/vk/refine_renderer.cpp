@@ -1,6 +1,7 @@
 #include "gpu/vk/refine_renderer.h"
 
 #include "gpu/vk/backend_state.h"
+#include "gpu/vk/vk_extension.h"
 #include "mesh/refine/model.h"
 #include "mesh/refine/table.h"
 #include "mesh/refine/turns.h"
@@ -56,7 +57,7 @@ float cutSegments(const SceneTables& scene, const ObjectEntry& object,
 // Once more after it is quiet: pictures may be seconds apart. What has a border is drawn refined
 // from the first picture on.
 bool refines(const ObjectEntry& object) noexcept {
-    return object.live && object.refine.on && !object.refine.patternPlus1 &&
+    return object.live && object.refine.on && !object.refine.extendedPlus1 &&
            (object.refine.border || double(object.refine.quietTick) > object.refine.turnTick);
 }
 
@@ -75,7 +76,7 @@ void RefineRenderer::uploadTable(BackendState& s) {
         .add(FW_BIND_REFINE_WORDS, 0, std::span<const uint16_t>(mesh::kRefineTable));
 }
 
-void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
+void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool extended,
                                  const mesh::BurnDomain& domain, const mesh::RefineModel& model,
                                  std::span<const mesh::RefineHoles> materials) {
     BackendState& s = *state_;
@@ -118,6 +119,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     fresh.slots = allocate(kPoolRefineMeshSlots, fresh.slotCount);
     fresh.words = allocate(kPoolRefineWords, words);
     fresh.draws = allocate(kPoolVertices, vertices.size());
+    if (extended) extension()->vulkan->createRefinement(s, slot, depth, domain, model);
     PendingUpload& upload = s.scene.uploads.stage(
         model.triangles.size() * sizeof(RefineTriangle) + model.edges.size() * sizeof(RefineEdge) +
             slots.size() * sizeof(RefineSlot) + words * 4 +
@@ -132,7 +134,7 @@ void VkBackend::createRefinement(uint32_t slot, uint32_t depth, bool published,
     add(FW_BIND_REFINE_WORDS, fresh.words.first(), model.tileStart);
     add(FW_BIND_REFINE_WORDS, fresh.words.first() + model.tileStart.size(), model.tileItems);
     add(kResourceVertices, fresh.draws.first(), vertices);
-    s.scene.meshes[slot].refine[refineKey(published, depth)] = std::move(fresh);
+    s.scene.meshes[slot].refine[refineKey(extended, depth)] = std::move(fresh);
 }
 
 void RefineUse::allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last) {
@@ -151,18 +153,21 @@ void RefineUse::allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thi
     cuts = take(kPoolRefineCuts, 3 * std::min(rims + walls, kMaxRefineCut));
 }
 
-void RefineUse::allocatePattern(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last) {
-    slots = buffers.allocate(kPoolRefineSlots, mesh.slotCount, last);
-    const uint32_t listed = groupsOf(mesh.fullCount) * 64;
-    patternList = buffers.allocate(kPoolPatternList, listed, last);
-    indices = buffers.allocate(kPoolRefineIndices, listed * 3, last);
+mesh::RefineOptions VkBackend::extendedRefineOptions(uint32_t depth) const {
+    return extension()->vulkan->refineOptions(depth);
+}
+
+void VkBackend::startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept {
+    ObjectEntry& object = state_->scene.objects[slot];
+    if (object.refine.extendedPlus1)
+        extension()->vulkan->startBoundary(*state_, object, point, tick);
 }
 
 void RefineUse::show(DrawItem& item) const noexcept {
     item.refined = started;
     item.cut = cut;
     item.perPixelHoles = perPixelHoles;
-    item.consumed = patternPlus1 != 0;
+    item.consumed = extendedPlus1 != 0;
     item.draw.now = now;
     item.draw.nearness = nearness;
 }

@@ -39,17 +39,15 @@ struct RefineUse {  // an object's own
     vec4 turnEye{};              // in it: m, object space; w: as RefineRenderer::eyes
     bool due = false;            // it was among the last frame's that refined
     BufferRange items, triangles, slots, indices, cuts;
-    uint32_t patternPlus1 = 0;  // by the published scheme: its PatternUse
-    BufferRange patternList;
+    uint32_t extendedPlus1 = 0;  // an extension refines it: its number there
     // `thick`: with an inner skin, where the mesh has an inside.
     void allocate(WorldBuffers& buffers, const RefineMesh& mesh, bool thick, uint64_t last);
-    void allocatePattern(WorldBuffers& buffers, const RefineMesh& mesh, uint64_t last);
     // Sets how far the last frame that refined the object has brought what draws show of it.
     void show(DrawItem& item) const noexcept;
 };
 
-constexpr uint32_t refineKey(bool published, uint32_t depth) noexcept {
-    return published ? kRefineDepth + 1 + depth : depth;
+constexpr uint32_t refineKey(bool extended, uint32_t depth) noexcept {
+    return extended ? kRefineDepth + 1 + depth : depth;
 }
 
 // Whether a frame may refine the object.

@@ -45,8 +45,8 @@ void resetObject(ObjectEntry& object, uint32_t tick) noexcept {
     object.resetDue = true;
     object.burn.touched = object.burn.doused = object.burn.warmed = object.burn.charred =
         object.burn.lit = false;
-    object.publishedTouched = false;
-    object.publishedParity = 0;
+    object.extensionTouched = false;
+    object.extensionParity = 0;
     object.burn.lastDouse = 0;
     object.burn.lastEvent = 0;
     object.deforms.softUntil = 0;

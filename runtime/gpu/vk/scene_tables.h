@@ -51,12 +51,13 @@ struct ObjectEntry {
     bool turns = false;      // in this frame it comes into view, or leaves it
     uint32_t mesh = 0;
     BurnObject record{};
-    BufferRange tiles, slowness, published, heatTiles, sources;
+    BufferRange tiles, slowness, heatTiles, sources;
+    BufferRange extensionWords, extensionTiles;  // of an extension's methods
     RefineUse refine;
-    bool publishedTouched = false;  // as-published mode: some event reached it
-    uint32_t publishedParity = 0;
+    bool extensionTouched = false;  // some event reached it, and an extension burns it
+    uint32_t extensionParity = 0;
     DeformUse deforms;           // none if `shown` is empty
-    BufferRange shown, soft;     // its shown vertices; of sheets and springs
+    BufferRange shown, soft;     // its shown vertices; of those with a solver
     float shape[3] = {1, 1, 1};  // what its mesh was stretched by
     // Cold data: not read for sleeping objects, so it is stored last.
     DeformObject deform{};

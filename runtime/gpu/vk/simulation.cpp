@@ -79,7 +79,7 @@ Staged stageWakeGroups(const BackendState& s, std::span<const MaterialUpdate> up
 // An object that an event reaches is drawn as one that may burn from now on.
 void markObjectOfEvent(BackendState& s, const TexelEvent& event, uint32_t now) {
     ObjectEntry& object = s.scene.objects[event.object];
-    object.publishedTouched |= (object.record.flags & kObjectPublished) != 0;
+    object.extensionTouched |= (object.record.flags & kObjectExtended) != 0;
     object.burn.lastEvent = std::max<uint64_t>(object.burn.lastEvent, now + kStepTicks);
     const uint32_t kind = eventKind(event.kind);
     const bool douses = (kind == kEventWet || kind == kEventDry || kind == kEventExtinguish ||
@@ -128,12 +128,12 @@ StepRecord stepOf(BackendState& s, const FramePlan& plan, const StepPlan& planne
         if (addressesAll(event))
             step.allTiles = std::max(step.allTiles, s.scene.objects[event.object].record.tileCount);
     }
-    if (!needs.publishedRuns) return step;
-    for (PublishedStep& one : s.simulation.published) {
-        one.parity = s.scene.objects[one.object].publishedParity;
-        s.scene.objects[one.object].publishedParity ^= 1;
+    if (!needs.extensionRuns) return step;
+    for (ExtendedStep& one : s.simulation.extended) {
+        one.parity = s.scene.objects[one.object].extensionParity;
+        s.scene.objects[one.object].extensionParity ^= 1;
     }
-    step.published = s.simulation.published;
+    step.extended = s.simulation.extended;
     return step;
 }
 

@@ -9,7 +9,7 @@ struct BackendState;
 struct FrameNeeds;
 
 struct SimulationState {
-    explicit SimulationState(std::pmr::memory_resource* pmr) : published(pmr) {}
+    explicit SimulationState(std::pmr::memory_resource* pmr) : extended(pmr) {}
     // Whose soot is due; count 0: none is. Of `tiles` in all; `looked`: some view may show it.
     TileShare sootShare(uint32_t tiles, uint32_t endTick, bool looked) noexcept;
     void setAllEmpty(bool empty) noexcept {
@@ -31,7 +31,7 @@ struct SimulationState {
     OcclusionUpdate shield;                // the last one's place, without its words
     float wind[3] = {};
     float tickFraction = 0;
-    std::pmr::vector<PublishedStep> published;  // of the frame
+    std::pmr::vector<ExtendedStep> extended;  // of the frame
     bool tilesMoved = false;  // BurnTiles stand where they were before all places moved
 };
 

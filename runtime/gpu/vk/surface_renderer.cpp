@@ -14,8 +14,8 @@ bool looksBurnt(const ObjectEntry& object) noexcept {
 }
 
 // Before anything reached it nothing of it can have crossed.
-bool zPassed(const ObjectEntry& object) noexcept {
-    return looksBurnt(object) && (object.record.flags & kObjectZPass) != 0;
+bool depthFirst(const ObjectEntry& object) noexcept {
+    return looksBurnt(object) && (object.record.flags & kObjectDepthFirst) != 0;
 }
 
 // How `item`'s material is drawn: whether fire may show on it, and its triangles far from fire
@@ -23,11 +23,10 @@ bool zPassed(const ObjectEntry& object) noexcept {
 void chooseSurface(const BackendState& s, const ObjectEntry& object, DrawItem& item) {
     item.family = familyOf(object.materials[item.material].look);
     item.burns = looksBurnt(object);
-    item.selfIntersects = zPassed(object);
+    item.depthFirst = depthFirst(object);
     item.coldReach = coldReach(s.scene.meshOf(object).texelEdge);
-    const bool tells =
-        (object.record.flags & kObjectPublished) == 0 && item.coldReach <= kColdReach;
-    item.coldApart = item.burns && tells && !object.burn.charred && !item.selfIntersects;
+    const bool tells = (object.record.flags & kObjectExtended) == 0 && item.coldReach <= kColdReach;
+    item.coldApart = item.burns && tells && !object.burn.charred && !item.depthFirst;
 }
 
 SurfaceDraw drawOf(const BackendState& s, const ObjectEntry& object, uint32_t material) {

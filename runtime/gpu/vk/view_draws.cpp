@@ -1,8 +1,9 @@
 #include "gpu/vk/view_draws.h"
 
+#include "core/reserved.h"
+#include "gpu/extension.h"
 #include "gpu/vk/backend_state.h"
 #include "shared/volume_haze.h"
-#include "shared/volume_slices.h"
 
 #include <algorithm>
 #include <array>
@@ -306,8 +307,8 @@ class ViewDraws {
     std::array<HazedVolume, kMaxVolumeFlames> hazes_;
     // Volumetric flames by pass, and the order of all of them.
     std::array<VolumeItem, kMaxVolumeFlames> items_;
-    std::array<SlicedVolume, kMaxVolumeFlames> ownSlices_;
-    const SlicedVolume* slices_ = nullptr;
+    std::array<VolumeCall, kMaxVolumeFlames> ownCalls_;
+    const VolumeCall* calls_ = nullptr;
     const March* march_ = nullptr;
     VolumeOrder ownOrder_;
     const VolumeOrder* order_ = nullptr;
@@ -323,18 +324,18 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
     of.recordScreen(view, screen, slot_.frameIndex);
     if (of.isMarchedFor(view, screen)) {
         march_ = &of.march;
-        slices_ = march_->sliced.data();
+        calls_ = march_->calls.data();
         order_ = &march_->order;
     } else {
         const uint32_t slabs = target_.key.attachesDepth() ? kVolumeSlabs : 1;
         const uint32_t count = s_.flames.order(s_, slabs, items_);
         const uint32_t least = of.minRays(view, screen);
-        uint32_t whole = 0, cut = 0;
+        uint32_t whole = 0, called = 0;
         for (uint32_t i = 0; i < count; ++i) {
-            if (s_.flames.volumes[items_[i].flame].tier == FW_FIRE_TIER_SLICES &&
-                slicesShow(screen.encoding)) {
-                ownSlices_[cut] = makeSlicedVolume(items_[i]);
-                ownOrder_.add(draw::volume_slices, cut++);
+            if (s_.flames.volumes[items_[i].flame].tier == core::reserved::kFireTier &&
+                extension()->showsVolumes(screen.encoding)) {
+                ownCalls_[called] = extension()->volumeCall(items_[i], 0, 1);
+                ownOrder_.add(draw::Number(extension()->volumePass), called++);
             } else {
                 items_[whole] = items_[i];
                 VolumeDraw& draw = items_[whole].draw;
@@ -343,7 +344,7 @@ void ViewDraws::prepare(OutsideView& of, const FwView& view) {
                 ownOrder_.add(draw::volume, whole++);
             }
         }
-        slices_ = ownSlices_.data();
+        calls_ = ownCalls_.data();
         order_ = &ownOrder_;
     }
     if (target_.key.haze && host_.color)
@@ -355,7 +356,8 @@ bool ViewDraws::hasWork(DrawPhase phase) const noexcept {
     switch (phase) {
         case DrawPhase::OpaqueFresh:
         case DrawPhase::OpaqueBurning:
-        case DrawPhase::OpaqueSelfIntersecting:
+        case DrawPhase::DepthFirst:
+        case DrawPhase::OpaqueOverDepth:
             return !surfacesOf(phase).empty();
         case DrawPhase::Distortion:
             return hazeCount_ > 0;
@@ -381,7 +383,8 @@ void ViewDraws::record(DrawPhase phase) {
     switch (phase) {
         case DrawPhase::OpaqueFresh:
         case DrawPhase::OpaqueBurning:
-        case DrawPhase::OpaqueSelfIntersecting:
+        case DrawPhase::DepthFirst:
+        case DrawPhase::OpaqueOverDepth:
             return recordSurfaces(phase);
         case DrawPhase::Distortion:
             return recordPass(draw::volume_haze, [&](PassRecorder& recorder) {
@@ -441,8 +444,8 @@ void ViewDraws::recordSurfaces(DrawPhase phase) {
     for (size_t first = 0, end = 0; first < steps.size(); first = end) {
         const uint32_t pass = steps[first].pass;
         while (end < steps.size() && steps[end].pass == pass) ++end;
-        const bool depthAlone = pass == draw::self_intersection_depth;
-        if (depthAlone && (s_.crossing & kSwitchNoZPass)) continue;
+        const bool depthAlone = phase == DrawPhase::DepthFirst;
+        if (depthAlone && (s_.crossing & kSwitchNoDepthFirst)) continue;
         recordPass(pass, [&](PassRecorder& recorder) {
             for (const SurfaceStep& step : steps.subspan(first, end - first)) {
                 const DrawItem& item = s_.surfaces.drawItems[step.item];
@@ -471,13 +474,13 @@ void ViewDraws::recordVolumes(const VolumeRun& run) {
                         &one.composite);
                     break;
                 }
-                case draw::volume_slices:
-                    recorder.drawVolume(slices_[i].flame, &slices_[i].draw,
-                                        kFlamePieces * kSliceVertices, slices_[i].draw.slices);
-                    break;
-                default:
+                case draw::volume:
                     recorder.drawVolume(items_[i].flame, &items_[i].draw, kVolumeSplitVertices,
                                         items_[i].draw.slabs);
+                    break;
+                default:  // the extension's
+                    recorder.drawVolume(calls_[i].flame, calls_[i].push.data(), calls_[i].vertices,
+                                        calls_[i].instances);
             }
         }
     });

@@ -2,6 +2,7 @@
 
 #include "core/error.h"
 #include "gpu/vk/frame_needs.h"
+#include "gpu/vk/vk_extension.h"
 #include "shared/volume.h"
 
 #include <algorithm>
@@ -119,7 +120,6 @@ BackendState::BackendState(Context::State& contextState, const WorldLimits& worl
       particleFields(pmr),
       surfaces(pmr),
       refine(pmr),
-      pattern(pmr),
       outsideViews(pmr),
       results(pmr) {
     results.times.reserve(computePasses().size() + drawPasses().size());
@@ -261,7 +261,7 @@ void VkBackend::run(const FramePlan& plan) {
     std::copy(std::begin(plan.wind), std::end(plan.wind), std::begin(s.simulation.wind));
     s.simulation.tickFraction = plan.tickFraction;
     followDetail(s, plan.detail);
-    s.crossing = plan.switches & (kSwitchCrossing | kSwitchNoZPass);
+    s.crossing = plan.switches & (kSwitchCrossing | kSwitchNoDepthFirst);
     if (!needs.work) {
         s.open.ran = true;
         s.simulation.shownTick = plan.endTick;
@@ -299,7 +299,7 @@ void VkBackend::endOutside() {
         recordEffects(s, slot);
         if (!from.empty()) {
             s.refine.record(s, slot);
-            refineAsPublished(s, slot);
+            if (extension()) extension()->vulkan->recordRefinement(s, slot);
         }
         for (DrawItem& item : s.surfaces.drawItems)
             if (s.scene.awake.contains(item.object)) s.scene.objects[item.object].refine.show(item);

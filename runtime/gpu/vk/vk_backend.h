@@ -88,7 +88,7 @@ class VkBackend final : public Backend {
     [[nodiscard]] bool draws() const noexcept override { return true; }
     void createInnerSkin(uint32_t mesh, const mesh::BurnDomain& domain,
                          std::span<const glm::vec3> places) override;
-    void createRefinement(uint32_t mesh, uint32_t depth, bool published,
+    void createRefinement(uint32_t mesh, uint32_t depth, bool extended,
                           const mesh::BurnDomain& domain, const mesh::RefineModel& model,
                           std::span<const mesh::RefineHoles> materials) override;
     void createObject(uint32_t slot, const ObjectInit& init) override;
@@ -97,6 +97,7 @@ class VkBackend final : public Backend {
     void setRoom(uint32_t slot, const Room& room) noexcept override;
     void setObjectPose(uint32_t slot, const vec4 rows[3], const vec4& tint,
                        uint32_t flags) override;
+    [[nodiscard]] mesh::RefineOptions extendedRefineOptions(uint32_t depth) const override;
     void startBoundary(uint32_t slot, const float point[3], uint32_t tick) noexcept override;
     void setVertices(uint32_t slot, std::span<const float> positions,
                      std::span<const float> normals) noexcept override;

@@ -41,13 +41,13 @@ enum BufferPool : uint32_t {
     kPoolRefineIndices,    // words, of objects
     kPoolRefineCuts,       // vertices, of objects
     kPoolRefineWork,       // words, per frame
-    kPoolPatternList,      // listed triangles, of objects
-    kPoolPatternGroups,    // per frame
-    kPoolPublished,        // 8x8 tiles of objects in as-published mode
+    kPoolExtensionWords,   // four words, of objects that an extension works on
+    kPoolExtensionGroups,  // per frame
+    kPoolExtensionTiles,   // 8x8 tiles of such objects
     kPoolHeat,             // 8x8 tiles of objects with heat
     kPoolDeformers,        // objects that deform
     kPoolShown,            // drawn vertices of such objects
-    kPoolSoft,             // those of sheets and springs
+    kPoolSoft,             // those of particles with a solver
     kPoolSheetParticles,   // of meshes that deform
     kPoolEmbeddings,       // drawn vertices of such meshes
     kPoolDeformGroups,     // per frame

@@ -74,7 +74,6 @@ void weld(const BurnDomain& domain, DeformModel& model, std::pmr::memory_resourc
         node.opposite = kNone;
         std::fill(std::begin(node.texels), std::end(node.texels), kNone);
         std::fill(std::begin(node.ring), std::end(node.ring), i);
-        std::fill(std::begin(node.cross_), std::end(node.cross_), kNone);
         model.nodes.push_back(node);
     }
     for (uint32_t i = 0; i < count; ++i) model.nodeOf[i] = model.nodeOf[keeper[i]];
@@ -143,7 +142,6 @@ class Builder {
             sample(i);
             neighbours(i);
         }
-        for (uint32_t i = 0; i < model_.nodes.size(); ++i) farther(i);
         lengths();
         for (uint32_t i = 0; i < domain_.vertices.size(); ++i) embed(i);
     }
@@ -272,26 +270,6 @@ class Builder {
         node.flags |= (closes ? gpu::kParticleClosed : 0u) | uint32_t(kept)
                                                                  << gpu::kParticleRingShift;
     }
-    // The vertices two steps straight on over every neighbour: ends of Provot's flexion springs.
-    void farther(uint32_t number) {
-        DeformParticle& node = model_.nodes[number];
-        const glm::dvec3 at = placeOf(domain_.vertices[node.vertex]);
-        for (uint32_t i = 0; i < (node.flags >> gpu::kParticleRingShift & 15u); ++i) {
-            const DeformParticle& next = model_.nodes[model_.nodeOf[node.ring[i]]];
-            const glm::dvec3 middle = placeOf(domain_.vertices[next.vertex]);
-            const glm::dvec3 ahead = unitOr(middle - at, glm::dvec3(0));
-            double straightest = 0.9;
-            for (const uint32_t over : next.ring) {
-                if (over == node.vertex || over == next.vertex) continue;
-                const double c = glm::dot(
-                    ahead, unitOr(placeOf(domain_.vertices[over]) - middle, glm::dvec3(0)));
-                if (c <= straightest) continue;
-                straightest = c;
-                node.cross_[i] = over;
-            }
-        }
-    }
-
     [[nodiscard]] float restLength(const DeformParticle& node, uint32_t vertex) const {
         return float(glm::length(placeOf(model_.nodes[model_.nodeOf[vertex]]) - placeOf(node)));
     }
@@ -300,13 +278,12 @@ class Builder {
         for (DeformParticle& node : model_.nodes) {
             glm::dvec3 mean(0), turned(0), before(0), first(0);
             double links = 0;
-            const auto mutual = [&](uint32_t vertex, bool ring) {
-                const DeformParticle& other = model_.nodes[model_.nodeOf[vertex]];
-                const uint32_t* list = ring ? other.ring : other.cross_;
+            const auto mutual = [&](uint32_t vertex) {
+                const uint32_t* list = model_.nodes[model_.nodeOf[vertex]].ring;
                 return vertex != node.vertex &&
                        std::find(list, list + kDeformRing, node.vertex) != list + kDeformRing;
             };
-            float ring[kDeformRing]{}, cross[kDeformRing]{};
+            float ring[kDeformRing]{};
             const uint32_t count = node.flags >> gpu::kParticleRingShift & 15u;
             for (uint32_t i = 0; i < kDeformRing; ++i) {
                 const glm::dvec3 arm = placeOf(domain_.vertices[node.ring[i]]) -
@@ -314,13 +291,11 @@ class Builder {
                 turned += glm::cross(before, arm);
                 before = arm;
                 if (i == 0) first = arm;
-                if (i < count && mutual(node.ring[i], true)) {
+                if (i < count && mutual(node.ring[i])) {
                     ring[i] = restLength(node, node.ring[i]);
                     mean += arm;
                     links += 1;
                 }
-                if (node.cross_[i] != kNone && mutual(node.cross_[i], false))
-                    cross[i] = restLength(node, node.cross_[i]);
             }
             if (node.flags & gpu::kParticleClosed) turned += glm::cross(before, first);
             const glm::dvec3 normal = unitOr(turned, glm::dvec3(0));
@@ -330,10 +305,8 @@ class Builder {
             if (whole &&
                 glm::length(mean - normal * glm::dot(mean, normal)) < 0.06 * double(ring[0]))
                 node.flags |= gpu::kParticleEven;
-            for (uint32_t i = 0; i < kDeformRing / 2; ++i) {
+            for (uint32_t i = 0; i < kDeformRing / 2; ++i)
                 node.ringLength[i] = glm::packHalf2x16({ring[i * 2], ring[i * 2 + 1]});
-                node.crossLength[i] = glm::packHalf2x16({cross[i * 2], cross[i * 2 + 1]});
-            }
         }
     }
 
@@ -437,9 +410,8 @@ gpu::DeviceParticle deviceNode(const DeformModel& model, uint32_t number) noexce
         return other | gpu::linkOdds(number, other) << 24;
     };
     for (uint32_t i = 0; i < gpu::kDeformLinkPasses; ++i) {
-        const uint32_t *near = node.ring + 2 * i, *far = node.cross_ + 2 * i;
+        const uint32_t* near = node.ring + 2 * i;
         made.near_[i] = {linked(near[0]), linked(near[1]), node.ringLength[i], 0};
-        made.far_[i] = {linked(far[0]), linked(far[1]), node.crossLength[i], 0};
     }
     for (uint32_t set = 0; set < gpu::kBendSets; ++set) {
         const uint32_t* arms = node.arms + 2 * set;

@@ -13,8 +13,7 @@ struct DeformModel {
     explicit DeformModel(std::pmr::memory_resource* memory)
         : nodes(memory), embeddings(memory), nodeOf(memory) {}
 
-    std::pmr::vector<gpu::DeformParticle>
-        nodes;  // `vertex`, `ring`, `cross_`: of BurnDomain::vertices
+    std::pmr::vector<gpu::DeformParticle> nodes;        // `vertex`, `ring`: of BurnDomain::vertices
     std::pmr::vector<gpu::DeformEmbedding> embeddings;  // per vertex of the domain
     std::pmr::vector<uint32_t> nodeOf;                  // per vertex of the domain
     float span = 0;                                     // m, about the length of arms

@@ -4,13 +4,17 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/deform.glsl"
-FW_READ(DEFORM_PARTICLES) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
+#include "reference/springs.h"
+// Of particles: links of pass 0 of all, then of pass 1.
+#define FW_BUFFER_EXTENSION_WORDS(access) FW_BUFFER(EXTENSION_WORDS, access, uvec4, farLinks)
+FW_READ(DEFORM_PARTICLES) FW_READ(EXTENSION_WORDS) FW_READ_WRITE(SHOWN) FW_READ_WRITE(SOFT)
 
 void main() {
     DeformItem item = deformItem();
     uvec2 sizes = deformObjects[item.object].xy;
     uint shownBase = deformObjects[item.object + 1u].x;
-    float stiffness = uintBitsToFloat(deformObjects[item.object + 2u].w) * kSpringShare;
+    uint farBase = deformObjects[item.object + 2u].w;
+    float stiffness = springStiffness() * kSpringShare;
     uint softBase = deformObjects[item.object + 3u].x;
 
     uint last = min(item.end, sizes.y);
@@ -29,7 +33,7 @@ void main() {
         uint turn = 0u, turns = linkPasses(facts.y);
         do {
             uvec4 two = deformParticle(at + (kParticleLinks + turn) * sizes.y),
-                  over = deformParticle(at + (kParticleFarLinks + turn) * sizes.y);
+                  over = farLinks[farBase + turn * sizes.y + number];
             FW_UNROLL for (uint i = 0u; i < kLinksPerPass; ++i) {
                 uint other = two[i] & kDeformLinkIndex;
                 float rest = unpackHalf2x16(two.z)[i];

@@ -1,8 +1,8 @@
 // The burning-state kernel of the reference (sixteen taps on a buffer S in [0, 1]), for comparison:
 // its speed depends on texel size and time step. Floats, but equal on all devices: nothing
 // contracts and nothing is flushed. Never authoritative.
-#ifndef FW_SHARED_PUBLISHED_H
-#define FW_SHARED_PUBLISHED_H
+#ifndef FW_REFERENCE_PUBLISHED_H
+#define FW_REFERENCE_PUBLISHED_H
 #include "shared/front.h"
 
 #ifdef __cplusplus

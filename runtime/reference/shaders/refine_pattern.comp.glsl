@@ -4,10 +4,14 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
-#include "shared/reference_pattern.h"
-FW_READ(REFINE_OBJECTS) FW_READ(PATTERN_GROUPS) FW_READ(PATTERN_LIST) FW_READ(REFINE_TRIANGLES)
-FW_READ(REFINE_SLOTS) FW_READ(VERTICES) FW_READ(PREDICT) FW_READ(GRADIENT)
-FW_READ_WRITE(REFINE_VERTICES) FW_WRITE(REFINE_INDICES) FW_PUSH(PatternPush)
+#include "reference/pattern_word.h"
+// Per frame, of phase 0: object slot, first of 64 pattern vertices; of phase 1: of 64 listed
+// triangles.
+#define FW_BUFFER_EXTENSION_GROUPS(access) FW_BUFFER(EXTENSION_GROUPS, access, uvec2, groups)
+#define FW_BUFFER_EXTENSION_WORDS(access) FW_BUFFER(EXTENSION_WORDS, access, uint, patternList)
+FW_READ(REFINE_OBJECTS) FW_READ(EXTENSION_GROUPS) FW_READ(EXTENSION_WORDS)
+FW_READ(REFINE_TRIANGLES) FW_READ(REFINE_SLOTS) FW_READ(VERTICES) FW_READ(PREDICT)
+FW_READ(GRADIENT) FW_READ_WRITE(REFINE_VERTICES) FW_WRITE(REFINE_INDICES) FW_PUSH(PatternPush)
 #include "lib/refine_arrival.glsl"
 
 void place(uint object, uint s) {

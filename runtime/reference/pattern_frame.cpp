@@ -1,5 +1,5 @@
-// The published scheme's statuses on a whole mesh.
-#include "mesh/refine/published_frame.h"
+// The pattern's statuses on a whole mesh.
+#include "reference/pattern_frame.h"
 
 #include "core/error.h"
 #include "core/hash.h"
@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace fw::mesh {
+namespace fw::reference {
 namespace {
 
 constexpr uint32_t kMaxStatuses = 1u << 22;  // of an object
@@ -96,7 +96,7 @@ PatternModel makePatternModel(const BurnDomain& domain, const RefineModel& model
     if (model.triangles.size() > gpu::kPatternMaxTriangles || statuses > kMaxStatuses)
         core::fail(FW_ERROR_INVALID_ARGUMENT,
                    "FwBurnableMeshDef::refineDepth is %u and the mesh has %zu triangles: the "
-                   "published scheme would keep %zu statuses; the limits are %u, and %u triangles.",
+                   "pattern would keep %zu statuses; the limits are %u, and %u triangles.",
                    depth, model.triangles.size(), statuses, kMaxStatuses,
                    gpu::kPatternMaxTriangles);
     for (const PatternTriangle& t : made.pattern)
@@ -210,4 +210,4 @@ bool advancePattern(const PatternModel& model, const PatternSettings& settings, 
     return true;
 }
 
-}  // namespace fw::mesh
+}  // namespace fw::reference

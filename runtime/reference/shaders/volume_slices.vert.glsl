@@ -3,10 +3,11 @@
 // contains the polygon that the plane cuts out of each lattice piece.
 #extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
+#include "reference/slices_push.h"
 
 layout(push_constant) uniform Push { SlicesPush draw; };
 
-#include "shared/volume_slices.h"
+#include "reference/volume_slices.h"
 
 // m: off the axis, along it, the tube's radius
 layout(location = 0) centroid out vec4 outPlace;

@@ -4,13 +4,13 @@
 #version 450
 #extension GL_GOOGLE_include_directive : require
 #include "lib/compute.glsl"
-#include "shared/published.h"
+#include "reference/published.h"
 FW_READ(OBJECTS) FW_READ_WRITE(STATE) FW_READ_WRITE(TILE_STATE) FW_READ_WRITE(COUNTERS)
 FW_READ_WRITE(OBJECT_COUNTERS) FW_PUSH(StepPush)
 #include "lib/burn_budget.glsl"
 
 // Four texels of a row: buffers begin at whole tiles, rows are multiples of eight.
-layout(std430, set = 0, binding = FW_BIND_PUBLISHED) buffer PublishedRows { vec4 quads[]; };
+layout(std430, set = 0, binding = FW_BIND_EXTENSION_TILES) buffer PublishedRows { vec4 quads[]; };
 
 // False: the tile may not burn.
 bool light(uint object, int x, int y, uint at) {
@@ -79,9 +79,9 @@ void runBlock(uint object, int x, int y) {
     int width = int(objects[object].width);
     int height = int(objects[object].height);
     int plane = width * height;
-    int base = int(objects[object].publishedBase);
-    int from = base + int(push.publishedParity) * plane;
-    int to = (base + int(push.publishedParity ^ 1u) * plane) / 4;
+    int base = int(objects[object].extensionBase);
+    int from = base + int(push.extensionParity) * plane;
+    int to = (base + int(push.extensionParity ^ 1u) * plane) / 4;
     int spread = (base + 2 * plane) / 4;
     Row below2 = loadRow(from, width, height, x, y - 2);
     Row below1 = loadRow(from, width, height, x, y - 1);

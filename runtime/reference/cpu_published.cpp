@@ -1,13 +1,17 @@
-// The published sixteen-tap kernel on the CPU: the floats of shaders/burn/published.comp, in its
+// The published sixteen-tap kernel on the CPU: the floats of shaders/published.comp, in its
 // order. Three planes, S * D twice and D, with a border of two zero texels around the map.
 #include "gpu/cpu/cpu_state.h"
-#include "shared/published.h"
+#include "reference/methods.h"
+#include "reference/published.h"
 
 #include <algorithm>
 #include <bit>
 
-namespace fw::gpu::cpu {
+namespace fw::reference {
 namespace {
+
+using namespace gpu;
+using gpu::cpu::CpuObject;
 
 constexpr size_t kPad = 2;  // texels on each side: as far as taps reach
 
@@ -50,7 +54,7 @@ bool publishedRow(const float* from, const float* spread, float* to, size_t stri
 void createPublished(CpuObject& object) {
     const mesh::BurnDomain& domain = *object.domain;
     const size_t plane = planeOf(object);
-    object.published.resize(3 * plane);
+    object.extended.resize(3 * plane);
     const uint16_t* slow =
         object.slowness.empty() ? domain.slowness.data() : object.slowness.data();
     for (uint32_t y = 0; y < domain.height; ++y)
@@ -60,7 +64,7 @@ void createPublished(CpuObject& object) {
             const uvec4& up = object.materials[domain.texels[texel].materialFlags & 7].upCeiling;
             const int rise = dotInt(decodeNormal(domain.normals[texel]),
                                     ivec3(int(up.x), int(up.y), int(up.z)));  // Q24
-            object.published[2 * plane + place(object, x, y)] =
+            object.extended[2 * plane + place(object, x, y)] =
                 publishedSpread(slow[texel], -rise >> 12);
         }
 }
@@ -69,42 +73,42 @@ void publishedEvent(CpuObject& object, uint32_t texel, bool burns) noexcept {
     FW_ASSERT(texel < object.state.size(), "%u of %zu texels", texel, object.state.size());
     const size_t plane = planeOf(object);
     const size_t at = place(object, texel % object.domain->width, texel / object.domain->width);
-    const float q = burns ? object.published[2 * plane + at] : 0.0f;
-    object.published[at] = q;
-    object.published[plane + at] = q;
+    const float q = burns ? object.extended[2 * plane + at] : 0.0f;
+    object.extended[at] = q;
+    object.extended[plane + at] = q;
 }
 
-void CpuBackend::State::publishedStep(uint32_t now) noexcept {
+void publishedStep(gpu::cpu::CpuBackend::State& s, uint32_t now) noexcept {
     const uint32_t end = now + kStepTicks;
-    for (core::Owned<CpuObject>& owned : objects) {
-        if (!owned || !owned->live || owned->published.empty()) continue;
+    for (core::Owned<CpuObject>& owned : s.objects) {
+        if (!owned || !owned->live || owned->extended.empty()) continue;
         CpuObject& object = *owned;
         const uint32_t width = object.domain->width;
         const size_t plane = planeOf(object);
-        FW_ASSERT(object.published.size() == 3 * plane, "%zu of %zu floats",
-                  object.published.size(), 3 * plane);
-        FW_ASSERT(object.publishedParity < 2, "parity %u", object.publishedParity);
-        float* planes = object.published.data();
+        FW_ASSERT(object.extended.size() == 3 * plane, "%zu of %zu floats",
+                  object.extended.size(), 3 * plane);
+        FW_ASSERT(object.extensionParity < 2, "parity %u", object.extensionParity);
+        float* planes = object.extended.data();
         for (uint32_t y = 0; y < object.domain->height; ++y) {
             const size_t row = place(object, 0, y);
-            const float* from = planes + object.publishedParity * plane + row;
+            const float* from = planes + object.extensionParity * plane + row;
             const float* spread = planes + 2 * plane + row;
-            float* to = planes + (object.publishedParity ^ 1u) * plane + row;
+            float* to = planes + (object.extensionParity ^ 1u) * plane + row;
             if (!publishedRow(from, spread, to, strideOf(object), width)) continue;
             for (uint32_t x = 0; x < width; ++x) {
                 uint32_t& state = object.state[y * width + x];
                 if (crossing(from[x], to[x], spread[x]) >> 31 == 0 || !isReceptive(state)) continue;
                 const uint32_t worldTile = object.worldTileOf(y * width + x);
-                if (isRequestPass && !mayBurn(worldTile)) requestToBurn(worldTile);
-                if (!mayBurn(worldTile)) to[x] = from[x];  // it passes again in the next step
-                if (isRequestPass || !mayBurn(worldTile)) continue;
+                if (s.isRequestPass && !s.mayBurn(worldTile)) s.requestToBurn(worldTile);
+                if (!s.mayBurn(worldTile)) to[x] = from[x];  // it passes again in the next step
+                if (s.isRequestPass || !s.mayBurn(worldTile)) continue;
                 state = end;
                 object.addIgnitions(1, end);
-                burning(worldTile);
+                s.burning(worldTile);
             }
         }
-        if (!isRequestPass) object.publishedParity ^= 1u;
+        if (!s.isRequestPass) object.extensionParity ^= 1u;
     }
 }
 
-}  // namespace fw::gpu::cpu
+}  // namespace fw::reference

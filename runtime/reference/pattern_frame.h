@@ -1,14 +1,18 @@
-// The published scheme on a whole mesh, frame by frame, on the CPU: a template on every coarse
+// The refinement pattern on a whole mesh, frame by frame, on the CPU: a template on every coarse
 // triangle, a heat boundary that grows from where the fire began, and the list of the triangles
 // that the statuses draw. Where their vertices lie and what is consumed is the device's
-// (shaders/shared/reference_pattern.h). Cosmetic, and a function of ticks: equal runs give equal
+// (pattern_word.h). Cosmetic, and a function of ticks: equal runs give equal
 // lists.
 #pragma once
 #include "mesh/refine/model.h"
-#include "mesh/refine/published.h"
-#include "shared/reference_pattern.h"
+#include "reference/pattern.h"
+#include "reference/pattern_word.h"
 
-namespace fw::mesh {
+namespace fw::reference {
+
+using mesh::BurnDomain;
+using mesh::RefineModel;
+using mesh::RefineOptions;
 
 // A mesh's side of it, at one depth.
 struct PatternModel {
@@ -84,4 +88,4 @@ struct PatternView {
 bool advancePattern(const PatternModel& model, const PatternSettings& settings, double tick,
                     const PatternView& view, bool full, PatternState& state) noexcept;
 
-}  // namespace fw::mesh
+}  // namespace fw::reference

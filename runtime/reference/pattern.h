@@ -1,4 +1,4 @@
-// The published refinement scheme, for comparison: one template of four-way splits (id, SetLevel,
+// The adaptive refinement pattern: one template of four-way splits (id, SetLevel,
 // Siblings, Parent, Status) laid over every eligible coarse triangle, driven by a growing heat
 // boundary. Its rules as printed do not come to rest; the repaired ones do. It cracks between
 // coarse triangles and inside a template where levels meet: the product scheme is
@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-namespace fw::mesh {
+namespace fw::reference {
 
 constexpr uint32_t kPatternLattice = 64;  // corner coordinates of the template are in 1/64
 constexpr uint32_t kPatternLevels = 5;    // SetLevel of the finest
@@ -37,9 +37,6 @@ enum class PatternRules {
     repaired,  // siblings change only from initial, parents only from initial or active; a parent
 };             // goes inactive when no child is initial
 
-// The finest triangles with a corner nearer than `radius` (in 1/64) to (x, y) are eligible.
-void markPatternCircle(std::span<const PatternTriangle> pattern, float x, float y, float radius,
-                       std::span<uint8_t> eligible);
 // One sweep of all three rules. serial: later triangles see what earlier ones did, from the leaves
 // up; else all read the state before. Returns how many statuses changed.
 uint32_t sweepPattern(std::span<const PatternTriangle> pattern, PatternRules rules,
@@ -56,14 +53,5 @@ struct PatternHeat {
     float psi = 1;        // 1/m^2, by the size of the triangles
 };
 float patternHeatDistance(const PatternHeat& heat, glm::vec3 point, float theta);
-// Is any point of the triangle's barycentric lattice of 2^depth steps inside? Theta of each point,
-// in [0, 2), is drawn from `seed`.
-bool isPatternEligible(const PatternHeat& heat, const glm::vec3 corner[3], uint32_t depth,
-                       uint32_t seed);
 
-// The rule for what lies behind the fire: hide a triangle when two or more of its children, being
-// of SetLevel 5 or finer, have a higher burn level (consumed triangles) than itself.
-bool isPatternHidden(std::span<const PatternTriangle> pattern, std::span<const uint32_t> burnLevel,
-                     uint32_t triangle) noexcept;
-
-}  // namespace fw::mesh
+}  // namespace fw::reference

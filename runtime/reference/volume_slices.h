@@ -1,8 +1,9 @@
 // Sliced lattice: a flame's tube as a chain of hexahedra between its nodes' planes, and the convex
 // polygon that a plane across the view cuts out of each. Corners keep their place along the curve.
 // FW_FLAME_NODE(i): see volume_march.h.
-#ifndef FW_SHARED_VOLUME_SLICES_H
-#define FW_SHARED_VOLUME_SLICES_H
+#ifndef FW_REFERENCE_VOLUME_SLICES_H
+#define FW_REFERENCE_VOLUME_SLICES_H
+#include "reference/slices_push.h"
 #include "shared/volume_march.h"
 
 FW_SHARED_BEGIN

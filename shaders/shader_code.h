@@ -1,6 +1,5 @@
-// The SPIR-V of every shader pass, embedded as words. Written by shaders/CMakeLists.txt: do not edit.
+// The SPIR-V of a shader, embedded as words.
 #pragma once
-
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -12,7 +11,7 @@ struct ShaderCode {
     std::span<const std::uint32_t> words;
 };
 
-std::span<const ShaderCode> embeddedShaders();
-const ShaderCode* findShader(std::string_view name);  // null when there is none of that name
+// Looks in the extension first, if there is one. Null: no shader has that name.
+[[nodiscard]] const ShaderCode* findShader(std::string_view name) noexcept;
 
 }  // namespace fw::gpu

@@ -3,6 +3,7 @@
 // so brightness does not depend on the number of slices. Premultiplied.
 #extension GL_GOOGLE_include_directive : require
 #include "volume/flame.glsl"
+#include "reference/slices_push.h"
 
 layout(constant_id = 0) const uint kEncoding = 0u;
 layout(set = 2, binding = 0) uniform sampler2DArray profiles;

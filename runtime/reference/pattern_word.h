@@ -1,9 +1,9 @@
 // Refinement pattern of the reference implementation: packing of a pattern triangle in one word,
 // its vertices, and the rule that consumes its children. The host chooses the drawn triangles
-// (runtime/mesh/refine). The product's scheme is in refine.h.
+// (pattern_frame.h). The product's scheme is in refine.h.
 // clang-format off
-#ifndef FW_SHARED_REFERENCE_PATTERN_H
-#define FW_SHARED_REFERENCE_PATTERN_H
+#ifndef FW_REFERENCE_PATTERN_WORD_H
+#define FW_REFERENCE_PATTERN_WORD_H
 #include "shared/refine.h"
 
 FW_SHARED_BEGIN
