@@ -2,7 +2,7 @@
 // that begins next copies it, on whatever backend.
 #include "mesh/carry.h"
 #include "world/burn_system.h"
-#include "world/persistence.h"
+#include "world/recording.h"
 
 #include <algorithm>
 #include <cmath>
@@ -102,7 +102,7 @@ void BurnSystem::keepGiven(const Object& from) {
 // Of a save. Throws FW_ERROR_BAD_DATA.
 void BurnSystem::checkCarry(const PendingTexel& event, const Clock& clock) {
     const uint32_t slot = carriedFrom(event);
-    const auto* owned = slot < scene_.objects.slotCount() ? scene_.objects.at(slot) : nullptr;
+    const auto* owned = scene_.objects.findSlot(slot);
     const Object& to = scene_.objectAt(event.object);
     if (!owned || slot == event.object || event.tick > clock.tick ||
         event.water >= scene_.domainOf(**owned).texelCount() ||
